@@ -1,0 +1,159 @@
+#include "core/metering/civil_time.hpp"
+
+#include <date/tz.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <charconv>
+#include <cstdio>
+#include <stdexcept>
+
+namespace recald::metering {
+namespace {
+
+using std::chrono::days;
+using std::chrono::seconds;
+using std::chrono::sys_days;
+
+constexpr Instant kEarliestInstant = sys_days{Day{std::chrono::year{1970}, std::chrono::month{1},
+                                                  std::chrono::day{1}}};
+
+/// The transitions of a zone over the years we accept. A zone has about two a year, so a binary
+/// search in a flat vector replaces the library's lookup, which builds strings on each call.
+std::vector<OffsetSpan> offsets_of(const date::time_zone& zone) {
+  std::vector<OffsetSpan> offsets;
+  Instant t = kEarliestInstant;
+  while (t < kLatestInstant) {
+    const date::sys_info info = zone.get_info(t);
+    const Instant end = std::min(info.end, kLatestInstant);
+    offsets.push_back({{t, end}, info.offset});
+    t = end;
+  }
+  return offsets;
+}
+
+int parse_digits(std::string_view text) {
+  int value = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole ? value : -1;
+}
+
+}  // namespace
+
+Result<LocalCalendar> LocalCalendar::open(std::string_view zone_name) {
+  try {
+    LocalCalendar calendar;
+    calendar.zone_name_ = zone_name;
+    calendar.offsets_ = offsets_of(*date::locate_zone(std::string{zone_name}));
+    return calendar;
+  } catch (const std::runtime_error&) {
+    return failure(ErrorCode::not_found, "time zone '" + std::string{zone_name} +
+                                             "' is not in this system's zone files; use an IANA "
+                                             "name such as America/New_York");
+  }
+}
+
+const OffsetSpan& LocalCalendar::offset_span(Instant t) const {
+  assert(kEarliestInstant <= t && t < kLatestInstant);
+  const auto after = std::upper_bound(
+      offsets_.begin(), offsets_.end(), t,
+      [](Instant instant, const OffsetSpan& entry) { return instant < entry.span.begin; });
+  return *std::prev(after);
+}
+
+Instant LocalCalendar::first_instant(Day day, int minute_of_day) const {
+  const Instant as_if_utc = Instant{sys_days{day}} + std::chrono::minutes{minute_of_day};
+  // Offsets lie within a day of UTC: of the spans around, the first whose local times reach the
+  // asked one contains its first showing, or begins at the jump over it.
+  auto entry = std::upper_bound(offsets_.begin(), offsets_.end(), as_if_utc - days{1},
+                                [](Instant instant, const OffsetSpan& candidate) {
+                                  return instant < candidate.span.begin;
+                                });
+  if (entry != offsets_.begin()) --entry;
+  for (; entry != offsets_.end(); ++entry) {
+    const Instant t = as_if_utc - entry->utc_offset;
+    if (t < entry->span.begin) return entry->span.begin;
+    if (t < entry->span.end) return t;
+  }
+  return kLatestInstant;
+}
+
+TimeSpan LocalCalendar::day_span(Day day) const {
+  return {first_instant(day, 0), first_instant(Day{sys_days{day} + days{1}}, 0)};
+}
+
+TimeSpan LocalCalendar::month_span(Month month) const {
+  return {first_instant(month / 1, 0), first_instant(next_month(month) / 1, 0)};
+}
+
+seconds LocalCalendar::utc_offset(Instant t) const { return offset_span(t).utc_offset; }
+
+LocalTime LocalCalendar::local_time(Instant t) const {
+  const Instant wall = t + utc_offset(t);
+  const auto midnight = std::chrono::floor<days>(wall);
+  return {Day{midnight},
+          static_cast<int>(std::chrono::duration_cast<std::chrono::minutes>(wall - midnight).count())};
+}
+
+Month LocalCalendar::month_of(Instant t) const {
+  const Day day = local_time(t).date;
+  return day.year() / day.month();
+}
+
+int days_in(Month month) {
+  return static_cast<int>(static_cast<unsigned>((month / std::chrono::last).day()));
+}
+
+Month next_month(Month month) { return month + std::chrono::months{1}; }
+Month previous_month(Month month) { return month - std::chrono::months{1}; }
+int months_between(Month from, Month to) { return static_cast<int>((to - from).count()); }
+
+std::string to_string(Month month) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u", static_cast<int>(month.year()),
+                static_cast<unsigned>(month.month()));
+  return text.data();
+}
+
+std::string to_string(Day day) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02u", static_cast<int>(day.year()),
+                static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
+  return text.data();
+}
+
+std::string to_string(Instant t) {
+  const auto midnight = std::chrono::floor<days>(t);
+  const std::chrono::hh_mm_ss clock{t - midnight};
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "T%02d:%02d:%02dZ", static_cast<int>(clock.hours().count()),
+                static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()));
+  return to_string(Day{midnight}) + text.data();
+}
+
+Result<Month> parse_month(std::string_view text) {
+  const bool shaped = text.size() == 7 && text[4] == '-';
+  const int year = shaped ? parse_digits(text.substr(0, 4)) : -1;
+  const int month = shaped ? parse_digits(text.substr(5, 2)) : -1;
+  if (year < 1971 || year > 2037 || month < 1 || month > 12) {
+    return failure(ErrorCode::malformed,
+                   "'" + std::string{text} + "' is not a month between 1971-01 and 2037-12; write YYYY-MM");
+  }
+  return std::chrono::year{year} / month;
+}
+
+Result<Day> parse_day(std::string_view text) {
+  const bool shaped = text.size() == 10 && text[7] == '-';
+  const auto month = shaped ? parse_month(text.substr(0, 7)) : Result<Month>{};
+  const int day = shaped ? parse_digits(text.substr(8, 2)) : -1;
+  if (!shaped || !month || day < 1 || day > days_in(*month)) {
+    return failure(ErrorCode::malformed,
+                   "'" + std::string{text} + "' is not a date between 1971 and 2037; write YYYY-MM-DD");
+  }
+  return *month / day;
+}
+
+}  // namespace recald::metering

@@ -1,0 +1,95 @@
+/// Where instants meet local calendars: months, days and schedule hours of one time zone.
+///
+/// Everything inside is UTC; local time exists at month, day and schedule arithmetic and for people.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace date {
+class time_zone;
+}
+
+namespace recald::metering {
+
+using Instant = std::chrono::sys_seconds;  ///< UTC, whole seconds.
+using Month = std::chrono::year_month;     ///< A local calendar month.
+using Day = std::chrono::year_month_day;   ///< A local calendar day.
+
+/// Half open: [begin, end).
+struct TimeSpan {
+  Instant begin;
+  Instant end;
+
+  [[nodiscard]] std::chrono::seconds length() const { return end - begin; }
+  [[nodiscard]] bool contains(Instant t) const { return begin <= t && t < end; }
+  bool operator==(const TimeSpan&) const = default;
+};
+
+/// A local wall-clock reading of an instant.
+struct LocalTime {
+  Day date;
+  int minute_of_day;  ///< 0…1439, as the clock on the wall shows it.
+};
+
+/// First instant that recald refuses: the zone library knows only listed transitions up to 2037.
+inline constexpr Instant kLatestInstant = std::chrono::sys_days{Day{
+    std::chrono::year{2038}, std::chrono::month{1}, std::chrono::day{1}}};
+
+/// Offset of local time from UTC, constant on [span.begin, span.end).
+struct OffsetSpan {
+  TimeSpan span;
+  std::chrono::seconds utc_offset;  ///< Local minus UTC.
+};
+
+/// The calendar of one IANA time zone. Cheap to copy; lookups do not allocate after `open`.
+class LocalCalendar {
+ public:
+  /// @return the calendar, or not_found if the system's zone files lack `zone_name`.
+  static Result<LocalCalendar> open(std::string_view zone_name);
+
+  /// [first instant of day 1, first instant of the next month's day 1).
+  /// A midnight that does not exist starts at the first existing instant, one that occurs twice at
+  /// the first. @pre the month lies in 1971…2037.
+  [[nodiscard]] TimeSpan month_span(Month month) const;
+  [[nodiscard]] TimeSpan day_span(Day day) const;
+
+  [[nodiscard]] LocalTime local_time(Instant t) const;
+  [[nodiscard]] Month month_of(Instant t) const;
+  [[nodiscard]] std::chrono::seconds utc_offset(Instant t) const;
+
+  /// The first instant that shows this wall-clock time, or, where the clock jumps over it, the jump.
+  [[nodiscard]] Instant first_instant(Day day, int minute_of_day) const;
+
+  [[nodiscard]] const std::string& zone_name() const { return zone_name_; }
+
+ private:
+  LocalCalendar() = default;
+  [[nodiscard]] const OffsetSpan& offset_span(Instant t) const;
+
+  std::string zone_name_;
+  std::vector<OffsetSpan> offsets_;  ///< Ordered, gapless over 1970…2037.
+};
+
+/// Days of the month, 28…31.
+[[nodiscard]] int days_in(Month month);
+
+/// The month after, the month before; `months_between(a, b)` is b − a in months.
+[[nodiscard]] Month next_month(Month month);
+[[nodiscard]] Month previous_month(Month month);
+[[nodiscard]] int months_between(Month from, Month to);
+
+/// "2016-03", "2016-03-01", "2016-03-01T05:00:00Z".
+[[nodiscard]] std::string to_string(Month month);
+[[nodiscard]] std::string to_string(Day day);
+[[nodiscard]] std::string to_string(Instant t);
+
+/// Exactly "YYYY-MM" or "YYYY-MM-DD"; anything else is malformed.
+[[nodiscard]] Result<Month> parse_month(std::string_view text);
+[[nodiscard]] Result<Day> parse_day(std::string_view text);
+
+}  // namespace recald::metering

@@ -1,0 +1,37 @@
+/// A meter's month in the figures that a building energy model is judged by.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "core/metering/reading.hpp"
+
+namespace recald::metering {
+
+/// Peak demand of a month. A filled or scaled slot is an average and never a peak.
+struct PeakDemand {
+  double kW;
+  Instant start;
+  bool could_be_exceeded;  ///< Some slots are not measured: the true peak may be higher.
+};
+
+/// Daily-average consumption and peak demand of one local calendar month (the seed, section 2).
+struct MonthlyFigure {
+  Month month;
+  double daily_average_kWh;  ///< Energy of the month / calendar days; NaN where nothing was measured.
+  /// Variance of `daily_average_kWh` from estimated slots, (kWh/day)². Not the meter's own error.
+  double daily_average_variance_kWh2;
+  std::optional<PeakDemand> peak;
+  std::chrono::seconds peak_window;
+  double coverage;      ///< Share of the month's slots that are measured and valid, 0…1.
+  double filled_share;  ///< Share of the slots that are filled or scaled.
+  std::array<int, 5> slots_by_validity;  ///< Indexed by `Validity`.
+  int slots;                             ///< Slots of the local month, clock changes included.
+  bool usable;                           ///< May be calibrated against.
+  std::string unusable_because;          ///< Empty when usable.
+  Reason reasons = Reason::none;         ///< Union over the month's slots.
+  int revision = 0;                      ///< Counts re-openings by late readings.
+};
+
+}  // namespace recald::metering

@@ -1,0 +1,31 @@
+/// What every building model looks like to a calibration.
+#pragma once
+
+#include <memory>
+#include <span>
+
+namespace recald {
+
+/// f(x, θ) of eq. (3) of the seed for all months of the model's period at once.
+///
+/// The known inputs x (weather, schedules, months) are fixed at construction. An instance owns its
+/// scratch memory, so `evaluate` does not allocate and is not shared between threads: each chain
+/// takes a `clone`.
+class MonthlyModel {
+ public:
+  virtual ~MonthlyModel() = default;
+
+  [[nodiscard]] virtual std::unique_ptr<MonthlyModel> clone() const = 0;
+
+  [[nodiscard]] virtual int parameter_count() const = 0;
+  [[nodiscard]] virtual int output_count() const = 0;
+  [[nodiscard]] virtual int month_count() const = 0;
+
+  /// @param theta    (parameter_count) values in the parameters' own units.
+  /// @param outputs  (output_count * month_count), output-major: outputs[k * month_count + i] is
+  ///                 output k in month i, e.g. daily-average consumption in kWh/day. All finite for
+  ///                 every theta inside the priors.
+  virtual void evaluate(std::span<const double> theta, std::span<double> outputs) = 0;
+};
+
+}  // namespace recald

@@ -1,0 +1,39 @@
+/// Failure as a value: what the data or the world can get wrong.
+///
+/// Our own bugs are assertions; nothing in core throws on bad data.
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace recald {
+
+/// What kind of thing went wrong. The message carries what, where, which value and what to do.
+enum class ErrorCode {
+  invalid_value,          ///< A value from outside makes no sense (prior with min > mode, unknown unit).
+  malformed,              ///< Text that cannot be parsed (wrong header, bad number, bad time stamp).
+  not_found,              ///< A file, meter, key or zone that does not exist.
+  io_failed,              ///< The operating system refused a read or a write.
+  not_enough_data,        ///< Too few readings, months or draws for the answer asked for.
+  not_finite,             ///< NaN or infinity where a number is needed.
+  not_positive_definite,  ///< A covariance that has no Cholesky factor.
+  out_of_range,           ///< A value outside what the component supports (an instant after 2037).
+  unsupported,            ///< Understood, but this version does not do it.
+  cancelled,              ///< The caller asked to stop.
+};
+
+struct Error {
+  ErrorCode code;
+  std::string message;
+};
+
+template <class T>
+using Result = tl::expected<T, Error>;
+
+/// Shorthand for `return tl::unexpected(Error{code, message})`.
+[[nodiscard]] inline tl::unexpected<Error> failure(ErrorCode code, std::string message) {
+  return tl::unexpected<Error>(Error{code, std::move(message)});
+}
+
+}  // namespace recald
