@@ -16,8 +16,8 @@ using std::chrono::days;
 using std::chrono::seconds;
 using std::chrono::sys_days;
 
-constexpr Instant kEarliestInstant = sys_days{Day{std::chrono::year{1970}, std::chrono::month{1},
-                                                  std::chrono::day{1}}};
+constexpr Instant kEarliestInstant =
+    sys_days{Day{std::chrono::year{1970}, std::chrono::month{1}, std::chrono::day{1}}};
 
 /// The transitions of a zone over the years we accept. A zone has about two a year, so a binary
 /// search in a flat vector replaces the library's lookup, which builds strings on each call.
@@ -67,10 +67,9 @@ Instant LocalCalendar::first_instant(Day day, int minute_of_day) const {
   const Instant as_if_utc = Instant{sys_days{day}} + std::chrono::minutes{minute_of_day};
   // Offsets lie within a day of UTC: of the spans around, the first whose local times reach the
   // asked one contains its first showing, or begins at the jump over it.
-  auto entry = std::upper_bound(offsets_.begin(), offsets_.end(), as_if_utc - days{1},
-                                [](Instant instant, const OffsetSpan& candidate) {
-                                  return instant < candidate.span.begin;
-                                });
+  auto entry = std::upper_bound(
+      offsets_.begin(), offsets_.end(), as_if_utc - days{1},
+      [](Instant instant, const OffsetSpan& candidate) { return instant < candidate.span.begin; });
   if (entry != offsets_.begin()) --entry;
   for (; entry != offsets_.end(); ++entry) {
     const Instant t = as_if_utc - entry->utc_offset;
@@ -93,8 +92,9 @@ seconds LocalCalendar::utc_offset(Instant t) const { return offset_span(t).utc_o
 LocalTime LocalCalendar::local_time(Instant t) const {
   const Instant wall = t + utc_offset(t);
   const auto midnight = std::chrono::floor<days>(wall);
-  return {Day{midnight},
-          static_cast<int>(std::chrono::duration_cast<std::chrono::minutes>(wall - midnight).count())};
+  return {
+      Day{midnight},
+      static_cast<int>(std::chrono::duration_cast<std::chrono::minutes>(wall - midnight).count())};
 }
 
 Month LocalCalendar::month_of(Instant t) const {
@@ -128,8 +128,8 @@ std::string to_string(Instant t) {
   const auto midnight = std::chrono::floor<days>(t);
   const std::chrono::hh_mm_ss clock{t - midnight};
   std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "T%02d:%02d:%02dZ", static_cast<int>(clock.hours().count()),
-                static_cast<int>(clock.minutes().count()),
+  std::snprintf(text.data(), text.size(), "T%02d:%02d:%02dZ",
+                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
                 static_cast<int>(clock.seconds().count()));
   return to_string(Day{midnight}) + text.data();
 }
@@ -139,8 +139,9 @@ Result<Month> parse_month(std::string_view text) {
   const int year = shaped ? parse_digits(text.substr(0, 4)) : -1;
   const int month = shaped ? parse_digits(text.substr(5, 2)) : -1;
   if (year < 1971 || year > 2037 || month < 1 || month > 12) {
-    return failure(ErrorCode::malformed,
-                   "'" + std::string{text} + "' is not a month between 1971-01 and 2037-12; write YYYY-MM");
+    return failure(
+        ErrorCode::malformed,
+        "'" + std::string{text} + "' is not a month between 1971-01 and 2037-12; write YYYY-MM");
   }
   return std::chrono::year{year} / month;
 }
@@ -150,8 +151,9 @@ Result<Day> parse_day(std::string_view text) {
   const auto month = shaped ? parse_month(text.substr(0, 7)) : Result<Month>{};
   const int day = shaped ? parse_digits(text.substr(8, 2)) : -1;
   if (!shaped || !month || day < 1 || day > days_in(*month)) {
-    return failure(ErrorCode::malformed,
-                   "'" + std::string{text} + "' is not a date between 1971 and 2037; write YYYY-MM-DD");
+    return failure(
+        ErrorCode::malformed,
+        "'" + std::string{text} + "' is not a date between 1971 and 2037; write YYYY-MM-DD");
   }
   return *month / day;
 }

@@ -1,6 +1,7 @@
 /// Where instants meet local calendars: months, days and schedule hours of one time zone.
 ///
-/// Everything inside is UTC; local time exists at month, day and schedule arithmetic and for people.
+/// Everything inside is UTC; local time exists at month, day and schedule arithmetic and for
+/// people.
 #pragma once
 
 #include <chrono>
@@ -37,8 +38,8 @@ struct LocalTime {
 };
 
 /// First instant that recald refuses: the zone library knows only listed transitions up to 2037.
-inline constexpr Instant kLatestInstant = std::chrono::sys_days{Day{
-    std::chrono::year{2038}, std::chrono::month{1}, std::chrono::day{1}}};
+inline constexpr Instant kLatestInstant =
+    std::chrono::sys_days{Day{std::chrono::year{2038}, std::chrono::month{1}, std::chrono::day{1}}};
 
 /// Offset of local time from UTC, constant on [span.begin, span.end).
 struct OffsetSpan {
@@ -62,7 +63,8 @@ class LocalCalendar {
   [[nodiscard]] Month month_of(Instant t) const;
   [[nodiscard]] std::chrono::seconds utc_offset(Instant t) const;
 
-  /// The first instant that shows this wall-clock time, or, where the clock jumps over it, the jump.
+  /// The first instant that shows this wall-clock time, or, where the clock jumps over it, the
+  /// jump.
   [[nodiscard]] Instant first_instant(Day day, int minute_of_day) const;
 
   [[nodiscard]] const std::string& zone_name() const { return zone_name_; }

@@ -19,7 +19,8 @@ struct PeakDemand {
 /// Daily-average consumption and peak demand of one local calendar month (the seed, section 2).
 struct MonthlyFigure {
   Month month;
-  double daily_average_kWh;  ///< Energy of the month / calendar days; NaN where nothing was measured.
+  double
+      daily_average_kWh;  ///< Energy of the month / calendar days; NaN where nothing was measured.
   /// Variance of `daily_average_kWh` from estimated slots, (kWh/day)². Not the meter's own error.
   double daily_average_variance_kWh2;
   std::optional<PeakDemand> peak;

@@ -1,0 +1,262 @@
+#include "core/metering/counter.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace recald::metering {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr double kRatedMargin = 1.2;
+constexpr int kConfirmSamples = 3;
+constexpr seconds kConfirmTime{120};
+constexpr seconds kPreviousKept{7 * 86'400};
+constexpr double kRolloverFrom = 0.9;  // of the modulus
+constexpr std::size_t kErraticRestarts = 10;
+constexpr seconds kErraticTime{3600};
+
+double hours(seconds span) { return static_cast<double>(span.count()) / 3600.0; }
+
+/// A: the most that the register can have risen.
+double rise_max_kWh(seconds span, const CounterSettings& settings) {
+  return kRatedMargin * settings.rated_kW * hours(span) + 2.0 * settings.resolution_kWh;
+}
+
+/// "v fits X": −2r <= v − X <= A since X.
+bool fits(const RegisterSample& sample, const RegisterSample& line,
+          const CounterSettings& settings) {
+  const double rise_kWh = sample.value_kWh - line.value_kWh;
+  return rise_kWh >= -2.0 * settings.resolution_kWh &&
+         rise_kWh <= rise_max_kWh(sample.time - line.time, settings);
+}
+
+CounterBooking measured(const RegisterSample& from, const RegisterSample& to, double energy_kWh) {
+  return {{from.time, to.time}, energy_kWh, Validity::ok};
+}
+
+CounterBooking unbooked(Instant from, Instant to, Reason reason) {
+  return {{from, to}, std::numeric_limits<double>::quiet_NaN(), Validity::missing, reason};
+}
+
+/// One call of `advance`; each branch of the state table is a function that says whether it held.
+class Transition {
+ public:
+  Transition(CounterState state, const RegisterSample& sample, const CounterSettings& settings)
+      : sample_{sample}, settings_{settings} {
+    step_.state = std::move(state);
+    rise_kWh_ = sample.value_kWh - step_.state.baseline.value_kWh;
+    rise_max_kWh_ = rise_max_kWh(sample.time - step_.state.baseline.time, settings);
+  }
+
+  CounterStep run() {
+    if (!std::isfinite(sample_.value_kWh)) return step_;  // the next good sample spans the hole
+    if (step_.state.phase == CounterPhase::empty) {
+      believe(sample_);
+      return step_;
+    }
+    (void)(uncountable() || plain_rise() || jitter() || rollover() || first_contradiction() ||
+           agrees_with_pending() || start_pending_again());
+    return step_;
+  }
+
+ private:
+  void believe(const RegisterSample& sample) {
+    step_.state.baseline = sample;
+    step_.state.phase = CounterPhase::run;
+    step_.state.pending.reset();
+  }
+
+  bool uncountable() {
+    if (rise_max_kWh_ < settings_.modulus_kWh) return false;
+    step_.bookings.push_back(unbooked(step_.state.baseline.time, sample_.time, Reason::wrap));
+    believe(sample_);
+    return true;
+  }
+
+  bool plain_rise() {
+    if (rise_kWh_ < 0.0 || rise_kWh_ > rise_max_kWh_) return false;
+    CounterBooking booking = measured(step_.state.baseline, sample_, rise_kWh_);
+    if (step_.state.pending) {
+      booking.reasons = Reason::bounce;
+      step_.event = CounterEvent::bounce;
+    }
+    step_.bookings.push_back(booking);
+    believe(sample_);
+    return true;
+  }
+
+  bool jitter() {
+    if (rise_kWh_ >= 0.0 || rise_kWh_ < -2.0 * settings_.resolution_kWh) return false;
+    step_.bookings.push_back(measured(step_.state.baseline, sample_, 0.0));
+    believe({sample_.time, step_.state.baseline.value_kWh});  // so the dip is not booked again
+    return true;
+  }
+
+  bool rollover() {
+    const bool possible = step_.state.phase != CounterPhase::high && rise_kWh_ < 0.0 &&
+                          step_.state.baseline.value_kWh > kRolloverFrom * settings_.modulus_kWh;
+    const double wrapped_kWh = rise_kWh_ + settings_.modulus_kWh;
+    if (!possible || wrapped_kWh < 0.0 || wrapped_kWh > rise_max_kWh_) return false;
+    step_.bookings.push_back(measured(step_.state.baseline, sample_, wrapped_kWh));
+    step_.bookings.back().reasons = Reason::rollover;
+    believe(sample_);
+    return true;
+  }
+
+  void begin_pending() {
+    step_.state.phase = rise_kWh_ < 0.0 ? CounterPhase::low : CounterPhase::high;
+    step_.state.pending = CounterState::Pending{sample_, sample_, 1};
+  }
+
+  bool first_contradiction() {
+    if (step_.state.phase != CounterPhase::run) return false;
+    begin_pending();
+    return true;
+  }
+
+  bool agrees_with_pending() {
+    CounterState::Pending& pending = *step_.state.pending;
+    if (!fits(sample_, pending.last, settings_)) return false;
+    ++pending.samples;
+    pending.last = sample_;
+    const bool confirmed =
+        pending.samples >= kConfirmSamples && sample_.time - pending.first.time >= kConfirmTime;
+    if (confirmed && !restore_previous()) rebase();
+    return true;
+  }
+
+  /// The register is back on the line that was given up: what was booked since was wrong.
+  bool restore_previous() {
+    const auto& previous = step_.state.previous;
+    const bool back = step_.state.phase == CounterPhase::high && previous &&
+                      sample_.time < previous->expires &&
+                      fits(sample_, previous->sample, settings_);
+    if (!back) return false;
+    step_.bookings.push_back({{previous->sample.time, sample_.time},
+                              sample_.value_kWh - previous->sample.value_kWh,
+                              Validity::scaled,
+                              Reason::none,
+                              true});
+    step_.event = CounterEvent::restored;
+    step_.state.previous.reset();
+    believe(sample_);
+    return true;
+  }
+
+  void rebase() {
+    CounterState& state = step_.state;
+    const bool fell = state.phase == CounterPhase::low;
+    const RegisterSample first = state.pending->first;
+    step_.bookings.push_back(
+        unbooked(state.baseline.time, first.time, fell ? Reason::reset : Reason::jump));
+    step_.bookings.push_back(
+        measured(first, sample_, std::max(0.0, sample_.value_kWh - first.value_kWh)));
+    step_.event = fell ? CounterEvent::reset : CounterEvent::jump;
+    state.previous = CounterState::OldBaseline{state.baseline, sample_.time + kPreviousKept};
+    believe(sample_);
+  }
+
+  bool start_pending_again() {
+    CounterState& state = step_.state;
+    begin_pending();
+    state.restarts.push_back(sample_.time);
+    std::erase_if(state.restarts, [&](Instant t) { return t <= sample_.time - kErraticTime; });
+    if (state.restarts.size() >= kErraticRestarts) {
+      step_.event = CounterEvent::erratic;
+      state.restarts.clear();
+    }
+    return true;
+  }
+
+  const RegisterSample& sample_;
+  const CounterSettings& settings_;
+  CounterStep step_;
+  double rise_kWh_ = 0.0;
+  double rise_max_kWh_ = 0.0;
+};
+
+/// What the bookings of one register say about one interval.
+class IntervalEnergy {
+ public:
+  void add(const CounterBooking& booking, const TimeSpan& interval) {
+    const Instant begin = std::max(booking.span.begin, interval.begin);
+    const Instant end = std::min(booking.span.end, interval.end);
+    if (end <= begin) return;
+    reasons_ |= booking.reasons;
+    covered_ += end - begin;
+    missing_ = missing_ || booking.validity == Validity::missing;
+    estimated_ = estimated_ || booking.validity == Validity::scaled ||
+                 booking.span.length() > interval.length();
+    energy_kWh_ += booking.energy_kWh * hours(end - begin) / hours(booking.span.length());
+  }
+
+  [[nodiscard]] Reading reading(std::uint32_t meter, const TimeSpan& interval) const {
+    Reading reading{meter, interval.begin, std::numeric_limits<double>::quiet_NaN(),
+                    Validity::missing, reasons_};
+    if (missing_ || covered_ < interval.length()) return reading;
+    reading.mean_kW = energy_kWh_ / hours(interval.length());
+    reading.validity = estimated_ ? Validity::scaled : Validity::ok;
+    return reading;
+  }
+
+ private:
+  double energy_kWh_ = 0.0;
+  seconds covered_{0};
+  bool missing_ = false;
+  bool estimated_ = false;
+  Reason reasons_ = Reason::none;
+};
+
+std::vector<CounterBooking> book_all(std::span<const RegisterSample> samples,
+                                     const CounterSettings& settings) {
+  std::vector<CounterBooking> bookings;
+  CounterState state;
+  for (const RegisterSample& sample : samples) {
+    CounterStep step = advance(std::move(state), sample, settings);
+    state = std::move(step.state);
+    for (const CounterBooking& booking : step.bookings) {
+      while (booking.supersedes && !bookings.empty() &&
+             bookings.back().span.begin >= booking.span.begin) {
+        bookings.pop_back();
+      }
+      bookings.push_back(booking);
+    }
+  }
+  return bookings;
+}
+
+}  // namespace
+
+CounterStep advance(CounterState state, const RegisterSample& sample,
+                    const CounterSettings& settings) {
+  assert(settings.rated_kW > 0.0 && settings.resolution_kWh >= 0.0 && settings.modulus_kWh > 0.0);
+  assert(state.phase == CounterPhase::empty || sample.time > state.baseline.time);
+  return Transition{std::move(state), sample, settings}.run();
+}
+
+CounterStep swap_meter(CounterState) { return {{}, {}, CounterEvent::swapped}; }
+
+std::vector<Reading> readings_from_register(std::uint32_t meter,
+                                            std::span<const RegisterSample> samples,
+                                            seconds interval, const CounterSettings& settings) {
+  std::vector<Reading> readings;
+  if (samples.size() < 2) return readings;
+  const std::vector<CounterBooking> bookings = book_all(samples, settings);
+  const seconds past = samples.front().time.time_since_epoch() % interval;
+  Instant start = samples.front().time - past + (past == seconds{0} ? seconds{0} : interval);
+  std::size_t first = 0;
+  for (; start + interval <= samples.back().time; start += interval) {
+    const TimeSpan slot{start, start + interval};
+    while (first < bookings.size() && bookings[first].span.end <= slot.begin) ++first;
+    IntervalEnergy energy;
+    for (std::size_t i = first; i < bookings.size() && bookings[i].span.begin < slot.end; ++i) {
+      energy.add(bookings[i], slot);
+    }
+    readings.push_back(energy.reading(meter, slot));
+  }
+  return readings;
+}
+
+}  // namespace recald::metering

@@ -1,0 +1,44 @@
+/// Estimates for the slots of a month that are not measured, and how uncertain they make its sum.
+#pragma once
+
+#include <chrono>
+#include <vector>
+
+#include "core/metering/month_slots.hpp"
+
+namespace recald::metering {
+
+enum class FillRule : std::uint8_t {
+  same_time,     ///< Mean of the same time of day in the same month, whatever the gap (the seed).
+  linear_short,  ///< A straight line across gaps up to `line_max`, same_time beyond.
+};
+
+struct FillOptions {
+  FillRule rule = FillRule::same_time;
+  bool daytype = false;       ///< Average over like days only: working or not. Off as in the seed.
+  std::vector<Day> holidays;  ///< Local days counted as not working.
+  std::chrono::seconds line_max{2 * 3600};
+  int days_min = 3;  ///< Fewer measured days at a time of day ask for a wider mean.
+  /// Beyond this a gap's slots do not err independently: the variance of whole days is used.
+  std::chrono::seconds independent_gap_max{24 * 3600};
+};
+
+struct FillResult {
+  int filled = 0;              ///< Slots whose used value is an estimate.
+  double variance_kWh2 = 0.0;  ///< Of the month's energy, from the estimates alone.
+};
+
+/// Sets `used_kW` of every slot: its measured value where `ok` or `scaled`, an estimate elsewhere.
+/// `missing` slots become `filled`, `suspect` ones stay suspect with an estimate beside the value.
+/// A month without any measured slot is left without estimates.
+///
+/// With n days measured at a time of day, sample variance s² and J slots filled from that mean,
+///   Var += s² (J + J²/n) h²,  h the interval in hours:
+/// J independent deviations plus the error of the mean they share. Slots of gaps longer than
+/// `independent_gap_max` enter by the daily means of complete days instead, D days missing of n_d:
+///   Var += s_day² (D + D²/n_d) (24 h)².
+/// A line's errors within its gap are taken as fully correlated, (Σ s h)².
+/// @see the seed, section 2, for the estimate.
+[[nodiscard]] FillResult fill_gaps(MonthSlots& month, const FillOptions& options);
+
+}  // namespace recald::metering

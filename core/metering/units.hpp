@@ -1,0 +1,45 @@
+/// From the unit written beside a value to the interval-mean power that everything else works in.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string_view>
+
+#include "core/metering/reading.hpp"
+#include "core/result.hpp"
+
+namespace recald::metering {
+
+/// What a site must say before a mass or a volume becomes energy.
+struct UnitFactors {
+  /// Steam: energy per mass with condensate returned. The default is 0.305 kWh/lb, low-pressure
+  /// saturated steam.
+  double steam_kWh_per_kg = 0.305 / 0.45359237;
+  /// Gas: energy per metered volume, as billed (gross calorific value times volume correction).
+  std::optional<double> gas_kWh_per_m3;
+};
+
+/// How to read one unit: a rate is a mean over the interval, an amount is the interval's total.
+struct UnitConversion {
+  double factor;  ///< kW per unit of a rate, kWh per unit of an amount.
+  bool is_rate;
+
+  [[nodiscard]] double mean_kW(double value, std::chrono::seconds interval) const {
+    return is_rate ? value * factor
+                   : value * factor * 3600.0 / static_cast<double>(interval.count());
+  }
+};
+
+/// Power: W kW MW GW, BTU/h kBtu/h MBtu/h MBH, ton (of refrigeration), kg/h lb/h m3/h.
+/// Energy: Wh kWh MWh GWh, J kJ MJ GJ, BTU kBtu MBtu MMBtu therm, ton-hour, kg lb m3.
+/// Case does not matter, but for a leading m, which would be milli. MBtu is a million BTU as in
+/// Portfolio Manager, and the same as MMBtu; MBH is a thousand BTU an hour.
+///
+/// @return the conversion for a meter of `utility`, or
+///         invalid_value  the unit is not known, or a mass stands on another meter than steam's;
+///         unsupported    understood, but not energy without more than a factor (l/s without a
+///                        temperature difference, m3 without a heating value, water).
+[[nodiscard]] Result<UnitConversion> find_unit(std::string_view unit, Utility utility,
+                                               const UnitFactors& factors);
+
+}  // namespace recald::metering

@@ -1,0 +1,309 @@
+#include "core/metering/validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace recald::metering {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNormalMad = 1.4826;      // MAD of a normal distribution to its sd
+constexpr double kSpikeScaleFloor = 0.01;  // of the month's median
+constexpr std::size_t kSpikeDaysMin = 5;   // fewer days tell nothing about a time of day
+
+void condemn(MonthSlots& month, std::size_t slot, Reason reason) {
+  month.validity[slot] = Validity::suspect;
+  month.reasons[slot] |= reason;
+}
+
+/// What the meter said, believed or not; NaN where it said nothing or a counter only knew a sum.
+double reported_kW(const MonthSlots& month, std::size_t slot) {
+  const Validity v = month.validity[slot];
+  return v == Validity::ok || v == Validity::suspect ? month.measured_kW[slot] : kNoValue;
+}
+
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Of the readings that are not zero.
+double median_magnitude(const MonthSlots& month) {
+  std::vector<double> values;
+  values.reserve(month.measured_kW.size());
+  for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
+    const double magnitude_kW = std::abs(month.measured_kW[i]);
+    if (month.validity[i] == Validity::ok && magnitude_kW > 0.0) values.push_back(magnitude_kW);
+  }
+  return values.empty() ? 0.0 : median_of(values);
+}
+
+struct Extremes {
+  double lowest_kW = 0.0;  // 0 when nothing is below
+  double highest_kW = 0.0;
+
+  [[nodiscard]] double magnitude_kW() const { return std::max(highest_kW, -lowest_kW); }
+};
+
+/// Of what the source reports.
+Extremes extremes_of(const MonthSlots& month) {
+  Extremes extremes;
+  for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
+    const double value_kW = month.measured_kW[i];
+    const bool inside = !(value_kW > extremes.highest_kW) && !(value_kW < extremes.lowest_kW);
+    if (inside || month.validity[i] == Validity::scaled) continue;
+    extremes.highest_kW = std::max(extremes.highest_kW, value_kW);
+    extremes.lowest_kW = std::min(extremes.lowest_kW, value_kW);
+  }
+  return extremes;
+}
+
+/// The most that is believed of this meter in this month.
+double range_limit_kW(const MonthSlots& month, double largest_kW, const Meter& meter,
+                      const ValidationContext& context, const ValidationOptions& options) {
+  if (meter.rated_kW) return options.range_factor * *meter.rated_kW;
+  const double by_history =
+      options.unrated_history_factor * context.largest_believed_kW.value_or(0.0);
+  if (largest_kW <= by_history) return by_history;  // the usual case, without a median
+  return std::max(by_history, options.unrated_range_factor * median_magnitude(month));
+}
+
+void check_range(MonthSlots& month, double lower_kW, double limit_kW, Reason below) {
+  for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
+    if (month.validity[i] != Validity::ok) continue;
+    if (month.measured_kW[i] > limit_kW) condemn(month, i, Reason::range);
+    if (month.measured_kW[i] < lower_kW) condemn(month, i, below);
+  }
+}
+
+bool is_negative(const MonthSlots& month, std::size_t slot) {
+  return reported_kW(month, slot) < 0.0;
+}
+
+/// Slots of `month` that lie within `reach` slots of a negative one, over the month's ends too.
+/// Empty when there is none.
+std::vector<bool> beside_negatives(const MonthSlots& month, const ValidationContext& context,
+                                   std::ptrdiff_t reach, bool some_inside) {
+  const auto n = static_cast<std::ptrdiff_t>(month.measured_kW.size());
+  std::vector<bool> beside;
+  const auto mark = [&](std::ptrdiff_t centre) {
+    if (beside.empty()) beside.assign(static_cast<std::size_t>(n), false);
+    const std::ptrdiff_t last = std::min(n - 1, centre + reach);
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, centre - reach); i <= last; ++i) {
+      beside[static_cast<std::size_t>(i)] = true;
+    }
+  };
+  for (std::ptrdiff_t i = 0; some_inside && i < n; ++i) {
+    if (is_negative(month, static_cast<std::size_t>(i))) mark(i);
+  }
+  for (std::ptrdiff_t i = 1; i <= reach; ++i) {
+    const auto size = [](const MonthSlots& m) {
+      return static_cast<std::ptrdiff_t>(m.measured_kW.size());
+    };
+    const MonthSlots* before = context.before;
+    if (before != nullptr && i <= size(*before) &&
+        is_negative(*before, static_cast<std::size_t>(size(*before) - i))) {
+      mark(-i);
+    }
+    const MonthSlots* after = context.after;
+    if (after != nullptr && i <= size(*after) &&
+        is_negative(*after, static_cast<std::size_t>(i - 1))) {
+      mark(n - 1 + i);
+    }
+  }
+  return beside;
+}
+
+void check_corrections(MonthSlots& month, const ValidationContext& context,
+                       const ValidationOptions& options, bool negative_inside) {
+  const std::vector<bool> beside = beside_negatives(
+      month, context, options.correction_window / month.grid->interval(), negative_inside);
+  if (beside.empty()) return;
+  double largest_elsewhere_kW = -1.0;
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    if (!beside[i] && month.validity[i] == Validity::ok) {
+      largest_elsewhere_kW = std::max(largest_elsewhere_kW, month.measured_kW[i]);
+    }
+  }
+  if (largest_elsewhere_kW < 0.0) return;  // nothing to compare with
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    if (beside[i] && month.validity[i] == Validity::ok &&
+        month.measured_kW[i] > largest_elsewhere_kW) {
+      condemn(month, i, Reason::range);
+    }
+  }
+}
+
+/// Second condition of the spike rule: far from what that time of day reads in this month.
+bool far_from_its_time_of_day(const MonthSlots& month, std::size_t slot,
+                              const ValidationOptions& options) {
+  const int time_of_day = month.grid->time_of_day(static_cast<int>(slot));
+  std::vector<double> values;
+  for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
+    if (i != slot && month.validity[i] == Validity::ok &&
+        month.grid->time_of_day(static_cast<int>(i)) == time_of_day) {
+      values.push_back(month.measured_kW[i]);
+    }
+  }
+  if (values.size() < kSpikeDaysMin) return false;
+  const double centre_kW = median_of(values);
+  for (double& value : values) value = std::abs(value - centre_kW);
+  const double scale_kW =
+      std::max(kNormalMad * median_of(values), kSpikeScaleFloor * median_magnitude(month));
+  return std::abs(month.measured_kW[slot] - centre_kW) > options.spike_scales * scale_kW;
+}
+
+/// Where the highest valid readings of a day stand.
+struct DayTop {
+  std::size_t highest = 0;
+  double first_kW = -1.0;
+  double second_kW = -1.0;
+  double third_kW = -1.0;
+};
+
+DayTop top_of_day(const MonthSlots& month, std::size_t begin, std::size_t end) {
+  DayTop top;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double value_kW = month.measured_kW[i];
+    if (month.validity[i] != Validity::ok || !(value_kW > top.third_kW)) continue;
+    if (value_kW > top.first_kW) {
+      top.third_kW = top.second_kW;
+      top.second_kW = top.first_kW;
+      top.first_kW = value_kW;
+      top.highest = i;
+    } else if (value_kW > top.second_kW) {
+      top.third_kW = top.second_kW;
+      top.second_kW = value_kW;
+    } else {
+      top.third_kW = value_kW;
+    }
+  }
+  return top;
+}
+
+/// Three readings of this level make a spike impossible that day, for no reading is that much
+/// higher.
+bool has_third_reading_above(const MonthSlots& month, std::size_t begin, std::size_t end,
+                             double level_kW) {
+  int above = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (month.measured_kW[i] >= level_kW && month.validity[i] == Validity::ok && ++above == 3) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void check_spikes(MonthSlots& month, double largest_kW, const ValidationOptions& options) {
+  const double ordinary_kW = largest_kW / (1.0 + options.spike_rise);
+  const std::vector<int>& begins = month.grid->day_begins();
+  for (std::size_t day = 0; day + 1 < begins.size(); ++day) {
+    const auto begin = static_cast<std::size_t>(begins[day]);
+    const auto end = static_cast<std::size_t>(begins[day + 1]);
+    if (has_third_reading_above(month, begin, end, ordinary_kW)) continue;
+    // Each turn takes one spike out, so two in one day are both found.
+    for (;;) {
+      const DayTop top = top_of_day(month, begin, end);
+      if (top.third_kW <= 0.0) break;  // a load that ran twice a day has no third to compare with
+      if ((top.first_kW - top.third_kW) / top.third_kW <= options.spike_rise) break;
+      if (!far_from_its_time_of_day(month, top.highest, options)) break;
+      condemn(month, top.highest, Reason::spike);
+    }
+  }
+}
+
+/// Reported slots equal to `value_kW` next to the month: back from its begin or on from its end.
+int run_outside(const MonthSlots* neighbour, double value_kW, bool from_its_end) {
+  if (neighbour == nullptr) return 0;
+  const std::size_t n = neighbour->measured_kW.size();
+  int run = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double other_kW = reported_kW(*neighbour, from_its_end ? n - 1 - k : k);
+    if (std::isnan(other_kW)) continue;
+    if (other_kW != value_kW) break;
+    ++run;
+  }
+  return run;
+}
+
+/// A run of equal reports within the month: slots [begin, end), `count` of them reported.
+struct Run {
+  std::size_t begin;
+  std::size_t end;
+  double value_kW;
+  int count;
+};
+
+/// Checks runs of equal readings; a run of one needs no more than a comparison.
+class RunCheck {
+ public:
+  RunCheck(MonthSlots& month, const Meter& meter, const ValidationContext& context,
+           const ValidationOptions& options)
+      : month_{month}, context_{context}, zero_run_max_{meter.zero_run_max} {
+    const seconds interval = month.grid->interval();
+    stuck_max_ = meter.stuck_max.value_or(options.stuck_intervals * interval);
+  }
+
+  void run() {
+    Run run{0, 0, kNoValue, 0};
+    for (std::size_t i = 0; i < month_.measured_kW.size(); ++i) {
+      const double value_kW = reported_kW(month_, i);
+      if (std::isnan(value_kW)) continue;
+      if (value_kW == run.value_kW) {
+        ++run.count;
+      } else {
+        if (first_ || run.count > 1 || run.value_kW == 0.0) finish(run, false);
+        run = {i, i, value_kW, 1};
+      }
+      run.end = i + 1;
+    }
+    finish(run, true);
+  }
+
+ private:
+  void finish(Run run, bool last) {
+    if (run.count == 0) return;
+    if (first_) run.count += run_outside(context_.before, run.value_kW, true);
+    if (last) run.count += run_outside(context_.after, run.value_kW, false);
+    first_ = false;
+    const seconds length = run.count * month_.grid->interval();
+    const bool zero = run.value_kW == 0.0;
+    const bool doubtful = zero ? zero_run_max_ && length > *zero_run_max_
+                               : stuck_max_ > seconds{0} && length >= stuck_max_;
+    if (!doubtful) return;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      if (std::isnan(reported_kW(month_, i))) continue;
+      condemn(month_, i, zero ? Reason::zero_run : Reason::stuck);
+    }
+  }
+
+  MonthSlots& month_;
+  const ValidationContext& context_;
+  std::optional<seconds> zero_run_max_;
+  seconds stuck_max_;
+  bool first_ = true;
+};
+
+}  // namespace
+
+void validate(MonthSlots& month, const Meter& meter, const ValidationContext& context,
+              const ValidationOptions& options) {
+  const bool both_ways = meter.negative_is_valid;
+  const Extremes extremes = extremes_of(month);
+  const double limit_kW = range_limit_kW(month, extremes.magnitude_kW(), meter, context, options);
+  const double lower_kW = both_ways ? -limit_kW : 0.0;
+  if (extremes.highest_kW > limit_kW || extremes.lowest_kW < lower_kW) {
+    check_range(month, lower_kW, limit_kW, both_ways ? Reason::range : Reason::negative);
+  }
+  if (!both_ways) check_corrections(month, context, options, extremes.lowest_kW < 0.0);
+  check_spikes(month, std::min(extremes.highest_kW, limit_kW), options);
+  RunCheck{month, meter, context, options}.run();
+}
+
+}  // namespace recald::metering

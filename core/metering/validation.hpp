@@ -1,0 +1,56 @@
+/// Which readings of a month are not believed, and why.
+///
+/// A reading that fails becomes `suspect` with its reason and keeps its value: a fault is a
+/// finding.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "core/metering/month_slots.hpp"
+#include "core/metering/reading.hpp"
+
+namespace recald::metering {
+
+struct ValidationOptions {
+  double range_factor = 1.2;  ///< Times `rated_kW`: the most that is believed.
+  /// Without `rated_kW`: times the median of the month's positive readings. Monthly profiles of
+  /// real meters stay under 10 (a school with an empty summer); a wrong word order or a unit slip
+  /// of 1000 is above 100.
+  double unrated_range_factor = 20.0;
+  /// … and times the largest believed reading of earlier months, so that the first cold week
+  /// after a summer of standby is not refused.
+  double unrated_history_factor = 2.0;
+  double spike_rise = 1.8;    ///< (highest − third highest) / third highest of a local day.
+  double spike_scales = 8.0;  ///< … and this many robust scales from the median of its time of day.
+  /// Readings this near to a negative one may be the rest of a register correction.
+  std::chrono::seconds correction_window{6 * 3600};
+  int stuck_intervals = 12;  ///< Used where the meter has no `stuck_max`.
+};
+
+/// What surrounds the month: a run of zeros does not stop at midnight.
+struct ValidationContext {
+  const MonthSlots* before = nullptr;         ///< The month before as received, if known.
+  const MonthSlots* after = nullptr;          ///< The month after as far as received, if known.
+  std::optional<double> largest_believed_kW;  ///< Over earlier months.
+};
+
+/// Turns `ok` slots into `suspect` where a check fails; other slots are left alone.
+///
+/// - range: above 1.2 × rated_kW; without a rating above both `unrated_` limits.
+/// - negative: below zero where the meter cannot run backwards.
+/// - range beside a negative: meters and operators correct a register by a large negative interval
+///   and large positive ones around it. Within `correction_window` of a negative interval
+///   a reading above the largest one found elsewhere in the month is part of the correction. So a
+///   correction is never a peak, and ordinary readings beside it stay.
+/// - spike: both conditions. The robust scale is 1.4826 MAD of the time of day in the month, at
+///   least 1 % of the month's median, so that a constant load may still step.
+/// - stuck and zero_run: runs of equal values as long as the meter allows, over month ends; blanks
+///   inside neither break a run nor count in it.
+///
+/// O(slots). No state: the same month and neighbours give the same verdict.
+/// @see CalTRACK 2.2.1.4 for zeros; Hyndman's and utilities' spike rule with 180 %.
+void validate(MonthSlots& month, const Meter& meter, const ValidationContext& context,
+              const ValidationOptions& options);
+
+}  // namespace recald::metering

@@ -1,0 +1,220 @@
+#include "core/metering/counter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "month_builder.hpp"
+
+namespace recald::metering {
+namespace {
+
+using std::chrono::minutes;
+using std::chrono::seconds;
+using testing::kHour;
+using testing::kQuarter;
+using testing::utc;
+
+const Instant kStart = utc(2016, 3, 1);
+
+// 400 kW rated: at most 8.2 kWh a minute with r = 0.1 kWh; wraps at a million.
+constexpr CounterSettings kSettings{400.0, 0.1, 1e6};
+
+/// A register read at minutes, one sample after another.
+struct Trace {
+  CounterState state;
+  std::vector<CounterBooking> bookings;
+  CounterEvent event = CounterEvent::none;
+  CounterSettings settings = kSettings;
+
+  /// Energy booked by this sample, kWh; NaN spans count as nothing.
+  double read(int minute, double value_kWh) {
+    CounterStep step = advance(std::move(state), {kStart + minutes{minute}, value_kWh}, settings);
+    state = std::move(step.state);
+    event = step.event;
+    double booked_kWh = 0.0;
+    for (const CounterBooking& booking : step.bookings) {
+      if (!std::isnan(booking.energy_kWh)) booked_kWh += booking.energy_kWh;
+      bookings.push_back(booking);
+    }
+    return booked_kWh;
+  }
+  [[nodiscard]] bool at(CounterPhase phase, double baseline_kWh, int minute) const {
+    return state.phase == phase && std::abs(state.baseline.value_kWh - baseline_kWh) < 1e-6 &&
+           state.baseline.time == kStart + minutes{minute};
+  }
+};
+
+// The trace of the state table, minute by minute: jitter, a zero that bounces, a roll-over behind
+// failed reads, two days of silence, a reset. 9051 kWh in all.
+TEST(Counter, TraceOfTheStateTable) {
+  Trace trace;
+  constexpr double near = 1e-6;
+  double total_kWh = 0.0;
+  EXPECT_EQ(trace.read(0, 999'960.0), 0.0);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 999'960.0, 0));
+  EXPECT_NEAR(total_kWh += trace.read(1, 999'964.0), 4.0, near);
+  EXPECT_EQ(trace.read(2, 999'963.9), 0.0);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 999'964.0, 2));
+  EXPECT_EQ(trace.read(3, 0.0), 0.0);
+  EXPECT_TRUE(trace.at(CounterPhase::low, 999'964.0, 2));
+  EXPECT_NEAR(total_kWh += trace.read(4, 999'976.0), 16.0, near);
+  EXPECT_EQ(trace.event, CounterEvent::bounce);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 999'976.0, 4));
+  for (int minute = 5; minute < 9; ++minute) {
+    EXPECT_EQ(trace.read(minute, testing::kBlank), 0.0);
+    EXPECT_TRUE(trace.at(CounterPhase::run, 999'976.0, 4));
+  }
+  EXPECT_NEAR(total_kWh += trace.read(9, 3.0), 43.0, near);
+  EXPECT_EQ(trace.bookings.back().reasons, Reason::rollover);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 3.0, 9));
+  EXPECT_NEAR(total_kWh += trace.read(2889, 9003.0), 9043.0, near);
+  EXPECT_EQ(trace.read(2890, 0.0), 0.0);
+  EXPECT_TRUE(trace.at(CounterPhase::low, 9003.0, 2889));
+  EXPECT_EQ(trace.read(2891, 4.0), 0.0);
+  EXPECT_EQ(trace.state.pending->samples, 2);
+  EXPECT_NEAR(total_kWh += trace.read(2892, 8.0), 9051.0, near);
+  EXPECT_EQ(trace.event, CounterEvent::reset);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 8.0, 2892));
+  const CounterBooking& unbooked = trace.bookings[trace.bookings.size() - 2];
+  EXPECT_EQ(unbooked.validity, Validity::missing);
+  EXPECT_EQ(unbooked.reasons, Reason::reset);
+  EXPECT_EQ(unbooked.span, (TimeSpan{kStart + minutes{2889}, kStart + minutes{2890}}));
+}
+
+TEST(Counter, ARollOverOfA32BitRegister) {
+  Trace trace;
+  trace.settings = {400.0, 0.01, 4294967296.0 * 0.01};
+  (void)trace.read(0, 42'949'670.0);
+  EXPECT_NEAR(trace.read(1, 1.5), 42'949'672.96 - 42'949'670.0 + 1.5, 1e-6);
+  EXPECT_EQ(trace.bookings.back().reasons, Reason::rollover);
+}
+
+TEST(Counter, AJumpIsNeverBooked) {
+  Trace trace;
+  (void)trace.read(0, 100.0);
+  EXPECT_EQ(trace.read(1, 53'800.0), 0.0);
+  EXPECT_EQ(trace.state.phase, CounterPhase::high);
+  EXPECT_EQ(trace.read(2, 53'804.0), 0.0);
+  EXPECT_NEAR(trace.read(3, 53'808.0), 8.0, 1e-9);
+  EXPECT_EQ(trace.event, CounterEvent::jump);
+}
+
+// A gateway serves another register for five minutes, then the old one again: what was booked on
+// the false line is superseded by the true difference.
+TEST(Counter, TheOldLineIsRestored) {
+  Trace trace;
+  (void)trace.read(0, 5000.0);
+  for (int minute = 1; minute <= 5; ++minute) (void)trace.read(minute, 10.0 + minute);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 15.0, 5));
+  for (int minute = 6; minute <= 8; ++minute) (void)trace.read(minute, 5000.0 + 4.0 * minute);
+  EXPECT_EQ(trace.event, CounterEvent::restored);
+  EXPECT_TRUE(trace.bookings.back().supersedes);
+  EXPECT_EQ(trace.bookings.back().validity, Validity::scaled);
+  EXPECT_NEAR(trace.bookings.back().energy_kWh, 32.0, 1e-9);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 5032.0, 8));
+}
+
+TEST(Counter, TheOldLineExpiresAfterAWeek) {
+  Trace trace;
+  (void)trace.read(0, 50'000.0);
+  for (int minute = 1; minute <= 3; ++minute) (void)trace.read(minute, 10.0 + minute);
+  const int later = 8 * 24 * 60;
+  (void)trace.read(later, 500.0);
+  for (int minute = 1; minute <= 3; ++minute) {
+    (void)trace.read(later + minute, 50'500.0 + minute);
+  }
+  EXPECT_EQ(trace.event, CounterEvent::jump);
+}
+
+TEST(Counter, WrapsThatCannotBeCountedAreMissing) {
+  Trace trace;
+  trace.settings.modulus_kWh = 1000.0;
+  (void)trace.read(0, 10.0);
+  EXPECT_EQ(trace.read(200, 20.0), 0.0);  // 1600 kWh were possible in 200 minutes
+  EXPECT_EQ(trace.bookings.back().reasons, Reason::wrap);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 20.0, 200));
+}
+
+TEST(Counter, NonsenseForAnHourIsErratic) {
+  Trace trace;
+  (void)trace.read(0, 50'000.0);
+  bool erratic = false;
+  for (int minute = 1; minute <= 12; ++minute) {
+    (void)trace.read(minute, minute % 2 == 0 ? 10.0 + 997.0 * minute : 900'000.0 - 991.0 * minute);
+    erratic = erratic || trace.event == CounterEvent::erratic;
+  }
+  EXPECT_TRUE(erratic);
+  EXPECT_TRUE(trace.bookings.empty());
+}
+
+TEST(Counter, AnExchangedMeterStartsAnew) {
+  Trace trace;
+  (void)trace.read(0, 50'000.0);
+  CounterStep step = swap_meter(std::move(trace.state));
+  EXPECT_EQ(step.event, CounterEvent::swapped);
+  trace.state = std::move(step.state);
+  EXPECT_EQ(trace.read(1, 7.0), 0.0);
+  EXPECT_TRUE(trace.at(CounterPhase::run, 7.0, 1));
+}
+
+std::vector<RegisterSample> hourly_register(int count, double step_kWh) {
+  std::vector<RegisterSample> samples;
+  for (int i = 0; i < count; ++i) samples.push_back({kStart + i * kHour, 100.0 + i * step_kWh});
+  return samples;
+}
+
+TEST(CounterReadings, SamplesOnTheGridAreItsIntervals) {
+  const auto readings = readings_from_register(3, hourly_register(25, 50.0), kHour, kSettings);
+  ASSERT_EQ(readings.size(), 24u);
+  for (const Reading& reading : readings) {
+    EXPECT_EQ(reading.meter, 3u);
+    EXPECT_NEAR(reading.mean_kW, 50.0, 1e-9);
+    EXPECT_EQ(reading.validity, Validity::ok);
+  }
+  EXPECT_EQ(readings[0].start, kStart);
+}
+
+TEST(CounterReadings, AHoleIsSpreadAndItsSumIsTrue) {
+  auto samples = hourly_register(25, 50.0);
+  samples.erase(samples.begin() + 5, samples.begin() + 9);
+  samples[3].value_kWh = testing::kBlank;
+  const auto readings = readings_from_register(0, samples, kHour, kSettings);
+  ASSERT_EQ(readings.size(), 24u);
+  double sum_kWh = 0.0;
+  for (const Reading& reading : readings) sum_kWh += reading.mean_kW;
+  EXPECT_NEAR(sum_kWh, 24 * 50.0, 1e-9);
+  EXPECT_EQ(readings[1].validity, Validity::ok);
+  EXPECT_EQ(readings[2].validity, Validity::scaled);
+  EXPECT_EQ(readings[6].validity, Validity::scaled);
+  EXPECT_EQ(readings[9].validity, Validity::ok);
+}
+
+TEST(CounterReadings, AResetLeavesItsIntervalMissing) {
+  auto samples = hourly_register(25, 50.0);
+  for (std::size_t i = 10; i < samples.size(); ++i) samples[i].value_kWh -= 590.0;
+  const auto readings = readings_from_register(0, samples, kHour, kSettings);
+  EXPECT_EQ(readings[9].validity, Validity::missing);
+  EXPECT_TRUE(has(readings[9].reasons, Reason::reset));
+  EXPECT_TRUE(std::isnan(readings[9].mean_kW));
+  EXPECT_NEAR(readings[8].mean_kW, 50.0, 1e-9);
+  EXPECT_NEAR(readings[12].mean_kW, 50.0, 1e-9);
+}
+
+// Five-minute samples that miss the boundary by two minutes: the register there is interpolated.
+TEST(CounterReadings, BoundariesBetweenSamplesAreInterpolated) {
+  std::vector<RegisterSample> samples;
+  for (int i = 0; i < 40; ++i) {
+    samples.push_back({kStart + minutes{2 + 5 * i}, 100.0 + 5.0 * i});  // 60 kW
+  }
+  const auto readings = readings_from_register(0, samples, kQuarter, kSettings);
+  ASSERT_FALSE(readings.empty());
+  EXPECT_EQ(readings.front().start, kStart + minutes{15});
+  for (const Reading& reading : readings) {
+    EXPECT_NEAR(reading.mean_kW, 60.0, 1e-9);
+    EXPECT_EQ(reading.validity, Validity::ok);
+  }
+}
+
+}  // namespace
+}  // namespace recald::metering

@@ -1,0 +1,83 @@
+#include "core/metering/units.hpp"
+
+#include <gtest/gtest.h>
+
+namespace recald::metering {
+namespace {
+
+using std::chrono::seconds;
+
+double mean_kW(std::string_view unit, double value, Utility utility = Utility::electricity,
+               seconds interval = seconds{900}, const UnitFactors& factors = {}) {
+  const auto conversion = find_unit(unit, utility, factors);
+  EXPECT_TRUE(conversion.has_value()) << unit;
+  return conversion ? conversion->mean_kW(value, interval) : 0.0;
+}
+
+TEST(Units, PowerIsTheMeanWhateverTheInterval) {
+  EXPECT_DOUBLE_EQ(mean_kW("W", 1500.0), 1.5);
+  EXPECT_DOUBLE_EQ(mean_kW("kW", 7.0, Utility::electricity, seconds{3600}), 7.0);
+  EXPECT_DOUBLE_EQ(mean_kW("MW", 0.2), 200.0);
+}
+
+TEST(Units, EnergyOfAQuarterHourIsFourTimesAsManyKilowatts) {
+  EXPECT_DOUBLE_EQ(mean_kW("kWh", 2.5), 10.0);
+  EXPECT_DOUBLE_EQ(mean_kW("kWh", 2.5, Utility::electricity, seconds{3600}), 2.5);
+  EXPECT_DOUBLE_EQ(mean_kW("Wh", 2500.0), 10.0);
+  EXPECT_DOUBLE_EQ(mean_kW("MWh", 0.0025), 10.0);
+}
+
+// ASHRAE Fundamentals, chapter "Units and Conversions": 1 BTU(IT) = 1055.056 J, 1 ton of
+// refrigeration = 12 000 BTU/h = 3.516853 kW, 1 therm = 105.5056 MJ.
+TEST(Units, BritishThermalUnitsAndTons) {
+  EXPECT_NEAR(mean_kW("kBtu/h", 1.0), 0.293071, 5e-7);
+  EXPECT_NEAR(mean_kW("kBtu", 1.0, Utility::gas, seconds{3600}), 0.293071, 5e-7);
+  EXPECT_NEAR(mean_kW("BTU/h", 12'000.0), 3.516853, 5e-7);
+  EXPECT_NEAR(mean_kW("ton", 1.0, Utility::chilled_water), 3.516853, 5e-7);
+  EXPECT_NEAR(mean_kW("ton-hour", 1.0, Utility::chilled_water), 4.0 * 3.516853, 2e-6);
+  EXPECT_NEAR(mean_kW("therm", 1.0, Utility::gas, seconds{3600}), 29.30711, 5e-6);
+  EXPECT_NEAR(mean_kW("MBtu", 1.0, Utility::gas, seconds{3600}), 293.0711, 5e-5);
+  EXPECT_NEAR(mean_kW("MBH", 1.0), 0.293071, 5e-7);
+}
+
+TEST(Units, SteamMassTakesTheSitesEnthalpy) {
+  EXPECT_NEAR(mean_kW("lb", 1000.0, Utility::steam, seconds{3600}), 305.0, 1e-9);
+  UnitFactors factors;
+  factors.steam_kWh_per_kg = 0.7;
+  EXPECT_DOUBLE_EQ(mean_kW("kg", 10.0, Utility::steam, seconds{3600}, factors), 7.0);
+}
+
+TEST(Units, GasVolumeNeedsItsHeatingValue) {
+  UnitFactors factors;
+  factors.gas_kWh_per_m3 = 11.2;
+  EXPECT_DOUBLE_EQ(mean_kW("m3", 10.0, Utility::gas, seconds{3600}, factors), 112.0);
+  const auto without = find_unit("m3", Utility::gas, {});
+  ASSERT_FALSE(without.has_value());
+  EXPECT_EQ(without.error().code, ErrorCode::unsupported);
+  EXPECT_NE(without.error().message.find("heating value"), std::string::npos);
+}
+
+TEST(Units, CaseDoesNotMatterButMilliIsNotMega) {
+  EXPECT_DOUBLE_EQ(mean_kW("KWH", 1.0, Utility::electricity, seconds{3600}), 1.0);
+  EXPECT_NEAR(mean_kW("kBTU/h", 1.0), 0.293071, 5e-7);
+  const auto milli = find_unit("mWh", Utility::electricity, {});
+  ASSERT_FALSE(milli.has_value());
+  EXPECT_NE(milli.error().message.find("milli"), std::string::npos);
+}
+
+TEST(Units, WhatIsNotEnergySaysWhatToDo) {
+  const auto flow = find_unit("l/s", Utility::chilled_water, {});
+  ASSERT_FALSE(flow.has_value());
+  EXPECT_EQ(flow.error().code, ErrorCode::unsupported);
+  EXPECT_NE(flow.error().message.find("temperature difference"), std::string::npos);
+  EXPECT_FALSE(find_unit("m3", Utility::water, {}).has_value());
+  EXPECT_EQ(find_unit("kg", Utility::gas, {}).error().code, ErrorCode::invalid_value);
+  const auto unknown = find_unit("kvarh", Utility::electricity, {});
+  ASSERT_FALSE(unknown.has_value());
+  EXPECT_EQ(unknown.error().code, ErrorCode::invalid_value);
+  EXPECT_NE(unknown.error().message.find("'kvarh'"), std::string::npos);
+  EXPECT_FALSE(find_unit("", Utility::electricity, {}).has_value());
+}
+
+}  // namespace
+}  // namespace recald::metering

@@ -1,0 +1,220 @@
+#include "core/metering/validation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "month_builder.hpp"
+
+namespace recald::metering {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::seconds;
+using testing::kBlank;
+using testing::kHour;
+using testing::kQuarter;
+using testing::month;
+using testing::month_reading;
+
+// A lively but ordinary hourly load: 20 to 50 kW, never the same twice in a row.
+double ordinary_kW(int slot) { return 20.0 + slot % 24 + 0.25 * (slot % 7); }
+
+template <class Value>
+MonthSlots hourly(Value value) {
+  return month_reading("UTC", month(2015, 9), kHour, value);
+}
+
+Meter hourly_meter() {
+  Meter meter;
+  meter.interval = kHour;
+  return meter;
+}
+
+int suspects(const MonthSlots& slots) {
+  return static_cast<int>(
+      std::count(slots.validity.begin(), slots.validity.end(), Validity::suspect));
+}
+
+TEST(Validation, AnOrdinaryMonthPasses) {
+  MonthSlots slots = hourly(ordinary_kW);
+  validate(slots, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(slots), 0);
+}
+
+TEST(Validation, RangeIsOneAndAFifthOfTheRating) {
+  Meter meter = hourly_meter();
+  meter.rated_kW = 100.0;
+  MonthSlots slots = hourly([](int slot) {
+    // Four high hours a day keep the spike rule quiet.
+    return slot / 24 == 3 && slot % 24 < 4 ? 119.0 + slot % 24 : ordinary_kW(slot);
+  });
+  validate(slots, meter, {}, {});
+  EXPECT_EQ(suspects(slots), 2);  // 121 and 122 kW
+  EXPECT_EQ(slots.reasons[3 * 24 + 2], Reason::range);
+  EXPECT_EQ(slots.measured_kW[3 * 24 + 2], 121.0);  // kept
+}
+
+// Without a rating a factor of 1000 (a unit slip for a whole day) stands out from the month itself.
+TEST(Validation, WithoutARatingTheMonthIsItsOwnMeasure) {
+  MonthSlots slots =
+      hourly([](int slot) { return ordinary_kW(slot) * (slot / 24 == 3 ? 1000.0 : 1.0); });
+  validate(slots, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(slots), 24);
+  EXPECT_EQ(slots.reasons[3 * 24], Reason::range);
+}
+
+// The first cold days after a month of standby are no error: earlier winters reached 300 kW.
+TEST(Validation, HistoryExcusesTheFirstColdWeek) {
+  const auto standby_then_cold = [](int slot) {
+    return slot >= 600 ? 200.0 + slot % 24 : 1.0 + 0.1 * (slot % 24);
+  };
+  MonthSlots slots = hourly(standby_then_cold);
+  validate(slots, hourly_meter(), {nullptr, nullptr, 300.0}, {});
+  EXPECT_EQ(suspects(slots), 0);
+  MonthSlots unknown = hourly(standby_then_cold);
+  validate(unknown, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(unknown), 120);
+}
+
+TEST(Validation, NegativeOnlyWhereTheMeterCannotRunBackwards) {
+  const auto dip = [](int slot) { return slot == 100 ? -3.0 : ordinary_kW(slot); };
+  MonthSlots slots = hourly(dip);
+  validate(slots, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(slots), 1);
+  EXPECT_EQ(slots.reasons[100], Reason::negative);
+  Meter both_ways = hourly_meter();
+  both_ways.negative_is_valid = true;
+  MonthSlots chilled = hourly(dip);
+  validate(chilled, both_ways, {}, {});
+  EXPECT_EQ(suspects(chilled), 0);
+}
+
+// A register set back by 5000 kWh at 10:00 and caught up at 13:00, as gas meters show on the first
+// Mondays of winter. The large hours go, the ordinary ones between them stay.
+TEST(Validation, ARegisterCorrectionIsFlaggedOnBothSides) {
+  MonthSlots slots = hourly([](int slot) {
+    if (slot == 106) return -5000.0;
+    if (slot == 108) return 60.0;  // 10 kW above the highest hour elsewhere: part of it
+    if (slot == 109) return 4800.0;
+    return ordinary_kW(slot);
+  });
+  Meter meter = hourly_meter();
+  meter.rated_kW = 1e6;  // so that the range check alone finds nothing
+  ValidationOptions options;
+  options.spike_rise = 1e9;
+  validate(slots, meter, {}, options);
+  EXPECT_EQ(slots.reasons[106], Reason::negative);
+  EXPECT_EQ(slots.reasons[108], Reason::range);
+  EXPECT_EQ(slots.reasons[109], Reason::range);
+  EXPECT_EQ(suspects(slots), 3);
+}
+
+TEST(Validation, ACorrectionReachesOverTheMonthsEnd) {
+  MonthSlots slots = hourly([](int slot) { return slot == 2 ? 4800.0 : ordinary_kW(slot); });
+  const MonthSlots before = month_reading("UTC", month(2015, 8), kHour, [](int slot) {
+    return slot == 743 ? -5000.0 : ordinary_kW(slot);
+  });
+  Meter meter = hourly_meter();
+  meter.rated_kW = 1e6;
+  ValidationOptions options;
+  options.spike_rise = 1e9;
+  validate(slots, meter, {&before, nullptr, {}}, options);
+  EXPECT_EQ(suspects(slots), 1);
+  EXPECT_EQ(slots.validity[2], Validity::suspect);
+}
+
+TEST(Validation, ASpikeNeedsBothConditions) {
+  // 200 kW at 03:00, where every other day reads about 23 kW.
+  MonthSlots spike = hourly([](int slot) { return slot == 243 ? 200.0 : ordinary_kW(slot); });
+  validate(spike, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(spike), 1);
+  EXPECT_EQ(spike.reasons[243], Reason::spike);
+  // The same 200 kW every third day at 03:00 is how this load is: robust scales see no spike.
+  MonthSlots habit = hourly(
+      [](int slot) { return slot % 24 == 3 ? 20.0 + 90.0 * (slot / 24 % 3) : ordinary_kW(slot); });
+  validate(habit, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(habit), 0);
+  // 100 kW is less than 2.8 times the day's third highest hour.
+  MonthSlots high = hourly([](int slot) { return slot == 243 ? 100.0 : ordinary_kW(slot); });
+  validate(high, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(high), 0);
+}
+
+TEST(Validation, TwoSpikesOfOneDayAreBothFound) {
+  MonthSlots slots = hourly(
+      [](int slot) { return slot == 243 || slot == 247 ? 300.0 + slot : ordinary_kW(slot); });
+  validate(slots, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(slots), 2);
+}
+
+TEST(Validation, TwelveEqualReadingsAreAFrozenMeter) {
+  for (const int run : {11, 12}) {
+    MonthSlots slots =
+        hourly([&](int slot) { return slot >= 50 && slot < 50 + run ? 33.3 : ordinary_kW(slot); });
+    validate(slots, hourly_meter(), {}, {});
+    EXPECT_EQ(suspects(slots), run == 12 ? 12 : 0);
+  }
+  Meter unchecked = hourly_meter();
+  unchecked.stuck_max = seconds{0};
+  MonthSlots constant = hourly([](int) { return 5.0; });
+  validate(constant, unchecked, {}, {});
+  EXPECT_EQ(suspects(constant), 0);
+}
+
+TEST(Validation, BlanksNeitherBreakARunNorCountInIt) {
+  MonthSlots slots = hourly([](int slot) {
+    if (slot >= 50 && slot < 64) return slot == 55 || slot == 56 ? kBlank : 33.3;
+    return ordinary_kW(slot);
+  });
+  validate(slots, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(slots), 12);
+  EXPECT_EQ(slots.validity[55], Validity::missing);
+}
+
+TEST(Validation, ZeroRunsLongerThanAllowedAreNoLoad) {
+  const auto outage = [](int length) {
+    return hourly(
+        [=](int slot) { return slot >= 50 && slot < 50 + length ? 0.0 : ordinary_kW(slot); });
+  };
+  Meter meter = hourly_meter();
+  meter.zero_run_max = hours{2};
+  MonthSlots two = outage(2);
+  validate(two, meter, {}, {});
+  EXPECT_EQ(suspects(two), 0);
+  MonthSlots three = outage(3);
+  validate(three, meter, {}, {});
+  EXPECT_EQ(suspects(three), 3);
+  EXPECT_EQ(three.reasons[51], Reason::zero_run);
+  MonthSlots gas = outage(200);  // a boiler may rest for a summer
+  validate(gas, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(gas), 0);
+}
+
+// Two hours of zeros before midnight and two after are four: the month's end hides nothing.
+TEST(Validation, RunsContinueOverMonthEndsOnBothSides) {
+  Meter meter = hourly_meter();
+  meter.zero_run_max = hours{2};
+  MonthSlots september =
+      hourly([](int slot) { return slot < 2 || slot >= 718 ? 0.0 : ordinary_kW(slot); });
+  MonthSlots alone = september;
+  validate(alone, meter, {}, {});
+  EXPECT_EQ(suspects(alone), 0);
+  const MonthSlots august = month_reading(
+      "UTC", month(2015, 8), kHour, [](int slot) { return slot >= 742 ? 0.0 : ordinary_kW(slot); });
+  const MonthSlots october = month_reading("UTC", month(2015, 10), kHour, [](int slot) {
+    return slot < 1 ? 0.0 : slot < 48 ? ordinary_kW(slot) : kBlank;
+  });
+  validate(september, meter, {&august, &october, {}}, {});
+  EXPECT_EQ(suspects(september), 4);
+}
+
+TEST(Validation, WhatTheSourceSaidIsLeftAlone) {
+  MonthSlots slots = hourly([](int) { return 7.0; });
+  std::fill(slots.validity.begin(), slots.validity.end(), Validity::scaled);
+  validate(slots, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(slots), 0);
+}
+
+}  // namespace
+}  // namespace recald::metering
