@@ -1,0 +1,265 @@
+#include "core/weather/weather_series.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace recald::weather {
+namespace {
+
+using metering::LocalCalendar;
+using metering::Month;
+using std::chrono::hours;
+using std::chrono::minutes;
+using std::chrono::seconds;
+
+constexpr std::size_t kVariables = kWeatherVariables.size();
+constexpr double kRadian = std::numbers::pi / 180.0;
+constexpr double kCalm_m_s = 0.1;  // a direction seen in a calm still counts a little
+
+bool is_direction(const WeatherVariable& variable) {
+  return variable.member == &WeatherHour::wind_dir_deg;
+}
+
+Instant full_hour_before(Instant t) { return std::chrono::floor<hours>(t); }
+
+/// A weighted mean; directions are averaged as vectors.
+class Mean {
+ public:
+  void add(double value, double weight) {
+    sum_ += weight * value;
+    weight_ += weight;
+  }
+  void add_direction(double deg, double weight, double vector_weight) {
+    east_ += weight * vector_weight * std::sin(deg * kRadian);
+    north_ += weight * vector_weight * std::cos(deg * kRadian);
+    weight_ += weight;
+  }
+  [[nodiscard]] double weight() const { return weight_; }
+  [[nodiscard]] double value(bool direction) const {
+    if (weight_ <= 0.0) return kAbsent;
+    if (!direction) return sum_ / weight_;
+    if (std::hypot(east_, north_) < 1e-9 * weight_) return kAbsent;  // winds that cancel
+    const double deg = std::atan2(east_, north_) / kRadian;
+    return deg < 0.0 ? deg + 360.0 : deg;
+  }
+
+ private:
+  double sum_ = 0.0;
+  double weight_ = 0.0;
+  double east_ = 0.0;
+  double north_ = 0.0;
+};
+
+using HourMeans = std::array<Mean, kVariables>;
+
+void add_to(HourMeans& means, const WeatherHour& values, double weight) {
+  for (std::size_t v = 0; v < kVariables; ++v) {
+    const double value = values.*kWeatherVariables[v].member;
+    if (!std::isfinite(value)) continue;
+    if (is_direction(kWeatherVariables[v])) {
+      const double speed_m_s = values.wind_speed_m_s;
+      means[v].add_direction(value, weight,
+                             std::isfinite(speed_m_s) ? std::max(speed_m_s, kCalm_m_s) : 1.0);
+    } else {
+      means[v].add(value, weight);
+    }
+  }
+}
+
+WeatherHour to_hour(const HourMeans& means) {
+  constexpr double covered_min = 0.5 - 1e-9;
+  WeatherHour hour;
+  for (std::size_t v = 0; v < kVariables; ++v) {
+    if (means[v].weight() < covered_min) continue;
+    hour.*kWeatherVariables[v].member = means[v].value(is_direction(kWeatherVariables[v]));
+  }
+  return hour;
+}
+
+std::vector<WeatherRecord> in_order_without_repeats(std::span<const WeatherRecord> records) {
+  std::vector<WeatherRecord> sorted{records.begin(), records.end()};
+  std::stable_sort(
+      sorted.begin(), sorted.end(),
+      [](const WeatherRecord& a, const WeatherRecord& b) { return a.start < b.start; });
+  const auto repeated = std::unique(
+      sorted.begin(), sorted.end(),
+      [](const WeatherRecord& a, const WeatherRecord& b) { return a.start == b.start; });
+  sorted.erase(repeated, sorted.end());
+  return sorted;
+}
+
+/// The shorter way round from one direction to another.
+double direction_between(double from_deg, double to_deg, double share) {
+  const double turn = std::remainder(to_deg - from_deg, 360.0);
+  return std::fmod(from_deg + share * turn + 360.0, 360.0);
+}
+
+/// What happened to one variable at one hour.
+enum class Origin : std::uint8_t { absent, measured, interpolated, typical };
+
+/// Fills one variable of a series whose months are whole.
+class VariableFiller {
+ public:
+  VariableFiller(WeatherSeries& series, std::size_t variable, const std::vector<int>& month_of_hour,
+                 const std::vector<int>& local_hour)
+      : series_{series},
+        member_{kWeatherVariables[variable].member},
+        direction_{is_direction(kWeatherVariables[variable])},
+        month_of_hour_{month_of_hour},
+        local_hour_{local_hour},
+        origin_(series.hours.size(), Origin::absent) {
+    for (std::size_t i = 0; i < origin_.size(); ++i) {
+      if (std::isfinite(value(i))) origin_[i] = Origin::measured;
+    }
+  }
+
+  std::vector<Origin> run(std::size_t interpolated_hours_max, int months) {
+    learn_typical_hours(months);
+    std::size_t i = 0;
+    while (i < origin_.size()) {
+      std::size_t end = i;
+      while (end < origin_.size() && origin_[end] == Origin::absent) ++end;
+      if (end > i) fill(i, end, interpolated_hours_max);
+      i = end + 1;
+    }
+    return std::move(origin_);
+  }
+
+ private:
+  double& value(std::size_t i) { return series_.hours[i].*member_; }
+
+  void learn_typical_hours(int months) {
+    typical_.resize(static_cast<std::size_t>(months) * 24);
+    for (std::size_t i = 0; i < origin_.size(); ++i) {
+      if (origin_[i] != Origin::measured) continue;
+      Mean& mean = typical_[cell(i)];
+      if (direction_) {
+        mean.add_direction(value(i), 1.0, 1.0);
+      } else {
+        mean.add(value(i), 1.0);
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t cell(std::size_t i) const {
+    return static_cast<std::size_t>(month_of_hour_[i] * 24 + local_hour_[i]);
+  }
+
+  void fill(std::size_t begin, std::size_t end, std::size_t interpolated_hours_max) {
+    const bool bridged = begin > 0 && end < origin_.size() && end - begin <= interpolated_hours_max;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (bridged) {
+        const double share =
+            static_cast<double>(i - begin + 1) / static_cast<double>(end - begin + 1);
+        value(i) = between(value(begin - 1), value(end), share);
+        origin_[i] = Origin::interpolated;
+      } else {
+        value(i) = typical_[cell(i)].value(direction_);
+        if (std::isfinite(value(i))) origin_[i] = Origin::typical;
+      }
+    }
+  }
+
+  [[nodiscard]] double between(double from, double to, double share) const {
+    return direction_ ? direction_between(from, to, share) : from + share * (to - from);
+  }
+
+  WeatherSeries& series_;
+  double WeatherHour::*member_;
+  bool direction_;
+  const std::vector<int>& month_of_hour_;
+  const std::vector<int>& local_hour_;
+  std::vector<Origin> origin_;
+  std::vector<Mean> typical_;
+};
+
+/// The series over whole local months; hours that the records lack are absent.
+WeatherSeries over_whole_months(const WeatherSeries& series, const LocalCalendar& calendar) {
+  const Month first = calendar.month_of(series.begin);
+  const Month last = calendar.month_of(series.end() - seconds{1});
+  const Instant begin = full_hour_before(calendar.month_span(first).begin + minutes{30});
+  const Instant end = full_hour_before(calendar.month_span(last).end + minutes{30});
+  WeatherSeries whole;
+  whole.begin = std::min(begin, series.begin);
+  whole.hours.resize(
+      static_cast<std::size_t>((std::max(end, series.end()) - whole.begin) / hours{1}));
+  const auto offset = (series.begin - whole.begin) / hours{1};
+  std::copy(series.hours.begin(), series.hours.end(), whole.hours.begin() + offset);
+  return whole;
+}
+
+void count(std::vector<WeatherCoverage>& coverage, std::size_t variable,
+           const std::vector<Origin>& origin, const std::vector<int>& month_of_hour) {
+  std::vector<double> hours_in_month(coverage.size(), 0.0);
+  for (const int month : month_of_hour) hours_in_month[static_cast<std::size_t>(month)] += 1.0;
+  for (std::size_t i = 0; i < origin.size(); ++i) {
+    const auto m = static_cast<std::size_t>(month_of_hour[i]);
+    const double share = 1.0 / hours_in_month[m];
+    if (origin[i] == Origin::measured) coverage[m].measured[variable] += share;
+    if (origin[i] == Origin::interpolated) coverage[m].interpolated[variable] += share;
+    if (origin[i] == Origin::typical) coverage[m].typical[variable] += share;
+  }
+}
+
+}  // namespace
+
+const WeatherHour* WeatherSeries::find(Instant t) const {
+  if (t < begin || t >= end()) return nullptr;
+  return &hours[static_cast<std::size_t>((t - begin) / std::chrono::hours{1})];
+}
+
+Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds step) {
+  if (records.empty()) return failure(ErrorCode::not_enough_data, "no weather records");
+  assert(step > seconds{0});
+  const std::vector<WeatherRecord> sorted = in_order_without_repeats(records);
+  const seconds length = std::min<seconds>(step, hours{1});
+  WeatherSeries series;
+  series.begin = full_hour_before(sorted.front().start);
+  const Instant last = full_hour_before(sorted.back().start + length - seconds{1});
+  std::vector<HourMeans> means(static_cast<std::size_t>((last - series.begin) / hours{1}) + 1);
+  for (const WeatherRecord& record : sorted) {
+    const Instant end = record.start + length;
+    for (Instant hour = full_hour_before(record.start); hour < end; hour += hours{1}) {
+      const seconds overlap =
+          std::min<Instant>(hour + hours{1}, end) - std::max(hour, record.start);
+      add_to(means[static_cast<std::size_t>((hour - series.begin) / hours{1})], record.values,
+             static_cast<double>(overlap.count()) / 3600.0);
+    }
+  }
+  series.hours.reserve(means.size());
+  for (const HourMeans& hour : means) series.hours.push_back(to_hour(hour));
+  return series;
+}
+
+FilledWeather fill_gaps(const WeatherSeries& series, const LocalCalendar& calendar,
+                        seconds interpolate_max) {
+  assert(!series.hours.empty());
+  FilledWeather filled;
+  filled.series = over_whole_months(series, calendar);
+
+  std::vector<int> month_of_hour;
+  std::vector<int> local_hour;
+  const Month first = calendar.month_of(filled.series.begin + minutes{30});
+  for (std::size_t i = 0; i < filled.series.hours.size(); ++i) {
+    // An hour belongs where its middle lies: zones at half hours cut their months inside one.
+    const Instant middle = filled.series.begin + hours{i} + minutes{30};
+    const Month month = calendar.month_of(middle);
+    month_of_hour.push_back(metering::months_between(first, month));
+    local_hour.push_back(calendar.local_time(middle).minute_of_day / 60);
+    if (filled.coverage.empty() || filled.coverage.back().month != month) {
+      filled.coverage.push_back({month, {}, {}, {}});
+    }
+  }
+  const int months = static_cast<int>(filled.coverage.size());
+  const auto interpolated_hours_max = static_cast<std::size_t>(interpolate_max / hours{1});
+  for (std::size_t v = 0; v < kVariables; ++v) {
+    VariableFiller filler{filled.series, v, month_of_hour, local_hour};
+    count(filled.coverage, v, filler.run(interpolated_hours_max, months), month_of_hour);
+  }
+  return filled;
+}
+
+}  // namespace recald::weather

@@ -1,0 +1,94 @@
+/// Hourly weather as plain values, made regular and whole from whatever was recorded.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/metering/civil_time.hpp"
+#include "core/result.hpp"
+
+namespace recald::weather {
+
+using metering::Instant;
+
+inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+/// Means over one hour; NaN where absent.
+struct WeatherHour {
+  double dry_bulb_C = kAbsent;
+  double rel_humidity_pct = kAbsent;
+  double wind_speed_m_s = kAbsent;
+  double wind_dir_deg = kAbsent;  ///< Where the wind comes from, 0 = 360 = north, clockwise.
+  double ghi_W_m2 = kAbsent;      ///< Global horizontal irradiance.
+  double dni_W_m2 = kAbsent;      ///< Direct normal irradiance.
+  double dhi_W_m2 = kAbsent;      ///< Diffuse horizontal irradiance.
+  double pressure_Pa = kAbsent;   ///< At the station, not reduced to sea level.
+};
+
+/// The columns of `WeatherHour`, for code that treats them alike.
+struct WeatherVariable {
+  std::string_view name;
+  double WeatherHour::*member;
+};
+inline constexpr std::array<WeatherVariable, 8> kWeatherVariables{{
+    {"dry_bulb_C", &WeatherHour::dry_bulb_C},
+    {"rel_humidity_pct", &WeatherHour::rel_humidity_pct},
+    {"wind_speed_m_s", &WeatherHour::wind_speed_m_s},
+    {"wind_dir_deg", &WeatherHour::wind_dir_deg},
+    {"ghi_W_m2", &WeatherHour::ghi_W_m2},
+    {"dni_W_m2", &WeatherHour::dni_W_m2},
+    {"dhi_W_m2", &WeatherHour::dhi_W_m2},
+    {"pressure_Pa", &WeatherHour::pressure_Pa},
+}};
+
+/// Consecutive hours on the UTC hour.
+struct WeatherSeries {
+  Instant begin{};  ///< Start of the first hour, a full hour.
+  std::vector<WeatherHour> hours;
+
+  [[nodiscard]] Instant end() const { return begin + std::chrono::hours{hours.size()}; }
+  /// The hour that contains `t`, or null outside the series.
+  [[nodiscard]] const WeatherHour* find(Instant t) const;
+};
+
+/// One observation as a file has it: a mean over [start, start + step).
+struct WeatherRecord {
+  Instant start;
+  WeatherHour values;
+};
+
+/// Puts records of any step on the UTC hour: each hour is the mean of what overlaps it, weighted by
+/// the overlap; it stays absent where less than half is covered. Wind direction is the direction
+/// of the mean vector, weighted by speed where known. Of a step above an hour only the first hour
+/// is taken as observed; the rest is for `fill_gaps`. Records with the same start: the first stays.
+/// @param step  the records' length, e.g. 15 minutes.
+/// @return not_enough_data without records; otherwise a series from the first to the last record.
+[[nodiscard]] Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records,
+                                              std::chrono::seconds step);
+
+/// Where the hours of a local month came from, as shares 0…1, in order of `kWeatherVariables`.
+struct WeatherCoverage {
+  metering::Month month;
+  std::array<double, kWeatherVariables.size()> measured{};
+  std::array<double, kWeatherVariables.size()> interpolated{};
+  std::array<double, kWeatherVariables.size()> typical{};  ///< By hour-of-day mean of the month.
+};
+
+struct FilledWeather {
+  WeatherSeries series;
+  std::vector<WeatherCoverage> coverage;  ///< One entry per local month, in order.
+};
+
+/// Fills each variable by itself: gaps up to `interpolate_max` on a straight line (wind direction
+/// along the shorter arc), longer ones with the mean of the same local hour in the same local
+/// month. A variable that has no value at that hour in the month stays absent; it is not invented.
+/// The months that `span` touches are covered whole: hours outside the records count as absent.
+[[nodiscard]] FilledWeather fill_gaps(const WeatherSeries& series,
+                                      const metering::LocalCalendar& calendar,
+                                      std::chrono::seconds interpolate_max = std::chrono::hours{6});
+
+}  // namespace recald::weather
