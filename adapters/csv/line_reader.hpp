@@ -1,0 +1,57 @@
+/// Lines of a text of any length, through one buffer of fixed size.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace recald::csv {
+
+inline constexpr std::size_t kLineMax = 64 * 1024;  ///< Bytes; a longer line is a bad line.
+
+/// Fills the buffer with up to `size` bytes and returns how many; 0 at the end.
+using ByteSource = std::function<Result<std::size_t>(char* buffer, std::size_t size)>;
+
+struct Line {
+  std::string_view text;  ///< Without its line end; valid until the next call.
+  std::uint64_t number;   ///< From 1.
+  bool terminated;        ///< False for a last line without a line end.
+  bool too_long;          ///< `text` is empty then.
+};
+
+/// LF and CRLF; a UTF-8 byte order mark before the first line is dropped.
+class LineReader {
+ public:
+  explicit LineReader(ByteSource source);
+
+  /// @return false at the end, and when the source fails: then `error` says so.
+  bool next(Line& line);
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+ private:
+  bool refill();
+  bool skip_long_line(Line& line);
+  bool last_line(Line& line);
+  void deliver(Line& line, const char* end, bool terminated);
+
+  ByteSource source_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::uint64_t number_ = 0;
+  std::optional<Error> error_;
+};
+
+/// @return a source of the file's bytes, or not_found / io_failed naming the file as `what`.
+[[nodiscard]] Result<ByteSource> open_file(const std::filesystem::path& file,
+                                           std::string_view what);
+
+/// Bytes of a text that outlives the source.
+[[nodiscard]] ByteSource bytes_of(std::string_view text);
+
+}  // namespace recald::csv

@@ -1,0 +1,97 @@
+/// Recorded meter readings: `timestamp,meter,value,unit`, streamed.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/csv/line_issues.hpp"
+#include "core/metering/counter.hpp"
+#include "core/metering/reading.hpp"
+#include "core/metering/units.hpp"
+#include "core/result.hpp"
+
+namespace recald::csv {
+
+/// How the rows of one meter are to be read. Its position in the list is `Reading::meter`.
+struct MeterRows {
+  std::string name;  ///< As in the `meter` column.
+  metering::Utility utility = metering::Utility::electricity;
+  Stamps stamps = Stamps::start;
+  std::optional<std::chrono::seconds> interval;  ///< Absent: inferred from its first rows.
+  metering::UnitFactors units;
+  double multiplier = 1.0;  ///< Current-transformer ratio that the file does not contain yet.
+  /// Set: values are readings of a cumulative register in an energy unit. Such a meter's readings
+  /// come at the end of the file, and its samples are held until then.
+  std::optional<metering::CounterSettings> counter;
+};
+
+struct ReadingsOptions {
+  std::vector<MeterRows> meters;
+  bool add_unlisted_meters = false;  ///< Meters of the file that are not listed are appended.
+  std::size_t issues_listed_max = 100;
+};
+
+/// What the file shows about a meter; told before its first reading.
+struct MeterInFile {
+  std::uint32_t meter;
+  std::string name;
+  std::chrono::seconds interval;
+  std::chrono::seconds phase;  ///< Of interval starts past multiples of the interval.
+  bool interval_inferred;
+  std::string unit;  ///< Of its first row.
+};
+
+struct ReadingsSink {
+  std::function<void(const MeterInFile&)> on_meter;
+  std::function<void(const metering::Reading&)> on_reading;
+};
+
+/// Totals of one meter.
+struct MeterReport {
+  MeterInFile shown;
+  std::uint64_t readings = 0;  ///< Handed to the sink, blanks included.
+  std::uint64_t blanks = 0;    ///< Rows without a value.
+  std::uint64_t unsorted =
+      0;  ///< Older than the row before; handed on, late ones are the closer's.
+  std::uint64_t duplicates = 0;  ///< Same stamp as the row before; handed on, the closer decides.
+  std::uint64_t off_grid = 0;    ///< Kept out.
+  std::optional<metering::TimeSpan> span;  ///< From the earliest start to the latest end.
+};
+
+struct ReadingsReport {
+  std::uint64_t lines = 0;     ///< Data lines, good and bad, without header and comments.
+  std::uint64_t readings = 0;  ///< Handed to the sink.
+  LineIssues issues;
+  std::vector<MeterReport> meters;  ///< In order of the options' list, then as they appear.
+};
+
+/// Reads a file once, from start to end, in chunks; memory does not grow with its length.
+///
+/// RFC 4180 with quotes (a line break inside quotes is a bad line), UTF-8 with or without a byte
+/// order mark, LF or CRLF, lines up to 64 KiB, `#` lines skipped, a dot as decimal sign whatever
+/// the locale. `timestamp` is ISO 8601 with an offset or Z, the interval's start unless
+/// `stamps` says end. A blank value is a reading that the source lists as blank (NaN). Further
+/// columns `validity`, `late`, `reasons` (joined by |) may follow. A bad line is reported with its
+/// number and kept out; the rest goes on. The last line counts without a line end only when its
+/// unit is the one its meter had before: a file cut inside "kWh" must not become kW.
+///
+/// @return the report, or
+///         not_found  no such file;  io_failed  it cannot be read to its end;
+///         malformed  the header is another one (the message names the expected one), or empty.
+[[nodiscard]] Result<ReadingsReport> read_readings(const std::filesystem::path& file,
+                                                   const ReadingsOptions& options,
+                                                   const ReadingsSink& sink);
+
+/// The same from memory; `name` stands in messages.
+[[nodiscard]] Result<ReadingsReport> read_readings_text(std::string_view text,
+                                                        std::string_view name,
+                                                        const ReadingsOptions& options,
+                                                        const ReadingsSink& sink);
+
+}  // namespace recald::csv
