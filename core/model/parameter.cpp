@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <locale>
 #include <sstream>
 
 namespace recald {
@@ -10,6 +11,7 @@ Result<TriangularPrior> TriangularPrior::make(double min, double mode, double ma
   const bool finite = std::isfinite(min) && std::isfinite(mode) && std::isfinite(max);
   if (!finite || !(min < max) || mode < min || mode > max) {
     std::ostringstream text;
+    text.imbue(std::locale::classic());
     text << "a triangular prior needs min <= mode <= max and min < max, but min = " << min
          << ", mode = " << mode << ", max = " << max;
     return failure(ErrorCode::invalid_value, text.str());
@@ -43,6 +45,18 @@ double TriangularPrior::quantile(double probability) const {
 
 double TriangularPrior::variance() const {
   return (min * min + mode * mode + max * max - min * mode - min * max - mode * max) / 18.0;
+}
+
+std::string describe(std::span<const Parameter> parameters, std::span<const double> values) {
+  assert(parameters.size() == values.size());
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    if (j > 0) text << ", ";
+    text << parameters[j].name << " = " << values[j];
+    if (!parameters[j].unit.empty()) text << ' ' << parameters[j].unit;
+  }
+  return text.str();
 }
 
 }  // namespace recald

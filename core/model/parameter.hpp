@@ -1,6 +1,7 @@
 /// What is uncertain about a building: named parameters, their units and their priors.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "core/result.hpp"
@@ -34,5 +35,10 @@ struct Parameter {
   std::string unit;  ///< as people write it: "person/m2", "degC"
   TriangularPrior prior;
 };
+
+/// The values in words, for messages: "outdoor_air = 0.4 m3/s, set_point = 23.5 degC".
+/// @pre equal lengths
+[[nodiscard]] std::string describe(std::span<const Parameter> parameters,
+                                   std::span<const double> values);
 
 }  // namespace recald

@@ -1,0 +1,105 @@
+/// A building as its drawings and nameplates describe it: the nominal model.
+///
+/// All building models read this description; calibration parameters change copies of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/schedule.hpp"
+#include "core/weather/sun.hpp"
+
+namespace recald::model {
+
+enum class SurfaceKind { wall, roof, window, ground };
+
+/// A part of the envelope. Areas are outside dimensions, m².
+struct Surface {
+  std::string name;
+  SurfaceKind kind;
+  double area_m2;
+  double u_W_m2K;
+  weather::Orientation orientation;  ///< Not used for ground.
+  double solar_absorptance = 0.6;    ///< Wall, roof.
+  double emissivity = 0.9;           ///< Wall, roof, window: long-wave.
+  double shgc = 0.0;                 ///< Window: solar heat gain coefficient at normal incidence.
+  double frame_fraction = 0.0;       ///< Window.
+  double shading_factor = 1.0;       ///< Window: share of the sun that reaches the glass.
+};
+
+/// Internal heat capacity per floor area, ISO 13790:2008 table 12.
+enum class MassClass { very_light, light, medium, heavy, very_heavy };
+[[nodiscard]] double heat_capacity_J_m2K(MassClass mass);
+
+struct Use {
+  double occupancy_person_m2 = 0.0;  ///< People per floor area when fully occupied.
+  double sensible_W_person = 75.0;
+  double latent_W_person = 55.0;
+  double lighting_W_m2 = 0.0;    ///< Installed; splits the measured profile, see profile/.
+  double plugs_W_m2 = 0.0;       ///< Installed; likewise.
+  double exterior_kW = 0.0;      ///< Electricity that heats no zone.
+  double zone_heat_share = 0.9;  ///< Of lights and plugs.
+};
+
+/// Indoor temperatures that the controls hold, °C. Occupied hours: workdays from…to.
+struct SetPoints {
+  double cooling_occupied_C = 24.0;
+  double cooling_unoccupied_C = 28.0;
+  double heating_occupied_C = 21.0;
+  double heating_unoccupied_C = 16.0;
+  int occupied_from_hour = 7;
+  int occupied_to_hour = 19;
+  bool saturday_occupied = false;
+};
+
+/// Air handlers with VAV reheat as one system. Absent in a building without one.
+struct AirSystem {
+  double outdoor_air_m3_s = 0.0;                 ///< Total of all air handlers while occupied.
+  /// Share of the air handlers that runs round the clock (laboratories); 0: fans off when
+  /// unoccupied. The rooms they serve keep their daytime set-points.
+  double outdoor_air_unoccupied_fraction = 0.0;
+  double supply_flow_design_m3_s = 0.0;
+  double supply_flow_min_m3_s = 0.0;  ///< Boxes closed to their minimum, occupied.
+  double supply_temperature_C = 13.0;
+  double fan_design_kW = 0.0;                  ///< Supply and return fans at design flow.
+  double pump_design_kW = 0.0;                 ///< Chilled and hot water pumps at design flow.
+  double heat_recovery = 0.0;                  ///< Sensible effectiveness, 0…1.
+  std::optional<double> economiser_lockout_C;  ///< Above it only minimum outdoor air; absent: none.
+  std::optional<double> humidification_kg_kg;  ///< Humidity ratio held by steam; absent: none.
+};
+
+/// Warm water at the taps.
+struct HotWater {
+  double volume_m3_day = 0.0;
+  double temperature_C = 55.0;
+  double mains_C = 12.0;           ///< Yearly mean of the cold water.
+  double mains_amplitude_K = 0.0;  ///< Half the swing over the year.
+  double efficiency = 0.9;         ///< Distribution and generation together.
+};
+
+struct Building {
+  double floor_area_m2 = 0.0;
+  int storeys = 1;
+  double storey_height_m = 3.0;
+  double heat_capacity_J_m2K = 165e3;
+  std::vector<Surface> surfaces;
+  Use use;
+  HourlySchedule occupied_fraction;
+  SetPoints set_points;
+  double leakage_cm2_m2 = 1.0;    ///< Effective leakage area at 4 Pa per exterior area.
+  double ventilation_m3_s = 0.0;  ///< Outdoor air straight to the zone, where no air system is.
+  std::optional<AirSystem> air;
+  double heating_loss_fraction = 0.0;
+  double heating_efficiency = 1.0;  ///< Boiler or heat exchanger, metered energy to heat.
+  double cooling_loss_fraction = 0.0;
+  std::optional<double> chiller_cop;  ///< Absent: district chilled water.
+  HotWater hot_water;
+  double base_heat_kW = 0.0;  ///< Heat drawn at all hours that serves no zone.
+  double ground_temperature_C = 12.0;
+};
+
+/// Exterior area that leaks: walls, roofs and windows, m².
+[[nodiscard]] double exterior_area_m2(const Building& building);
+
+}  // namespace recald::model

@@ -1,0 +1,62 @@
+/// What drives a building hour by hour: weather, sun on each side, people, lights and plugs.
+///
+/// Known inputs x of eq. (3) of the seed: prepared once per weather and schedule revision.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/metering/civil_time.hpp"
+#include "core/model/building.hpp"
+#include "core/model/schedule.hpp"
+#include "core/result.hpp"
+#include "core/weather/sun.hpp"
+#include "core/weather/weather_series.hpp"
+
+namespace recald::model {
+
+/// Lights and plugs as fixed by the electricity meter: kW by kind of day and local hour.
+struct ElectricLoads {
+  HourlySchedule lights_kW;
+  HourlySchedule plugs_kW;
+  /// Factor of each calendar month on both; all 1 where the profile is constant over the year.
+  std::array<double, 12> month_factor = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+};
+
+/// One hour, starting on the full UTC hour.
+struct DriverHour {
+  int month;  ///< Index into Drivers::months.
+  DayType day;
+  int local_hour;  ///< 0…23
+  bool occupied;   ///< Set-points and fans at their daytime values.
+  double dry_bulb_C;
+  double humidity_ratio;  ///< kg/kg
+  double wind_m_s;
+  double occupied_fraction;
+  double lights_W;
+  double plugs_W;
+};
+
+struct Drivers {
+  std::vector<metering::Month> months;
+  std::vector<DriverHour> hours;                   ///< In order of time, months adjacent to months.
+  std::vector<weather::Orientation> orientations;  ///< Distinct ones of the building's surfaces.
+  Eigen::ArrayXXd irradiance_W_m2;                 ///< (orientations x hours)
+  double pressure_Pa = 101325.0;
+};
+
+/// @param months   Months to model, ascending; they need not be adjacent.
+/// @param weather  Hourly; must be finite in dry bulb, humidity, wind and sun in every hour of
+/// them.
+/// @return not_enough_data naming the first hour that the weather lacks and what it lacks.
+[[nodiscard]] Result<Drivers> make_drivers(const std::vector<metering::Month>& months,
+                                           const metering::LocalCalendar& calendar,
+                                           const Holidays& holidays, const Building& building,
+                                           const ElectricLoads& loads,
+                                           const weather::Location& location,
+                                           const weather::WeatherSeries& weather);
+
+/// Whether set-points and fans stand at their daytime values.
+[[nodiscard]] bool is_occupied(const SetPoints& set_points, DayType day, int local_hour);
+
+}  // namespace recald::model

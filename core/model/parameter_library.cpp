@@ -1,0 +1,190 @@
+#include "core/model/parameter_library.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/text/nearest.hpp"
+
+namespace recald::model {
+namespace {
+
+constexpr double kLeastDeadBand_K = 1.0;
+
+double one(const Building&) { return 1.0; }
+
+void scale_u(Building& b, double factor) {
+  for (Surface& s : b.surfaces) s.u_W_m2K *= factor;
+}
+void scale_shgc(Building& b, double factor) {
+  for (Surface& s : b.surfaces) s.shgc *= factor;
+}
+void scale_dirt(Building& b, double factor) {
+  for (Surface& s : b.surfaces) {
+    if (s.kind == SurfaceKind::window) s.shading_factor *= factor;
+  }
+}
+void scale_solar_absorptance(Building& b, double factor) {
+  for (Surface& s : b.surfaces) s.solar_absorptance *= factor;
+}
+void scale_emissivity(Building& b, double factor) {
+  for (Surface& s : b.surfaces) s.emissivity *= factor;
+}
+
+/// A larger floor of the same number of storeys: roof and ground grow with it, walls and windows
+/// with its side.
+void set_floor_area(Building& b, double area_m2) {
+  const double factor = area_m2 / b.floor_area_m2;
+  for (Surface& s : b.surfaces) {
+    const bool horizontal = s.kind == SurfaceKind::roof || s.kind == SurfaceKind::ground;
+    s.area_m2 *= horizontal ? factor : std::sqrt(factor);
+  }
+  b.floor_area_m2 = area_m2;
+}
+
+double outdoor_air(const Building& b) {
+  return b.air ? b.air->outdoor_air_m3_s : b.ventilation_m3_s;
+}
+void set_outdoor_air(Building& b, double v) {
+  (b.air ? b.air->outdoor_air_m3_s : b.ventilation_m3_s) = v;
+}
+double supply_temperature(const Building& b) { return b.air ? b.air->supply_temperature_C : 0.0; }
+void set_supply_temperature(Building& b, double v) {
+  if (b.air) b.air->supply_temperature_C = v;
+}
+double least_flow(const Building& b) { return b.air ? b.air->supply_flow_min_m3_s : 0.0; }
+void set_least_flow(Building& b, double v) {
+  if (b.air) b.air->supply_flow_min_m3_s = v;
+}
+void set_cooling_set_point(Building& b, double v) {
+  // The night value moves along: people set a thermostat, not two.
+  b.set_points.cooling_unoccupied_C += v - b.set_points.cooling_occupied_C;
+  b.set_points.cooling_occupied_C = v;
+}
+void set_heating_set_point(Building& b, double v) {
+  b.set_points.heating_unoccupied_C += v - b.set_points.heating_occupied_C;
+  b.set_points.heating_occupied_C = v;
+}
+
+constexpr auto kRelative = RangeKind::relative;
+constexpr auto kAbsolute = RangeKind::absolute;
+
+// clang-format off
+const std::array kLibrary = std::to_array<ParameterDefinition>({
+  // Table 1 of the seed.
+  {"ground_temperature", "degC", "Ground temperature", "microclimate", kAbsolute, 12.6, 23.4,
+   [](const Building& b) { return b.ground_temperature_C; }, [](Building& b, double v) { b.ground_temperature_C = v; }},
+  {"conductivity_scale", "-", "Conductivity", "thermal properties", kRelative, 0.85, 1.15, nullptr, nullptr},
+  {"u_factor_scale", "-", "U-factors, all surfaces", "thermal properties", kRelative, 0.85, 1.15, one, scale_u},
+  {"shgc_scale", "-", "Solar heat gain coefficients", "thermal properties", kRelative, 0.85, 1.15, one, scale_shgc},
+  {"thermal_resistance_scale", "-", "Thermal resistance", "thermal properties", kRelative, 0.85, 1.15, nullptr, nullptr},
+  {"density_scale", "-", "Density", "thermal properties", kRelative, 0.97, 1.03, nullptr, nullptr},
+  {"specific_heat_scale", "-", "Heat capacity", "thermal properties", kRelative, 0.6325, 1.3675,
+   one, [](Building& b, double v) { b.heat_capacity_J_m2K *= v; }},
+  {"dirt_correction", "-", "Dirt on the glass", "thermal properties", kRelative, 0.70, 1.30, one, scale_dirt},
+  {"thermal_absorptance_scale", "-", "Thermal absorptance", "optical properties", kRelative, 0.88, 1.12, nullptr, nullptr},
+  {"solar_absorptance_scale", "-", "Solar absorptance", "optical properties", kRelative, 0.88, 1.12, one, scale_solar_absorptance},
+  {"visible_absorptance_scale", "-", "Visible absorptance", "optical properties", kRelative, 0.88, 1.12, nullptr, nullptr},
+  {"infrared_transmittance_scale", "-", "Infrared transmittance", "optical properties", kRelative, 0.97, 1.03, nullptr, nullptr},
+  {"solar_transmittance_scale", "-", "Solar transmittance", "optical properties", kRelative, 0.97, 1.03, nullptr, nullptr},
+  {"visible_transmittance_scale", "-", "Visible transmittance", "optical properties", kRelative, 0.97, 1.03, nullptr, nullptr},
+  {"thermal_reflectance_scale", "-", "Thermal reflectance", "optical properties", kRelative, 0.97, 1.03, nullptr, nullptr},
+  {"solar_reflectance_scale", "-", "Solar reflectance", "optical properties", kRelative, 0.97, 1.03, nullptr, nullptr},
+  {"visible_reflectance_scale", "-", "Visible reflectance", "optical properties", kRelative, 0.97, 1.03, nullptr, nullptr},
+  {"infrared_emissivity_scale", "-", "Infrared hemispherical emissivity", "optical properties", kRelative, 0.97, 1.03, one, scale_emissivity},
+  {"leakage_area", "cm2/m2", "Effective leakage area per exterior area", "infiltration", kAbsolute, 0.26, 4.94,
+   [](const Building& b) { return b.leakage_cm2_m2; }, [](Building& b, double v) { b.leakage_cm2_m2 = v; }},
+  {"occupancy_density", "person/m2", "Occupancy density", "internal load", kRelative, 0.0, 2.0,
+   [](const Building& b) { return b.use.occupancy_person_m2; }, [](Building& b, double v) { b.use.occupancy_person_m2 = v; }},
+  {"cooling_setpoint", "degC", "Cooling set-point, occupied hours", "system operation", kAbsolute, 20.0, 27.8,
+   [](const Building& b) { return b.set_points.cooling_occupied_C; }, set_cooling_set_point},
+  {"chilled_water_temperature", "degC", "Chilled water temperature", "system operation", kAbsolute, 5.0, 8.0, nullptr, nullptr},
+  {"supply_temperature", "degC", "Supply air temperature", "system operation", kAbsolute, 11.0, 14.0, supply_temperature, set_supply_temperature},
+  {"outdoor_airflow", "m3/s", "Outdoor airflow rate", "system operation", kRelative, 0.3, 1.2, outdoor_air, set_outdoor_air},
+  // Ours.
+  {"heating_setpoint", "degC", "Heating set-point, occupied hours", "system operation", kAbsolute, 16.0, 24.0,
+   [](const Building& b) { return b.set_points.heating_occupied_C; }, set_heating_set_point},
+  {"minimum_supply_flow", "m3/s", "Supply flow with all boxes at minimum", "system operation", kRelative, 0.5, 1.3, least_flow, set_least_flow},
+  {"heating_efficiency", "-", "Boiler or heat exchanger efficiency", "plant", kRelative, 0.85, 1.10,
+   [](const Building& b) { return b.heating_efficiency; }, [](Building& b, double v) { b.heating_efficiency = v; }},
+  {"hot_water_volume", "m3/day", "Hot water drawn", "plant", kRelative, 0.0, 2.0,
+   [](const Building& b) { return b.hot_water.volume_m3_day; }, [](Building& b, double v) { b.hot_water.volume_m3_day = v; }},
+  {"base_heat", "kW", "Heat drawn at all hours that serves no zone", "plant", kRelative, 0.0, 2.0,
+   [](const Building& b) { return b.base_heat_kW; }, [](Building& b, double v) { b.base_heat_kW = v; }},
+  {"floor_area", "m2", "Floor area", "geometry", kRelative, 0.4, 2.5,
+   [](const Building& b) { return b.floor_area_m2; }, set_floor_area},
+});
+// clang-format on
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+std::span<const ParameterDefinition> parameter_library() { return kLibrary; }
+
+Result<const ParameterDefinition*> find_parameter(std::string_view name) {
+  const auto found = std::ranges::find(kLibrary, name, &ParameterDefinition::name);
+  if (found == kLibrary.end()) {
+    std::vector<std::string_view> names;
+    for (const auto& definition : kLibrary) names.push_back(definition.name);
+    const std::string_view nearest = nearest_name(name, names);
+    return failure(ErrorCode::not_found,
+                   "unknown parameter '" + std::string{name} + "'" +
+                       (nearest.empty() ? "" : "; did you mean '" + std::string{nearest} + "'?"));
+  }
+  if (!found->is_modelled()) {
+    return failure(ErrorCode::unsupported,
+                   "parameter '" + std::string{name} +
+                       "' belongs to dynamic simulations; the monthly model does not have it");
+  }
+  return &*found;
+}
+
+Result<Parameter> make_parameter(const ParameterDefinition& definition, const Building& nominal,
+                                 const std::optional<TriangularPrior>& prior) {
+  const std::string name{definition.name};
+  const std::string unit{definition.unit};
+  if (prior) {
+    auto checked = TriangularPrior::make(prior->min, prior->mode, prior->max);
+    if (!checked) return failure(checked.error().code, name + ": " + checked.error().message);
+    return Parameter{name, unit, *checked};
+  }
+  const double design = definition.get(nominal);
+  if (definition.range == RangeKind::relative) {
+    if (!(design > 0.0)) {
+      return failure(ErrorCode::invalid_value,
+                     name + ": its range is relative to the design value, which is " +
+                         number(design) + "; give min, mode and max");
+    }
+    return Parameter{name, unit, {definition.low * design, design, definition.high * design}};
+  }
+  if (design < definition.low || design > definition.high) {
+    return failure(ErrorCode::invalid_value,
+                   name + ": the design value " + number(design) + " " + unit +
+                       " lies outside the library's range " + number(definition.low) + " to " +
+                       number(definition.high) + "; give min, mode and max");
+  }
+  return Parameter{name, unit, {definition.low, design, definition.high}};
+}
+
+void settle(Building& building) {
+  SetPoints& set = building.set_points;
+  set.heating_occupied_C =
+      std::min(set.heating_occupied_C, set.cooling_occupied_C - kLeastDeadBand_K);
+  set.heating_unoccupied_C = std::min(set.heating_unoccupied_C, set.heating_occupied_C);
+  set.cooling_unoccupied_C = std::max(set.cooling_unoccupied_C, set.cooling_occupied_C);
+  for (Surface& s : building.surfaces) {
+    s.shading_factor = std::min(s.shading_factor, 1.0);
+    s.solar_absorptance = std::min(s.solar_absorptance, 1.0);
+    s.emissivity = std::min(s.emissivity, 1.0);
+  }
+}
+
+}  // namespace recald::model

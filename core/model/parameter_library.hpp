@@ -1,0 +1,59 @@
+/// The library of parameter uncertainties: what may be calibrated, in which range, and how it
+/// enters a building.
+///
+/// The ranges are those of Table 1 of the seed where it has the parameter, with the design value
+/// as mode; entries marked ours are for buildings the seed did not have (gas boilers, unknown floor
+/// areas).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/model/building.hpp"
+#include "core/model/parameter.hpp"
+#include "core/result.hpp"
+
+namespace recald::model {
+
+enum class RangeKind {
+  relative,  ///< low and high are factors on the design value.
+  absolute,  ///< low and high are in the parameter's unit.
+};
+
+struct ParameterDefinition {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view label;  ///< For people.
+  std::string_view group;  ///< As in Table 1 of the seed.
+  RangeKind range;
+  double low;
+  double high;
+  double (*get)(const Building&);        ///< Design value; null: no model of ours has it.
+  void (*set)(Building&, double value);  ///< On a copy of the nominal building.
+
+  [[nodiscard]] bool is_modelled() const { return set != nullptr; }
+};
+
+[[nodiscard]] std::span<const ParameterDefinition> parameter_library();
+
+/// The seed's choice for the EPC: aggregated occupancy, outdoor airflow, cooling set-point.
+inline constexpr std::string_view kSeedParameters[] = {"occupancy_density", "outdoor_airflow",
+                                                       "cooling_setpoint"};
+
+/// @return the entry, not_found with the nearest name, or unsupported for one that only a dynamic
+///         simulation has (visible reflectance …).
+[[nodiscard]] Result<const ParameterDefinition*> find_parameter(std::string_view name);
+
+/// The parameter with its prior for this building; `prior` overrides the library's range.
+/// @return invalid_value when the design value lies outside an absolute range, or is 0 where the
+///         range is relative to it.
+[[nodiscard]] Result<Parameter> make_parameter(const ParameterDefinition& definition,
+                                               const Building& nominal,
+                                               const std::optional<TriangularPrior>& prior = {});
+
+/// After all parameters are set: set-points at least 1 K apart (the heating one gives way), factors
+/// within their physical ends.
+void settle(Building& building);
+
+}  // namespace recald::model

@@ -1,0 +1,71 @@
+#include "core/model/drivers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/sample_building.hpp"
+
+namespace recald::model {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::sample_building;
+using testing::sample_drivers;
+
+TEST(Drivers, HoursFollowTheLocalMonth) {
+  const Drivers drivers = sample_drivers(sample_building(), 12);
+  std::array<int, 12> hours{};
+  for (const DriverHour& hour : drivers.hours) hours[static_cast<std::size_t>(hour.month)] += 1;
+  EXPECT_EQ(hours[0], 744);
+  EXPECT_EQ(hours[2], 743);   // March 2021 loses an hour
+  EXPECT_EQ(hours[10], 721);  // November gains one
+}
+
+TEST(Drivers, SchedulesStandInLocalTime) {
+  const Drivers drivers = sample_drivers(sample_building(), 1);
+  // 1 January 2021 begins at 05:00 UTC; it is a Friday and no holiday in this test.
+  const DriverHour& midnight = drivers.hours.front();
+  EXPECT_EQ(midnight.local_hour, 0);
+  EXPECT_EQ(midnight.day, DayType::workday);
+  EXPECT_FALSE(midnight.occupied);
+  EXPECT_TRUE(drivers.hours[7].occupied);
+  EXPECT_DOUBLE_EQ(drivers.hours[7].lights_W, 35e3);
+  EXPECT_EQ(drivers.hours[24].day, DayType::saturday);
+  EXPECT_FALSE(drivers.hours[24 + 10].occupied);
+}
+
+TEST(Drivers, SunStandsInTheSouthAtNoonAndNowhereAtNight) {
+  const Drivers drivers = sample_drivers(sample_building(), 1);
+  ASSERT_EQ(drivers.orientations.size(), 5u);  // four walls and the roof
+  const auto noon = drivers.irradiance_W_m2.col(12);
+  EXPECT_GT(noon[2], 1.5 * noon[0]);  // south against north in January
+  EXPECT_EQ(drivers.irradiance_W_m2.col(0).sum(), 0.0);
+}
+
+TEST(Drivers, MissingWeatherNamesTheHourAndTheVariable) {
+  const auto calendar = *metering::LocalCalendar::open("America/New_York");
+  const auto begin = std::chrono::sys_days{std::chrono::year{2020} / 12 / 31};
+  auto weather = testing::sample_weather(begin, 24 * 40);
+  weather.hours[24 * 3].rel_humidity_pct = std::numeric_limits<double>::quiet_NaN();
+  const auto make = [&] {
+    return make_drivers(testing::months_of_2021_22(1), calendar, {}, sample_building(),
+                        testing::sample_loads(), testing::sample_location(), weather);
+  };
+  const auto incomplete = make();
+  ASSERT_FALSE(incomplete.has_value());
+  EXPECT_EQ(incomplete.error().code, ErrorCode::not_enough_data);
+  EXPECT_THAT(incomplete.error().message, HasSubstr("rel_humidity_pct at 2021-01-03T00:00:00Z"));
+  weather.hours.resize(24 * 10);
+  EXPECT_THAT(make().error().message, HasSubstr("2021-01"));
+}
+
+TEST(Drivers, HolidaysRunLikeSundays) {
+  const metering::Day friday = std::chrono::year{2021} / 1 / 1;
+  EXPECT_EQ(day_type(friday, {}), DayType::workday);
+  EXPECT_EQ(day_type(friday, {friday}), DayType::sunday_or_holiday);
+}
+
+}  // namespace
+}  // namespace recald::model

@@ -1,0 +1,72 @@
+#include "core/model/parameter_library.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/sample_building.hpp"
+
+namespace recald::model {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::sample_building;
+
+TEST(ParameterLibrary, SeedsRangesForThisBuilding) {
+  const Building building = sample_building();
+  const auto people = make_parameter(**find_parameter("occupancy_density"), building);
+  ASSERT_TRUE(people.has_value());
+  EXPECT_EQ(people->prior, (TriangularPrior{0.0, 0.05, 0.1}));
+  const auto air = make_parameter(**find_parameter("outdoor_airflow"), building);
+  EXPECT_DOUBLE_EQ(air->prior.min, 0.3 * 6.0);
+  EXPECT_DOUBLE_EQ(air->prior.max, 1.2 * 6.0);
+  const auto set_point = make_parameter(**find_parameter("cooling_setpoint"), building);
+  EXPECT_EQ(set_point->prior, (TriangularPrior{20.0, 24.0, 27.8}));
+}
+
+TEST(ParameterLibrary, MisspeltNameNamesTheNearest) {
+  const auto found = find_parameter("cooling_setpiont");
+  ASSERT_FALSE(found.has_value());
+  EXPECT_EQ(found.error().code, ErrorCode::not_found);
+  EXPECT_THAT(found.error().message, HasSubstr("did you mean 'cooling_setpoint'"));
+}
+
+TEST(ParameterLibrary, DynamicSimulationsParameterIsRefused) {
+  const auto found = find_parameter("visible_reflectance_scale");
+  ASSERT_FALSE(found.has_value());
+  EXPECT_EQ(found.error().code, ErrorCode::unsupported);
+}
+
+TEST(ParameterLibrary, DesignOutsideTheAbsoluteRangeAsksForOne) {
+  Building building = sample_building();
+  building.leakage_cm2_m2 = 9.0;
+  const auto parameter = make_parameter(**find_parameter("leakage_area"), building);
+  ASSERT_FALSE(parameter.has_value());
+  EXPECT_THAT(parameter.error().message, HasSubstr("9"));
+  EXPECT_THAT(parameter.error().message, HasSubstr("give min, mode and max"));
+}
+
+TEST(ParameterLibrary, RelativeRangeOfNothingAsksForOne) {
+  Building building = sample_building();
+  building.base_heat_kW = 0.0;
+  EXPECT_FALSE(make_parameter(**find_parameter("base_heat"), building).has_value());
+}
+
+TEST(ParameterLibrary, SettleKeepsTheDeadBand) {
+  Building building = sample_building();
+  (*find_parameter("cooling_setpoint"))->set(building, 20.0);
+  settle(building);
+  EXPECT_DOUBLE_EQ(building.set_points.cooling_occupied_C, 20.0);
+  EXPECT_DOUBLE_EQ(building.set_points.heating_occupied_C, 19.0);
+  EXPECT_DOUBLE_EQ(building.set_points.cooling_unoccupied_C, 24.0);
+}
+
+TEST(ParameterLibrary, FloorAreaScalesHorizontalPartsFullyAndWallsByTheSide) {
+  Building building = sample_building();
+  const double wall_m2 = building.surfaces[0].area_m2;
+  (*find_parameter("floor_area"))->set(building, 4.0 * building.floor_area_m2);
+  EXPECT_DOUBLE_EQ(building.surfaces[0].area_m2, 2.0 * wall_m2);
+  EXPECT_DOUBLE_EQ(building.surfaces.back().area_m2, 4.0 * 1667.0);
+}
+
+}  // namespace
+}  // namespace recald::model
