@@ -1,0 +1,104 @@
+/// Bayesian calibration of a building energy model against monthly figures, from priors to verdict.
+///
+/// Method of Li, Gu, Augenbroe, Wu, Brown (2015), "A generic approach to calibrate building energy
+/// models under uncertainty using Bayesian inference", Building Simulation ("the seed"): triangular
+/// priors, a Latin hypercube of runs that fixes the normalisation, a Gaussian process for what the
+/// model lacks, random-walk Metropolis, and draws to push back through the model.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/calibration/draws.hpp"
+#include "core/calibration/findings.hpp"
+#include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/normalisation.hpp"
+#include "core/calibration/problem.hpp"
+#include "core/calibration/sampler.hpp"
+#include "core/calibration/seed_rwm.hpp"
+#include "core/calibration/summary.hpp"
+#include "core/executor.hpp"
+#include "core/model/monthly_model.hpp"
+#include "core/result.hpp"
+
+namespace recald::calibration {
+
+struct CalibrationOptions {
+  int design_runs = 200;  ///< >= 20
+  std::variant<HyperPriorProfile, HyperPrior> hyper_prior = HyperPriorProfile::scaled;
+  SamplerOptions sampling;
+  Sampler sampler = seed_rwm;
+  int chains = 4;           ///< >= 2, or R-hat says little. Chain k draws from Rng{seed, k}.
+  int thinned_draws = 270;  ///< Equally spaced over the pooled chains.
+  ConvergenceGate gate;
+};
+
+/// What is being done. Comes from any thread the executor uses, so the observer has to be safe for
+/// that.
+struct Progress {
+  enum class Stage { design, sampling };
+  Stage stage;
+  int chain;  ///< 0 during the design.
+  int done;   ///< Design runs, or iterations of this chain.
+  int total;
+};
+
+/// Returns false to cancel.
+using Observer = std::function<bool(const Progress&)>;
+
+/// How a caller takes part: chance, threads, and the wish to stop.
+struct RunContext {
+  std::uint64_t seed = 1;
+  ForEachIndex executor = for_each_index_serially;
+  Observer observer = {};  ///< May be empty.
+};
+
+/// The model at every point of a Latin hypercube through the priors.
+struct DesignRuns {
+  Eigen::MatrixXd theta;    ///< (runs x q) in the parameters' units.
+  Eigen::MatrixXd outputs;  ///< (runs x outputs * months) in the outputs' units, output-major.
+};
+
+struct Calibration {
+  DesignRuns design;
+  Normalisation normalisation;
+  RangeCheck range;
+  HyperPrior hyper_prior;
+  std::vector<ChainDraws> chains;
+  std::vector<Summary> parameters;       ///< (q)
+  std::vector<Summary> hyperparameters;  ///< lambda_delta, lambda_eps, beta_<input> …, beta_out
+  Eigen::VectorXd posterior_mean;        ///< (q) theta, the point estimate.
+  ThinnedDraws thinned;
+  bool converged;     ///< The gate holds for every parameter and hyper-parameter.
+  Findings findings;  ///< Everything to be said in words; empty for a calibration without a remark.
+  std::uint64_t seed;
+};
+
+/// Runs the model over a fresh Latin hypercube.
+[[nodiscard]] Result<DesignRuns> run_design(const MonthlyModel& prototype,
+                                            const CalibrationProblem& problem, int runs,
+                                            const RunContext& context);
+
+/// The whole calibration: design, normalisation, range check, chains, diagnostics.
+///
+/// @param prototype  Covers exactly the calibration months; cloned, never evaluated itself.
+/// @return the calibration, whether or not it converged and whatever was found; or
+///         the errors of `check_problem`, `normalise_design` (constant output) and `run_model`;
+///         invalid_value for options out of range; cancelled.
+/// @note   Pure: the same problem, options and seed give the same bytes with any executor.
+[[nodiscard]] Result<Calibration> calibrate(const MonthlyModel& prototype,
+                                            const CalibrationProblem& problem,
+                                            const CalibrationOptions& options,
+                                            const RunContext& context);
+
+/// The same on a design that exists already: no run of the model but those of the chains.
+[[nodiscard]] Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
+                                                      const CalibrationProblem& problem,
+                                                      const CalibrationOptions& options,
+                                                      DesignRuns design, const RunContext& context);
+
+}  // namespace recald::calibration

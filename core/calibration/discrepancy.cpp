@@ -1,0 +1,94 @@
+#include "core/calibration/discrepancy.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace recald::calibration {
+namespace {
+
+/// Months that hold at least one point, ascending.
+std::vector<int> months_in_use(const std::vector<PointIndex>& points) {
+  std::vector<int> months;
+  months.reserve(points.size());
+  for (const PointIndex& point : points) months.push_back(point.month);
+  std::sort(months.begin(), months.end());
+  months.erase(std::unique(months.begin(), months.end()), months.end());
+  return months;
+}
+
+bool ordered(const std::vector<PointIndex>& points) {
+  return std::adjacent_find(
+             points.begin(), points.end(), [](const PointIndex& a, const PointIndex& b) {
+               return a.output > b.output || (a.output == b.output && a.month >= b.month);
+             }) == points.end();
+}
+
+}  // namespace
+
+DiscrepancyKernel::DiscrepancyKernel(const Eigen::MatrixXd& month_inputs,
+                                     std::vector<PointIndex> points) {
+  assert(!points.empty() && ordered(points));
+  const std::vector<int> months = months_in_use(points);
+  const auto n = static_cast<Eigen::Index>(months.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto month = std::lower_bound(months.begin(), months.end(), points[i].month);
+    row_.push_back(month - months.begin());
+    const auto index = static_cast<Eigen::Index>(i);
+    if (i == 0 || points[i].output != points[i - 1].output) ranges_.push_back({index, index});
+    ranges_.back().end = index + 1;
+  }
+  cross_output_ = ranges_.size() > 1;
+
+  distances_.resize(n * (n - 1) / 2, month_inputs.cols());
+  Eigen::Index pair = 0;
+  for (std::size_t j = 0; j < months.size(); ++j) {
+    for (std::size_t i = j + 1; i < months.size(); ++i) {
+      distances_.row(pair++) =
+          (month_inputs.row(months[i]) - month_inputs.row(months[j])).array().square();
+    }
+  }
+  packed_.resize(distances_.rows());
+  correlation_ = Eigen::MatrixXd::Identity(n, n);
+}
+
+void DiscrepancyKernel::correlate_months(const Eigen::VectorXd& beta) {
+  // An infinite beta times a zero distance is 0 / 0 in disguise; the largest double does the same.
+  constexpr double beta_max = 1e300;
+  packed_.setZero();
+  for (Eigen::Index s = 0; s < distances_.cols(); ++s) {
+    packed_ -= std::min(beta(s), beta_max) * distances_.col(s);
+  }
+  packed_ = packed_.array().exp();
+  const Eigen::Index n = correlation_.rows();
+  const double* packed = packed_.data();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = j + 1; i < n; ++i) {
+      correlation_(i, j) = *packed;
+      correlation_(j, i) = *packed++;
+    }
+  }
+}
+
+void DiscrepancyKernel::covariance(double variance, const Eigen::VectorXd& beta,
+                                   Eigen::MatrixXd& covariance) {
+  assert(beta.size() == dimension());
+  assert(covariance.rows() == point_count() && covariance.cols() == point_count());
+  correlate_months(beta);
+  const double between_outputs = cross_output_ ? variance * std::exp(-beta(beta.size() - 1)) : 0.0;
+  for (std::size_t b = 0; b < ranges_.size(); ++b) {
+    for (Eigen::Index j = ranges_[b].begin; j < ranges_[b].end; ++j) {
+      const double* of_month = correlation_.col(row_[static_cast<std::size_t>(j)]).data();
+      double* column = covariance.col(j).data();
+      for (std::size_t a = b; a < ranges_.size(); ++a) {
+        const double factor = a == b ? variance : between_outputs;
+        const Eigen::Index end = ranges_[a].end;
+        for (Eigen::Index i = std::max(ranges_[a].begin, j); i < end; ++i) {
+          column[i] = factor * of_month[row_[static_cast<std::size_t>(i)]];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace recald::calibration

@@ -1,0 +1,31 @@
+/// What a calibration wants a person to know besides its numbers.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace recald::calibration {
+
+enum class FindingKind {
+  extrapolation,        ///< A measured value outside all design runs of all months.
+  range_fail,           ///< A measured value outside the design runs of its own month.
+  prior_edge,           ///< Posterior mass piled up at the end of a prior: a model-form alarm.
+  hyperprior_conflict,  ///< A precision's posterior mean outside its prior's 1-99 % range.
+  not_converged,        ///< The convergence gate failed for a quantity.
+  prior_driven,         ///< A parameter follows the discrepancy prior rather than the data.
+  jitter_used,          ///< Some covariance had no factor until jitter was added.
+};
+
+/// The kind as files and machines write it: "range_fail".
+[[nodiscard]] std::string_view to_string(FindingKind kind);
+
+struct Finding {
+  FindingKind kind;
+  std::string subject;   ///< The parameter, hyper-parameter or output it is about.
+  std::string sentence;  ///< Plain words, with the figures.
+};
+
+using Findings = std::vector<Finding>;
+
+}  // namespace recald::calibration

@@ -1,0 +1,98 @@
+/// What is believed about the size and smoothness of the model discrepancy and about the noise.
+///
+/// The seed says "20 % model discrepancy, 5 % measurement error" and takes the families of Guillas
+/// et al. (2009): Gamma on the precisions, Beta on the correlations. All of it lives on outputs
+/// normalised to [0, 1].
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+
+#include "core/random/rng.hpp"
+#include "core/result.hpp"
+
+namespace recald::calibration {
+
+/// Gamma(shape, rate): mean shape / rate.
+struct GammaPrior {
+  double shape;
+  double rate;
+
+  /// log density = log_constant() + log_kernel(value, log(value)); the first is worth computing
+  /// once.
+  [[nodiscard]] double log_constant() const;
+  [[nodiscard]] double log_kernel(double value, double log_value) const {
+    return (shape - 1.0) * log_value - rate * value;
+  }
+  /// Minus infinity for value <= 0.
+  [[nodiscard]] double log_density(double value) const;
+  [[nodiscard]] double quantile(double probability) const;
+  [[nodiscard]] double mean() const { return shape / rate; }
+  [[nodiscard]] double variance() const { return shape / (rate * rate); }
+  bool operator==(const GammaPrior&) const = default;
+};
+
+/// Beta(a, b) for rho, the correlation of the discrepancy at two points half the input range apart.
+///
+/// With b < 1 the density is infinite at rho = 1, and a double rounds to 1 with prior probability
+/// about 1e-5, so everything starts from z = logit rho.
+struct BetaPrior {
+  double a;
+  double b;
+
+  /// -log B(a, b), worth computing once.
+  [[nodiscard]] double log_constant() const;
+  /// log density with respect to rho, at rho = 1 / (1 + exp(-z)).
+  [[nodiscard]] double log_density_at_logit(double z) const;
+  [[nodiscard]] double quantile(double probability) const;
+  /// z = logit rho of the probability-quantile; finite where rho itself rounds to 1.
+  [[nodiscard]] double logit_quantile(double probability) const;
+  [[nodiscard]] double beta_mean() const;      ///< Of beta = -4 ln rho.
+  [[nodiscard]] double beta_variance() const;  ///< Of beta = -4 ln rho.
+  bool operator==(const BetaPrior&) const = default;
+};
+
+/// log(1 + exp(x)) without overflow or loss. Then -softplus(-z) = log rho, -softplus(z) = log(1 -
+/// rho).
+[[nodiscard]] double softplus(double x);
+
+/// beta = -4 ln rho = 4 log(1 + exp(-z)), the inverse squared length scale of eq. (4) of the seed.
+[[nodiscard]] double beta_from_logit(double z);
+/// Its inverse; infinity for beta = 0.
+[[nodiscard]] double logit_from_beta(double beta);
+
+struct HyperPrior {
+  std::string name;                  ///< Of the profile, or "custom".
+  GammaPrior discrepancy_precision;  ///< lambda_delta, 1 / variance of the discrepancy.
+  GammaPrior error_precision;        ///< lambda_epsilon, 1 / variance of the measurement error.
+  BetaPrior rho;                     ///< The same for every input.
+
+  bool operator==(const HyperPrior&) const = default;
+};
+
+enum class HyperPriorProfile {
+  scaled,    ///< Gamma(10, 0.3 v_y), Gamma(10, 0.03 v_y): the published constants on unit variance.
+  seed,      ///< Gamma(10, 0.4), Gamma(10, 0.025): 20 % and 5 % read literally.
+  stan2018,  ///< Gamma(10, 0.3), Gamma(10, 0.03): a public Stan code's constants on [0, 1].
+  tight,     ///< Gamma(10, 0.1), Gamma(10, 0.025).
+};
+
+/// @param pooled_variance  v_y of `Normalisation`; only `scaled` uses it. @pre > 0
+[[nodiscard]] HyperPrior make_hyper_prior(HyperPriorProfile profile, double pooled_variance);
+
+/// Values of one's own. @return invalid_value unless all are finite and positive.
+[[nodiscard]] Result<HyperPrior> make_custom_hyper_prior(GammaPrior discrepancy_precision,
+                                                         GammaPrior error_precision, BetaPrior rho);
+
+/// "scaled", "seed", "stan2018" (also "wide"), "tight"; anything else is invalid_value.
+[[nodiscard]] Result<HyperPriorProfile> parse_hyper_prior_profile(std::string_view text);
+
+/// One value of everything that describes discrepancy and error.
+struct Hyperparameters {
+  double discrepancy_precision;  ///< lambda_delta
+  double error_precision;        ///< lambda_epsilon
+  Eigen::VectorXd beta;          ///< (dimensions of the kernel) >= 0
+};
+
+}  // namespace recald::calibration

@@ -1,0 +1,56 @@
+/// What is to be calibrated against what: the input of a calibration, checked and normalised.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "core/calibration/normalisation.hpp"
+#include "core/calibration/posterior.hpp"
+#include "core/model/monthly_model.hpp"
+#include "core/model/parameter.hpp"
+#include "core/result.hpp"
+
+namespace recald::calibration {
+
+/// Known inputs that the discrepancy varies over, such as monthly mean dry bulb, in their own
+/// units.
+struct ModelInputs {
+  std::vector<std::string> names;  ///< (p)
+  Eigen::MatrixXd values;          ///< (months x p)
+};
+
+/// Covers exactly the calibration months of the model it goes with.
+struct CalibrationProblem {
+  std::vector<Parameter> parameters;        ///< (q) in the model's order.
+  std::vector<std::string> month_names;     ///< (months) for sentences: "2016-03".
+  std::vector<OutputMeasurements> outputs;  ///< (output_count) in the model's order.
+  ModelInputs inputs;
+  /// Directions of error common to all points, 1 standard deviation each, in output units, e.g.
+  /// df/dshare * 0.15 for the share of a profile that heats the zone. Each (output_count * months),
+  /// output-major.
+  std::vector<Eigen::VectorXd> common_errors;
+  /// (output_count) sd of a meta-model's own error in output units; empty: the model is exact.
+  std::vector<double> model_error_sd;
+};
+
+/// Checks everything that data and configuration can get wrong, before anything is computed.
+///
+/// @return not_enough_data  fewer measured points than calibration parameters plus two;
+///         invalid_value    a weight outside (0, 1], a negative or missing extra variance, a prior
+///         out
+///                          of order, names or shapes that do not fit the model, no model input, or
+///                          one that is the same in every month;
+///         not_finite       an infinite measurement, or a NaN among the model inputs.
+[[nodiscard]] Result<void> check_problem(const CalibrationProblem& problem,
+                                         const MonthlyModel& model);
+
+/// The measured points on the normalised scale. Weights are relative: they are divided by the
+/// largest among the measured outputs. @pre check_problem passed
+[[nodiscard]] PosteriorData normalise_problem(const CalibrationProblem& problem,
+                                              const Normalisation& normalisation);
+
+/// Each column by its own min and max over the months. @pre no constant column
+[[nodiscard]] Eigen::MatrixXd scale_inputs(const Eigen::MatrixXd& values);
+
+}  // namespace recald::calibration

@@ -1,0 +1,50 @@
+/// Draws turned into what a report prints and a gate decides on.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "core/calibration/diagnostics.hpp"
+#include "core/calibration/findings.hpp"
+
+namespace recald::calibration {
+
+/// One quantity over the pooled draws of all chains.
+struct Summary {
+  std::string name;
+  std::string unit;
+  double mean;
+  double sd;
+  double q05;
+  double q50;
+  double q95;
+  double prior_mean;
+  double prior_sd;
+  double contraction;  ///< 1 - sd^2 / prior_sd^2: what the data taught; near 0 or below: nothing.
+  double rhat;
+  double ess_bulk;
+  double ess_tail;
+  double mcse;  ///< Of the mean.
+};
+
+/// @param draws  (iterations x chains), iterations >= 8.
+[[nodiscard]] Summary summarise(std::string name, std::string unit, const Eigen::MatrixXd& draws,
+                                double prior_mean, double prior_sd);
+
+/// Limits of Vehtari et al. (2021) and on the error of the mean.
+struct ConvergenceGate {
+  double rhat_max = 1.01;
+  double ess_min = 400.0;        ///< Bulk and tail, over all chains.
+  double mcse_share_max = 0.05;  ///< Of the posterior sd.
+};
+
+/// One finding a failing quantity; empty: the gate passes.
+[[nodiscard]] Findings gate_findings(const std::vector<Summary>& summaries,
+                                     const ConvergenceGate& gate = {});
+
+/// `count` indices into [0, total), equally spaced, the middle of each of `count` equal stretches.
+/// All of them when total <= count.
+[[nodiscard]] std::vector<int> equally_spaced(int total, int count);
+
+}  // namespace recald::calibration

@@ -1,0 +1,31 @@
+/// The design of experiments: where in the prior box a model is run.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "core/model/parameter.hpp"
+#include "core/random/rng.hpp"
+
+namespace recald::design {
+
+/// Latin hypercube through the parameters' priors.
+///
+/// Column j is F_j^-1((pi_j(i) - 1 + U_ij) / runs) with a random permutation pi_j and U_ij uniform
+/// on (0, 1): each of the `runs` equally likely strata of each prior holds exactly one point.
+/// Of `candidates` such designs the one with the smallest largest absolute correlation between two
+/// columns is kept, so that no two parameters move together by chance.
+///
+/// @param parameters  (q), q >= 1.
+/// @param runs        >= 2.
+/// @param candidates  >= 1 designs drawn; 1 is the plain hypercube.
+/// @return (runs x q) in the parameters' own units. The same state of `rng` gives the same bytes.
+/// @note   O(candidates * runs * q^2).
+/// @see    McKay, Beckman, Conover (1979), Technometrics 21(2).
+[[nodiscard]] Eigen::MatrixXd latin_hypercube(std::span<const Parameter> parameters, int runs,
+                                              Rng& rng, int candidates = 50);
+
+/// Largest |Pearson correlation| between two columns of `design`; 0 for a single column.
+[[nodiscard]] double largest_correlation(const Eigen::MatrixXd& design);
+
+}  // namespace recald::design

@@ -1,0 +1,84 @@
+// What runs 30 000 times must not touch the heap: Eigen asserts on malloc
+// (EIGEN_RUNTIME_NO_MALLOC), everything else is seen by a counting operator new.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/calibration/posterior.hpp"
+#include "core/calibration/seed_rwm.hpp"
+#include "tests/core/calibration/toy_models.hpp"
+#include "tests/support/allocations.hpp"
+
+namespace recald::calibration {
+namespace {
+
+class NoEigenAllocation {
+ public:
+  NoEigenAllocation() { Eigen::internal::set_is_malloc_allowed(false); }
+  ~NoEigenAllocation() { Eigen::internal::set_is_malloc_allowed(true); }
+  NoEigenAllocation(const NoEigenAllocation&) = delete;
+  NoEigenAllocation& operator=(const NoEigenAllocation&) = delete;
+};
+
+Posterior toy_posterior(int months) {
+  CalibrationProblem problem = toy_problem(2, months);
+  problem.outputs[1].weight = 0.5;
+  problem.outputs[0].values[3] = std::numeric_limits<double>::quiet_NaN();
+  problem.common_errors = {Eigen::VectorXd::Constant(2 * months, 30.0)};
+  const PosteriorData data = normalise_problem(problem, {{{400.0, 2500.0}, {900.0, 5000.0}}, 0.05});
+  return Posterior::make(toy_model(2, months), toy_parameters(), data,
+                         make_hyper_prior(HyperPriorProfile::scaled, 0.05))
+      .value();
+}
+
+TEST(Allocation, NoneInAnEvaluationOfThePosterior) {
+  for (const int months : {12, 24, 36}) {
+    Posterior posterior = toy_posterior(months);
+    Rng rng(1);
+    Eigen::VectorXd point = posterior.draw_start(rng);
+    const NoEigenAllocation guard;
+    const long before = testing::allocation_count();
+    for (int i = 0; i < 50; ++i) {
+      point(i % point.size()) += 0.01;  // theta alone, then hyper-parameters too
+      ASSERT_TRUE(posterior.log_density(point).has_value());
+    }
+    EXPECT_EQ(testing::allocation_count() - before, 0) << months << " months";
+  }
+}
+
+// From the first observation after burn-in to the last; adaptation before may allocate.
+TEST(Allocation, NoneInAKeptIterationOfTheRandomWalk) {
+  Posterior posterior = toy_posterior(24);
+  Rng rng(2);
+  long first = -1;
+  long last = -1;
+  const SamplerObserver observer = [&](int done, int) {
+    if (done < 1000) return true;
+    Eigen::internal::set_is_malloc_allowed(false);
+    if (first < 0) first = testing::allocation_count();
+    last = testing::allocation_count();
+    return true;
+  };
+  const auto chain = seed_rwm(posterior, {2000, 1000}, rng, observer);
+  Eigen::internal::set_is_malloc_allowed(true);
+  ASSERT_TRUE(chain.has_value());
+  EXPECT_EQ(last - first, 0);
+}
+
+// The guard itself: an allocation would be seen.
+TEST(AllocationDeathTest, TheGuardsSeeAllocations) {
+  const long before = testing::allocation_count();
+  const auto model = toy_model(2, 12).clone();
+  EXPECT_GT(testing::allocation_count() - before, 0);
+  EXPECT_DEATH(
+      {
+        const NoEigenAllocation guard;
+        const Eigen::VectorXd fresh = Eigen::VectorXd::Zero(1000);
+        (void)fresh;
+      },
+      "heap allocation is forbidden");
+}
+
+}  // namespace
+}  // namespace recald::calibration
