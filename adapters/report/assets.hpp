@@ -1,0 +1,20 @@
+/// The page's own script and style, bundled at build time by build.mjs and compiled in as bytes.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace recald::report {
+
+struct Assets {
+  std::string_view script;       ///< Stands inline between <script> tags.
+  std::string_view style;        ///< Stands inline between <style> tags.
+  std::string_view licences;     ///< Of the libraries in the script; plain text.
+  std::string_view script_hash;  ///< For the Content-Security-Policy, "sha256-…".
+  std::string_view style_hash;
+  std::size_t gzip_bytes;  ///< Script and style together, compressed, as measured in the build.
+};
+
+[[nodiscard]] const Assets& assets();
+
+}  // namespace recald::report

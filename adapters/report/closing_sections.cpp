@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include "adapters/report/assets.hpp"
+#include "adapters/report/format.hpp"
+#include "adapters/report/sections.hpp"
+
+namespace recald::report {
+namespace {
+
+template <class Number>
+std::string plain(const std::optional<Number>& value) {
+  return value ? fmt::format("{}", *value) : std::string();
+}
+
+void write_licences(Html& html) {
+  html.markup(
+          "<details id=\"licences\"><summary>Licences of the libraries that draw this page's "
+          "figures</summary>\n")
+      .element("pre", assets().licences)
+      .markup("</details>\n");
+}
+
+}  // namespace
+
+void write_not_known_section(Html& html, const ReportData& data) {
+  if (data.not_known.empty()) return;
+  open_section(html, "not-known", "What this report does not know");
+  html.markup("<ul class=\"plain\">\n");
+  for (const std::string& sentence : data.not_known) html.element("li", sentence);
+  html.markup("</ul>\n</section>\n");
+}
+
+void write_provenance_section(Html& html, const ReportData& data) {
+  const Provenance& from = data.provenance;
+  open_section(html, "provenance", "How to repeat these numbers");
+  html.element(
+      "p", "The same readings, model, settings and seed give the same numbers, to the last digit.");
+  html.markup("<dl>\n");
+  const auto entry = [&html](std::string_view name, std::string_view value) {
+    if (value.empty()) return;
+    html.markup("<div>").element("dt", name).element("dd", value).markup("</div>\n");
+  };
+  entry("recald", from.recald_version);
+  entry("Data revision", from.data_revision);
+  entry("Model", from.model_version);
+  entry("Sampler", from.sampler);
+  entry("Prior of the model discrepancy", from.hyper_prior_profile);
+  entry("Chains", plain(from.chains));
+  entry("Iterations a chain", from.iterations ? count_text(*from.iterations) : "");
+  entry("Of these dropped", from.burn_in ? count_text(*from.burn_in) : "");
+  entry("Seed", plain(from.seed));
+  entry("Computing time", from.wall_s ? fmt::format("{:.1f} s", *from.wall_s) : "");
+  entry("Time zone", data.site.time_zone);
+  entry("Time zone rules", from.time_zone_data);
+  entry("Report made", data.generated_at);
+  html.markup("</dl>\n");
+  write_licences(html);
+  html.markup("</section>\n");
+}
+
+}  // namespace recald::report

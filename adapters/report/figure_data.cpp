@@ -1,0 +1,172 @@
+#include "adapters/report/figure_data.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "adapters/report/format.hpp"
+#include "adapters/report/histogram.hpp"
+
+namespace recald::report {
+namespace {
+
+using nlohmann::json;
+
+/// The number with so many significant digits, or null. Keeps the page small: the shortest text
+/// of a rounded double is short.
+json number(double value, int significant_digits = 6) {
+  if (!std::isfinite(value)) return nullptr;
+  char buffer[32];
+  const auto written = std::to_chars(buffer, buffer + sizeof buffer, value,
+                                     std::chars_format::scientific, significant_digits - 1);
+  double rounded = 0.0;
+  std::from_chars(buffer, written.ptr, rounded);
+  return rounded;
+}
+
+json number(std::optional<double> value) { return value ? number(*value) : json(nullptr); }
+
+template <class Range>
+json numbers(const Range& values) {
+  json array = json::array();
+  for (const double value : values) array.push_back(number(value));
+  return array;
+}
+
+const char* role_text(MonthRole role) {
+  switch (role) {
+    case MonthRole::calibration:
+      return "calibration";
+    case MonthRole::validation:
+      return "validation";
+    case MonthRole::unused:
+      return "unused";
+  }
+  return "unused";
+}
+
+json parameter_json(const ParameterResult& parameter) {
+  const Histogram histogram = make_histogram(parameter.draws, kPosteriorBins);
+  return {{"label", parameter.label},
+          {"unit", parameter.unit},
+          {"prior",
+           numbers(std::array{parameter.prior.min, parameter.prior.mode, parameter.prior.max})},
+          {"binStart", number(histogram.start)},
+          {"binWidth", number(histogram.width)},
+          {"density", numbers(histogram.density())},
+          {"mean", number(parameter.mean)},
+          {"q05", number(parameter.q05)},
+          {"q95", number(parameter.q95)}};
+}
+
+json box_json(const std::optional<ModelBox>& box) {
+  if (!box) return nullptr;
+  return numbers(std::array{box->low_whisker_kWh, box->q25_kWh, box->q50_kWh, box->q75_kWh,
+                            box->high_whisker_kWh});
+}
+
+json month_json(const OutputMonth& month) {
+  return {{"month", month_key(month.month)},
+          {"role", role_text(month.role)},
+          {"measured", number(month.measured_kWh)},
+          {"usable", month.measured_usable},
+          {"filled", number(month.filled_share, 4)},
+          {"different", month.flagged_different},
+          {"box", box_json(month.box)}};
+}
+
+json metric_histogram_json(const std::vector<double>& values) {
+  const Histogram histogram = make_histogram(values, kMetricBins);
+  return {{"start", number(histogram.start)},
+          {"width", number(histogram.width)},
+          {"counts", histogram.counts}};
+}
+
+json output_json(const OutputResult& output) {
+  json months = json::array();
+  for (const OutputMonth& month : output.months) months.push_back(month_json(month));
+  return {{"label", output.label},
+          {"months", months},
+          {"cvrmse",
+           {{"calibration", metric_histogram_json(output.draw_cvrmse_calibration)},
+            {"validation", metric_histogram_json(output.draw_cvrmse_validation)}}}};
+}
+
+json peak_json(const PeakSeries& series) {
+  json months = json::array();
+  for (const PeakMonth& month : series.months) {
+    months.push_back({{"month", month_key(month.month)},
+                      {"kW", number(month.peak_kW)},
+                      {"start", month.start},
+                      {"exceedable", month.could_be_exceeded}});
+  }
+  return {{"label", series.meter}, {"months", months}};
+}
+
+json day_type_json(const DayTypeProfile& day_type) {
+  json parts = json::array();
+  for (const ProfilePart& part : day_type.parts) {
+    parts.push_back({{"label", part.label}, {"kW", numbers(part.mean_kW)}});
+  }
+  return {{"label", day_type.label},
+          {"parts", parts},
+          {"measured", numbers(day_type.measured_mean_kW)}};
+}
+
+/// One letter an hour: o(k), p(artly filled), m(issing), s(uspect).
+char status_letter(HourStatus status) {
+  switch (status) {
+    case HourStatus::ok:
+      return 'o';
+    case HourStatus::partly_filled:
+      return 'p';
+    case HourStatus::missing:
+      return 'm';
+    case HourStatus::suspect:
+      return 's';
+  }
+  return 'm';
+}
+
+json load_json(const LoadGrid& load) {
+  json values = json::array();
+  for (const float value : load.mean_kW) values.push_back(number(value, 4));
+  std::string letters;
+  for (const HourStatus status : load.status) letters += status_letter(status);
+  return {{"label", load.meter},
+          {"firstDay", day_key(load.first_day)},
+          {"kW", std::move(values)},
+          {"status", letters}};
+}
+
+template <class Item>
+json array_of(const std::vector<Item>& items, json (*convert)(const Item&)) {
+  json array = json::array();
+  for (const Item& item : items) array.push_back(convert(item));
+  return array;
+}
+
+}  // namespace
+
+std::string figure_json(const ReportData& data) {
+  const json root = {{"parameters", array_of(data.parameters, parameter_json)},
+                     {"outputs", array_of(data.outputs, output_json)},
+                     {"peaks", array_of(data.peaks, peak_json)},
+                     {"dayTypes", array_of(data.profile.day_types, day_type_json)},
+                     {"loads", array_of(data.loads, load_json)}};
+  // Bytes that are not UTF-8 (a name from an old file) become U+FFFD instead of an exception.
+  const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";  // "<" occurs in JSON only inside strings.
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace recald::report

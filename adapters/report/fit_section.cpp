@@ -1,0 +1,252 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "adapters/report/format.hpp"
+#include "adapters/report/histogram.hpp"
+#include "adapters/report/sections.hpp"
+
+namespace recald::report {
+namespace {
+
+// ASHRAE Guideline 14, monthly data.
+constexpr double kNmbeLimit = 0.05;
+constexpr double kCvrmseLimit = 0.15;
+
+Cell judged_cell(const std::string& text, double magnitude, double limit) {
+  if (!std::isfinite(magnitude)) return {"–", "number"};
+  const bool within = magnitude <= limit;
+  return {fmt::format("{}\u00a0{}", text, within ? "✓" : "✕"),
+          within ? "number good" : "number bad"};
+}
+
+void add_metric_cells(std::vector<Cell>& cells, const std::optional<FitMetrics>& metrics) {
+  if (!metrics) {
+    cells.insert(cells.end(), 3, Cell{"–", "number"});
+    return;
+  }
+  cells.push_back(judged_cell(signed_percent_text(metrics->nmbe_sim_minus_meas),
+                              std::abs(metrics->nmbe_sim_minus_meas), kNmbeLimit));
+  cells.push_back({signed_percent_text(metrics->nmbe_g14), "number muted"});
+  cells.push_back(judged_cell(percent_text(metrics->cvrmse), metrics->cvrmse, kCvrmseLimit));
+}
+
+/// Tables 3 and 4 of the seed in one, with the prior mean as the second "before".
+void write_metrics(Html& html, const std::vector<OutputResult>& outputs) {
+  Table table(
+      "Bias and scatter of the monthly daily averages. ✓ within and ✕ outside the limits of "
+      "Guideline 14");
+  table.column_groups({{"", 1}, {"Calibration months", 3}, {"Validation months", 3}});
+  const std::string model_high = "NMBE, model\u00a0−\u00a0meter";
+  const std::string meter_high = "NMBE, meter\u00a0−\u00a0model";
+  table.columns(
+      {"Model run at", model_high, meter_high, "CV(RMSE)", model_high, meter_high, "CV(RMSE)"});
+  for (const OutputResult& output : outputs) {
+    if (output.metrics.empty()) continue;
+    table.group(output.label);
+    for (const MetricsRow& row : output.metrics) {
+      std::vector<Cell> cells{{row.stage}};
+      add_metric_cells(cells, row.calibration);
+      add_metric_cells(cells, row.validation);
+      table.row(std::move(cells));
+    }
+  }
+  html.element("h3", "Before and after");
+  html.element(
+      "p",
+      "NMBE is the mean bias and CV(RMSE) the scatter, both as a share of the mean measured "
+      "consumption. Model − meter is positive where the model is too high; Guideline 14 "
+      "itself writes meter − model, so both are given. The prior mean is the second "
+      "yardstick: a calibration that beats only the prior mode has learnt little.");
+  table.write(html);
+}
+
+void add_score_cells(std::vector<Cell>& cells, const std::optional<PredictiveScores>& scores) {
+  if (!scores) {
+    cells.insert(cells.end(), 3, Cell{"–", "number"});
+    return;
+  }
+  cells.push_back({percent_text(scores->share_inside_50, 0), "number"});
+  cells.push_back({percent_text(scores->share_inside_90, 0), "number"});
+  cells.push_back({number_text(scores->crps_kWh), "number"});
+}
+
+void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
+  const bool any = std::any_of(outputs.begin(), outputs.end(), [](const OutputResult& output) {
+    return output.scores_calibration || output.scores_validation;
+  });
+  if (!any) return;
+  Table table("Measured months inside the predictive intervals, and the mean CRPS in kWh/day");
+  table.column_groups({{"", 1}, {"Calibration months", 3}, {"Validation months", 3}});
+  table.columns(
+      {"Output", "Inside 50 %", "Inside 90 %", "CRPS", "Inside 50 %", "Inside 90 %", "CRPS"});
+  for (const OutputResult& output : outputs) {
+    std::vector<Cell> cells{{output.label}};
+    add_score_cells(cells, output.scores_calibration);
+    add_score_cells(cells, output.scores_validation);
+    table.row(std::move(cells));
+  }
+  html.element("h3", "Is the stated uncertainty honest?");
+  html.element(
+      "p",
+      "If it is, about half of the measured months fall inside the 50 % interval and nine "
+      "of ten inside the 90 % interval. CRPS rewards intervals that are both narrow and right.");
+  table.write(html);
+}
+
+std::string role_word(MonthRole role) {
+  switch (role) {
+    case MonthRole::calibration:
+      return "calibration";
+    case MonthRole::validation:
+      return "validation";
+    case MonthRole::unused:
+      return "not used";
+  }
+  return "";
+}
+
+Table month_table(const OutputResult& output) {
+  Table table(output.label + ": daily average consumption by month, kWh/day");
+  table.columns({"Month", "Role", "Measured", "Remark", "Estimated", "Model: low whisker", "25 %",
+                 "Median", "75 %", "High whisker", "Mean"});
+  for (const OutputMonth& month : output.months) {
+    std::vector<Cell> cells{{month_text(month.month)},
+                            {role_word(month.role)},
+                            {number_text(month.measured_kWh), "number"}};
+    std::string remark = month.measured_usable ? "" : "✕ not usable";
+    if (month.flagged_different) remark += remark.empty() ? "◆ different" : ", ◆ different";
+    cells.push_back({remark, "nowrap"});
+    cells.push_back({percent_text(month.filled_share), "number"});
+    const ModelBox none{NAN, NAN, NAN, NAN, NAN, NAN};
+    const ModelBox& box = month.box ? *month.box : none;
+    for (const double value : {box.low_whisker_kWh, box.q25_kWh, box.q50_kWh, box.q75_kWh,
+                               box.high_whisker_kWh, box.mean_kWh}) {
+      cells.push_back({number_text(value), "number"});
+    }
+    table.row(std::move(cells));
+  }
+  return table;
+}
+
+bool modelled(const OutputResult& output) {
+  return std::any_of(output.months.begin(), output.months.end(),
+                     [](const OutputMonth& month) { return month.box.has_value(); });
+}
+
+std::string months_caption(const OutputResult& output) {
+  const bool any_measured =
+      std::any_of(output.months.begin(), output.months.end(),
+                  [](const OutputMonth& month) { return month.measured_kWh.has_value(); });
+  std::string caption = any_measured ? "" : "Nothing was measured in these months. ";
+  caption += modelled(output)
+                 ? "Box: the middle half of the posterior draws run through the model; "
+                   "whiskers: up to 1.5 times the box's height beyond it. "
+                 : "There is no calibrated model yet: measurements only. ";
+  return caption +
+         "The number under a month is the share of its intervals that are estimated, not measured.";
+}
+
+void write_months_figure(Html& html, const OutputResult& output, int index) {
+  write_figure(html,
+               {.kind = "months",
+                .index = index,
+                .title = output.label + ", month by month",
+                .description =
+                    fmt::format("Monthly daily average consumption of {}, {} months: "
+                                "measured values{}.",
+                                output.label, output.months.size(),
+                                modelled(output) ? " against box plots of the model's draws" : ""),
+                .caption = months_caption(output)},
+               month_table(output));
+}
+
+double share_within_limit(const std::vector<double>& draws) {
+  const auto within = std::count_if(draws.begin(), draws.end(),
+                                    [](double cvrmse) { return cvrmse <= kCvrmseLimit; });
+  return static_cast<double>(within) / static_cast<double>(draws.size());
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// "Calibration months: median 10.8 %, 98 % of the draws within 15 %. "
+std::string scatter_sentence(std::string_view period, const std::vector<double>& draws) {
+  if (draws.empty()) return "";
+  return fmt::format("{}: median {}, {} of the draws within 15\u00a0%. ", period,
+                     percent_text(median(draws)), percent_text(share_within_limit(draws), 0));
+}
+
+void add_bins(Table& table, const std::string& period, const std::vector<double>& draws) {
+  const Histogram histogram = make_histogram(draws, kMetricBins);
+  if (histogram.counts.empty()) return;
+  table.group(period);
+  for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+    table.row({{percent_text(histogram.edge(i), 2)},
+               {percent_text(histogram.edge(i + 1), 2), "number"},
+               {std::to_string(histogram.counts[i]), "number"}});
+  }
+}
+
+void write_cvrmse_figure(Html& html, const OutputResult& output, int index) {
+  if (output.draw_cvrmse_calibration.empty() && output.draw_cvrmse_validation.empty()) return;
+  Table table(output.label + ": CV(RMSE) of the posterior draws");
+  table.columns({"CV(RMSE) from", "To", "Draws"});
+  add_bins(table, "Calibration months", output.draw_cvrmse_calibration);
+  add_bins(table, "Validation months", output.draw_cvrmse_validation);
+  const std::string words = scatter_sentence("Calibration months", output.draw_cvrmse_calibration) +
+                            scatter_sentence("Validation months", output.draw_cvrmse_validation);
+  write_figure(html,
+               {.kind = "cvrmse",
+                .index = index,
+                .title = output.label + ", scatter of the draws",
+                .description = "Histogram of CV(RMSE) over the posterior draws of " + output.label +
+                               ", with the 15 % limit.",
+                .caption = words + "Bars left of the dashed line are within the limit.",
+                .size = "small"},
+               table);
+}
+
+/// The signs of the measured months; follows the model's own sign where there is a model.
+constexpr std::string_view kMonthsKey =
+    "<span><i class=\"sign\">★</i>measured</span>"
+    "<span><i class=\"sign hollow\">☆</i>measured, not usable</span>"
+    "<span><i class=\"sign different\">◆</i>measured, flagged as different</span></p>\n";
+
+}  // namespace
+
+bool has_model(const ReportData& data) {
+  return std::any_of(data.outputs.begin(), data.outputs.end(), modelled);
+}
+
+void write_fit_section(Html& html, const ReportData& data) {
+  if (data.outputs.empty()) return;
+  open_section(html, "fit",
+               has_model(data) ? "Does the model follow the meters?" : "How much was used?");
+  const bool judged =
+      std::any_of(data.outputs.begin(), data.outputs.end(),
+                  [](const OutputResult& output) { return !output.metrics.empty(); });
+  if (judged) write_metrics(html, data.outputs);
+  html.element("h3", "Monthly consumption").markup("<p class=\"key\" aria-hidden=\"true\">");
+  if (has_model(data)) {
+    html.markup("<span><i class=\"sign box\"></i>model draws</span>");
+  }
+  html.markup(kMonthsKey);
+  for (std::size_t i = 0; i < data.outputs.size(); ++i) {
+    write_months_figure(html, data.outputs[i], static_cast<int>(i));
+  }
+  html.markup("<div class=\"multiples\">\n");
+  for (std::size_t i = 0; i < data.outputs.size(); ++i) {
+    write_cvrmse_figure(html, data.outputs[i], static_cast<int>(i));
+  }
+  html.markup("</div>\n");
+  write_scores(html, data.outputs);
+  html.markup("</section>\n");
+}
+
+}  // namespace recald::report

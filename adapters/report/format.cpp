@@ -1,0 +1,97 @@
+#include "adapters/report/format.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace recald::report {
+namespace {
+
+constexpr const char* kDash = "–";
+
+/// Decimals that leave four significant digits, none for 1000 and more.
+int decimals_for(double magnitude) {
+  if (magnitude == 0.0 || magnitude >= 1000.0) return 0;
+  const int exponent = static_cast<int>(std::floor(std::log10(magnitude)));
+  return std::min(3 - exponent, 9);
+}
+
+std::string with_thousands(std::string digits) {
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  for (std::size_t at = point; at > 3; at -= 3) {
+    digits.insert(at - 3, 1, ',');
+  }
+  return digits;
+}
+
+/// True minus sign: a hyphen is easily overlooked and breaks lines.
+std::string_view sign_text(double value) { return value < 0.0 ? "−" : ""; }
+
+}  // namespace
+
+std::string number_text(double value) {
+  if (!std::isfinite(value)) return kDash;
+  const double magnitude = std::abs(value);
+  std::string digits = fmt::format("{:.{}f}", magnitude, decimals_for(magnitude));
+  return fmt::format("{}{}", sign_text(value), with_thousands(std::move(digits)));
+}
+
+std::string number_text(std::optional<double> value) {
+  return value ? number_text(*value) : std::string(kDash);
+}
+
+std::string count_text(double count) {
+  if (!std::isfinite(count)) return kDash;
+  return fmt::format("{}{}", sign_text(count),
+                     with_thousands(fmt::format("{:.0f}", std::abs(count))));
+}
+
+std::string percent_text(double share, int decimals) {
+  if (!std::isfinite(share)) return kDash;
+  return fmt::format("{}{:.{}f}\u00a0%", sign_text(share), std::abs(share) * 100.0, decimals);
+}
+
+std::string signed_percent_text(double share) {
+  if (!std::isfinite(share)) return kDash;
+  return fmt::format("{}{}", share > 0.0 ? "+" : "", percent_text(share));
+}
+
+std::string month_name(unsigned month) {
+  static constexpr std::array<const char*, 12> kNames{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
+                                                      "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+  return month >= 1 && month <= 12 ? kNames[month - 1] : kDash;
+}
+
+std::string month_text(metering::Month month) {
+  return fmt::format("{} {}", month_name(unsigned{month.month()}), int{month.year()});
+}
+
+std::string month_key(metering::Month month) {
+  return fmt::format("{:04}-{:02}", int{month.year()}, unsigned{month.month()});
+}
+
+std::string day_key(metering::Day day) {
+  return fmt::format("{:04}-{:02}-{:02}", int{day.year()}, unsigned{day.month()},
+                     unsigned{day.day()});
+}
+
+std::string contraction_sentence(double contraction) {
+  if (!std::isfinite(contraction)) return "How much the data say about this is not known.";
+  if (contraction < -0.1) {
+    return fmt::format(
+        "The data left this wider than its prior: its variance grew by {}. Treat it with "
+        "suspicion.",
+        percent_text(-contraction, 0));
+  }
+  if (contraction < 0.1) return "The data say nothing about this: what you see is the prior.";
+  if (contraction < 0.3) {
+    return fmt::format("The data say little about this: they narrowed it by {} of its variance.",
+                       percent_text(contraction, 0));
+  }
+  return fmt::format("The data narrowed this by {} of its variance.", percent_text(contraction, 0));
+}
+
+}  // namespace recald::report

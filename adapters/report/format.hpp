@@ -1,0 +1,34 @@
+/// Numbers, shares and months as the report prints them: the same in every locale.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "core/metering/civil_time.hpp"
+
+namespace recald::report {
+
+/// Four significant digits, thousands separated: 12345.6 → "12,346"; 0.01234 → "0.01234".
+/// NaN and infinity → "–".
+[[nodiscard]] std::string number_text(double value);
+[[nodiscard]] std::string number_text(std::optional<double> value);
+
+/// A whole number, thousands separated: 4776 → "4,776". NaN → "–".
+[[nodiscard]] std::string count_text(double count);
+
+/// A share in percent: 0.1534 → "15.3 %", with a no-break space.
+[[nodiscard]] std::string percent_text(double share, int decimals = 1);
+
+/// A signed share in percent, with a true minus sign: −0.021 → "−2.1 %", 0.02 → "+2.0 %".
+[[nodiscard]] std::string signed_percent_text(double share);
+
+[[nodiscard]] std::string month_text(metering::Month month);  ///< "Mar 2021"
+[[nodiscard]] std::string month_key(metering::Month month);   ///< "2021-03"
+[[nodiscard]] std::string day_key(metering::Day day);         ///< "2021-03-09"
+[[nodiscard]] std::string month_name(unsigned month);         ///< 1 → "Jan"
+
+/// What the contraction of a parameter means, as a sentence.
+[[nodiscard]] std::string contraction_sentence(double contraction);
+
+}  // namespace recald::report

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "adapters/report/format.hpp"
+#include "adapters/report/histogram.hpp"
+#include "adapters/report/sections.hpp"
+
+namespace recald::report {
+namespace {
+
+std::string label_with_unit(const ParameterResult& parameter) {
+  return parameter.unit.empty() ? parameter.label
+                                : fmt::format("{} ({})", parameter.label, parameter.unit);
+}
+
+Table parameter_table(const ParameterResult& parameter) {
+  Table table(label_with_unit(parameter));
+  table.columns({"", "Prior", "Posterior"});
+  const TriangularPrior& prior = parameter.prior;
+  const auto row = [&table](const char* name, double before, double after) {
+    table.row({{name}, {number_text(before), "number"}, {number_text(after), "number"}});
+  };
+  row("Mean", prior.mean(), parameter.mean);
+  row("Standard deviation", std::sqrt(prior.variance()), parameter.sd);
+  row("5 %", prior.quantile(0.05), parameter.q05);
+  row("Median", prior.quantile(0.5), parameter.q50);
+  row("95 %", prior.quantile(0.95), parameter.q95);
+  row("Minimum", prior.min, NAN);
+  row("Mode", prior.mode, NAN);
+  row("Maximum", prior.max, NAN);
+  const Histogram histogram = make_histogram(parameter.draws, kPosteriorBins);
+  if (!histogram.counts.empty()) table.group("Probability of each bar");
+  for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+    const double low = histogram.edge(i);
+    const double high = histogram.edge(i + 1);
+    const double of_draws = histogram.density()[i] * histogram.width;
+    table.row({{fmt::format("{} to {}", number_text(low), number_text(high))},
+               {percent_text(prior.cumulative(high) - prior.cumulative(low)), "number"},
+               {percent_text(of_draws), "number"}});
+  }
+  return table;
+}
+
+void write_parameter_figure(Html& html, const ParameterResult& parameter, int index) {
+  const std::string learnt = contraction_sentence(parameter.contraction);
+  const std::string interval =
+      fmt::format("Mean {}, 90 % interval {} to {}{}{}. ", number_text(parameter.mean),
+                  number_text(parameter.q05), number_text(parameter.q95),
+                  parameter.unit.empty() ? "" : " ", parameter.unit);
+  write_figure(html,
+               {.kind = "parameter",
+                .index = index,
+                .title = label_with_unit(parameter),
+                .description = fmt::format("Prior and posterior of {}. {}{}", parameter.label,
+                                           interval, learnt),
+                .caption = interval + learnt,
+                .size = "small"},
+               parameter_table(parameter));
+}
+
+void write_summary(Html& html, const std::vector<ParameterResult>& parameters) {
+  Table table(
+      "Posterior of each parameter. Converged: R-hat at most 1.01, effective draws at least 400");
+  table.columns({"Parameter", "Name in files", "Mean", "Standard deviation", "5 %", "Median",
+                 "95 %", "Contraction", "R-hat", "Effective draws (bulk)",
+                 "Effective draws (tail)"});
+  for (const ParameterResult& parameter : parameters) {
+    // The thresholds of Vehtari et al. (2021), Bayesian Analysis 16(2).
+    const auto ess_cell = [](double ess) {
+      return Cell{count_text(ess) + (ess >= 400.0 ? " ✓" : " ✕"),
+                  ess >= 400.0 ? "number good" : "number bad"};
+    };
+    const bool mixed = parameter.rhat <= 1.01;
+    table.row({{label_with_unit(parameter)},
+               {parameter.name, "code"},
+               {number_text(parameter.mean), "number"},
+               {number_text(parameter.sd), "number"},
+               {number_text(parameter.q05), "number"},
+               {number_text(parameter.q50), "number"},
+               {number_text(parameter.q95), "number"},
+               {signed_percent_text(parameter.contraction), "number"},
+               {number_text(parameter.rhat) + (mixed ? " ✓" : " ✕"),
+                mixed ? "number good" : "number bad"},
+               ess_cell(parameter.ess_bulk),
+               ess_cell(parameter.ess_tail)});
+  }
+  table.write(html);
+}
+
+constexpr std::string_view kParameterKey =
+    "<p class=\"key\" aria-hidden=\"true\">"
+    "<span><i class=\"sign dashed\"></i>prior: before any data</span>"
+    "<span><i class=\"sign box\"></i>posterior: after the data</span>"
+    "<span><i class=\"sign line\"></i>posterior mean</span>"
+    "<span><i class=\"sign bracket\"></i>90 % interval</span></p>\n";
+
+}  // namespace
+
+void write_parameter_section(Html& html, const ReportData& data) {
+  if (data.parameters.empty()) return;
+  open_section(html, "parameters", "What did the data teach about the building?");
+  html.element("p",
+               "Each figure sets what was believed before (dashed) against what is believed after "
+               "the data (bars). A calibrated value is the one with which this model repeats the "
+               "meters best; it is not a measurement of the building.");
+  html.markup(kParameterKey).markup("<div class=\"multiples\">\n");
+  for (std::size_t i = 0; i < data.parameters.size(); ++i) {
+    write_parameter_figure(html, data.parameters[i], static_cast<int>(i));
+  }
+  html.markup("</div>\n");
+  html.element("h3", "The parameters in numbers");
+  write_summary(html, data.parameters);
+  html.markup("</section>\n");
+}
+
+}  // namespace recald::report

@@ -1,0 +1,34 @@
+// A category axis of months: names of months, the year under its first month, optionally a line of
+// small text between the two.
+import { monthName, monthNumber, yearOf } from "./format.js";
+import { axisLabel, ink, mutedInk, rule } from "./theme.js";
+
+export const monthSlotWidth = 28; // Pixels a month needs for "Mar" and "12 %".
+
+/** @param keys  "2021-03" …; @param below  one short text a month, or null for none. */
+export function monthAxis(keys, { below = null, initials = false } = {}) {
+  const isYearStart = (i) => i === 0 || yearOf(keys[i]) !== yearOf(keys[i - 1]);
+  return {
+    type: "category",
+    data: keys,
+    axisTick: { show: false },
+    axisLine: { lineStyle: { color: rule } },
+    axisLabel: {
+      ...axisLabel,
+      interval: 0,
+      formatter(key, i) {
+        const name = monthName(monthNumber(key));
+        const lines = [initials ? name[0] : name];
+        if (below) lines.push(`{below|${below[i] || " "}}`);
+        if (isYearStart(i)) lines.push(`{year|${yearOf(key)}}`);
+        return lines.join("\n");
+      },
+      fontSize: initials ? 10.5 : 12,
+      lineHeight: 16,
+      rich: {
+        below: { color: mutedInk, fontSize: 10.5, lineHeight: 15 },
+        year: { color: ink, fontSize: 12, fontWeight: 600, lineHeight: 17 },
+      },
+    },
+  };
+}

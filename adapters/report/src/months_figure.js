@@ -1,0 +1,132 @@
+// Monthly box plots of the model's draws against the measured months (figures 4 to 6 of the seed).
+import { mount } from "./echarts.js";
+import { monthText, numberText, percentText } from "./format.js";
+import { monthAxis, monthSlotWidth } from "./month_axis.js";
+import { bandSeries } from "./shapes.js";
+import {
+  different,
+  ink,
+  modelFill,
+  modelLine,
+  mutedInk,
+  star,
+  tooltip,
+  valueAxis,
+} from "./theme.js";
+
+const roleNames = { calibration: "Calibration", validation: "Validation", unused: "Not used" };
+
+/** Stretches of months that serve one purpose. */
+function runsOf(months) {
+  const runs = [];
+  months.forEach(({ role }, i) => {
+    const last = runs.at(-1);
+    if (last?.role === role) last.last = i;
+    else
+      runs.push({
+        role,
+        first: i,
+        last: i,
+        label: roleNames[role],
+        shaded: role !== "calibration",
+      });
+  });
+  const nothingJudged = months.every(({ role }) => role === "unused");
+  return nothingJudged ? [] : runs;
+}
+
+/** Zero where that leaves room to see anything; otherwise the axis says that it starts elsewhere. */
+function verticalAxis(months) {
+  const values = months
+    .flatMap(({ measured, box }) => [measured, ...(box ?? [])])
+    .filter(Number.isFinite);
+  const low = Math.min(...values);
+  const high = Math.max(...values);
+  const fromZero = values.length === 0 || low < 0.6 * high;
+  return valueAxis({
+    name: fromZero ? "kWh/day" : "kWh/day (axis does not start at 0)",
+    nameLocation: "end",
+    nameGap: 34,
+    nameTextStyle: { color: mutedInk, fontSize: 12, align: "left", padding: [0, 0, 0, -62] },
+    scale: !fromZero,
+    axisLabel: { color: mutedInk, fontSize: 12, formatter: numberText },
+  });
+}
+
+function measuredSeries(months, accepts, style) {
+  return {
+    type: "scatter",
+    z: 4,
+    data: months.map((month) => (accepts(month) ? month.measured : null)),
+    ...style,
+  };
+}
+
+function tooltipText(month) {
+  const lines = [
+    `${monthText(month.month)} · ${roleNames[month.role].toLowerCase()}`,
+    `Measured ${numberText(month.measured)} kWh/day${month.usable ? "" : " (not usable)"}`,
+    `Estimated intervals ${percentText(month.filled)}`,
+  ];
+  if (month.box) {
+    const [low, q25, q50, q75, high] = month.box.map(numberText);
+    lines.push(
+      `Model median ${q50}`,
+      `Half of the draws ${q25} to ${q75}`,
+      `Whiskers ${low} to ${high}`,
+    );
+  }
+  if (month.different) lines.push("Flagged as different");
+  return lines.join("\n");
+}
+
+// Nothing estimated: no number, so that the months with estimates stand out.
+function filledText(share) {
+  if (!share) return "";
+  return share < 0.005 ? "<1 %" : percentText(share, 0);
+}
+
+export function drawMonths(place, data) {
+  const { months } = data.outputs[place.dataset.index];
+  place.style.minWidth = `${months.length * monthSlotWidth + 80}px`;
+  const empty = [NaN, NaN, NaN, NaN, NaN];
+  mount(place, {
+    grid: { left: 64, right: 12, top: 58, bottom: 58 },
+    tooltip: {
+      ...tooltip,
+      trigger: "axis",
+      axisPointer: { type: "shadow", shadowStyle: { color: "rgba(85,96,110,.12)" } },
+      formatter: (items) => tooltipText(months[items[0].dataIndex]),
+    },
+    xAxis: monthAxis(
+      months.map(({ month }) => month),
+      { below: months.map(({ filled }) => filledText(filled)) },
+    ),
+    yAxis: verticalAxis(months),
+    series: [
+      bandSeries(runsOf(months)),
+      {
+        type: "boxplot",
+        z: 2,
+        boxWidth: [6, 18],
+        itemStyle: { color: modelFill, borderColor: modelLine, borderWidth: 1.3 },
+        data: months.map(({ box }) => box ?? empty),
+      },
+      measuredSeries(months, (m) => m.usable && !m.different, {
+        symbol: star,
+        symbolSize: 13,
+        itemStyle: { color: ink, borderColor: "#fff", borderWidth: 0.8, opacity: 1 },
+      }),
+      measuredSeries(months, (m) => !m.usable && !m.different, {
+        symbol: star,
+        symbolSize: 13,
+        itemStyle: { color: "#fff", borderColor: mutedInk, borderWidth: 1.4, opacity: 1 },
+      }),
+      measuredSeries(months, (m) => m.different, {
+        symbol: "diamond",
+        symbolSize: 15,
+        itemStyle: { color: different, borderColor: "#fff", borderWidth: 0.8, opacity: 1 },
+      }),
+    ],
+  });
+}

@@ -1,0 +1,245 @@
+#include "adapters/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "adapters/report/assets.hpp"
+#include "adapters/report/figure_data.hpp"
+#include "tests/adapters/report/sample_report.hpp"
+
+namespace recald::report {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::string_view kHostile = "</script><script>alert(\"&'\")</script><!--";
+
+/// The page without its embedded script, style and licence texts: what is made from the data.
+std::string own_markup(std::string page) {
+  for (const std::string_view asset : {assets().script, assets().style}) {
+    const std::size_t at = page.find(asset);
+    if (at != std::string::npos) page.erase(at, asset.size());
+  }
+  const std::size_t licences = page.find("<details id=\"licences\">");
+  if (licences != std::string::npos) {
+    page.erase(licences, page.find("</details>", licences) - licences);
+  }
+  return page;
+}
+
+std::size_t occurrences(std::string_view text, std::string_view what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string_view::npos;
+       at = text.find(what, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+/// The embedded data, found as a browser would: from the tag to the first closing script tag.
+json embedded_data(const std::string& page) {
+  constexpr std::string_view kOpen = "<script type=\"application/json\" id=\"report-data\">";
+  const std::size_t begin = page.find(kOpen) + kOpen.size();
+  return json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST(Report, AnswersTheReadersQuestionsInTheirOrder) {
+  const std::string page = render_report(sample_report());
+  std::size_t last = 0;
+  for (const std::string_view id : {"verdict", "data", "fit", "parameters", "peaks", "profile",
+                                    "load", "not-known", "provenance"}) {
+    const std::size_t at = page.find("<section id=\"" + std::string(id) + "\">");
+    ASSERT_NE(at, std::string::npos) << id;
+    EXPECT_GT(at, last) << id;
+    last = at;
+    EXPECT_THAT(page, HasSubstr("<a href=\"#" + std::string(id) + "\">"));
+  }
+  EXPECT_TRUE(page.starts_with("<!doctype html>\n<html lang=\"en\">"));
+}
+
+TEST(Report, SaysTheVerdictInWordsAndSigns) {
+  const std::string page = render_report(sample_report());
+  EXPECT_THAT(page, HasSubstr("2 of 3 outputs within the limits"));
+  EXPECT_EQ(occurrences(page, "✓ Within limits"), 2u);
+  EXPECT_EQ(occurrences(page, "✕ Outside limits"), 1u);
+  EXPECT_LT(page.find("✕ Failure"), page.find("▲ Warning"));  // The gravest first.
+}
+
+TEST(Report, HoldsEveryFiguresNumbersAsATableWithoutJavaScript) {
+  const ReportData data = sample_report();
+  const std::string page = own_markup(render_report(data));
+  // 3 months, 3 CV(RMSE), 3 parameters, 3 peaks, 3 day types, 3 loads.
+  EXPECT_EQ(occurrences(page, "data-figure="), 18u);
+  EXPECT_EQ(occurrences(page, "<summary>The data of this figure</summary>"), 18u);
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Mar 2020</th><td>calibration</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Dec 2021</th><td>validation</td>"));
+  EXPECT_THAT(page, HasSubstr("◆ different"));
+  EXPECT_THAT(page, HasSubstr("△ the true peak may be higher"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">07–08 h</th>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">2020-02-29</th>"));
+  EXPECT_THAT(page, HasSubstr("41.0 % of the month is measured, 60 % are needed"));
+  EXPECT_THAT(page, HasSubstr("The data narrowed this by"));
+  EXPECT_EQ(occurrences(page, "Probability of each bar"), 3u);
+}
+
+TEST(Report, NamesBothSignsOfTheBias) {
+  ReportData data;
+  data.outputs.resize(1);
+  data.outputs[0].label = "Steam";
+  data.outputs[0].metrics = {{"After", FitMetrics{0.062, -0.062, 0.149}, std::nullopt}};
+  const std::string page = render_report(data);
+  EXPECT_THAT(page, HasSubstr("<td class=\"number bad\">+6.2\u00a0%\u00a0✕</td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number muted\">−6.2\u00a0%</td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number good\">14.9\u00a0%\u00a0✓</td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number\">–</td>"));  // No validation.
+}
+
+TEST(Report, CountsTheDrawsWithinTheLimit) {
+  ReportData data;
+  data.outputs.resize(1);
+  data.outputs[0].draw_cvrmse_calibration = {0.10, 0.12, 0.15, 0.34};
+  const std::string page = render_report(data);
+  EXPECT_THAT(page,
+              HasSubstr("Calibration months: median 15.0\u00a0%, 75\u00a0% of the draws within "
+                        "15\u00a0%."));
+  // The first of 24 bins of one percentage point each, by hand.
+  EXPECT_THAT(page,
+              HasSubstr("<th scope=\"row\">10.00\u00a0%</th><td class=\"number\">11.00\u00a0%</td>"
+                        "<td class=\"number\">1</td>"));
+}
+
+TEST(Report, EscapesEveryTextFromOutside) {
+  ReportData data = sample_report();
+  const std::string hostile(kHostile);
+  data.title = data.generated_at = hostile;
+  data.site = {hostile, hostile, hostile};
+  data.provenance.recald_version = data.provenance.data_revision = hostile;
+  data.provenance.model_version = data.provenance.sampler = hostile;
+  data.headlines[0] = data.verdicts[0].output = data.verdicts[0].sentence = hostile;
+  data.notices[0].sentence = data.not_known[0] = data.profile.check_sentence = hostile;
+  data.findings[0] = {hostile, hostile, hostile, hostile, 1};
+  data.outputs[0].label = data.outputs[0].metrics[0].stage = hostile;
+  data.outputs[0].months[0].unusable_because = hostile;
+  data.parameters[0].label = data.parameters[0].name = data.parameters[0].unit = hostile;
+  data.peaks[0].meter = data.peaks[0].window = data.peaks[0].months[0].start = hostile;
+  data.profile.day_types[0].label = data.profile.day_types[0].parts[0].label = hostile;
+  data.loads[0].meter = hostile;
+
+  const std::string page = own_markup(render_report(data));
+
+  EXPECT_EQ(occurrences(page, "<script"), 2u);
+  EXPECT_EQ(occurrences(page, "</script>"), 2u);
+  EXPECT_EQ(occurrences(page, "<!--"), 0u);
+  EXPECT_EQ(embedded_data(page)["loads"][0]["label"], hostile);
+}
+
+TEST(Report, SurvivesBytesThatAreNotUtf8) {
+  ReportData data = sample_report();
+  data.parameters[0].label = "Caf\xE9";
+  EXPECT_EQ(embedded_data(render_report(data))["parameters"][0]["label"], "Caf\xEF\xBF\xBD");
+}
+
+TEST(Report, AsksNothingOfTheNetwork) {
+  const std::string page = render_report(sample_report());
+  EXPECT_THAT(page, HasSubstr("content=\"default-src 'none'; script-src 'sha256-"));
+  for (const std::string_view part :
+       {"<link", "<iframe", "<img", "<object", "<base", " src=", "@import", "url(http", "fetch(",
+        "XMLHttpRequest", "WebSocket"}) {
+    EXPECT_THAT(own_markup(page), Not(HasSubstr(std::string(part))));
+    EXPECT_THAT(std::string(assets().style), Not(HasSubstr(std::string(part))));
+  }
+  EXPECT_THAT(own_markup(page), Not(HasSubstr("://")));
+  // In the script only the names of the SVG and XML namespaces look like addresses.
+  for (const std::string_view scheme : {"http://", "https://", "//cdn", "ws://", "wss://"}) {
+    for (std::size_t at = assets().script.find(scheme); at != std::string_view::npos;
+         at = assets().script.find(scheme, at + 1)) {
+      EXPECT_TRUE(assets().script.substr(at).starts_with("http://www.w3.org/"))
+          << assets().script.substr(at, 80);
+    }
+  }
+}
+
+TEST(Report, EmbedsItsScriptUnbrokenAndWithinTheBudget) {
+  const std::string page = render_report(ReportData{});
+  EXPECT_THAT(page, HasSubstr("<script>" + std::string(assets().script) + "</script>"));
+  EXPECT_THAT(std::string(assets().script), Not(HasSubstr("</script")));
+  EXPECT_LE(assets().gzip_bytes, 500'000u);
+  EXPECT_LE(own_markup(page).size(), 20'000u);
+}
+
+TEST(Report, IsTheSameBytesForTheSameData) {
+  EXPECT_EQ(render_report(sample_report()), render_report(sample_report()));
+}
+
+TEST(Report, LeavesOutWhatIsNotThere) {
+  ReportData data;
+  data.title = "Readings only";
+  const std::string page = own_markup(render_report(data));
+  EXPECT_THAT(page, HasSubstr("<section id=\"provenance\">"));
+  EXPECT_EQ(occurrences(page, "<section "), 1u);
+  EXPECT_EQ(occurrences(page, "data-figure="), 0u);
+}
+
+TEST(Report, ShowsMeasurementsWhereThereIsNoModelYet) {
+  const std::string page = own_markup(render_report(readings_only_report()));
+  EXPECT_THAT(page, HasSubstr("There is no calibrated model yet: measurements only."));
+  EXPECT_THAT(page, HasSubstr("Nothing was measured in these months."));
+  EXPECT_THAT(page, HasSubstr("How much was used?"));
+  EXPECT_THAT(page, HasSubstr("5 of 10 meter months are usable."));
+  for (const std::string_view absent : {"Does the model follow", "Before and after", "model draws",
+                                        "data-figure=\"cvrmse\"", "Guideline 14"}) {
+    EXPECT_THAT(page, Not(HasSubstr(std::string(absent))));
+  }
+}
+
+TEST(FigureJson, WritesAbsentAndNonFiniteNumbersAsNull) {
+  ReportData data = sample_report();
+  data.outputs[0].months[0].measured_kWh = NAN;
+  data.outputs[0].months[1].measured_kWh.reset();
+  data.outputs[0].months[2].box.reset();
+  data.parameters[0].mean = INFINITY;
+  data.parameters[0].draws.assign(5, NAN);
+  data.loads[0].mean_kW[0] = NAN;
+  data.profile.day_types[0].measured_mean_kW[3] = NAN;
+
+  const std::string text = figure_json(data);
+  const json root = json::parse(text);
+
+  EXPECT_THAT(text, Not(HasSubstr("nan")));
+  EXPECT_TRUE(root["outputs"][0]["months"][0]["measured"].is_null());
+  EXPECT_TRUE(root["outputs"][0]["months"][1]["measured"].is_null());
+  EXPECT_TRUE(root["outputs"][0]["months"][2]["box"].is_null());
+  EXPECT_TRUE(root["parameters"][0]["mean"].is_null());
+  EXPECT_TRUE(root["parameters"][0]["density"].empty());
+  EXPECT_TRUE(root["loads"][0]["kW"][0].is_null());
+  EXPECT_TRUE(root["dayTypes"][0]["measured"][3].is_null());
+}
+
+TEST(FigureJson, RoundsToWhatAFigureCanShow) {
+  ReportData data;
+  data.loads = {
+      {"Steam", metering::Day{std::chrono::year{2020}, std::chrono::month{1}, std::chrono::day{1}},
+       std::vector<float>(24, 123.456F), std::vector<HourStatus>(24, HourStatus::suspect)}};
+  const json root = json::parse(figure_json(data));
+  EXPECT_EQ(root["loads"][0]["kW"][23].dump(), "123.5");
+  EXPECT_EQ(root["loads"][0]["status"], std::string(24, 's'));
+  EXPECT_EQ(root["loads"][0]["firstDay"], "2020-01-01");
+}
+
+TEST(FigureJson, BinsThePosteriorInThirty) {
+  const json parameter = json::parse(figure_json(sample_report()))["parameters"][2];
+  EXPECT_EQ(parameter["density"].size(), 30u);
+  double integral = 0.0;
+  for (const double density : parameter["density"])
+    integral += density * parameter["binWidth"].get<double>();
+  EXPECT_NEAR(integral, 1.0, 1e-4);
+  EXPECT_EQ(parameter["prior"], json({4.2, 14.0, 16.8}));
+}
+
+}  // namespace
+}  // namespace recald::report

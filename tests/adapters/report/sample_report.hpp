@@ -1,0 +1,15 @@
+/// A report made of invented numbers: three meters, three years, every kind of defect once.
+#pragma once
+
+#include "adapters/report/report_data.hpp"
+
+namespace recald::report {
+
+/// Invented from end to end and titled so; the same bytes every time.
+[[nodiscard]] ReportData sample_report();
+
+/// The awkward one: five months of readings from the end of a year, no model, one meter that
+/// recorded nothing at all.
+[[nodiscard]] ReportData readings_only_report();
+
+}  // namespace recald::report
