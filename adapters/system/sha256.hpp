@@ -1,0 +1,32 @@
+/// SHA-256 of what a result was made from, so that it can be told from another.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/result.hpp"
+
+namespace recald::system {
+
+/// A running digest; OpenSSL does the work.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+
+  void add(std::string_view bytes);
+  /// @return not_found or io_failed with the file's name.
+  [[nodiscard]] Result<void> add_file(const std::filesystem::path& file);
+  /// 64 lower-case hex digits. Ends the digest.
+  [[nodiscard]] std::string hex();
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+};
+
+}  // namespace recald::system
