@@ -1,0 +1,48 @@
+/// How a command talks: data on one stream, words for people on the other.
+#pragma once
+
+#include <mutex>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "core/calibration/calibration.hpp"
+#include "core/result.hpp"
+
+namespace recald::daemon {
+
+inline constexpr int kSuccess = 0;
+inline constexpr int kFailure = 1;  ///< Explained in one line.
+inline constexpr int kUsage = 2;
+
+struct Console {
+  std::ostream& out;  ///< Data.
+  std::ostream& err;  ///< Words.
+  bool is_terminal;   ///< Of `err`: progress is drawn only for people.
+
+  /// "recald: …" on err; returns kFailure.
+  int fail(const std::string& sentence) const;
+  int fail(const Error& error) const { return fail(error.message); }
+  int fail(const std::vector<std::string>& sentences) const;
+  /// The same for options that make no sense; returns kUsage.
+  int misused(const std::string& sentence) const;
+};
+
+/// One line on a terminal that is drawn over itself, at most once a per cent. Safe from any thread.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const Console& console) : console_(console) {}
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(const calibration::Progress& progress);
+
+ private:
+  const Console& console_;
+  std::mutex mutex_;
+  std::vector<int> done_;  ///< By chain.
+  int shown_percent_ = -1;
+};
+
+}  // namespace recald::daemon

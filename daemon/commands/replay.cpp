@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "adapters/system/time_zone_release.hpp"
+#include "adapters/system/write_file.hpp"
+#include "daemon/commands/commands.hpp"
+#include "daemon/commands/open_site.hpp"
+#include "daemon/results/calibration_files.hpp"
+
+namespace recald::daemon {
+namespace {
+
+Result<std::optional<metering::Day>> parse_option(const char* option, const std::string& text) {
+  if (text.empty()) return std::optional<metering::Day>{};
+  const auto day = metering::parse_day(text);
+  if (!day) return failure(ErrorCode::malformed, std::string{option} + ": " + day.error().message);
+  return std::optional{*day};
+}
+
+std::string figure_line(const metering::Meter& meter, const metering::MonthlyFigure& figure,
+                        metering::Instant now) {
+  std::string line = fmt::format("{}  {:<16} ", metering::to_string(figure.month), meter.id);
+  line += std::isfinite(figure.daily_average_kWh)
+              ? fmt::format("{:>10.1f} kWh/day", figure.daily_average_kWh)
+              : fmt::format("{:>10} kWh/day", "-");
+  line += figure.peak ? fmt::format("  peak {:>8.1f} kW", figure.peak->kW)
+                      : fmt::format("  peak {:>8} kW", "-");
+  line += fmt::format("  measured {:5.1f} %  closed {}", 100.0 * figure.coverage,
+                      metering::to_string(now));
+  if (!figure.usable) line += "  unusable: " + figure.unusable_because;
+  return line;
+}
+
+nlohmann::ordered_json summary_json(const SiteConfig& site, const Recording& recording) {
+  nlohmann::ordered_json meters = nlohmann::ordered_json::array();
+  for (const MeterRecord& record : recording.meters) {
+    nlohmann::ordered_json findings = nlohmann::ordered_json::array();
+    for (const metering::DataFinding& finding : record.findings)
+      findings.push_back(finding.sentence);
+    meters.push_back({{"meter", record.meter.id},
+                      {"interval_s", record.meter.interval.count()},
+                      {"interval_inferred", record.in_file && record.in_file->interval_inferred},
+                      {"readings", record.rows.readings},
+                      {"months", record.figures.size()},
+                      {"findings", findings}});
+  }
+  std::uint64_t bad_lines = 0;
+  for (const FileIssues& file : recording.files) bad_lines += file.issues.total;
+  return {{"site", site.id},
+          {"readings", recording.readings},
+          {"bad_lines", bad_lines},
+          {"meters", meters}};
+}
+
+}  // namespace
+
+int run_replay(const ReplayArguments& arguments, const Console& console) {
+  const auto from = parse_option("--from", arguments.from);
+  if (!from) return console.misused(from.error().message);
+  const auto to = parse_option("--to", arguments.to);
+  if (!to) return console.misused(to.error().message);
+  if (*from && *to && **to < **from) {
+    return console.misused(
+        fmt::format("--to {} is before --from {}", arguments.to, arguments.from));
+  }
+  const auto site = open_site(arguments.site);
+  if (!site) return console.fail(site.error());
+
+  VirtualClock clock{metering::Instant{}};
+  const auto recording =
+      replay_meters(site->config, site->calendar, {*from, *to}, clock,
+                    [&](const metering::Meter& meter, const metering::MonthlyFigure& figure,
+                        metering::Instant now) {
+                      if (!arguments.json) console.out << figure_line(meter, figure, now) << "\n";
+                    });
+  if (!recording) return console.fail(recording.error());
+  for (const MeterRecord& record : recording->meters) {
+    console.err << fmt::format(
+        "{}: {} readings every {} s ({})\n", record.meter.id, record.rows.readings,
+        record.meter.interval.count(),
+        record.in_file->interval_inferred ? "inferred from the file" : "as declared");
+  }
+  print_data_words(*recording, console);
+  if (!arguments.out.empty()) {
+    if (auto made = system::make_folder(arguments.out); !made) return console.fail(made.error());
+    const auto written = system::write_file(arguments.out / "months.csv",
+                                            months_csv(*recording, system::time_zone_release()));
+    if (!written) return console.fail(written.error());
+  }
+  if (arguments.json) console.out << summary_json(site->config, *recording).dump(2) << "\n";
+  return kSuccess;
+}
+
+}  // namespace recald::daemon

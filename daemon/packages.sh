@@ -1,0 +1,42 @@
+# Debian packages that recald is built with, and how to get them. Sourced by the scripts.
+#
+# install_packages NAME…  installs what is missing and says so; root or sudo. Node and npm may be
+# there already in another version than Debian's, which a plain install would fight with.
+
+BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnant-date-dev tzdata
+  libexpected-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev"
+TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium"
+
+is_installed() {
+  dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q '^install ok installed'
+}
+
+install_packages() {
+  missing=
+  for package in "$@"; do
+    is_installed "$package" || missing="$missing $package"
+  done
+  command -v node >/dev/null 2>&1 || missing="$missing nodejs"
+  command -v npm >/dev/null 2>&1 || missing="$missing npm"
+  [ -n "$missing" ] || return 0
+  as_root=
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null 2>&1 || {
+      echo "These Debian packages are missing:$missing" >&2
+      echo "Install them, or run this script as root or with sudo at hand." >&2
+      return 1
+    }
+    as_root=sudo
+  fi
+  echo "Installing Debian packages:$missing"
+  log=$(mktemp)
+  # shellcheck disable=SC2086  # a list of words
+  if ! { $as_root apt-get update -q &&
+    DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -q --no-install-recommends $missing; } \
+    >"$log" 2>&1; then
+    tail -n 20 "$log" >&2
+    echo "Installing the packages failed; the last lines of apt-get are above." >&2
+    return 1
+  fi
+  rm -f "$log"
+}

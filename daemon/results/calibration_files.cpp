@@ -1,0 +1,275 @@
+#include "daemon/results/calibration_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace recald::daemon {
+namespace {
+
+// Keys in the order they are written: files are read by people too.
+using Json = nlohmann::ordered_json;
+using assessment::MonthRole;
+
+const char* role_word(MonthRole role) {
+  switch (role) {
+    case MonthRole::calibration:
+      return "calibration";
+    case MonthRole::validation:
+      return "validation";
+    case MonthRole::unused:
+      return "unused";
+  }
+  return "unused";
+}
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json summary_json(const calibration::Summary& s) {
+  return {{"name", s.name},
+          {"unit", s.unit},
+          {"mean", number(s.mean)},
+          {"sd", number(s.sd)},
+          {"q05", number(s.q05)},
+          {"q50", number(s.q50)},
+          {"q95", number(s.q95)},
+          {"contraction", number(s.contraction)},
+          {"rhat", number(s.rhat)},
+          {"ess_bulk", number(s.ess_bulk)},
+          {"ess_tail", number(s.ess_tail)},
+          {"mcse", number(s.mcse)}};
+}
+
+Json parameters_json(const SiteCalibration& result) {
+  Json list = Json::array();
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    Json entry = summary_json(result.calibration.parameters[j]);
+    const TriangularPrior& prior = result.parameters[j].prior;
+    entry["prior"] = {{"distribution", "triangular"},
+                      {"min", prior.min},
+                      {"mode", prior.mode},
+                      {"max", prior.max}};
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json metrics_json(const std::optional<assessment::FitMetrics>& metrics) {
+  if (!metrics) return nullptr;
+  return {{"nmbe_sim_minus_meas", number(metrics->nmbe_sim_minus_meas)},
+          {"nmbe_g14", number(metrics->nmbe_g14)},
+          {"cvrmse", number(metrics->cvrmse)},
+          {"months", metrics->n}};
+}
+
+Json stage_json(const SiteCalibration& result,
+                assessment::PeriodMetrics assessment::OutputAssessment::*stage) {
+  Json calibration = Json::object();
+  Json validation = Json::object();
+  for (const OutputCalibration& output : result.outputs) {
+    const assessment::PeriodMetrics& metrics = output.assessment.*stage;
+    calibration[output.name] = metrics_json(metrics.calibration);
+    validation[output.name] = metrics_json(metrics.validation);
+  }
+  return {{"calibration", calibration}, {"validation", validation}};
+}
+
+Json guideline_json(const SiteCalibration& result) {
+  Json outputs = Json::object();
+  bool pass = true;
+  std::string why;
+  for (const OutputCalibration& output : result.outputs) {
+    const auto& metrics = output.assessment.after.calibration;
+    if (!metrics) continue;
+    const auto verdict = assessment::guideline14_verdict(*metrics);
+    outputs[output.name] = {{"pass", verdict.pass}, {"why", verdict.why}};
+    pass = pass && verdict.pass;
+    if (!verdict.pass) why += (why.empty() ? "" : " ") + output.name + ": " + verdict.why;
+  }
+  if (why.empty()) why = "every output is within the monthly limits over the calibration months";
+  return {{"pass", pass}, {"why", why}, {"outputs", outputs}};
+}
+
+Json range_json(const SiteCalibration& result, const std::vector<calibration::OutOfRange>& points) {
+  Json list = Json::array();
+  for (const calibration::OutOfRange& point : points) {
+    list.push_back(
+        {{"output", result.outputs[static_cast<std::size_t>(point.output)].name},
+         {"month", metering::to_string(result.months[static_cast<std::size_t>(point.month)])},
+         {"value", number(point.value)},
+         {"range", {number(point.low), number(point.high)}}});
+  }
+  return list;
+}
+
+Json scores_json(const std::optional<assessment::PredictiveScores>& scores) {
+  if (!scores) return nullptr;
+  return {{"months", scores->months},
+          {"inside_50", scores->inside_50},
+          {"inside_90", scores->inside_90},
+          {"crps_kWh", number(scores->crps)}};
+}
+
+Json outputs_json(const SiteCalibration& result, const Recording& recording) {
+  Json list = Json::array();
+  for (const OutputCalibration& output : result.outputs) {
+    Json months = Json::array();
+    for (std::size_t i = 0; i < result.months.size(); ++i) {
+      const assessment::BoxPlot& box = output.assessment.boxes[i];
+      months.push_back({{"month", metering::to_string(result.months[i])},
+                        {"role", role_word(result.roles[i])},
+                        {"measured_kWh", number(output.measured[i])},
+                        {"draws_q25", number(box.q25)},
+                        {"draws_q50", number(box.q50)},
+                        {"draws_q75", number(box.q75)}});
+    }
+    list.push_back({{"name", output.name},
+                    {"meter", recording.meters[output.meter].meter.id},
+                    {"weight", output.weight},
+                    {"calibrated", output.calibrated},
+                    {"predictive",
+                     {{"calibration", scores_json(output.assessment.scores_calibration)},
+                      {"validation", scores_json(output.assessment.scores_validation)}}},
+                    {"months", months}});
+  }
+  return list;
+}
+
+Json sensitivity_json(const SiteCalibration& result) {
+  if (!result.sensitivity) return nullptr;
+  Json list = Json::array();
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    const calibration::ParameterSensitivity& s = result.sensitivity->parameters[j];
+    list.push_back({{"name", result.parameters[j].name},
+                    {"mean_at_smaller_discrepancy", number(s.mean_at_smaller)},
+                    {"mean_at_larger_discrepancy", number(s.mean_at_larger)},
+                    {"largest_move_sd", number(s.largest_move_sd)},
+                    {"prior_driven", s.prior_driven}});
+  }
+  return {{"factor", result.sensitivity->factor}, {"parameters", list}};
+}
+
+Json schedule_json(const model::HourlySchedule& schedule) {
+  Json days = Json::object();
+  for (std::size_t i = 0; i < model::kDayTypes; ++i) {
+    Json hours = Json::array();
+    for (int hour = 0; hour < 24; ++hour) {
+      hours.push_back(number(schedule.at(static_cast<model::DayType>(i), hour)));
+    }
+    days[model::kDayTypeNames[i]] = hours;
+  }
+  return days;
+}
+
+Json profile_object(const profile::ElectricityProfile& profile) {
+  return {{"measured_kW", schedule_json(profile.measured_kW)},
+          {"standard_error_kW", schedule_json(profile.standard_error_kW)},
+          {"lights_kW", schedule_json(profile.loads.lights_kW)},
+          {"plugs_kW", schedule_json(profile.loads.plugs_kW)},
+          {"fans_and_pumps_kW", schedule_json(profile.known.fans_and_pumps_kW)},
+          {"exterior_kW", profile.known.exterior_kW},
+          {"standby_kW", profile.standby_kW},
+          {"month_factor", profile.loads.month_factor},
+          {"hours_used", profile.hours_used},
+          {"monthly_cvrmse", number(profile.check.monthly_cvrmse)},
+          {"check", profile.check.words}};
+}
+
+}  // namespace
+
+std::string calibration_json(const SiteCalibration& result, const Recording& recording,
+                             const RunFacts& facts) {
+  Json months = Json::array();
+  for (std::size_t i = 0; i < result.months.size(); ++i) {
+    months.push_back(
+        {{"month", metering::to_string(result.months[i])}, {"role", role_word(result.roles[i])}});
+  }
+  Json hyperparameters = Json::array();
+  for (const calibration::Summary& s : result.calibration.hyperparameters) {
+    hyperparameters.push_back(summary_json(s));
+  }
+  const auto& calibration = result.calibration;
+  Json json = {{"model", "epc"},
+               {"status", calibration.converged ? "converged" : "unconverged"},
+               {"months", months},
+               {"parameters", parameters_json(result)},
+               {"hyperparameters", hyperparameters},
+               {"before", stage_json(result, &assessment::OutputAssessment::before)},
+               {"prior_mean", stage_json(result, &assessment::OutputAssessment::prior_mean)},
+               {"after", stage_json(result, &assessment::OutputAssessment::after)},
+               {"guideline14", guideline_json(result)},
+               {"extrapolation", range_json(result, calibration.range.extrapolation)},
+               {"range_fail", range_json(result, calibration.range.by_month)},
+               {"prior_sensitivity", sensitivity_json(result)},
+               {"warnings", result.warnings},
+               {"outputs", outputs_json(result, recording)},
+               {"sampler", facts.sampler},
+               {"hyper_prior", calibration.hyper_prior.name},
+               {"iterations", facts.iterations},
+               {"burn_in", facts.burn_in},
+               {"chains", facts.chains},
+               {"design_runs", facts.design_runs},
+               {"seed", facts.seed},
+               {"data_revision", facts.data_revision},
+               {"model_version", facts.model_version},
+               {"recald_version", facts.recald_version},
+               {"tzdata", facts.time_zone_data},
+               {"wall_s", facts.wall_s}};
+  Json acceptance = Json::array();
+  for (const calibration::ChainDraws& chain : calibration.chains) {
+    acceptance.push_back(number(chain.acceptance_rate));
+  }
+  json["acceptance_rate"] = acceptance;
+  return json.dump(2) + "\n";
+}
+
+std::string draws_csv(const SiteCalibration& result, std::size_t chain, const RunFacts& facts) {
+  const calibration::ChainDraws& draws = result.calibration.chains[chain];
+  std::string text = fmt::format(
+      "# model = {}\n# method = sample\n# num_samples = {}\n# num_warmup = {}\n# save_warmup = 0\n"
+      "# thin = 1\n# sampler = {}\n# seed = {}\n# id = {}\nlp__,accept_stat__",
+      facts.model_version, draws.log_density.size(), facts.burn_in, facts.sampler, facts.seed,
+      chain + 1);
+  for (const Parameter& parameter : result.parameters) text += "," + parameter.name;
+  for (const calibration::Summary& s : result.calibration.hyperparameters) text += "," + s.name;
+  text += '\n';
+  auto out = std::back_inserter(text);
+  for (Eigen::Index i = 0; i < draws.log_density.size(); ++i) {
+    fmt::format_to(out, "{:.10g},{:.4g}", draws.log_density[i], draws.acceptance_rate);
+    for (const double value : draws.theta.row(i)) fmt::format_to(out, ",{:.10g}", value);
+    fmt::format_to(out, ",{:.10g},{:.10g}", draws.discrepancy_precision[i],
+                   draws.error_precision[i]);
+    for (const double value : draws.beta.row(i)) fmt::format_to(out, ",{:.10g}", value);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string months_csv(const Recording& recording, const std::string& tzdata) {
+  std::string text =
+      "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
+      "revision,tzdata\n";
+  for (const MeterRecord& record : recording.meters) {
+    for (const metering::MonthlyFigure& figure : record.figures) {
+      const std::string value = std::isfinite(figure.daily_average_kWh)
+                                    ? fmt::format("{:.6g}", figure.daily_average_kWh)
+                                    : "";
+      const std::string peak = figure.peak ? fmt::format("{:.6g}", figure.peak->kW) : "";
+      const std::string peak_at = figure.peak ? metering::to_string(figure.peak->start) : "";
+      text += fmt::format("{},{},{},kWh/day,{:.6f},{:.6f},{},{},block-{}s,{},{},{},{}\n",
+                          metering::to_string(figure.month), record.meter.id, value,
+                          figure.coverage, figure.filled_share, peak, peak_at,
+                          figure.peak_window.count(), figure.usable ? "yes" : "no",
+                          metering::is_different(record.level_changes, figure.month) ? "yes" : "no",
+                          figure.revision, tzdata);
+    }
+  }
+  return text;
+}
+
+std::string profile_json(const profile::ElectricityProfile& profile) {
+  return profile_object(profile).dump(2) + "\n";
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,31 @@
+#include "daemon/results/run_facts.hpp"
+
+#include <set>
+
+#include "adapters/system/sha256.hpp"
+#include "adapters/system/time_zone_release.hpp"
+#include "daemon/version.hpp"
+
+namespace recald::daemon {
+
+Result<RunFacts> facts_of(const SiteConfig& site) {
+  system::Sha256 site_digest;
+  system::Sha256 data_digest;
+  if (auto added = site_digest.add_file(site.file); !added) return tl::unexpected(added.error());
+  if (auto added = data_digest.add_file(site.file); !added) return tl::unexpected(added.error());
+  std::set<std::filesystem::path> files;
+  for (const MeterConfig& meter : site.meters) files.insert(meter.file);
+  if (site.weather) files.insert(site.weather->file);
+  for (const auto& file : files) {
+    if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
+  }
+  RunFacts facts;
+  facts.recald_version = kVersion;
+  facts.data_revision = data_digest.hex();
+  facts.model_version =
+      (site.model ? site.model->kind : "none") + "-" + site_digest.hex().substr(0, 12);
+  facts.time_zone_data = system::time_zone_release();
+  return facts;
+}
+
+}  // namespace recald::daemon

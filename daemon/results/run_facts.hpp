@@ -1,0 +1,30 @@
+/// What every result carries besides its numbers, so that it can be believed and repeated.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/result.hpp"
+#include "daemon/config/site_config.hpp"
+
+namespace recald::daemon {
+
+struct RunFacts {
+  std::string recald_version;
+  std::string data_revision;  ///< SHA-256 over the site file and all data files.
+  std::string model_version;  ///< Kind of model and SHA-256 of the site file, shortened.
+  std::string time_zone_data;
+  std::string sampler;
+  std::string hyper_prior_profile;
+  std::uint64_t seed = 1;
+  int iterations = 0;
+  int burn_in = 0;
+  int chains = 0;
+  int design_runs = 0;
+  double wall_s = 0.0;  ///< The only thing that differs between equal runs.
+};
+
+/// Hashes what the site's results depend on. @return not_found or io_failed for a data file.
+[[nodiscard]] Result<RunFacts> facts_of(const SiteConfig& site);
+
+}  // namespace recald::daemon

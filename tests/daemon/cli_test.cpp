@@ -1,0 +1,354 @@
+/// Commands, exit codes, sentences: hourly readings of a first quarter, alternating 40 and 60 kW of
+/// electricity and 20 and 30 kWh of heat, so that a day is 1200 and 600 kWh.
+#include "daemon/cli.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "command_line.hpp"
+#include "core/metering/civil_time.hpp"
+#include "daemon/version.hpp"
+#include "tests/support/sample_site.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using recald::testing::edited;
+using recald::testing::kSampleMeters;
+using recald::testing::read_text;
+using recald::testing::sample_site;
+using recald::testing::write_text;
+using std::chrono::hours;
+using std::chrono::sys_days;
+using std::chrono::year;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using testing::Outcome;
+using testing::run;
+using ::testing::StartsWith;
+
+// A local first quarter in Zurich: one hour ahead of UTC until 28 March, then two.
+const Instant kBegin = sys_days{year{2020} / 12 / 31} + hours{23};
+const Instant kEnd = sys_days{year{2021} / 3 / 31} + hours{22};
+
+std::string quarter_readings() {
+  std::string text = "timestamp,meter,value,unit\n";
+  bool high = false;
+  for (Instant t = kBegin; t < kEnd; t += hours{1}, high = !high) {
+    text += metering::to_string(t) + ",electricity," + (high ? "60" : "40") + ",kW\n";
+    text += metering::to_string(t) + ",heat," + (high ? "30" : "20") + ",kWh\n";
+  }
+  return text;
+}
+
+std::string weather_of(int first_year) {
+  std::string text = "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2\n";
+  for (Instant t = sys_days{year{first_year - 1} / 12 / 31}; t < sys_days{year{first_year} / 4 / 2};
+       t += hours{1}) {
+    text += metering::to_string(t) + ",4.5,70,2,180,90\n";
+  }
+  return text;
+}
+
+std::ptrdiff_t lines_in(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+class Cli : public ::testing::Test {
+ protected:
+  Cli() {
+    write("site.toml", std::string{kSampleMeters});
+    write("readings.csv", quarter_readings());
+  }
+
+  void write(const char* name, const std::string& text) { write_text(folder_ / name, text); }
+  [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string site() const { return path("site.toml"); }
+
+  recald::testing::TemporaryFolder folder_;
+};
+
+TEST_F(Cli, WrongUsageIsTwo) {
+  const std::vector<std::vector<std::string>> misuses = {
+      {},
+      {"frobnicate"},
+      {"--frobnicate"},
+      {"replay"},
+      {"replay", site(), "extra"},
+      {"replay", site(), "--form", "2021-01-01"},
+      {"replay", site(), "--from"},
+      {"calibrate", site(), "--model", "hourly"},
+      {"calibrate", site(), "--sampler", "guess"},
+      {"calibrate", site(), "--hyper-prior", "none"},
+      {"calibrate", site(), "--draws", "many"},
+      {"calibrate", site(), "--draws", "10"},
+      {"calibrate", site(), "--chains", "1"},
+      {"report", site()},
+  };
+  for (const auto& arguments : misuses) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, kUsage) << ::testing::PrintToString(arguments);
+    EXPECT_THAT(outcome.out, IsEmpty());
+    EXPECT_THAT(outcome.err, Not(IsEmpty()));
+  }
+}
+
+TEST_F(Cli, DaysThatAreNoneAreWrongUsage) {
+  const Outcome no_day = run({"replay", site(), "--from", "2021-02-30"});
+  EXPECT_EQ(no_day.exit_code, kUsage);
+  EXPECT_EQ(no_day.err,
+            "recald: --from: '2021-02-30' is not a date between 1971 and 2037; write YYYY-MM-DD\n");
+  EXPECT_EQ(run({"replay", site(), "--to", "February"}).exit_code, kUsage);
+  const Outcome backwards = run({"replay", site(), "--from", "2021-03-01", "--to", "2021-02-01"});
+  EXPECT_EQ(backwards.exit_code, kUsage);
+  EXPECT_EQ(backwards.err, "recald: --to 2021-02-01 is before --from 2021-03-01\n");
+}
+
+TEST_F(Cli, HelpAndVersionAreSuccess) {
+  const Outcome help = run({"--help"});
+  EXPECT_EQ(help.exit_code, kSuccess);
+  for (const char* command : {"check", "replay", "profile", "calibrate", "report"}) {
+    EXPECT_THAT(help.out, HasSubstr(command));
+  }
+  EXPECT_THAT(help.err, IsEmpty());
+  EXPECT_THAT(run({"calibrate", "--help"}).out, HasSubstr("--burn-in"));
+  const Outcome version = run({"--version"});
+  EXPECT_EQ(version.exit_code, kSuccess);
+  EXPECT_EQ(version.out, std::string{kVersion} + "\n");
+}
+
+TEST_F(Cli, CheckOfARightFileSaysWhatIsInIt) {
+  write("site.toml", sample_site());
+  write("weather.csv", weather_of(2021));
+  const Outcome outcome = run({"check", site()});
+  EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, StartsWith("Tram depot (depot), Europe/Zurich\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("('heat', start-stamped, interval as the file shows)"));
+  EXPECT_THAT(outcome.out, HasSubstr("triangular 0.8 / 2 / 2.6 m3/s"));
+  EXPECT_THAT(outcome.out, HasSubstr("triangular 0 / 0.05 / 0.1 person/m2"));
+  EXPECT_THAT(outcome.out, ::testing::EndsWith("\nok\n"));
+}
+
+TEST_F(Cli, CheckOfAWrongFileExplainsEachMistake) {
+  write("site.toml", edited(edited(std::string{kSampleMeters}, "altitude_m", "altitud_m"),
+                            "utility = \"heating\"", "utility = \"warmth\""));
+  const Outcome outcome = run({"check", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_EQ(lines_in(outcome.err), 2);
+  EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml:7: [site] unknown key 'altitud_m'; did you "
+                                     "mean 'altitude_m'?\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml:20: [meter] 'warmth' is no utility"));
+}
+
+TEST_F(Cli, CheckNamesDataFilesThatAreNotThere) {
+  write("site.toml", sample_site());
+  std::filesystem::remove(path("readings.csv"));
+  const Outcome outcome = run({"check", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml: the file of meter 'electricity', '" +
+                                     path("readings.csv") + "' does not exist\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml: the weather file '" + path("weather.csv") +
+                                     "' does not exist\n"));
+}
+
+TEST_F(Cli, CheckFindsAPriorThatTheBuildingDoesNotHave) {
+  // Without occupants there is nothing that the library's range could be relative to.
+  write("site.toml",
+        edited(sample_site(), "occupancy_person_m2 = 0.05", "occupancy_person_m2 = 0"));
+  write("weather.csv", weather_of(2021));
+  const Outcome outcome = run({"check", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_EQ(outcome.err,
+            "recald: site.toml: occupancy_density: its range is relative to the design value, "
+            "which is 0; give min, mode and max\n");
+}
+
+TEST_F(Cli, CheckAsJson) {
+  const auto good = nlohmann::json::parse(run({"check", site(), "--json"}).out);
+  EXPECT_EQ(good, (nlohmann::json{{"ok", true}, {"problems", nlohmann::json::array()}}));
+  const Outcome bad = run({"check", path("absent.toml"), "--json"});
+  EXPECT_EQ(bad.exit_code, kFailure);
+  const auto json = nlohmann::json::parse(bad.out);
+  EXPECT_EQ(json["ok"], false);
+  EXPECT_EQ(json["problems"][0], "site file '" + path("absent.toml") + "' does not exist");
+}
+
+TEST_F(Cli, ReplayPrintsEachMonthAsItCloses) {
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_EQ(lines_in(outcome.out), 6);
+  // January closes when the meter's own readings reach 72 h beyond it.
+  EXPECT_THAT(outcome.out,
+              HasSubstr("2021-01  electricity          1200.0 kWh/day  peak     60.0 kW  measured "
+                        "100.0 %  closed 2021-02-03T23:00:00Z\n"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("2021-02  district_heat         600.0 kWh/day  peak     30.0 kW"));
+  EXPECT_THAT(outcome.out, HasSubstr("2021-03  electricity"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("electricity: 2159 readings every 3600 s (inferred from the file)\n"));
+}
+
+TEST_F(Cli, ReplayReportsBadLinesAndGoesOn) {
+  const std::string good = run({"replay", site()}).out;
+  std::string text = quarter_readings();
+  text.insert(text.find("2020-12-31T23:00:00Z,heat"), "not a reading\n");
+  text += "2021-03-31T22:00:00Z,electricity,fifty,kW\n";
+  write("readings.csv", text);
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kSuccess);
+  EXPECT_EQ(outcome.out, good);
+  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 2 bad lines kept out\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("  readings.csv:3: 1 fields instead of 4\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("  readings.csv:4321: value 'fifty' is not a finite number"));
+}
+
+TEST_F(Cli, ReplayShowsTenBadLinesAndCountsTheRest) {
+  std::string text = quarter_readings();
+  for (int i = 0; i < 12; ++i) text += "bad\n";
+  write("readings.csv", text);
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 12 bad lines kept out\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("  … and 2 more\n"));
+}
+
+TEST_F(Cli, ReplayReportsAMeterThatNobodyDeclaredAndGoesOn) {
+  const std::string good = run({"replay", site()}).out;
+  write("readings.csv", quarter_readings() + "2021-03-31T22:00:00Z,water,1,m3\n");
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kSuccess);
+  EXPECT_EQ(outcome.out, good);
+  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 1 bad line kept out\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("  readings.csv:4320: meter 'water' is not configured\n"));
+}
+
+TEST_F(Cli, ReplayTakesWholeLocalDaysBothIncluded) {
+  const Outcome outcome = run({"replay", site(), "--from", "2021-02-01", "--to", "2021-02-28"});
+  EXPECT_EQ(outcome.exit_code, kSuccess);
+  EXPECT_EQ(lines_in(outcome.out), 2);
+  EXPECT_THAT(outcome.out, HasSubstr("2021-02  electricity          1200.0 kWh/day  peak     60.0 "
+                                     "kW  measured 100.0 %"));
+  EXPECT_THAT(outcome.out, HasSubstr("2021-02  district_heat"));
+}
+
+TEST_F(Cli, ReplayAsJsonIsOneObject) {
+  const Outcome outcome = run({"replay", site(), "--json"});
+  EXPECT_EQ(outcome.exit_code, kSuccess);
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["site"], "depot");
+  EXPECT_EQ(json["readings"], 2 * 2159);
+  EXPECT_EQ(json["bad_lines"], 0);
+  ASSERT_EQ(json["meters"].size(), 2u);
+  EXPECT_EQ(json["meters"][1]["meter"], "district_heat");
+  EXPECT_EQ(json["meters"][1]["interval_s"], 3600);
+  EXPECT_EQ(json["meters"][1]["interval_inferred"], true);
+  EXPECT_EQ(json["meters"][1]["months"], 3);
+}
+
+TEST_F(Cli, ReplayWritesMonths) {
+  const Outcome outcome = run({"replay", site(), "--out", path("made/below")});
+  EXPECT_EQ(outcome.exit_code, kSuccess);
+  const std::string months = read_text(folder_ / "made/below/months.csv");
+  EXPECT_THAT(months, StartsWith("month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,"
+                                 "method,usable,different,revision,tzdata\n"
+                                 "2021-01,electricity,1200,kWh/day,1.000000,0.000000,60,"
+                                 "2021-01-01T00:00:00Z,block-"));
+  EXPECT_EQ(lines_in(months), 1 + 6);
+  EXPECT_THAT(months, HasSubstr("2021-03,district_heat,"));
+}
+
+TEST_F(Cli, ReplayCannotWriteBelowAFile) {
+  const Outcome outcome = run({"replay", site(), "--out", path("readings.csv")});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, HasSubstr("recald: cannot "));
+}
+
+TEST_F(Cli, MissingReadingsFileIsOneSentence) {
+  std::filesystem::remove(path("readings.csv"));
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_EQ(outcome.err, "recald: readings file '" + path("readings.csv") + "' does not exist\n");
+  EXPECT_THAT(outcome.out, IsEmpty());
+}
+
+TEST_F(Cli, WrongHeaderIsOneSentence) {
+  write("readings.csv", "time,meter,value,unit\n2021-01-01T00:00:00Z,electricity,1,kW\n");
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_EQ(lines_in(outcome.err), 1);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("the header must be 'timestamp,meter,value,unit' (then validity, late or "
+                        "reasons, if any) but is 'time,meter,value,unit'"));
+}
+
+TEST_F(Cli, MeterThatTheFileDoesNotHaveIsOneSentence) {
+  write("site.toml", edited(std::string{kSampleMeters}, "\"heat\"", "\"heet\""));
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, HasSubstr("recald: " + path("readings.csv") +
+                                     " has no usable row of meter 'heet'; check the meter column, "
+                                     "or set name_in_file\n"));
+}
+
+TEST_F(Cli, SiteWithoutModelIsOneSentence) {
+  for (const char* command : {"calibrate", "profile"}) {
+    const Outcome outcome = run({command, site()});
+    EXPECT_EQ(outcome.exit_code, kFailure);
+    EXPECT_EQ(outcome.err,
+              "recald: site.toml describes meters but no [[model]]; add one with a [building] and "
+              "a [period] to calibrate, or use `recald replay`\n")
+        << command;
+  }
+}
+
+TEST_F(Cli, MissingWeatherIsOneSentence) {
+  write("site.toml", sample_site());
+  for (const char* command : {"calibrate", "profile"}) {
+    const Outcome outcome = run({command, site()});
+    EXPECT_EQ(outcome.exit_code, kFailure);
+    EXPECT_THAT(outcome.err, HasSubstr("weather.csv'")) << command;
+    EXPECT_THAT(outcome.out, IsEmpty());
+  }
+}
+
+// The meters are fine: the sentence must not send people to look for readings.
+TEST_F(Cli, WeatherOfAnotherYearIsOneSentenceThatNamesTheMonth) {
+  write("site.toml", sample_site());
+  write("weather.csv", weather_of(2019));
+  for (const char* command : {"calibrate", "profile"}) {
+    const Outcome outcome = run({command, site()});
+    EXPECT_EQ(outcome.exit_code, kFailure);
+    EXPECT_EQ(outcome.err.substr(outcome.err.find("recald: ")),
+              "recald: the weather covers no calibration month from 2021-01 to 2021-09 (of 2021-01 "
+              "it has 0 %); give weather of these months, or change [period]\n")
+        << command;
+  }
+}
+
+TEST_F(Cli, ProfileSplitsTheMeterIntoLightsAndPlugs) {
+  write("site.toml", edited(edited(sample_site(), "to = \"2021-09\"", "to = \"2021-02\""),
+                            "from = \"2021-10\"", "from = \"2021-03\""));
+  write("weather.csv", weather_of(2021));
+  const Outcome outcome = run({"profile", site(), "--json", "--out", path("made")});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_EQ(read_text(folder_ / "made/profile.json"), outcome.out);
+  const auto json = nlohmann::json::parse(outcome.out);
+  for (int hour = 0; hour < 24; ++hour) {
+    SCOPED_TRACE(hour);
+    const auto at = [&](const char* part) { return json[part]["workday"][hour].get<double>(); };
+    EXPECT_EQ(at("measured_kW"), hour % 2 == 0 ? 40.0 : 60.0);
+    EXPECT_NEAR(at("lights_kW") + at("plugs_kW") + at("fans_and_pumps_kW"), at("measured_kW"),
+                1e-9);
+  }
+  EXPECT_THAT(run({"profile", site()}).out, HasSubstr("One load profile tells the electricity"));
+}
+
+}  // namespace
+}  // namespace recald::daemon

@@ -1,0 +1,253 @@
+/// A simulated building's three years from readings to report: what must not change a result, and
+/// that everything promised is there.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "command_line.hpp"
+#include "core/metering/civil_time.hpp"
+#include "simulators/building_feed.hpp"
+#include "tests/support/sample_site.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using metering::Instant;
+using recald::testing::edited;
+using recald::testing::read_text;
+using recald::testing::write_text;
+using ::testing::HasSubstr;
+using testing::Outcome;
+using testing::run;
+using ::testing::StartsWith;
+
+/// `text` with every match replaced.
+std::string replaced(const std::string& text, const char* pattern, const char* by) {
+  return std::regex_replace(text, std::regex{pattern}, by);
+}
+
+Instant parse_instant(const std::string& text) {
+  int y, mo, d, h, mi;
+  if (std::sscanf(text.c_str(), "%d-%d-%dT%d:%d:00Z", &y, &mo, &d, &h, &mi) != 5) {
+    throw std::runtime_error("no time stamp: " + text);
+  }
+  const auto day = std::chrono::year{y} / mo / d;
+  return std::chrono::sys_days{day} + std::chrono::hours{h} + std::chrono::minutes{mi};
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in{text};
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+/// Three years of seed 7, faults and all.
+class EndToEnd : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto written = simulators::write_building_feed(
+        {.out = folder_.path(), .period = {.start_year = 2021, .years = 3}, .seed = 7});
+    ASSERT_TRUE(written.has_value()) << written.error().message;
+  }
+
+  [[nodiscard]] std::string path(std::string_view name) const { return (folder_ / name).string(); }
+
+  /// The months.csv that replaying a site file leaves.
+  std::string months_of(const std::string& site) {
+    const Outcome outcome = run({"replay", path(site), "--out", path("replayed")});
+    EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+    return read_text(folder_ / "replayed/months.csv");
+  }
+
+  Outcome calibrate(const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "calibrate", path("site.toml"), "--draws", "2000",  "--burn-in",
+        "500",       "--chains",        "2",       "--out", path(out)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+
+  recald::testing::TemporaryFolder folder_;
+};
+
+TEST_F(EndToEnd, MonthsAreThoseOfTheBuilding) {
+  const Outcome outcome = run({"replay", path("site.toml"), "--out", path("replayed")});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_EQ(lines_of(outcome.out).size(), 3u * 36);
+  const auto rows = lines_of(read_text(folder_ / "replayed/months.csv"));
+  ASSERT_EQ(rows.size(), 1u + 3 * 36);
+
+  // Against the clean figures behind the faults. A gap of days in spring costs chilled water, which
+  // follows the weather, more than electricity, which follows the calendar.
+  const Json truth = Json::parse(read_text(folder_ / "truth.json"));
+  for (const auto& [meter, tolerance] :
+       {std::pair{"electricity", 0.015}, std::pair{"chilled_water", 0.05}}) {
+    for (const Json& clean : truth["meters"][meter]["monthly"]) {
+      const std::string key = clean["month"].get<std::string>() + "," + meter + ",";
+      const auto row = std::ranges::find_if(
+          rows, [&](const std::string& candidate) { return candidate.starts_with(key); });
+      ASSERT_NE(row, rows.end()) << key;
+      const double expected_kWh = clean["daily_average_kWh"];
+      EXPECT_NEAR(std::stod(row->substr(key.size())), expected_kWh, tolerance * expected_kWh)
+          << key;
+    }
+  }
+}
+
+TEST_F(EndToEnd, EndStampsAndOrderOfRowsDoNotMatter) {
+  const std::string months = months_of("site.toml");
+  auto rows = lines_of(read_text(folder_ / "readings.csv"));
+  const std::string header = rows.front();
+  rows.erase(rows.begin());
+
+  std::vector<std::string> end_stamped = {header};
+  for (const std::string& row : rows) {
+    const Instant end = parse_instant(row) + std::chrono::minutes{15};
+    end_stamped.push_back(metering::to_string(end) + row.substr(row.find(',')));
+  }
+  write_text(folder_ / "end.csv", joined(end_stamped));
+  const std::string site = read_text(folder_ / "site.toml");
+  write_text(folder_ / "end.toml", replaced(site, "file = \"readings.csv\"\nstamps = \"start\"",
+                                            "file = \"end.csv\"\nstamps = \"end\""));
+  EXPECT_EQ(months_of("end.toml"), months);
+
+  const auto meter_of = [](const std::string& row) {
+    const std::size_t begin = row.find(',') + 1;
+    return row.substr(begin, row.find(',', begin) - begin);
+  };
+  std::ranges::stable_sort(rows, std::greater{}, meter_of);
+  rows.insert(rows.begin(), header);
+  write_text(folder_ / "grouped.csv", joined(rows));
+  write_text(folder_ / "grouped.toml", replaced(site, "readings\\.csv", "grouped.csv"));
+  EXPECT_EQ(months_of("grouped.toml"), months);
+}
+
+std::string without_wall_time(const std::string& text) {
+  return replaced(text, "\"wall_s\": [0-9.e-]+", "\"wall_s\": _");
+}
+
+void expect_contract(const Json& json) {
+  for (const char* key : {"model", "months", "parameters", "hyperparameters", "before",
+                          "prior_mean", "after", "guideline14", "extrapolation", "warnings",
+                          "sampler", "seed", "data_revision", "model_version", "wall_s"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  ASSERT_EQ(json["parameters"].size(), 3u);
+  for (const Json& parameter : json["parameters"]) {
+    for (const char* key : {"name", "unit", "prior", "mean", "sd", "q05", "q50", "q95",
+                            "contraction", "rhat", "ess_bulk", "ess_tail"}) {
+      EXPECT_TRUE(parameter.contains(key)) << key;
+    }
+    EXPECT_LE(parameter["prior"]["min"], parameter["q05"]);
+    EXPECT_LE(parameter["q05"], parameter["q50"]);
+    EXPECT_LE(parameter["q50"], parameter["q95"]);
+    EXPECT_LE(parameter["q95"], parameter["prior"]["max"]);
+  }
+  for (const char* stage : {"before", "prior_mean", "after"}) {
+    for (const char* period : {"calibration", "validation"}) {
+      const Json& metrics = json[stage][period]["chilled_water_daily_kWh"];
+      EXPECT_EQ(metrics["nmbe_g14"].get<double>(), -metrics["nmbe_sim_minus_meas"].get<double>());
+      EXPECT_GT(metrics["cvrmse"], 0.0);
+    }
+  }
+  EXPECT_TRUE(json["guideline14"]["pass"].is_boolean());
+  EXPECT_TRUE(json["guideline14"]["why"].is_string());
+  EXPECT_EQ(json["months"].size(), 36u);
+  EXPECT_EQ(json["seed"], 3);
+}
+
+TEST_F(EndToEnd, CalibrationLeavesEverythingAndRepeatsItself) {
+  ::setenv("SOURCE_DATE_EPOCH", "1790000000", 1);
+  const Outcome one = calibrate("one", {"--seed", "3", "--threads", "1", "--json"});
+  ASSERT_EQ(one.exit_code, kSuccess) << one.err;
+  const Outcome two = calibrate("two", {"--seed", "3", "--threads", "2"});
+  ASSERT_EQ(two.exit_code, kSuccess) << two.err;
+  const Outcome other = calibrate("other", {"--seed", "4"});
+  ASSERT_EQ(other.exit_code, kSuccess) << other.err;
+  const Outcome page = run({"report", path("site.toml"), "--seed", "3", "--draws", "2000",
+                            "--burn-in", "500", "--chains", "2", "--out", path("page.html")});
+  ASSERT_EQ(page.exit_code, kSuccess) << page.err;
+  ::unsetenv("SOURCE_DATE_EPOCH");
+
+  // Same seed, same bytes, whatever the number of threads.
+  // (Compared as a whole: a difference would print megabytes.)
+  for (const char* name :
+       {"draws_1.csv", "draws_2.csv", "months.csv", "profile.json", "report.html"}) {
+    EXPECT_TRUE(read_text(folder_ / "one" / name) == read_text(folder_ / "two" / name)) << name;
+  }
+  EXPECT_EQ(without_wall_time(read_text(folder_ / "one/calibration.json")),
+            without_wall_time(read_text(folder_ / "two/calibration.json")));
+  EXPECT_TRUE(read_text(folder_ / "page.html") == read_text(folder_ / "one/report.html"));
+  EXPECT_NE(read_text(folder_ / "one/draws_1.csv"), read_text(folder_ / "other/draws_1.csv"));
+  EXPECT_NE(read_text(folder_ / "one/draws_1.csv"), read_text(folder_ / "one/draws_2.csv"));
+
+  // --json says what the file says.
+  EXPECT_EQ(one.out, read_text(folder_ / "one/calibration.json"));
+  expect_contract(Json::parse(one.out));
+  EXPECT_THAT(two.out, HasSubstr("Guideline 14, chilled_water: "));
+
+  const auto draws = lines_of(read_text(folder_ / "one/draws_2.csv"));
+  const auto header =
+      std::ranges::find_if(draws, [](const std::string& line) { return !line.starts_with('#'); });
+  ASSERT_NE(header, draws.end());
+  EXPECT_THAT(*header, StartsWith("lp__,accept_stat__,occupancy_density,outdoor_airflow,"
+                                  "cooling_setpoint,lambda_delta,lambda_eps,beta_"));
+  EXPECT_EQ(draws.end() - header - 1, 1500);  // iterations less burn-in
+  for (auto line = header + 1; line != draws.end(); ++line) {
+    ASSERT_EQ(std::ranges::count(*line, ','), std::ranges::count(*header, ','));
+  }
+  EXPECT_THAT(draws, ::testing::Contains("# num_samples = 1500"));
+  EXPECT_THAT(draws, ::testing::Contains("# seed = 3"));
+
+  EXPECT_EQ(lines_of(read_text(folder_ / "one/months.csv")).size(), 1u + 3 * 36);
+  const std::string report = read_text(folder_ / "one/report.html");
+  EXPECT_THAT(report, HasSubstr("Campus laboratory building"));
+  EXPECT_THAT(report, HasSubstr("2026-09-21"));  // SOURCE_DATE_EPOCH
+}
+
+// The sampler sees two years of chilled water, so the posterior must know more than the prior about
+// the air that is cooled most of all.
+TEST_F(EndToEnd, CalibrationLearnsTheOutdoorAir) {
+  const Outcome outcome = calibrate("out", {"--json"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  const Json& airflow = json["parameters"][1];
+  ASSERT_EQ(airflow["name"], "outdoor_airflow");
+  EXPECT_GT(airflow["contraction"], 0.5);
+}
+
+TEST_F(EndToEnd, MonthWithoutWeatherIsLeftOutAndNamed) {
+  std::vector<std::string> kept;
+  for (const std::string& row : lines_of(read_text(folder_ / "weather.csv"))) {
+    if (!row.starts_with("2022-06-")) kept.push_back(row);
+  }
+  write_text(folder_ / "weather.csv", joined(kept));
+  const Outcome outcome = run({"calibrate", path("site.toml"), "--draws", "200", "--burn-in", "100",
+                               "--chains", "2", "--json"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_THAT(json["warnings"].get<std::vector<std::string>>(),
+              ::testing::Contains(
+                  ::testing::MatchesRegex("2022-06 is left out: only [0-9]+ % of its weather is "
+                                          "known\\.")));
+  EXPECT_EQ(json["months"].size(), 35u);
+}
+
+}  // namespace
+}  // namespace recald::daemon
