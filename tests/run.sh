@@ -1,0 +1,56 @@
+#!/bin/sh
+# All tests, from nothing: installs what is missing, builds, runs. Ends with ctest's own summary.
+#
+#   sh tests/run.sh              everything that fits 35 minutes on two cores
+#   sh tests/run.sh --long NAME  one of the longer studies; without NAME: which there are
+#   RECALD_DATA=DIR              measured data of others; tests that need it skip where it is absent
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+
+. "$root/daemon/packages.sh"
+
+begin=$(date +%s)
+stage() {
+  now=$(date +%s)
+  [ -z "${name:-}" ] || echo "--- $name: $((now - since)) s"
+  name=$1
+  since=$now
+  [ -z "$name" ] || echo "--- $name"
+}
+
+stage "packages"
+# shellcheck disable=SC2086  # lists of words
+install_packages $BUILD_PACKAGES $TEST_PACKAGES
+
+if [ "${1:-}" = "--long" ]; then
+  study=$root/tests/long/${2:-}.sh
+  if [ -z "${2:-}" ] || [ ! -f "$study" ]; then
+    echo "Long studies:" >&2
+    for file in "$root"/tests/long/*.sh; do echo "  $(basename "$file" .sh)" >&2; done
+    exit 2
+  fi
+  stage "build (release)"
+  cmake --preset release >/dev/null
+  cmake --build --preset release --target recald recald-sim
+  stage "$2"
+  sh "$study" "$root/.build/release"
+  stage ""
+  exit 0
+fi
+
+stage "build (dev: optimised, assertions on, warnings are errors)"
+cmake --preset dev >/dev/null
+cmake --build --preset dev
+stage "tests"
+# Two at a time: several tests use threads of their own.
+status=0
+ctest --preset dev -j 2 || status=$?
+stage ""
+echo "--- all: $(($(date +%s) - begin)) s"
+if [ "$status" -eq 0 ]; then
+  echo "All tests passed."
+else
+  echo "Some tests failed; see above, and .build/dev/Testing/Temporary/LastTest.log." >&2
+fi
+exit "$status"
