@@ -39,11 +39,11 @@ struct ReadingsOptions {
 
 /// What the file shows about a meter; told before its first reading.
 struct MeterInFile {
-  std::uint32_t meter;
+  std::uint32_t meter = 0;
   std::string name;
-  std::chrono::seconds interval;
-  std::chrono::seconds phase;  ///< Of interval starts past multiples of the interval.
-  bool interval_inferred;
+  std::chrono::seconds interval{0};  ///< 0 when the file has no usable row of this meter.
+  std::chrono::seconds phase{0};     ///< Of interval starts past multiples of the interval.
+  bool interval_inferred = false;
   std::string unit;  ///< Of its first row.
 };
 

@@ -95,10 +95,11 @@ std::string why_unusable(const MonthSlots& month, const MonthlyFigure& figure,
 }
 
 void count_slots(const MonthSlots& month, MonthlyFigure& figure) {
-  for (std::size_t i = 0; i < month.validity.size(); ++i) {
-    ++figure.slots_by_validity[static_cast<std::size_t>(month.validity[i])];
-    figure.reasons |= month.reasons[i];
+  for (std::size_t v = 0; v < figure.slots_by_validity.size(); ++v) {
+    figure.slots_by_validity[v] = static_cast<int>(
+        std::count(month.validity.begin(), month.validity.end(), static_cast<Validity>(v)));
   }
+  for (const Reason reasons : month.reasons) figure.reasons |= reasons;
 }
 
 double energy_kWh(const MonthSlots& month) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -105,6 +106,15 @@ void describe_unusable(std::string_view meter, const std::vector<MonthlyFigure>&
        DataFinding::Grade::warning});
 }
 
+/// The change's words begin with the meter's name, which a finding has beside its sentence.
+std::string without_name(std::string words, std::string_view meter) {
+  if (words.starts_with(meter) && words.size() > meter.size() + 1) {
+    words.erase(0, meter.size() + 1);
+    words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  }
+  return words.ends_with('.') ? words : words + ".";
+}
+
 void describe_changes(std::string_view meter, const std::vector<MonthlyFigure>& figures,
                       const std::vector<LevelChange>& changes, const LocalCalendar& calendar,
                       std::vector<DataFinding>& findings) {
@@ -119,8 +129,11 @@ void describe_changes(std::string_view meter, const std::vector<MonthlyFigure>& 
         slots += figure.slots;
       }
     }
-    findings.push_back(
-        {std::string{meter}, change.words, {begin, end}, slots, DataFinding::Grade::warning});
+    findings.push_back({std::string{meter},
+                        without_name(change.words, meter),
+                        {begin, end},
+                        slots,
+                        DataFinding::Grade::warning});
   }
 }
 

@@ -280,19 +280,16 @@ Result<void> assess(EpcModel& model, const calibration::RunContext& context,
 }
 
 void warn_about_level_changes(const Recording& recording, SiteCalibration& result) {
-  for (const OutputCalibration& output : result.outputs) {
-    const MeterRecord& record = recording.meters[output.meter];
-    std::string months;
-    for (std::size_t i = 0; i < result.months.size(); ++i) {
-      if (!metering::is_different(record.level_changes, result.months[i])) continue;
-      months += (months.empty() ? "" : ", ") + metering::to_string(result.months[i]);
-    }
-    if (months.empty()) continue;
-    result.warnings.push_back(
-        fmt::format("{}: the meter reads differently than before in {}; these months are not the "
-                    "building that the others show.",
-                    record.meter.id, months));
+  std::string months;
+  for (const Month month : result.months) {
+    if (!is_site_different(recording, month)) continue;
+    months += (months.empty() ? "" : ", ") + metering::to_string(month);
   }
+  if (months.empty()) return;
+  result.warnings.push_back(fmt::format(
+      "In {} a meter reads differently than in the same months before: these months may "
+      "not show the building that the others show.",
+      months));
 }
 
 void add_words(const Recording& recording, const SiteWeather& weather, SiteCalibration& result) {

@@ -23,8 +23,8 @@ struct OutputCalibration {
   std::size_t meter;  ///< Index into the recording.
   std::string name;   ///< "steam_daily_kWh"
   double weight = 1.0;
-  bool calibrated = true;        ///< False: parameters hardly move it: shown, not fitted.
-  std::vector<double> measured;  ///< (months) kWh/day; NaN where there is no usable figure.
+  bool calibrated = true;               ///< False: parameters hardly move it: shown, not fitted.
+  std::vector<double> measured;         ///< (months) kWh/day; NaN where there is no usable figure.
   std::vector<double> extra_variances;  ///< (months) (kWh/day)², from estimated slots.
   assessment::OutputAssessment assessment;
 };

@@ -117,6 +117,12 @@ TimeSpan asked_span(const ReplayOptions& options, const metering::LocalCalendar&
 
 }  // namespace
 
+bool is_site_different(const Recording& recording, metering::Month month) {
+  return std::ranges::any_of(recording.meters, [&](const MeterRecord& record) {
+    return metering::is_different(record.level_changes, month);
+  });
+}
+
 Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                 const ReplayOptions& options, VirtualClock& clock,
                                 const OnMonthClosed& on_month_closed) {

@@ -42,6 +42,10 @@ struct Recording {
   std::uint64_t readings = 0;
 };
 
+/// Whether any meter of the site says that this month is not like the same months before. A model
+/// couples the meters: when one of them shows another building, all of them are its meters.
+[[nodiscard]] bool is_site_different(const Recording& recording, metering::Month month);
+
 struct ReplayOptions {
   std::optional<metering::Day> from;  ///< Local days, inclusive; readings outside are left out.
   std::optional<metering::Day> to;

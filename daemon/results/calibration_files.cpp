@@ -261,7 +261,7 @@ std::string months_csv(const Recording& recording, const std::string& tzdata) {
                           metering::to_string(figure.month), record.meter.id, value,
                           figure.coverage, figure.filled_share, peak, peak_at,
                           figure.peak_window.count(), figure.usable ? "yes" : "no",
-                          metering::is_different(record.level_changes, figure.month) ? "yes" : "no",
+                          is_site_different(recording, figure.month) ? "yes" : "no",
                           figure.revision, tzdata);
     }
   }

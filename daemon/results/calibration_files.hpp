@@ -19,7 +19,8 @@ namespace recald::daemon {
                                     const RunFacts& facts);
 
 /// `month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,revision,
-/// tzdata`, one row a meter and month.
+/// tzdata`, one row a meter and month; `different` when any meter says that the month is not like
+/// the same months before.
 [[nodiscard]] std::string months_csv(const Recording& recording, const std::string& tzdata);
 
 /// The profile as JSON: schedules in kW by kind of day and hour.

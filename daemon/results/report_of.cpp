@@ -95,13 +95,14 @@ report::MonthRole role_of(MonthRole role) {
   return report::MonthRole::unused;
 }
 
-report::OutputMonth month_of(const SiteCalibration& result, const OutputCalibration& output,
-                             const MeterRecord& record, std::size_t i) {
+report::OutputMonth month_of(const Recording& recording, const SiteCalibration& result,
+                             const OutputCalibration& output, std::size_t i) {
+  const MeterRecord& record = recording.meters[output.meter];
   report::OutputMonth shown{.month = result.months[i], .role = role_of(result.roles[i])};
   const assessment::BoxPlot& box = output.assessment.boxes[i];
   shown.box =
       report::ModelBox{box.low_whisker, box.q25, box.q50, box.q75, box.high_whisker, box.mean};
-  shown.flagged_different = metering::is_different(record.level_changes, shown.month);
+  shown.flagged_different = is_site_different(recording, shown.month);
   const auto figure =
       std::ranges::find(record.figures, shown.month, &metering::MonthlyFigure::month);
   if (figure == record.figures.end()) return shown;
@@ -114,8 +115,8 @@ report::OutputMonth month_of(const SiteCalibration& result, const OutputCalibrat
 }
 
 /// Months that belong to no period still show what was measured.
-void append_other_months(const SiteCalibration& result, const MeterRecord& record,
-                         std::vector<report::OutputMonth>& months) {
+void append_other_months(const Recording& recording, const SiteCalibration& result,
+                         const MeterRecord& record, std::vector<report::OutputMonth>& months) {
   for (const metering::MonthlyFigure& figure : record.figures) {
     if (std::ranges::find(result.months, figure.month) != result.months.end()) continue;
     report::OutputMonth shown{.month = figure.month, .role = report::MonthRole::unused};
@@ -124,7 +125,7 @@ void append_other_months(const SiteCalibration& result, const MeterRecord& recor
     shown.coverage = figure.coverage;
     shown.filled_share = figure.filled_share;
     shown.unusable_because = figure.unusable_because;
-    shown.flagged_different = metering::is_different(record.level_changes, figure.month);
+    shown.flagged_different = is_site_different(recording, figure.month);
     months.push_back(std::move(shown));
   }
   std::ranges::sort(months, {}, &report::OutputMonth::month);
@@ -151,9 +152,9 @@ report::OutputResult output_of(const Recording& recording, const SiteCalibration
   const MeterRecord& record = recording.meters[output.meter];
   report::OutputResult shown{.label = label_of(record.meter.id)};
   for (std::size_t i = 0; i < result.months.size(); ++i) {
-    shown.months.push_back(month_of(result, output, record, i));
+    shown.months.push_back(month_of(recording, result, output, i));
   }
-  append_other_months(result, record, shown.months);
+  append_other_months(recording, result, record, shown.months);
   const assessment::OutputAssessment& a = output.assessment;
   shown.metrics = {row_of("Before (prior mode)", a.before), row_of("Prior mean", a.prior_mean),
                    row_of("After", a.after)};

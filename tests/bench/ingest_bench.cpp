@@ -4,6 +4,7 @@
 ///
 /// Prints both times, their ratio (target: at most 3), readings a second on one core (target: at
 /// least a million), and how far the largest resident memory grows from the short to the long file.
+#include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <time.h>
 
@@ -15,6 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adapters/csv/readings_csv.hpp"
@@ -58,13 +60,14 @@ std::uint64_t write_file(const std::filesystem::path& path, std::uint64_t readin
   return written;
 }
 
-/// The bare minimum: every byte read, every line and field found.
+/// The bare minimum: every byte read, every line cut into fields, nothing understood.
 std::uint64_t split_file(const std::filesystem::path& path) {
   std::vector<char> buffer(256 * 1024);
+  std::array<std::string_view, 16> fields;
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) std::exit(1);
   std::setvbuf(file, nullptr, _IONBF, 0);
-  std::uint64_t fields = 0;
+  std::uint64_t total = 0;
   std::size_t kept = 0;
   for (;;) {
     const std::size_t got = std::fread(buffer.data() + kept, 1, buffer.size() - kept, file);
@@ -73,20 +76,23 @@ std::uint64_t split_file(const std::filesystem::path& path) {
     const char* const end = buffer.data() + kept + got;
     while (const auto* newline = static_cast<const char*>(
                std::memchr(line, '\n', static_cast<std::size_t>(end - line)))) {
+      std::size_t count = 0;
       const char* field = line;
       while (const auto* comma = static_cast<const char*>(
                  std::memchr(field, ',', static_cast<std::size_t>(newline - field)))) {
-        ++fields;
+        fields[count++ % fields.size()] = {field, static_cast<std::size_t>(comma - field)};
         field = comma + 1;
       }
-      ++fields;
+      fields[count++ % fields.size()] = {field, static_cast<std::size_t>(newline - field)};
+      benchmark::DoNotOptimize(fields);
+      total += count;
       line = newline + 1;
     }
     kept = static_cast<std::size_t>(end - line);
     std::memmove(buffer.data(), line, kept);
   }
   std::fclose(file);
-  return fields;
+  return total;
 }
 
 struct Ingested {

@@ -74,6 +74,7 @@ TEST_F(RealSite, CambridgeB25IsAnotherBuildingFromNovember2016On) {
   for (metering::Month m = month(2015, 1); m <= month(2018, 12); m = metering::next_month(m)) {
     EXPECT_EQ(metering::is_different(electricity.level_changes, m), m >= month(2016, 11))
         << metering::to_string(m);
+    EXPECT_EQ(is_site_different(recording, m), m >= month(2016, 11)) << metering::to_string(m);
   }
   EXPECT_TRUE(says(electricity, "exactly zero"));  // 23 hours in June 2018
 }

@@ -307,6 +307,15 @@ TEST(ReadingsCsvBadInput, OffGridStampsAreKeptOut) {
             "5: meter 'main': 2016-03-01T00:47:00Z is no start of an interval of 15 minutes");
 }
 
+// A logger whose clock is seven minutes off has no grid of its own: nothing is moved silently.
+TEST(ReadingsCsvBadInput, AClockOffTheQuarterHourIsOffGridThroughout) {
+  const Outcome outcome = read(kHead +
+                               "2016-03-01T00:07:00Z,main,1,kW\n2016-03-01T00:22:00Z,main,2,kW\n"
+                               "2016-03-01T00:37:00Z,main,3,kW\n");
+  EXPECT_TRUE(outcome.readings.empty());
+  EXPECT_EQ(outcome.report->meters.at(0).off_grid, 3u);
+}
+
 TEST(ReadingsCsvBadInput, StampsWithoutOffsetOrBeyond2037) {
   EXPECT_NE(issue(kHead + kThreeRows + "2016-03-01T00:45:00,main,1,kW\n").find("no offset"),
             std::string::npos);

@@ -155,18 +155,19 @@ TEST(CloseMonth, BlocksFollowTheLocalHour) {
   EXPECT_EQ(closed.figure.peak->start, utc(2015, 9, 4, 22, 30));
 }
 
-// Lord Howe goes back half an hour at 02:00: no hourly block may count 01:30 twice.
+// Helsinki jumps from 03:00 to 04:00: the two hours from 02:00 on are one hour and then another.
 TEST(CloseMonth, NoBlockSpansAClockChange) {
   MonthSlots slots =
-      month_reading("Australia/Lord_Howe", month(2016, 4), kQuarter, [](int) { return 1.0; });
+      month_reading("Europe/Helsinki", month(2016, 3), kQuarter, [](int) { return 1.0; });
   for (int slot = 0; slot < slots.slots(); ++slot) {
-    const bool repeated = slots.grid->day(slot) == 2 && slots.grid->time_of_day(slot) / 2 == 3;
-    if (repeated)
-      slots.measured_kW[static_cast<std::size_t>(slot)] = 9.0;  // 01:30 and 01:45, twice
+    const int hour = slots.grid->time_of_day(slot) / 4;
+    if (slots.grid->day(slot) == 26 && (hour == 2 || hour == 4)) {
+      slots.measured_kW[static_cast<std::size_t>(slot)] = 9.0;
+    }
   }
-  const auto peak = find_peak(slots, {PeakMethod::block, kHour});
+  const auto peak = find_peak(slots, {PeakMethod::block, 2 * kHour});
   ASSERT_TRUE(peak.has_value());
-  EXPECT_EQ(peak->kW, 5.0);  // 01:00 to 02:00 of the first showing
+  EXPECT_EQ(peak->kW, 5.0);  // 04:00 to 06:00
 }
 
 TEST(CloseMonth, AWindowThatDoesNotFitIsTheInterval) {

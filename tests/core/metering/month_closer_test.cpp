@@ -196,14 +196,14 @@ TEST(MonthCloser, OneWrongYearDoesNotCloseTheRecord) {
   EXPECT_EQ(pipeline.closer.counts(0).stray, 1);
 }
 
-// The stray is dropped by the ordinary reading after it; a second stray much later has no partner.
-TEST(MonthCloser, TwoStraysFarApartDoNotConfirmEachOther) {
+// The stray is dropped by the ordinary reading after it; a second stray finds no partner.
+TEST(MonthCloser, TwoStraysWithAReadingBetweenDoNotConfirmEachOther) {
   Pipeline pipeline;
   pipeline.feed(utc(2016, 3, 1, 6), utc(2016, 3, 20));
   pipeline.closer.add({0, utc(2026, 3, 20), 30.0});
-  pipeline.feed(utc(2016, 3, 20), utc(2016, 3, 25));
+  pipeline.feed(utc(2016, 3, 20), utc(2016, 3, 20, 1));
   pipeline.closer.add({0, utc(2026, 3, 25), 30.0});
-  pipeline.feed(utc(2016, 3, 25), utc(2016, 4, 1, 5));
+  pipeline.feed(utc(2016, 3, 20, 1), utc(2016, 4, 1, 5));
   pipeline.closer.finish();
   EXPECT_EQ(pipeline.months(), Names{"2016-03"});
   EXPECT_EQ(pipeline.closer.counts(0).stray, 2);
