@@ -17,7 +17,7 @@ std::vector<int> months_in_use(const std::vector<PointIndex>& points) {
   return months;
 }
 
-bool ordered(const std::vector<PointIndex>& points) {
+[[maybe_unused]] bool ordered(const std::vector<PointIndex>& points) {
   return std::adjacent_find(
              points.begin(), points.end(), [](const PointIndex& a, const PointIndex& b) {
                return a.output > b.output || (a.output == b.output && a.month >= b.month);
