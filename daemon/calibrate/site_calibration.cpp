@@ -110,7 +110,22 @@ Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
                    "the model takes lights and plugs from an electricity meter, and the site has "
                    "none; add a [[meter]] with utility = \"electricity\"");
   }
+  if (site.building->chiller_cop) {
+    return failure(
+        ErrorCode::unsupported,
+        "[building.cooling] chiller_cop: the electricity profile cannot yet tell an own "
+        "chiller from lights and plugs, and would count it twice; leave it out and do not "
+        "model the cooling");
+  }
   return model::epc::fit_profile_with_fans(loads_of(*meter, months), *site.building, place, months);
+}
+
+/// Whether the meter counts in another unit since: its figures are not the building's.
+bool is_rescaled(const MeterRecord& record, Month month) {
+  return std::ranges::any_of(record.level_changes, [&](const metering::LevelChange& change) {
+    return change.kind == metering::LevelChangeKind::scale && month >= change.since &&
+           (!change.back_since || month < *change.back_since);
+  });
 }
 
 std::vector<OutputCalibration> collect_outputs(const SiteConfig& site, const Recording& recording,
@@ -123,7 +138,8 @@ std::vector<OutputCalibration> collect_outputs(const SiteConfig& site, const Rec
     if (weight != site.model->weights.end()) output.weight = weight->second;
     for (const Month month : months) {
       const metering::MonthlyFigure* figure = find_figure(recording.meters[meter], month);
-      const bool usable = figure != nullptr && figure->usable;
+      const bool usable =
+          figure != nullptr && figure->usable && !is_rescaled(recording.meters[meter], month);
       output.measured.push_back(usable ? figure->daily_average_kWh : kAbsent);
       output.extra_variances.push_back(usable ? figure->daily_average_variance_kWh2 : 0.0);
     }

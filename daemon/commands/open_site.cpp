@@ -23,7 +23,8 @@ void print_data_words(const Recording& recording, const Console& console) {
   for (const FileIssues& file : recording.files) {
     if (file.issues.total == 0) continue;
     const std::string name = file.file.filename().string();
-    console.err << fmt::format("{}: {} bad line{} kept out\n", name, file.issues.total,
+    // Bad lines are kept out; rows out of order or repeated are used, once: each says which it is.
+    console.err << fmt::format("{}: {} line{} to look at\n", name, file.issues.total,
                                file.issues.total == 1 ? "" : "s");
     for (std::size_t i = 0; i < std::min(kLinesShown, file.issues.listed.size()); ++i) {
       const csv::LineIssue& issue = file.issues.listed[i];

@@ -237,7 +237,8 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
   int judged = 0;
   for (const OutputCalibration& output : result.outputs) {
     const auto& after = output.assessment.after.calibration;
-    if (!after) continue;
+    // Electricity that its own profile reproduces is no evidence for the model.
+    if (!after || !output.calibrated) continue;
     const auto verdict = assessment::guideline14_verdict(*after);
     data.verdicts.push_back(
         {label_of(recording.meters[output.meter].meter.id), verdict.pass, verdict.why});
@@ -248,7 +249,7 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
   data.headlines.push_back(
       judged == 0
           ? "No output had enough measured months to judge the model."
-          : fmt::format("{} of {} meters are met within the monthly limits of ASHRAE "
+          : fmt::format("{} of {} fitted meters are met within the monthly limits of ASHRAE "
                         "Guideline 14 after calibration{}.",
                         passing, judged, converged ? "" : ", but the sampler has not converged"));
   for (const OutputCalibration& output : result.outputs) {

@@ -52,7 +52,7 @@ std::string result_table(const SiteCalibration& result, const Recording& recordi
   text += "\n" + parameter_lines(result) + "\n";
   for (const OutputCalibration& output : result.outputs) {
     const auto& after = output.assessment.after.calibration;
-    if (!after) continue;
+    if (!after || !output.calibrated) continue;
     const auto verdict = assessment::guideline14_verdict(*after);
     text += fmt::format("Guideline 14, {}: {}. {}\n", recording.meters[output.meter].meter.id,
                         verdict.pass ? "pass" : "fail", verdict.why);

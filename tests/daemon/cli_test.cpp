@@ -205,7 +205,7 @@ TEST_F(Cli, ReplayReportsBadLinesAndGoesOn) {
   const Outcome outcome = run({"replay", site()});
   EXPECT_EQ(outcome.exit_code, kSuccess);
   EXPECT_EQ(outcome.out, good);
-  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 2 bad lines kept out\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 2 lines to look at\n"));
   EXPECT_THAT(outcome.err, HasSubstr("  readings.csv:3: 1 fields instead of 4\n"));
   EXPECT_THAT(outcome.err, HasSubstr("  readings.csv:4321: value 'fifty' is not a finite number"));
 }
@@ -215,7 +215,7 @@ TEST_F(Cli, ReplayShowsTenBadLinesAndCountsTheRest) {
   for (int i = 0; i < 12; ++i) text += "bad\n";
   write("readings.csv", text);
   const Outcome outcome = run({"replay", site()});
-  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 12 bad lines kept out\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 12 lines to look at\n"));
   EXPECT_THAT(outcome.err, HasSubstr("  … and 2 more\n"));
 }
 
@@ -225,7 +225,7 @@ TEST_F(Cli, ReplayReportsAMeterThatNobodyDeclaredAndGoesOn) {
   const Outcome outcome = run({"replay", site()});
   EXPECT_EQ(outcome.exit_code, kSuccess);
   EXPECT_EQ(outcome.out, good);
-  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 1 bad line kept out\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("readings.csv: 1 line to look at\n"));
   EXPECT_THAT(outcome.err, HasSubstr("  readings.csv:4320: meter 'water' is not configured\n"));
 }
 

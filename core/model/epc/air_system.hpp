@@ -7,8 +7,8 @@ namespace recald::model::epc {
 
 /// What a zone asks of its boxes in one class of hours.
 struct ZoneDemand {
-  double cooling_load_W;  ///< Sensible heat to remove at the cooling set-point, >= 0.
-  double shortage_W;      ///< Heat the zone lacks at the cooling set-point, >= 0; one of both is 0.
+  double cooling_load_W;   ///< Sensible heat to remove at the cooling set-point, >= 0.
+  double shortage_W;       ///< Heat the zone lacks at the cooling set-point, >= 0.
   double conductance_W_K;  ///< Zone to outdoors and ground, without the air handlers.
   double cooling_set_point_C;
   double heating_set_point_C;
