@@ -77,6 +77,10 @@ tl::expected<Finished, int> finish_calibration(const CalibrateArguments& argumen
   if (auto modelled = require_model(site->config); !modelled) return fail(modelled.error());
   const auto options = options_of(arguments);
   if (!options) return fail(options.error());
+  if (const auto checked = calibration::check_options(options->calibration.sampling); !checked) {
+    console.fail(checked.error());
+    return tl::unexpected(kUsage);
+  }
   auto facts = facts_of(site->config);
   if (!facts) return fail(facts.error());
 

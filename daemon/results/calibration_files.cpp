@@ -189,7 +189,9 @@ std::string calibration_json(const SiteCalibration& result, const Recording& rec
   }
   Json hyperparameters = Json::array();
   for (const calibration::Summary& s : result.calibration.hyperparameters) {
-    hyperparameters.push_back(summary_json(s));
+    Json entry = summary_json(s);
+    entry["prior"] = {{"mean", number(s.prior_mean)}, {"sd", number(s.prior_sd)}};
+    hyperparameters.push_back(std::move(entry));
   }
   const auto& calibration = result.calibration;
   Json json = {{"model", "epc"},
