@@ -38,7 +38,7 @@ struct SiteCalibration {
   calibration::Calibration calibration;
   std::vector<OutputCalibration> outputs;
   std::optional<calibration::PriorSensitivity> sensitivity;
-  std::vector<std::string> warnings;  ///< In words, worst first.
+  std::vector<std::string> warnings;  ///< In words, in order of discovery.
 };
 
 struct CalibrateOptions {
