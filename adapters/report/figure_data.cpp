@@ -46,12 +46,35 @@ const char* role_text(MonthRole role) {
   return "unused";
 }
 
+/// Corners of the prior's density, [value, density] each, over all but 0.1 % of an endless tail.
+json curve(const Prior& prior) {
+  json corners = json::array();
+  const auto corner = [&](double value, double density) {
+    corners.push_back(numbers(std::array{value, density}));
+  };
+  if (const auto* triangle = std::get_if<TriangularPrior>(&prior.distribution())) {
+    corner(triangle->min, 0.0);
+    corner(triangle->mode, 2.0 / (triangle->max - triangle->min));
+    corner(triangle->max, 0.0);
+    return corners;
+  }
+  constexpr int steps = 60;
+  const double low = std::max(prior.min(), prior.quantile(0.001));
+  const double high = std::min(prior.max(), prior.quantile(0.999));
+  corner(low, 0.0);
+  for (int i = 0; i <= steps; ++i) {
+    const double value = low + (high - low) * i / steps;
+    corner(value, prior.density(value));
+  }
+  corner(high, 0.0);
+  return corners;
+}
+
 json parameter_json(const ParameterResult& parameter) {
   const Histogram histogram = make_histogram(parameter.draws, kPosteriorBins);
   return {{"label", parameter.label},
           {"unit", parameter.unit},
-          {"prior",
-           numbers(std::array{parameter.prior.min, parameter.prior.mode, parameter.prior.max})},
+          {"prior", curve(parameter.prior)},
           {"binStart", number(histogram.start)},
           {"binWidth", number(histogram.width)},
           {"density", numbers(histogram.density())},

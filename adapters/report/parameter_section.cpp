@@ -17,7 +17,7 @@ std::string label_with_unit(const ParameterResult& parameter) {
 Table parameter_table(const ParameterResult& parameter) {
   Table table(label_with_unit(parameter));
   table.columns({"", "Prior", "Posterior"});
-  const TriangularPrior& prior = parameter.prior;
+  const Prior& prior = parameter.prior;
   const auto row = [&table](const char* name, double before, double after) {
     table.row({{name}, {number_text(before), "number"}, {number_text(after), "number"}});
   };
@@ -26,9 +26,9 @@ Table parameter_table(const ParameterResult& parameter) {
   row("5 %", prior.quantile(0.05), parameter.q05);
   row("Median", prior.quantile(0.5), parameter.q50);
   row("95 %", prior.quantile(0.95), parameter.q95);
-  row("Minimum", prior.min, NAN);
-  row("Mode", prior.mode, NAN);
-  row("Maximum", prior.max, NAN);
+  row("Minimum", prior.min(), NAN);
+  row("Mode", prior.mode(), NAN);
+  row("Maximum", prior.max(), NAN);
   const Histogram histogram = make_histogram(parameter.draws, kPosteriorBins);
   if (!histogram.counts.empty()) table.group("Probability of each bar");
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {

@@ -64,7 +64,7 @@ struct ParameterResult {
   std::string name;   ///< As in files: "outdoor_air".
   std::string label;  ///< As people say it: "Outdoor airflow rate".
   std::string unit;
-  TriangularPrior prior;
+  Prior prior;
   std::vector<double> draws;  ///< Posterior; 30 bins are made of them.
   double mean;
   double sd;

@@ -21,7 +21,7 @@ Eigen::MatrixXd plain_hypercube(std::span<const Parameter> parameters, int runs,
   for (Eigen::Index j = 0; j < design.cols(); ++j) {
     std::iota(stratum.begin(), stratum.end(), 0);
     shuffle(stratum, rng);
-    const TriangularPrior& prior = parameters[static_cast<std::size_t>(j)].prior;
+    const Prior& prior = parameters[static_cast<std::size_t>(j)].prior;
     for (Eigen::Index i = 0; i < design.rows(); ++i) {
       const double u = (stratum[static_cast<std::size_t>(i)] + rng.uniform()) / runs;
       design(i, j) = prior.quantile(u);

@@ -148,14 +148,10 @@ Result<const ParameterDefinition*> find_parameter(std::string_view name) {
 }
 
 Result<Parameter> make_parameter(const ParameterDefinition& definition, const Building& nominal,
-                                 const std::optional<TriangularPrior>& prior) {
+                                 const std::optional<Prior>& prior) {
   const std::string name{definition.name};
   const std::string unit{definition.unit};
-  if (prior) {
-    auto checked = TriangularPrior::make(prior->min, prior->mode, prior->max);
-    if (!checked) return failure(checked.error().code, name + ": " + checked.error().message);
-    return Parameter{name, unit, *checked};
-  }
+  if (prior) return Parameter{name, unit, *prior};
   const double design = definition.get(nominal);
   if (definition.range == RangeKind::relative) {
     if (!(design > 0.0)) {

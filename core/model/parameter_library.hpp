@@ -50,7 +50,7 @@ inline constexpr std::string_view kSeedParameters[] = {"occupancy_density", "out
 ///         range is relative to it.
 [[nodiscard]] Result<Parameter> make_parameter(const ParameterDefinition& definition,
                                                const Building& nominal,
-                                               const std::optional<TriangularPrior>& prior = {});
+                                               const std::optional<Prior>& prior = {});
 
 /// After all parameters are set: set-points at least 1 K apart (the heating one gives way), factors
 /// within their physical ends.

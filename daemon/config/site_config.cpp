@@ -227,17 +227,16 @@ ParameterConfig read_parameter(TomlReader& table) {
   if (const auto found = model::find_parameter(config.name); !config.name.empty() && !found) {
     table.problem_at("name", found.error().message);
   }
-  const auto min = table.number("min");
-  const auto mode = table.number("mode");
-  const auto max = table.number("max");
-  if (min && mode && max) {
-    if (const auto prior = TriangularPrior::make(*min, *mode, *max)) {
+  const auto distribution = table.text("distribution");
+  const PriorNumbers numbers{table.number("min"), table.number("mode"), table.number("max"),
+                             table.number("sd")};
+  if (distribution || numbers.min || numbers.mode || numbers.max || numbers.sd) {
+    if (const auto prior = Prior::named(distribution.value_or("triangular"), numbers)) {
       config.prior = *prior;
     } else {
-      table.problem(config.name + ": " + prior.error().message);
+      table.problem(config.name + ": " + prior.error().message +
+                    ", or nothing at all for the library's range");
     }
-  } else if (min || mode || max) {
-    table.problem(config.name + ": give all of min, mode and max, or none for the library's range");
   }
   table.finish();
   return config;

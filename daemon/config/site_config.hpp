@@ -47,7 +47,7 @@ struct PeriodConfig {
 
 struct ParameterConfig {
   std::string name;
-  std::optional<TriangularPrior> prior;  ///< Absent: from the library.
+  std::optional<Prior> prior;  ///< Absent: from the library.
 };
 
 struct ModelConfig {

@@ -4,18 +4,10 @@ import { numberText } from "./format.js";
 import { histogramSeries, summarySeries } from "./shapes.js";
 import { axisLabel, axisName, mutedInk, tooltip, valueAxis } from "./theme.js";
 
-/** Corners of a triangular density; the ends of the range bound the axis. */
-function triangle([min, mode, max]) {
-  return [
-    [min, 0],
-    [mode, 2 / (max - min)],
-    [max, 0],
-  ];
-}
-
 export function drawParameter(place, data) {
   const parameter = data.parameters[place.dataset.index];
-  const [min, , max] = parameter.prior;
+  const min = parameter.prior[0][0]; // the ends of the prior bound the axis
+  const max = parameter.prior[parameter.prior.length - 1][0];
   const bins = { start: parameter.binStart, width: parameter.binWidth, heights: parameter.density };
   const margin = 0.02 * (max - min);
   mount(place, {
@@ -50,7 +42,7 @@ export function drawParameter(place, data) {
       histogramSeries(bins, { z: 2 }),
       {
         type: "line",
-        data: triangle(parameter.prior),
+        data: parameter.prior,
         symbol: "none",
         silent: true,
         z: 3,

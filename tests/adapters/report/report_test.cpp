@@ -238,7 +238,12 @@ TEST(FigureJson, BinsThePosteriorInThirty) {
   for (const double density : parameter["density"])
     integral += density * parameter["binWidth"].get<double>();
   EXPECT_NEAR(integral, 1.0, 1e-4);
-  EXPECT_EQ(parameter["prior"], json({4.2, 14.0, 16.8}));
+  const json& corners = parameter["prior"];
+  ASSERT_EQ(corners.size(), 3u);
+  EXPECT_EQ(corners[0], json({4.2, 0.0}));
+  EXPECT_EQ(corners[1][0], 14.0);
+  EXPECT_NEAR(corners[1][1].get<double>(), 2.0 / (16.8 - 4.2), 1e-4);
+  EXPECT_EQ(corners[2], json({16.8, 0.0}));
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ OutputResult output_result(const MeterShape& meter, Rng& rng) {
 
 /// Draws around `mean`, kept inside the prior, and the summary that belongs to them.
 ParameterResult parameter_result(std::string name, std::string label, std::string unit,
-                                 TriangularPrior prior, double mean, double sd, Rng& rng) {
+                                 Prior prior, double mean, double sd, Rng& rng) {
   ParameterResult result{.name = std::move(name),
                          .label = std::move(label),
                          .unit = std::move(unit),
@@ -118,7 +118,7 @@ ParameterResult parameter_result(std::string name, std::string label, std::strin
                          .ess_tail = 980.0};
   while (result.draws.size() < 2700) {
     const double draw = mean + sd * rng.normal();
-    if (draw > prior.min && draw < prior.max) result.draws.push_back(draw);
+    if (draw > prior.min() && draw < prior.max()) result.draws.push_back(draw);
   }
   std::vector<double> sorted = result.draws;
   std::sort(sorted.begin(), sorted.end());

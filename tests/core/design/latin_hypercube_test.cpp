@@ -62,7 +62,7 @@ TEST(LatinHypercube, MeansAreThoseOfThePriors) {
   Rng rng(3);
   const Eigen::MatrixXd design = latin_hypercube(parameters(), 200, rng);
   for (Eigen::Index j = 0; j < 4; ++j) {
-    const TriangularPrior prior = parameters()[static_cast<std::size_t>(j)].prior;
+    const Prior prior = parameters()[static_cast<std::size_t>(j)].prior;
     // Stratified: the error of the mean is of order 1/n, not 1/sqrt(n).
     EXPECT_NEAR(design.col(j).mean(), prior.mean(), 0.01 * std::sqrt(prior.variance()));
   }

@@ -15,12 +15,12 @@ TEST(ParameterLibrary, SeedsRangesForThisBuilding) {
   const Building building = sample_building();
   const auto people = make_parameter(**find_parameter("occupancy_density"), building);
   ASSERT_TRUE(people.has_value());
-  EXPECT_EQ(people->prior, (TriangularPrior{0.0, 0.05, 0.1}));
+  EXPECT_EQ(people->prior, (Prior{0.0, 0.05, 0.1}));
   const auto air = make_parameter(**find_parameter("outdoor_airflow"), building);
-  EXPECT_DOUBLE_EQ(air->prior.min, 0.3 * 6.0);
-  EXPECT_DOUBLE_EQ(air->prior.max, 1.2 * 6.0);
+  EXPECT_DOUBLE_EQ(air->prior.min(), 0.3 * 6.0);
+  EXPECT_DOUBLE_EQ(air->prior.max(), 1.2 * 6.0);
   const auto set_point = make_parameter(**find_parameter("cooling_setpoint"), building);
-  EXPECT_EQ(set_point->prior, (TriangularPrior{20.0, 24.0, 27.8}));
+  EXPECT_EQ(set_point->prior, (Prior{20.0, 24.0, 27.8}));
 }
 
 TEST(ParameterLibrary, MisspeltNameNamesTheNearest) {

@@ -71,7 +71,7 @@ TEST(SiteConfig, SaysWhatTheFileSays) {
   EXPECT_EQ(site.model->weights.at("district_heat"), 0.8);
   ASSERT_EQ(site.model->parameters.size(), 2u);
   EXPECT_FALSE(site.model->parameters[0].prior);
-  EXPECT_EQ(site.model->parameters[1].prior, (TriangularPrior{0.8, 2.0, 2.6}));
+  EXPECT_EQ(site.model->parameters[1].prior, (Prior{0.8, 2.0, 2.6}));
   EXPECT_EQ(site.building->surfaces.size(), 3u);
   EXPECT_EQ(site.building->surfaces[2].orientation, (weather::Orientation{0.0, 0.0}));
   EXPECT_EQ(site.building->occupied_fraction.at(model::DayType::workday, 7), 0.9);
@@ -237,10 +237,10 @@ const Mistake kSiteMistakes[] = {
      "model does not have it"},
     {"PriorOutOfOrder", "min = 0.8", "min = 2.2", "[[model.parameter]]\nname = \"outdoor_airflow\"",
      "[model.parameter] outdoor_airflow: a triangular prior needs min <= mode <= max and min < "
-     "max, but min = 2.2, mode = 2, max = 2.6"},
+     "max, but min = 2.2, mode = 2, max = 2.6, or nothing at all for the library's range"},
     {"PriorInPart", "mode = 2.0\n", "", "[[model.parameter]]\nname = \"outdoor_airflow\"",
-     "[model.parameter] outdoor_airflow: give all of min, mode and max, or none for the library's "
-     "range"},
+     "[model.parameter] outdoor_airflow: a triangular prior needs min, mode and max, or nothing at "
+     "all for the library's range"},
     {"FractionOfAStorey", "storeys = 2", "storeys = 2.5", "storeys",
      "[building] 'storeys' is 2.5; it must be a whole number"},
     {"UnknownMass", "\"medium\"", "\"massive\"", "massive",
@@ -346,7 +346,7 @@ TEST(SiteConfig, AllMistakesAreReportedAtOnce) {
           StartsWith("site.toml:7: [site] unknown key 'altitud_m'"),
           StartsWith("site.toml:20: [meter] 'warmth' is no utility"),
           ::testing::HasSubstr("[model.parameter] 'min' must be a number"),
-          ::testing::HasSubstr("[model.parameter] outdoor_airflow: give all of min, mode and max"),
+          ::testing::HasSubstr("[model.parameter] outdoor_airflow: a triangular prior needs min, mode and max"),
           ::testing::HasSubstr("[building.air] 'fan_design_kW' is missing"),
           ::testing::HasSubstr("[building.air] unknown key 'fan_design_W'; did you mean "
                                "'fan_design_kW'?")));

@@ -1,0 +1,128 @@
+/// Prior distributions of calibration parameters.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "core/result.hpp"
+
+namespace recald {
+
+/// Triangular distribution on [min, max]; the seed's choice for every parameter.
+///
+/// All three numbers are in the parameter's own unit. min < max and min <= mode <= max.
+struct TriangularPrior {
+  double min;
+  double mode;
+  double max;
+  bool operator==(const TriangularPrior&) const = default;
+};
+
+struct UniformPrior {
+  double min;
+  double max;
+  bool operator==(const UniformPrior&) const = default;
+};
+
+/// Normal(location, sd) cut off outside [min, max]; either end may be infinite.
+struct TruncatedNormalPrior {
+  double location;  ///< Mean and mode of the normal before it is cut.
+  double sd;        ///< Of the normal before it is cut, > 0.
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool operator==(const TruncatedNormalPrior&) const = default;
+};
+
+/// exp of a normal, cut off outside [min, max]; 0 <= min, and max may be infinite.
+struct LogNormalPrior {
+  double median;  ///< Before it is cut, > 0.
+  double log_sd;  ///< Standard deviation of the logarithm, > 0.
+  double min = 0.0;
+  double max = std::numeric_limits<double>::infinity();
+  bool operator==(const LogNormalPrior&) const = default;
+};
+
+/// A prior as files give it. What each number means depends on the distribution: see
+/// `Prior::named`.
+struct PriorNumbers {
+  std::optional<double> min;
+  std::optional<double> mode;
+  std::optional<double> max;
+  std::optional<double> sd;
+};
+
+/// A value and its derivative with respect to the normal score it was asked for.
+struct ScoredValue {
+  double value;
+  double derivative;
+};
+
+/// What is believed about one parameter before any measurement, in the parameter's own unit.
+class Prior {
+ public:
+  using Distribution =
+      std::variant<TriangularPrior, UniformPrior, TruncatedNormalPrior, LogNormalPrior>;
+
+  /// @return the prior, or invalid_value when the numbers are not finite, not in order, or cut off
+  ///         all but 1e-12 of the probability, so that nobody can sample it.
+  static Result<Prior> make(Distribution distribution);
+
+  /// triangular        min, mode, max;
+  /// uniform           min, max; a mode is ignored;
+  /// truncated_normal  mode: centre, sd: of the uncut normal; min, max: cut, absent: none;
+  /// log_normal        mode: median, sd: of the logarithm; min, max: cut, absent: 0, none.
+  /// @return the prior, or invalid_value: unknown name, a number that is needed and absent, or what
+  ///         `make` refuses.
+  static Result<Prior> named(std::string_view distribution, const PriorNumbers& numbers);
+
+  /// Triangular. @pre min <= mode <= max, min < max, all finite
+  Prior(double min, double mode, double max);
+  /// Any of the distributions. @pre `make` would accept it
+  template <class D>
+  requires std::is_constructible_v<Distribution, D> Prior(
+      D distribution)  // NOLINT(google-explicit-constructor): each of them is a prior
+      : Prior(Checked{}, Distribution(std::move(distribution))) {}
+
+  [[nodiscard]] double density(double value) const;
+  [[nodiscard]] double cumulative(double value) const;
+  /// Inverse of `cumulative`. @pre 0 <= probability <= 1
+  [[nodiscard]] double quantile(double probability) const;
+  /// quantile(Phi(score)) with its derivative; accurate in both tails, so that a standard normal
+  /// score gives exactly this prior.
+  [[nodiscard]] ScoredValue at_score(double score) const;
+
+  [[nodiscard]] double mean() const { return mean_; }
+  [[nodiscard]] double variance() const { return variance_; }
+  [[nodiscard]] double mode() const;  ///< The middle of a uniform prior.
+  [[nodiscard]] double min() const;   ///< Lower end of the support; may be minus infinity.
+  [[nodiscard]] double max() const;   ///< Upper end of the support; may be infinity.
+
+  [[nodiscard]] const Distribution& distribution() const { return distribution_; }
+  /// "triangular", "uniform", "truncated_normal", "log_normal".
+  [[nodiscard]] std::string_view name() const;
+
+  bool operator==(const Prior& other) const { return distribution_ == other.distribution_; }
+
+ private:
+  /// Where a probability lies, with the density there. Both tails are given: 1 - p loses the small.
+  struct Located {
+    double value;
+    double density;
+  };
+
+  struct Checked {};
+  Prior(Checked, Distribution distribution);
+
+  [[nodiscard]] Located locate(double below, double above) const;
+
+  Distribution distribution_;
+  double mean_ = 0.0;
+  double variance_ = 0.0;
+};
+
+}  // namespace recald
