@@ -30,7 +30,7 @@ DiscrepancyKernel::DiscrepancyKernel(const Eigen::MatrixXd& month_inputs,
                                      std::vector<PointIndex> points) {
   assert(!points.empty() && ordered(points));
   const std::vector<int> months = months_in_use(points);
-  const auto n = static_cast<Eigen::Index>(months.size());
+  months_ = static_cast<Eigen::Index>(months.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto month = std::lower_bound(months.begin(), months.end(), points[i].month);
     row_.push_back(month - months.begin());
@@ -40,7 +40,7 @@ DiscrepancyKernel::DiscrepancyKernel(const Eigen::MatrixXd& month_inputs,
   }
   cross_output_ = ranges_.size() > 1;
 
-  distances_.resize(n * (n - 1) / 2, month_inputs.cols());
+  distances_.resize(months_ * (months_ - 1) / 2, month_inputs.cols());
   Eigen::Index pair = 0;
   for (std::size_t j = 0; j < months.size(); ++j) {
     for (std::size_t i = j + 1; i < months.size(); ++i) {
@@ -49,32 +49,31 @@ DiscrepancyKernel::DiscrepancyKernel(const Eigen::MatrixXd& month_inputs,
     }
   }
   packed_.resize(distances_.rows());
-  correlation_ = Eigen::MatrixXd::Identity(n, n);
+  correlation_ = Eigen::MatrixXd::Identity(months_, months_);
 }
 
 void DiscrepancyKernel::correlate_months(const Eigen::VectorXd& beta) {
+  assert(beta.size() == dimension());
   // An infinite beta times a zero distance is 0 / 0 in disguise; the largest double does the same.
   constexpr double beta_max = 1e300;
   packed_.setZero();
   for (Eigen::Index s = 0; s < distances_.cols(); ++s) {
     packed_ -= std::min(beta(s), beta_max) * distances_.col(s);
   }
-  packed_ = packed_.array().exp();
-  const Eigen::Index n = correlation_.rows();
-  const double* packed = packed_.data();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = j + 1; i < n; ++i) {
-      correlation_(i, j) = *packed;
-      correlation_(j, i) = *packed++;
-    }
-  }
+  for (double& value : packed_) value = std::exp(value);
 }
 
 void DiscrepancyKernel::covariance(double variance, const Eigen::VectorXd& beta,
                                    Eigen::MatrixXd& covariance) {
-  assert(beta.size() == dimension());
   assert(covariance.rows() == point_count() && covariance.cols() == point_count());
   correlate_months(beta);
+  const double* packed = packed_.data();
+  for (Eigen::Index j = 0; j < months_; ++j) {
+    for (Eigen::Index i = j + 1; i < months_; ++i) {
+      correlation_(i, j) = *packed;
+      correlation_(j, i) = *packed++;
+    }
+  }
   const double between_outputs = cross_output_ ? variance * std::exp(-beta(beta.size() - 1)) : 0.0;
   for (std::size_t b = 0; b < ranges_.size(); ++b) {
     for (Eigen::Index j = ranges_[b].begin; j < ranges_[b].end; ++j) {
@@ -89,6 +88,31 @@ void DiscrepancyKernel::covariance(double variance, const Eigen::VectorXd& beta,
       }
     }
   }
+}
+
+DiscrepancyKernel::Sums DiscrepancyKernel::sum_products(const Eigen::MatrixXd& weights,
+                                                        const Eigen::MatrixXd& covariance,
+                                                        Eigen::VectorXd& by_pair) const {
+  assert(by_pair.size() == distances_.rows());
+  by_pair.setZero();
+  Sums sums;
+  for (std::size_t b = 0; b < ranges_.size(); ++b) {
+    for (Eigen::Index j = ranges_[b].begin; j < ranges_[b].end; ++j) {
+      const Eigen::Index month_j = row_[static_cast<std::size_t>(j)];
+      sums.same_output += 0.5 * weights(j, j) * covariance(j, j);
+      for (std::size_t a = b; a < ranges_.size(); ++a) {
+        double& sum = a == b ? sums.same_output : sums.cross_output;
+        for (Eigen::Index i = std::max(ranges_[a].begin, j + 1); i < ranges_[a].end; ++i) {
+          const double product = weights(i, j) * covariance(i, j);
+          sum += product;
+          const Eigen::Index month_i = row_[static_cast<std::size_t>(i)];
+          if (month_i == month_j) continue;
+          by_pair(pair_index(std::max(month_i, month_j), std::min(month_i, month_j))) += product;
+        }
+      }
+    }
+  }
+  return sums;
 }
 
 }  // namespace recald::calibration

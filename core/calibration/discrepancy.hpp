@@ -25,7 +25,7 @@ struct PointIndex {
 ///
 /// The distances never change, so they are computed once. Points of one month differ in their
 /// output alone, so exp() runs over pairs of months, not of points: a quarter of the work for two
-/// outputs.
+/// outputs. Pairs of months are packed: the strictly lower triangle, column by column.
 class DiscrepancyKernel {
  public:
   /// @param month_inputs  (months x p) model inputs scaled to [0, 1].
@@ -33,19 +33,49 @@ class DiscrepancyKernel {
   DiscrepancyKernel(const Eigen::MatrixXd& month_inputs, std::vector<PointIndex> points);
 
   /// Length of beta: p, plus one where the points belong to more than one output.
-  [[nodiscard]] Eigen::Index dimension() const {
-    return distances_.cols() + (cross_output_ ? 1 : 0);
-  }
+  [[nodiscard]] Eigen::Index dimension() const { return input_count() + (cross_output_ ? 1 : 0); }
+  [[nodiscard]] Eigen::Index input_count() const { return distances_.cols(); }
   [[nodiscard]] Eigen::Index point_count() const { return static_cast<Eigen::Index>(row_.size()); }
+  [[nodiscard]] Eigen::Index month_count() const { return months_; }
+  [[nodiscard]] Eigen::Index output_count() const {
+    return static_cast<Eigen::Index>(ranges_.size());
+  }
   [[nodiscard]] bool has_output_dimension() const { return cross_output_; }
+  /// Whether every output has a point in every month.
+  [[nodiscard]] bool is_complete() const { return point_count() == output_count() * months_; }
+
+  /// Computes the correlation of every pair of different months.
+  ///
+  /// @param beta  (dimension) >= 0; infinity means no correlation at any distance. The output
+  ///              dimension, if any, is not used.
+  /// @note  Does not allocate. O(months^2 p).
+  void correlate_months(const Eigen::VectorXd& beta);
+  /// (pairs) as computed last, packed.
+  [[nodiscard]] const Eigen::VectorXd& month_correlations() const { return packed_; }
 
   /// Writes C into the lower triangle and diagonal of `covariance`; the rest is left alone.
   ///
   /// @param variance    1 / lambda_delta, normalised units squared.
-  /// @param beta        (dimension) >= 0; infinity means no correlation at any distance.
+  /// @param beta        (dimension) >= 0
   /// @param covariance  (points x points), already of that size.
   /// @note  Does not allocate. O(months^2 p + points^2).
   void covariance(double variance, const Eigen::VectorXd& beta, Eigen::MatrixXd& covariance);
+
+  /// What a derivative of the log-likelihood needs of  sum_ij W_ij C_ij D_s,ij / 2.
+  struct Sums {
+    double same_output = 0.0;   ///< sum_ij W_ij C_ij / 2 over pairs of the same output, i = j too.
+    double cross_output = 0.0;  ///< The same over pairs of different outputs.
+  };
+
+  /// @param weights     W (points x points), lower triangle.
+  /// @param covariance  C, lower triangle, as `covariance` wrote it.
+  /// @param by_pair     (pairs of months) receives the sum of W_ij C_ij over the pairs of points of
+  ///                    these two months, each pair of points once.
+  Sums sum_products(const Eigen::MatrixXd& weights, const Eigen::MatrixXd& covariance,
+                    Eigen::VectorXd& by_pair) const;
+
+  /// Squared distances of months, (pairs of months x p).
+  [[nodiscard]] const Eigen::MatrixXd& distances() const { return distances_; }
 
  private:
   struct OutputRange {
@@ -53,13 +83,17 @@ class DiscrepancyKernel {
     Eigen::Index end;
   };
 
-  void correlate_months(const Eigen::VectorXd& beta);
+  /// Position of the pair of month rows i > j among the packed ones.
+  [[nodiscard]] Eigen::Index pair_index(Eigen::Index i, Eigen::Index j) const {
+    return j * months_ - j * (j + 1) / 2 + (i - j - 1);
+  }
 
-  std::vector<Eigen::Index> row_;    ///< (points) row of the point's month in `correlation_`.
+  std::vector<Eigen::Index> row_;    ///< (points) row of the point's month among those in use.
   std::vector<OutputRange> ranges_;  ///< Points of one output.
   bool cross_output_;
-  Eigen::MatrixXd distances_;    ///< (pairs of months x p), strictly lower triangle by columns.
-  Eigen::VectorXd packed_;       ///< (pairs of months) correlation, same order.
+  Eigen::Index months_;          ///< In use.
+  Eigen::MatrixXd distances_;    ///< (pairs of months x p), packed.
+  Eigen::VectorXd packed_;       ///< (pairs of months) correlation.
   Eigen::MatrixXd correlation_;  ///< (months x months) symmetric, unit diagonal.
 };
 

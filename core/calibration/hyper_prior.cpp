@@ -1,13 +1,16 @@
 #include "core/calibration/hyper_prior.hpp"
 
+#include <algorithm>
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/gamma.hpp>
 #include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/trigamma.hpp>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace recald::calibration {
 
@@ -46,6 +49,35 @@ double BetaPrior::logit_quantile(double probability) const {
   const double rest =
       std::max(boost::math::quantile(boost::math::complement(complement, probability)), tiny);
   return std::log(value) - std::log(rest);
+}
+
+ScoredBeta BetaPrior::at_score(double score) const {
+  assert(std::abs(score) <= kScoreMax);
+  const double density = std::exp(-0.5 * score * score) / std::sqrt(2.0 * std::numbers::pi);
+  const double above = 0.5 * std::erfc(score / std::numbers::sqrt2);
+  const double log_above =
+      score > 0.0 ? std::log(above) : std::log1p(-0.5 * std::erfc(-score / std::numbers::sqrt2));
+  const double log_rest = log_above / b;  // log(1 - rho)
+  const double rest = std::exp(log_rest);
+  const double rho = -std::expm1(log_rest);
+  const double log_rho = rest < 0.5 ? std::log1p(-rest) : std::log(rho);
+  const double relative_slope = rest / rho * density / (b * above);  // rho' / rho
+  return {-4.0 * log_rho, -4.0 * relative_slope, (a - 1.0) * log_rho - 0.5 * score * score,
+          (a - 1.0) * relative_slope - score};
+}
+
+double BetaPrior::log_constant_of_score() const {
+  return log_constant() - std::log(b) - 0.5 * std::log(2.0 * std::numbers::pi);
+}
+
+double BetaPrior::score_quantile(double probability) const {
+  // Phi(-score) = (1 - rho)^b, with log(1 - rho) from the logit so that none of it is lost near 1.
+  const double log_above = -b * softplus(logit_quantile(probability));
+  const double above = std::max(std::exp(log_above), 1e-300);
+  const double below = std::max(-std::expm1(log_above), 1e-300);
+  const double score = above < below ? std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * above)
+                                     : -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * below);
+  return std::clamp(score, -kScoreMax, kScoreMax);
 }
 
 double BetaPrior::beta_mean() const {

@@ -33,6 +33,14 @@ struct GammaPrior {
   bool operator==(const GammaPrior&) const = default;
 };
 
+/// beta = -4 ln rho where the coordinate of rho is `score`, and the prior density there.
+struct ScoredBeta {
+  double beta;
+  double derivative;          ///< d beta / d score
+  double log_density;         ///< Of the score, without the constant of `log_constant_of_score`.
+  double density_derivative;  ///< d log_density / d score
+};
+
 /// Beta(a, b) for rho, the correlation of the discrepancy at two points half the input range apart.
 ///
 /// With b < 1 the density is infinite at rho = 1, and a double rounds to 1 with prior probability
@@ -48,10 +56,22 @@ struct BetaPrior {
   [[nodiscard]] double quantile(double probability) const;
   /// z = logit rho of the probability-quantile; finite where rho itself rounds to 1.
   [[nodiscard]] double logit_quantile(double probability) const;
+  /// The coordinate in which samplers move: the score with  1 - rho = Phi(-score)^(1/b). For a = 1,
+  /// the seed's choice, a standard normal score then is exactly this prior; for any other a it is
+  /// a smooth coordinate whose density is still exact. Where rho = logit^-1(z) has the endless
+  /// exponential tail exp(-b z) of an input that does not matter, this one has a normal's.
+  /// @pre |score| <= kScoreMax
+  [[nodiscard]] ScoredBeta at_score(double score) const;
+  [[nodiscard]] double log_constant_of_score() const;
+  /// The score whose rho is the probability-quantile.
+  [[nodiscard]] double score_quantile(double probability) const;
   [[nodiscard]] double beta_mean() const;      ///< Of beta = -4 ln rho.
   [[nodiscard]] double beta_variance() const;  ///< Of beta = -4 ln rho.
   bool operator==(const BetaPrior&) const = default;
 };
+
+/// Beyond this many standard deviations a normal tail has no double left.
+inline constexpr double kScoreMax = 37.0;
 
 /// log(1 + exp(x)) without overflow or loss. Then -softplus(-z) = log rho, -softplus(z) = log(1 -
 /// rho).

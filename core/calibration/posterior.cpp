@@ -1,6 +1,6 @@
 #include "core/calibration/posterior.hpp"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -14,17 +14,64 @@ namespace {
 
 constexpr double kJitter = 1e-10;
 constexpr double kMinusInfinity = -std::numeric_limits<double>::infinity();
+const double kLogTwoPi = std::log(2.0 * std::numbers::pi);
 
 std::span<const double> as_span(const Eigen::VectorXd& values) {
   return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
-double logistic(double z) { return 1.0 / (1.0 + std::exp(-z)); }
-
 Hyperparameters default_reference(const HyperPrior& prior, Eigen::Index dimension) {
   const double beta = beta_from_logit(prior.rho.logit_quantile(0.5));
   return {prior.discrepancy_precision.mean(), prior.error_precision.mean(),
           Eigen::VectorXd::Constant(dimension, beta)};
+}
+
+bool any_weight(const PosteriorData& data) {
+  return std::any_of(data.weights.begin(), data.weights.end(), [](double w) { return w < 1.0; });
+}
+
+/// (1/w - 1) S_t of every doubted output, lower triangle, added to `fixed`.
+void add_weights(const PosteriorData& data, const HyperPrior& prior, DiscrepancyKernel kernel,
+                 Eigen::MatrixXd& fixed) {
+  const Hyperparameters at =
+      data.weight_reference.value_or(default_reference(prior, kernel.dimension()));
+  Eigen::MatrixXd sigma = fixed;
+  Eigen::MatrixXd discrepancy = Eigen::MatrixXd::Zero(fixed.rows(), fixed.cols());
+  kernel.covariance(1.0 / at.discrepancy_precision, at.beta, discrepancy);
+  sigma += discrepancy;
+  sigma.diagonal().array() += 1.0 / at.error_precision;
+  for (Eigen::Index j = 0; j < fixed.cols(); ++j) {
+    const int output = data.points[static_cast<std::size_t>(j)].output;
+    const double weight = data.weights[static_cast<std::size_t>(output)];
+    assert(weight > 0.0 && weight <= 1.0);
+    for (Eigen::Index i = j; i < fixed.rows(); ++i) {
+      if (data.points[static_cast<std::size_t>(i)].output != output) break;
+      fixed(i, j) += (1.0 / weight - 1.0) * sigma(i, j);
+    }
+  }
+}
+
+/// The cheapest covariance that fits the data.
+std::unique_ptr<ErrorCovariance> make_covariance(const PosteriorData& data,
+                                                 const HyperPrior& prior) {
+  DiscrepancyKernel kernel(data.month_inputs, data.points);
+  const Eigen::VectorXd& extra = data.extra_variances;
+  const bool equal = extra.minCoeff() == extra.maxCoeff();
+  if (equal && kernel.is_complete() && data.common_errors.cols() == 0 && !any_weight(data)) {
+    return make_decoupled_covariance(std::move(kernel), extra(0));
+  }
+  Eigen::MatrixXd fixed(extra.asDiagonal());
+  if (data.common_errors.cols() > 0) {
+    fixed += data.common_errors * data.common_errors.transpose();
+  }
+  if (any_weight(data)) add_weights(data, prior, kernel, fixed);
+  return make_dense_covariance(std::move(kernel), std::move(fixed));
+}
+
+double prior_constant(const HyperPrior& prior, Eigen::Index q, Eigen::Index kernel_dimension) {
+  return -0.5 * static_cast<double>(q) * kLogTwoPi + prior.discrepancy_precision.log_constant() +
+         prior.error_precision.log_constant() +
+         static_cast<double>(kernel_dimension) * prior.rho.log_constant_of_score();
 }
 
 }  // namespace
@@ -34,43 +81,42 @@ Posterior::Posterior(const MonthlyModel& prototype, std::vector<Parameter> param
     : model_(prototype.clone()),
       parameters_(std::move(parameters)),
       data_(std::move(data)),
-      prior_(std::move(prior)),
-      kernel_(data_.month_inputs, data_.points) {
+      prior_(std::move(prior)) {
+  const DiscrepancyKernel kernel(data_.month_inputs, data_.points);
+  kernel_dimension_ = kernel.dimension();
+  has_output_dimension_ = kernel.has_output_dimension();
   const Eigen::Index m = point_count();
-  assert(data_.values.size() == m && data_.extra_variances.size() == m);
+  const Eigen::Index q = parameter_count();
+  assert(data_.extra_variances.size() == m && kernel.point_count() == m);
   assert(parameters_.size() == static_cast<std::size_t>(model_->parameter_count()));
   assert(data_.scales.size() == static_cast<std::size_t>(model_->output_count()));
   assert(data_.weights.size() == data_.scales.size());
   assert(data_.common_errors.rows() == m || data_.common_errors.cols() == 0);
-  fixed_ = Eigen::MatrixXd(data_.extra_variances.asDiagonal());
-  if (data_.common_errors.cols() > 0) {
-    fixed_ += data_.common_errors * data_.common_errors.transpose();
-  }
-  hyper_.beta.setZero(kernel_.dimension());
-  next_hyper_.beta.setZero(kernel_.dimension());
-  hyper_point_.setConstant(2 + kernel_.dimension(), std::numeric_limits<double>::quiet_NaN());
-  prior_constant_ = prior_.discrepancy_precision.log_constant() +
-                    prior_.error_precision.log_constant() +
-                    static_cast<double>(kernel_.dimension()) * prior_.rho.log_constant();
-  factor_.setZero(m, m);
-  theta_.resize(parameter_count());
-  outputs_.resize(Eigen::Index{model_->output_count()} * model_->month_count());
-  residual_.resize(m);
-  whitened_.resize(m);
+  covariance_ = make_covariance(data_, prior_);
+  prior_constant_ = prior_constant(prior_, q, kernel_dimension_);
+  hyper_point_.setConstant(2 + kernel_dimension_, std::numeric_limits<double>::quiet_NaN());
+  theta_.setZero(q);
+  theta_slope_.setZero(q);
+  theta_gradient_.setZero(q);
+  hyper_ = {0.0, 0.0, Eigen::VectorXd::Zero(kernel_dimension_)};
+  beta_slope_.setZero(kernel_dimension_);
+  prior_gradient_.setZero(dimension());
+  outputs_.setZero(Eigen::Index{model_->output_count()} * model_->month_count());
+  jacobian_.setZero(model_->has_jacobian() ? outputs_.size() : 0, q);
+  sensitivity_.setZero(outputs_.size());
+  residual_.setZero(m);
+  likelihood_gradient_ = {Eigen::VectorXd::Zero(m), 0.0, 0.0,
+                          Eigen::VectorXd::Zero(kernel_dimension_)};
 }
 
 Posterior::Posterior(const Posterior& other)
-    : Posterior(*other.model_, other.parameters_, other.data_, other.prior_) {
-  fixed_ = other.fixed_;  // with the weights' share
-}
+    : Posterior(*other.model_, other.parameters_, other.data_, other.prior_) {}
 
 Result<Posterior> Posterior::make(const MonthlyModel& prototype, std::vector<Parameter> parameters,
                                   PosteriorData data, HyperPrior prior) {
   Posterior posterior(prototype, std::move(parameters), std::move(data), std::move(prior));
-  posterior.add_weights();
-  const Hyperparameters reference =
-      default_reference(posterior.prior_, posterior.kernel_.dimension());
-  if (!posterior.set_hyperparameters(reference)) {
+  if (!posterior.set_hyperparameters(
+          default_reference(posterior.prior_, posterior.kernel_dimension_))) {
     return failure(
         ErrorCode::not_positive_definite,
         "the covariance of the measured points has no Cholesky factor at the prior means "
@@ -80,80 +126,60 @@ Result<Posterior> Posterior::make(const MonthlyModel& prototype, std::vector<Par
   return posterior;
 }
 
-void Posterior::add_weights() {
-  bool any = false;
-  for (const double weight : data_.weights) {
-    assert(weight > 0.0 && weight <= 1.0);
-    any = any || weight < 1.0;
-  }
-  if (!any) return;
-  hyper_ = data_.weight_reference.value_or(default_reference(prior_, kernel_.dimension()));
-  assemble(0.0);
-  for (Eigen::Index j = 0; j < point_count(); ++j) {
-    const int output = data_.points[static_cast<std::size_t>(j)].output;
-    const double weight = data_.weights[static_cast<std::size_t>(output)];
-    for (Eigen::Index i = j; i < point_count(); ++i) {
-      if (data_.points[static_cast<std::size_t>(i)].output != output) break;
-      fixed_(i, j) += (1.0 / weight - 1.0) * factor_(i, j);  // (1/w - 1) S_t
-    }
-  }
-}
-
-void Posterior::assemble(double jitter) {
-  kernel_.covariance(1.0 / hyper_.discrepancy_precision, hyper_.beta, factor_);
-  const double diagonal = 1.0 / hyper_.error_precision + jitter;
-  const Eigen::Index m = point_count();
-  for (Eigen::Index j = 0; j < m; ++j) {
-    factor_.col(j).tail(m - j) += fixed_.col(j).tail(m - j);
-    factor_(j, j) += diagonal;
-  }
-}
-
-bool Posterior::factorise() {
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(factor_);
-  if (in_place.info() != Eigen::Success) return false;
-  whitened_ = factor_.diagonal();
-  const double half_log_determinant = whitened_.array().log().sum();
-  log_normaliser_ = -half_log_determinant -
-                    0.5 * static_cast<double>(point_count()) * std::log(2.0 * std::numbers::pi);
-  return std::isfinite(log_normaliser_);  // Eigen lets a NaN through
-}
-
 bool Posterior::set_hyperparameters(const Hyperparameters& hyper) {
   hyper_point_(0) = std::numeric_limits<double>::quiet_NaN();  // equal to no point
-  hyper_ = hyper;
-  assemble(0.0);
-  has_factor_ = factorise();
+  const auto factorise = [&](double jitter) {
+    has_factor_ = covariance_->factorise(hyper, jitter);
+    if (!has_factor_) return;
+    log_normaliser_ =
+        -0.5 * (covariance_->log_determinant() + static_cast<double>(point_count()) * kLogTwoPi);
+    has_factor_ = std::isfinite(log_normaliser_);  // Eigen lets a NaN through
+  };
+  factorise(0.0);
   if (!has_factor_) {
     ++jitter_count_;
-    assemble(kJitter);
-    has_factor_ = factorise();
+    factorise(kJitter);
   }
   return has_factor_;
 }
 
 double Posterior::log_likelihood_of_residual(const Eigen::VectorXd& residual) {
   assert(has_factor_ && residual.size() == point_count());
-  whitened_ = residual;
-  factor_.triangularView<Eigen::Lower>().solveInPlace(whitened_);
-  return log_normaliser_ - 0.5 * whitened_.squaredNorm();  // eq. (7)
+  return log_normaliser_ - 0.5 * covariance_->squared_norm(residual);  // eq. (7)
 }
 
-Result<double> Posterior::log_likelihood(std::span<const double> theta) {
-  model_->evaluate(theta, {outputs_.data(), static_cast<std::size_t>(outputs_.size())});
+void Posterior::evaluate_residual(std::span<const double> theta, bool with_jacobian) {
+  const std::span<double> outputs(outputs_.data(), static_cast<std::size_t>(outputs_.size()));
+  if (with_jacobian) {
+    model_->evaluate_with_jacobian(theta, outputs,
+                                   {jacobian_.data(), static_cast<std::size_t>(jacobian_.size())});
+  } else {
+    model_->evaluate(theta, outputs);
+  }
   const int months = model_->month_count();
   for (Eigen::Index i = 0; i < point_count(); ++i) {
     const PointIndex& point = data_.points[static_cast<std::size_t>(i)];
     const OutputScale& scale = data_.scales[static_cast<std::size_t>(point.output)];
     residual_(i) = data_.values(i) - scale.normalise(outputs_(point.output * months + point.month));
   }
-  const double value = log_likelihood_of_residual(residual_);
-  if (!std::isfinite(value)) {
-    const auto finite = design::check_finite(parameters_, theta, as_span(outputs_), months);
-    if (!finite) return tl::unexpected(finite.error());
-    return kMinusInfinity;
-  }
-  return value;
+}
+
+const Eigen::VectorXd& Posterior::residual_at(std::span<const double> theta) {
+  evaluate_residual(theta, false);
+  return residual_;
+}
+
+Result<double> Posterior::finite_or_error(double value, std::span<const double> theta) const {
+  if (std::isfinite(value)) return value;
+  const auto finite =
+      design::check_finite(parameters_, theta, as_span(outputs_), model_->month_count());
+  if (!finite) return tl::unexpected(finite.error());
+  return kMinusInfinity;
+}
+
+Result<double> Posterior::log_likelihood(std::span<const double> theta) {
+  evaluate_residual(theta, false);
+  return finite_or_error(log_likelihood_of_residual(residual_), theta);
 }
 
 Result<LogDensityTerms> Posterior::terms(std::span<const double> theta,
@@ -179,69 +205,118 @@ void Posterior::to_natural(const Eigen::VectorXd& point, Eigen::Ref<Eigen::Vecto
                            Hyperparameters& hyper) const {
   const Eigen::Index q = parameter_count();
   for (Eigen::Index j = 0; j < q; ++j) {
-    theta(j) = parameters_[static_cast<std::size_t>(j)].prior.quantile(logistic(point(j)));
+    theta(j) = parameters_[static_cast<std::size_t>(j)].prior.at_score(point(j)).value;
   }
   hyper.discrepancy_precision = std::exp(point(q));
   hyper.error_precision = std::exp(point(q + 1));
-  for (Eigen::Index s = 0; s < kernel_.dimension(); ++s) {
-    hyper.beta(s) = beta_from_logit(point(q + 2 + s));
+  for (Eigen::Index s = 0; s < kernel_dimension_; ++s) {
+    hyper.beta(s) = prior_.rho.at_score(point(q + 2 + s)).beta;
   }
 }
 
-double Posterior::log_prior_unconstrained(const Eigen::VectorXd& point) const {
+double Posterior::log_prior(const Eigen::VectorXd& point) const {
   const Eigen::Index q = parameter_count();
-  double sum = prior_constant_;
-  for (Eigen::Index j = 0; j < q; ++j) {
-    // Standard logistic: -z - 2 log(1 + exp(-z)).
-    sum -= softplus(point(j)) + softplus(-point(j));
-  }
+  double sum = prior_constant_ - 0.5 * point.head(q).squaredNorm();
   // The Jacobian of lambda = exp(l) is lambda: + l.
   sum += prior_.discrepancy_precision.log_kernel(std::exp(point(q)), point(q)) + point(q);
   sum += prior_.error_precision.log_kernel(std::exp(point(q + 1)), point(q + 1)) + point(q + 1);
-  for (Eigen::Index s = 0; s < kernel_.dimension(); ++s) {
-    // (a - 1) log rho + (b - 1) log(1 - rho) and the Jacobian rho (1 - rho).
-    const double z = point(q + 2 + s);
-    sum -= prior_.rho.a * softplus(-z) + prior_.rho.b * softplus(z);
+  for (Eigen::Index s = 0; s < kernel_dimension_; ++s) {
+    if (!(std::abs(point(q + 2 + s)) <= kScoreMax)) return kMinusInfinity;
+    sum += prior_.rho.at_score(point(q + 2 + s)).log_density;
   }
   return sum;
 }
 
-Result<double> Posterior::log_density(const Eigen::VectorXd& point) {
+bool Posterior::place(const Eigen::VectorXd& point) {
   assert(point.size() == dimension());
-  const double log_prior = log_prior_unconstrained(point);
-  if (!std::isfinite(log_prior)) return kMinusInfinity;
-  const auto hyper_point = point.tail(hyper_point_.size());
-  to_natural(point, theta_, next_hyper_);
-  // exp() may underflow; a variance of infinity has no density either.
-  if (!(next_hyper_.discrepancy_precision > 0.0 && next_hyper_.error_precision > 0.0)) {
-    return kMinusInfinity;
+  const Eigen::Index q = parameter_count();
+  for (Eigen::Index j = 0; j < q; ++j) {
+    if (!(std::abs(point(j)) <= kScoreMax)) return false;
+    const auto at = parameters_[static_cast<std::size_t>(j)].prior.at_score(point(j));
+    theta_(j) = at.value;
+    theta_slope_(j) = at.derivative;
+    prior_gradient_(j) = -point(j);
   }
+  log_prior_ = prior_constant_ - 0.5 * point.head(q).squaredNorm();
+
+  const auto precision = [&](const GammaPrior& prior, Eigen::Index i, double& lambda) {
+    lambda = std::exp(point(i));
+    log_prior_ += prior.log_kernel(lambda, point(i)) + point(i);
+    prior_gradient_(i) = prior.shape - prior.rate * lambda;
+  };
+  precision(prior_.discrepancy_precision, q, hyper_.discrepancy_precision);
+  precision(prior_.error_precision, q + 1, hyper_.error_precision);
+  for (Eigen::Index s = 0; s < kernel_dimension_; ++s) {
+    const double score = point(q + 2 + s);
+    if (!(std::abs(score) <= kScoreMax)) return false;
+    const ScoredBeta at = prior_.rho.at_score(score);
+    hyper_.beta(s) = at.beta;
+    beta_slope_(s) = at.derivative;
+    log_prior_ += at.log_density;
+    prior_gradient_(q + 2 + s) = at.density_derivative;
+  }
+  // exp() may underflow; a variance of infinity has no density either.
+  return std::isfinite(log_prior_) && hyper_.discrepancy_precision > 0.0 &&
+         hyper_.error_precision > 0.0;
+}
+
+bool Posterior::factorise_here(const Eigen::VectorXd& point) {
+  const auto hyper_point = point.tail(hyper_point_.size());
   if (hyper_point_ != hyper_point) {
-    (void)set_hyperparameters(next_hyper_);
+    (void)set_hyperparameters(hyper_);
     hyper_point_ = hyper_point;
   }
-  if (!has_factor_) return kMinusInfinity;
+  return has_factor_;
+}
+
+Result<double> Posterior::log_density(const Eigen::VectorXd& point) {
+  if (!place(point) || !factorise_here(point)) return kMinusInfinity;
   auto value = log_likelihood(as_span(theta_));
-  if (value) *value += log_prior;
+  if (value) *value += log_prior_;
+  return value;
+}
+
+Result<double> Posterior::log_density_and_gradient(const Eigen::VectorXd& point,
+                                                   Eigen::VectorXd& gradient) {
+  assert(has_gradient() && gradient.size() == dimension());
+  if (!place(point) || !factorise_here(point)) return kMinusInfinity;
+  evaluate_residual(as_span(theta_), true);
+  const double norm = covariance_->squared_norm_and_gradient(residual_, likelihood_gradient_);
+
+  const int months = model_->month_count();
+  for (Eigen::Index i = 0; i < point_count(); ++i) {
+    const PointIndex& p = data_.points[static_cast<std::size_t>(i)];
+    const OutputScale& scale = data_.scales[static_cast<std::size_t>(p.output)];
+    sensitivity_(p.output * months + p.month) =
+        likelihood_gradient_.weighted_residual(i) / scale.range();
+  }
+  const Eigen::Index q = parameter_count();
+  gradient = prior_gradient_;
+  theta_gradient_.noalias() = jacobian_.transpose() * sensitivity_;
+  gradient.head(q).array() += theta_gradient_.array() * theta_slope_.array();
+  gradient(q) += likelihood_gradient_.log_discrepancy_precision;
+  gradient(q + 1) += likelihood_gradient_.log_error_precision;
+  gradient.tail(kernel_dimension_).array() +=
+      likelihood_gradient_.beta.array() * beta_slope_.array();
+
+  auto value = finite_or_error(log_normaliser_ - 0.5 * norm, as_span(theta_));
+  if (value) *value += log_prior_;
   return value;
 }
 
 Eigen::VectorXd Posterior::draw_start(Rng& rng) const {
   const Eigen::Index q = parameter_count();
   Eigen::VectorXd point(dimension());
-  for (Eigen::Index j = 0; j < q; ++j) {
-    const double u = rng.uniform();
-    point(j) = std::log(u) - std::log1p(-u);  // quantile of the standard logistic
-  }
+  for (Eigen::Index j = 0; j < q; ++j) point(j) = rng.normal();
   point(q) = std::log(prior_.discrepancy_precision.quantile(rng.uniform()));
   point(q + 1) = std::log(prior_.error_precision.quantile(rng.uniform()));
-  for (Eigen::Index s = 0; s < kernel_.dimension(); ++s) {
-    point(q + 2 + s) = prior_.rho.logit_quantile(rng.uniform());
+  for (Eigen::Index s = 0; s < kernel_dimension_; ++s) {
+    point(q + 2 + s) = prior_.rho.score_quantile(rng.uniform());
   }
   return point;
 }
 
-Eigen::Index Posterior::dimension() const { return parameter_count() + 2 + kernel_.dimension(); }
+Eigen::Index Posterior::dimension() const { return parameter_count() + 2 + kernel_dimension_; }
 
 Eigen::Index Posterior::parameter_count() const {
   return static_cast<Eigen::Index>(parameters_.size());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/calibration/discrepancy.hpp"
+#include "core/calibration/error_covariance.hpp"
 #include "core/calibration/hyper_prior.hpp"
 #include "core/calibration/normalisation.hpp"
 #include "core/calibration/sampler.hpp"
@@ -54,8 +55,11 @@ struct LogDensityTerms {
 /// a constant.
 ///
 /// As a `Target` its coordinates are unconstrained, with the Jacobians included:
-/// (z_1 … z_q, log lambda_delta, log lambda_epsilon, logit rho_1 … logit rho_S), where
-/// theta_j = F_j^-1(1 / (1 + exp(-z_j))), so that z_j is standard logistic under the prior.
+/// (z_1 … z_q, log lambda_delta, log lambda_epsilon, s_1 … s_S), where theta_j = F_j^-1(Phi(z_j)),
+/// so that z_j is standard normal under the prior, and s is the score of rho
+/// (`BetaPrior::at_score`). Where the data say nothing the density is a standard normal, which
+/// gradients and random walks both find their way in best; a logistic coordinate has exponential
+/// tails instead.
 ///
 /// Evaluation does not allocate. Assembly and factorisation depend on the hyper-parameters alone
 /// and are kept while those stay the same, which leaves one triangular solve for a change of theta.
@@ -78,6 +82,11 @@ class Posterior final : public Target {
   /// @return the log density in unconstrained coordinates; minus infinity where Sigma has no factor
   ///         even with jitter; not_finite when the model gives a NaN or infinity.
   [[nodiscard]] Result<double> log_density(const Eigen::VectorXd& point) override;
+  [[nodiscard]] bool has_gradient() const override { return model_->has_jacobian(); }
+  /// The gradient by eq. (7)'s derivatives and the chain rule through the coordinates.
+  [[nodiscard]] Result<double> log_density_and_gradient(const Eigen::VectorXd& point,
+                                                        Eigen::VectorXd& gradient) override;
+  [[nodiscard]] double log_prior(const Eigen::VectorXd& point) const override;
   [[nodiscard]] Eigen::VectorXd draw_start(Rng& rng) const override;
 
   /// The density with respect to the natural (theta, lambda_delta, lambda_epsilon, rho), in parts.
@@ -91,15 +100,22 @@ class Posterior final : public Target {
   [[nodiscard]] Result<double> log_likelihood(std::span<const double> theta);
   /// The same of given residuals y - f(theta) (m): one triangular solve.
   [[nodiscard]] double log_likelihood_of_residual(const Eigen::VectorXd& residual);
+  /// y - f(theta) on the normalised scale (m), valid until the next call.
+  [[nodiscard]] const Eigen::VectorXd& residual_at(std::span<const double> theta);
+  /// Sigma^-1 (m x m) at the hyper-parameters set last.
+  void precision(Eigen::MatrixXd& inverse) { covariance_->precision(inverse); }
 
   /// Natural values of a point in unconstrained coordinates; `theta` and `hyper` already sized.
   void to_natural(const Eigen::VectorXd& point, Eigen::Ref<Eigen::VectorXd> theta,
                   Hyperparameters& hyper) const;
 
   [[nodiscard]] Eigen::Index parameter_count() const;
-  [[nodiscard]] Eigen::Index kernel_dimension() const { return kernel_.dimension(); }
-  [[nodiscard]] bool has_output_dimension() const { return kernel_.has_output_dimension(); }
-  [[nodiscard]] Eigen::Index point_count() const { return kernel_.point_count(); }
+  [[nodiscard]] Eigen::Index kernel_dimension() const { return kernel_dimension_; }
+  [[nodiscard]] bool has_output_dimension() const { return has_output_dimension_; }
+  [[nodiscard]] Eigen::Index point_count() const { return data_.values.size(); }
+  [[nodiscard]] const PosteriorData& data() const { return data_; }
+  [[nodiscard]] const std::vector<Parameter>& parameters() const { return parameters_; }
+  [[nodiscard]] const HyperPrior& prior() const { return prior_; }
   /// Factorisations so far that needed jitter.
   [[nodiscard]] long jitter_count() const { return jitter_count_; }
 
@@ -107,31 +123,39 @@ class Posterior final : public Target {
   Posterior(const MonthlyModel& prototype, std::vector<Parameter> parameters, PosteriorData data,
             HyperPrior prior);
 
-  void add_weights();
-  void assemble(double jitter);
-  [[nodiscard]] bool factorise();
-  [[nodiscard]] double log_prior_unconstrained(const Eigen::VectorXd& point) const;
+  /// What the point in unconstrained coordinates means, with the slopes of the coordinates.
+  /// @return false where no double is left: nobody goes there.
+  [[nodiscard]] bool place(const Eigen::VectorXd& point);
+  [[nodiscard]] bool factorise_here(const Eigen::VectorXd& point);
+  void evaluate_residual(std::span<const double> theta, bool with_jacobian);
+  [[nodiscard]] Result<double> finite_or_error(double value, std::span<const double> theta) const;
 
   std::unique_ptr<MonthlyModel> model_;
   std::vector<Parameter> parameters_;
   PosteriorData data_;
   HyperPrior prior_;
-  double prior_constant_ = 0.0;  ///< Of the hyper-prior densities.
-  DiscrepancyKernel kernel_;
-  Eigen::MatrixXd fixed_;  ///< (m x m) what of Sigma no hyper-parameter changes; lower triangle.
+  double prior_constant_ = 0.0;  ///< Of all prior densities, in the coordinates.
+  Eigen::Index kernel_dimension_;
+  bool has_output_dimension_;
+  std::unique_ptr<ErrorCovariance> covariance_;
 
-  Hyperparameters hyper_;  ///< At which `factor_` stands.
-  Eigen::VectorXd
-      hyper_point_;  ///< The same as unconstrained coordinates, to see whether they moved.
-  Hyperparameters next_hyper_;  ///< Room for those of the point being evaluated.
+  Eigen::VectorXd hyper_point_;  ///< Coordinates at which the factor stands.
   bool has_factor_ = false;
   long jitter_count_ = 0;
   double log_normaliser_ = 0.0;  ///< -1/2 log|Sigma| - m/2 log 2 pi
-  Eigen::MatrixXd factor_;       ///< (m x m) Sigma, then its Cholesky factor; lower triangle.
-  Eigen::VectorXd theta_;
-  Eigen::VectorXd outputs_;   ///< (outputs * months) in units.
-  Eigen::VectorXd residual_;  ///< (m)
-  Eigen::VectorXd whitened_;  ///< (m)
+
+  Eigen::VectorXd theta_;           ///< Of the point being evaluated, as are the six below.
+  Eigen::VectorXd theta_slope_;     ///< d theta_j / d z_j
+  Eigen::VectorXd theta_gradient_;  ///< d log L / d theta_j
+  Hyperparameters hyper_;
+  Eigen::VectorXd beta_slope_;      ///< d beta_s / d score_s
+  Eigen::VectorXd prior_gradient_;  ///< (dimension)
+  double log_prior_ = 0.0;
+  Eigen::VectorXd outputs_;      ///< (outputs * months) in units.
+  Eigen::MatrixXd jacobian_;     ///< (outputs * months x q) in units.
+  Eigen::VectorXd sensitivity_;  ///< (outputs * months) d log L / d outputs
+  Eigen::VectorXd residual_;     ///< (m)
+  LikelihoodGradient likelihood_gradient_;
 };
 
 }  // namespace recald::calibration

@@ -44,12 +44,6 @@ Result<void> check_parameters(const CalibrationProblem& problem) {
   if (problem.parameters.empty()) {
     return failure(ErrorCode::invalid_value, "there is no calibration parameter to calibrate");
   }
-  for (const Parameter& parameter : problem.parameters) {
-    const TriangularPrior& p = parameter.prior;
-    if (auto valid = TriangularPrior::make(p.min, p.mode, p.max); !valid) {
-      return failure(valid.error().code, parameter.name + ": " + valid.error().message);
-    }
-  }
   return {};
 }
 

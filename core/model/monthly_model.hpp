@@ -1,6 +1,7 @@
 /// What every building model looks like to a calibration.
 #pragma once
 
+#include <cassert>
 #include <memory>
 #include <span>
 
@@ -26,6 +27,22 @@ class MonthlyModel {
   ///                 output k in month i, e.g. daily-average consumption in kWh/day. All finite for
   ///                 every theta inside the priors.
   virtual void evaluate(std::span<const double> theta, std::span<double> outputs) = 0;
+
+  /// Whether `evaluate_with_jacobian` may be called: the model knows its derivatives.
+  [[nodiscard]] virtual bool has_jacobian() const { return false; }
+
+  /// The same outputs and their derivatives with respect to theta.
+  /// @param jacobian  (output_count * month_count * parameter_count), column-major: the
+  ///                  derivatives of all outputs with respect to theta_0 first.
+  virtual void evaluate_with_jacobian(std::span<const double> theta, std::span<double> outputs,
+                                      std::span<double> jacobian);
 };
+
+inline void MonthlyModel::evaluate_with_jacobian(std::span<const double> theta,
+                                                 std::span<double> outputs,
+                                                 std::span<double> /*jacobian*/) {
+  assert(false && "this model has no Jacobian");
+  evaluate(theta, outputs);
+}
 
 }  // namespace recald

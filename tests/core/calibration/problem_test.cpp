@@ -50,11 +50,6 @@ const Fault kFaults[] = {
      ErrorCode::invalid_value, "the weight of meter_0 is 1.5"},
     {"weight_nan", [](CalibrationProblem& p) { p.outputs[0].weight = kMissing; },
      ErrorCode::invalid_value, "the weight of meter_0"},
-    {"prior_out_of_order",
-     [](CalibrationProblem& p) {
-       p.parameters[1].prior = {20, 10, 30};
-     },
-     ErrorCode::invalid_value, "balance_point: a triangular prior needs min <= mode"},
     {"parameter_missing", [](CalibrationProblem& p) { p.parameters.pop_back(); },
      ErrorCode::invalid_value, "2 calibration parameters, but 1 are given"},
     {"output_missing", [](CalibrationProblem& p) { p.outputs.pop_back(); },

@@ -1,0 +1,25 @@
+/// The few dense kernels that a covariance of some dozen points needs, without allocation.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace recald::calibration {
+
+/// Replaces the lower triangle of `matrix` by its Cholesky factor L.
+/// @return whether there is one; otherwise `matrix` is of no further use.
+[[nodiscard]] bool factorise_in_place(Eigen::MatrixXd& matrix);
+
+/// log|L L'| of a lower factor. NaN, which Eigen's factorisation lets through, stays NaN.
+[[nodiscard]] double log_determinant_of_factor(const Eigen::MatrixXd& factor);
+
+/// Lower triangle of (L L')^-1.
+///
+/// By columns of L^-1 and then their inner products, n^3 / 3 multiplications in all on contiguous
+/// memory: at n = 24 a third of the time of a general triangular solve and product.
+/// @param factor   (n x n) L in the lower triangle.
+/// @param scratch  (n x n), already of that size; L^-1 afterwards, lower triangle.
+/// @param inverse  (n x n), already of that size.
+void invert_factor(const Eigen::MatrixXd& factor, Eigen::MatrixXd& scratch,
+                   Eigen::MatrixXd& inverse);
+
+}  // namespace recald::calibration

@@ -1,0 +1,67 @@
+/// Covariance of everything that separates a measured point from the model's output.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "core/calibration/discrepancy.hpp"
+#include "core/calibration/hyper_prior.hpp"
+
+namespace recald::calibration {
+
+/// Derivatives of the log-likelihood, eq. (7) of the seed.
+struct LikelihoodGradient {
+  /// (m) Sigma^-1 r: the derivative with respect to the model's outputs.
+  Eigen::VectorXd weighted_residual;
+  double log_discrepancy_precision;  ///< With respect to log lambda_delta.
+  double log_error_precision;        ///< With respect to log lambda_epsilon.
+  Eigen::VectorXd beta;              ///< (dimension) with respect to each beta.
+};
+
+/// Sigma(lambda_delta, lambda_epsilon, beta) of eq. (5) of the seed and of what is added to it, for
+/// fixed points. An instance owns its scratch memory; nothing allocates after construction.
+///
+/// Derivatives are those of  -1/2 r' Sigma^-1 r - 1/2 log|Sigma|: with a = Sigma^-1 r and
+/// W = Sigma^-1 - a a',  d/dphi = -1/2 sum_ij W_ij (d Sigma / d phi)_ij.
+class ErrorCovariance {
+ public:
+  virtual ~ErrorCovariance() = default;
+  [[nodiscard]] virtual std::unique_ptr<ErrorCovariance> clone() const = 0;
+
+  /// Assembles and factorises Sigma + jitter I. @return whether there is a factor.
+  [[nodiscard]] virtual bool factorise(const Hyperparameters& hyper, double jitter) = 0;
+
+  // All below are of the factor made last.
+  [[nodiscard]] virtual double log_determinant() const = 0;
+  /// r' Sigma^-1 r: one triangular solve.
+  [[nodiscard]] virtual double squared_norm(const Eigen::VectorXd& residual) = 0;
+  /// The same, and the derivatives of the log-likelihood at this residual.
+  virtual double squared_norm_and_gradient(const Eigen::VectorXd& residual,
+                                           LikelihoodGradient& gradient) = 0;
+  /// Sigma^-1 (m x m), whole. For assessments, not for samplers: it may allocate.
+  virtual void precision(Eigen::MatrixXd& inverse) = 0;
+};
+
+/// Any points, any known extra covariance:  Sigma = C + F + I / lambda_epsilon.
+///
+/// @param fixed  F (m x m), lower triangle.
+/// @note  m^3 / 6 multiplications to factorise, m^3 / 3 more for a gradient.
+[[nodiscard]] std::unique_ptr<ErrorCovariance> make_dense_covariance(DiscrepancyKernel kernel,
+                                                                     Eigen::MatrixXd fixed);
+
+/// Every output measured in every month, each point with the same known extra variance v. Then
+///
+///     Sigma = (c 1 1' + (1 - c) I) (x) R / lambda_delta + (1 / lambda_epsilon + v) I
+///
+/// with R the correlation of months and c = exp(-beta_out) that of outputs. The outputs' mean and
+/// their contrasts decouple: an orthogonal turn over outputs leaves one block with
+/// s = 1 + (K - 1) c and K - 1 equal ones with s = 1 - c, each  s R / lambda_delta + (…) I  of the
+/// size of one output. Two factors of n x n instead of one of K n x K n: for two outputs a quarter
+/// of the multiplications, and exact.
+///
+/// @pre kernel.is_complete()
+[[nodiscard]] std::unique_ptr<ErrorCovariance> make_decoupled_covariance(DiscrepancyKernel kernel,
+                                                                         double extra_variance);
+
+}  // namespace recald::calibration
