@@ -3,15 +3,17 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
+#include <optional>
+#include <string_view>
 
 #include "core/random/rng.hpp"
 #include "core/result.hpp"
 
 namespace recald::calibration {
 
-/// A log density on R^d, up to a constant, that a sampler explores.
-///
-/// An instance owns its scratch memory and serves one chain at a time.
+/// A log density on R^d that a sampler explores. An instance owns its scratch memory and serves one
+/// chain at a time.
 class Target {
  public:
   virtual ~Target() = default;
@@ -20,24 +22,59 @@ class Target {
 
   /// @param point  (dimension)
   /// @return the log density, minus infinity where the density is zero; or an error that no choice
-  /// of
-  ///         the sampler can repair, such as not_finite from the model.
+  ///         of the sampler can repair, such as not_finite from the model.
   [[nodiscard]] virtual Result<double> log_density(const Eigen::VectorXd& point) = 0;
 
-  /// A point to start from, more spread out than the density itself; a draw from the prior.
+  /// Whether `log_density_and_gradient` may be called.
+  [[nodiscard]] virtual bool has_gradient() const { return false; }
+
+  /// The same, and its gradient. Where the density is zero the gradient is left undefined.
+  /// @param gradient  (dimension), already of that size.
+  [[nodiscard]] virtual Result<double> log_density_and_gradient(const Eigen::VectorXd& point,
+                                                                Eigen::VectorXd& gradient);
+
+  /// The log of the part of the density that can be sampled directly by `draw_start`: the prior,
+  /// with its constants. Tempering raises the rest, `log_density - log_prior`, to a power, so that
+  /// the evidence comes out as the integral of the rest over the prior.
+  [[nodiscard]] virtual double log_prior(const Eigen::VectorXd& point) const = 0;
+
+  /// A draw from the prior: a point to start from, more spread out than the density itself.
   [[nodiscard]] virtual Eigen::VectorXd draw_start(Rng& rng) const = 0;
 };
 
+/// Where a chain stands and how it has learnt to move; enough to continue it.
+struct ChainState {
+  Eigen::VectorXd position;    ///< (d)
+  double scale = 1.0;          ///< Step size or scale of the proposal.
+  Eigen::MatrixXd covariance;  ///< (d x d) shape of the proposal, or inverse metric.
+};
+
 struct SamplerOptions {
-  int iterations = 30'000;  ///< All of them, burn-in included.
-  int burn_in = 3'000;  ///< Dropped; the only time a sampler may adapt. 0 < burn_in < iterations.
+  int iterations = 30'000;  ///< All of them, burn-in included. Of `smc`: particles.
+  int burn_in = 3'000;      ///< Dropped; the only time a sampler may adapt.
+  /// Where to begin, instead of a draw from the prior. With burn_in = 0 the chain that ended so is
+  /// continued: its scale and covariance stay as they are.
+  std::optional<ChainState> begin_at = {};
+};
+
+/// What a chain did, besides its draws. Absent figures are NaN.
+struct ChainStatistics {
+  double acceptance_rate = std::numeric_limits<double>::quiet_NaN();  ///< Of the kept iterations.
+  long divergences = 0;       ///< Kept trajectories whose energy error passed all bounds.
+  long depth_limit_hits = 0;  ///< Kept trajectories cut at the largest tree depth.
+  double e_bfmi = std::numeric_limits<double>::quiet_NaN();  ///< Betancourt (2016); below 0.3 bad.
+  long density_evaluations = 0;                              ///< Burn-in included.
+  long gradient_evaluations = 0;                             ///< Burn-in included.
+  /// log of the integral of density over prior times prior; `smc` alone knows it.
+  double log_evidence = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Draws of one chain after burn-in, in the target's coordinates.
 struct Chain {
-  Eigen::MatrixXd draws;        ///< (iterations - burn_in x dimension)
-  Eigen::VectorXd log_density;  ///< (iterations - burn_in)
-  double acceptance_rate;       ///< Of the kept iterations.
+  Eigen::MatrixXd draws;        ///< (kept x dimension)
+  Eigen::VectorXd log_density;  ///< (kept)
+  ChainStatistics statistics;
+  ChainState last;  ///< To continue from.
 };
 
 /// Told from time to time how many iterations are done; returns false to stop.
@@ -45,11 +82,13 @@ using SamplerObserver = std::function<bool(int done, int total)>;
 
 /// One chain. The same target, options and generator state give the same bytes.
 ///
-/// @return the chain, or an error of the target, or cancelled.
-using Sampler = std::function<Result<Chain>(Target& target, const SamplerOptions& options, Rng& rng,
-                                            const SamplerObserver& observer)>;
+/// @return the chain, or an error of the target, or invalid_value for options that make no sense,
+///         or cancelled.
+using SampleFunction = std::function<Result<Chain>(Target& target, const SamplerOptions& options,
+                                                   Rng& rng, const SamplerObserver& observer)>;
 
-/// @return invalid_value unless 0 < burn_in < iterations.
+/// @return invalid_value unless 0 < burn_in < iterations, or burn_in = 0 and there is a state to
+///         continue from.
 [[nodiscard]] Result<void> check_options(const SamplerOptions& options);
 
 }  // namespace recald::calibration
