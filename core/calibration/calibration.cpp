@@ -1,8 +1,6 @@
 #include "core/calibration/calibration.hpp"
 
 #include <algorithm>
-#include <cassert>
-#include <optional>
 #include <utility>
 
 #include "core/calibration/posterior.hpp"
@@ -16,22 +14,13 @@ namespace {
 constexpr int kDesignRunsMin = 20;
 /// Chains draw from streams 0, 1, …; the design's stream lies beyond any number of chains.
 constexpr std::uint64_t kDesignStream = std::uint64_t{1} << 32;
+constexpr std::uint64_t kBridgeStream = std::uint64_t{1} << 35;
 
 Result<void> check_calibration_options(const CalibrationOptions& options) {
-  if (options.chains < 2) {
-    return failure(ErrorCode::invalid_value,
-                   "a calibration needs at least 2 chains to tell whether they agree, but " +
-                       std::to_string(options.chains) + " is asked for");
-  }
   if (options.thinned_draws < 1) {
     return failure(ErrorCode::invalid_value, "at least 1 thinned draw has to be asked for");
   }
-  if (auto ok = check_options(options.sampling); !ok) return ok;
-  if (options.sampling.iterations - options.sampling.burn_in < 8) {
-    return failure(ErrorCode::invalid_value,
-                   "at least 8 iterations have to remain after burn-in to judge convergence");
-  }
-  return {};
+  return check_sampling(options.sampling);
 }
 
 HyperPrior chosen_hyper_prior(const CalibrationOptions& options, double pooled_variance) {
@@ -50,51 +39,30 @@ Result<void> check_design(const DesignRuns& design, const CalibrationProblem& pr
                      std::to_string(columns) + " outputs and months");
 }
 
-struct SampledChain {
-  ChainDraws draws;
-  long jitter_count;
-};
-
-Result<SampledChain> run_chain(const Posterior& prototype, int k, const CalibrationOptions& options,
-                               const RunContext& context) {
-  Posterior posterior(prototype);
-  Rng rng(context.seed, static_cast<std::uint64_t>(k));
-  const SamplerObserver observer = [&context, k](int done, int total) {
-    return !context.observer || context.observer({Progress::Stage::sampling, k, done, total});
-  };
-  const auto chain = options.sampler(posterior, options.sampling, rng, observer);
-  if (!chain) return tl::unexpected(chain.error());
-  return SampledChain{to_natural_units(*chain, posterior), posterior.jitter_count()};
-}
-
-Result<std::vector<SampledChain>> run_chains(const Posterior& prototype,
-                                             const CalibrationOptions& options,
-                                             const RunContext& context) {
-  std::vector<std::optional<Result<SampledChain>>> slots(static_cast<std::size_t>(options.chains));
-  context.executor(slots.size(), [&](std::size_t k) {
-    slots[k] = run_chain(prototype, static_cast<int>(k), options, context);
-  });
-  std::vector<SampledChain> chains;
-  for (auto& slot : slots) {
-    if (!*slot) return tl::unexpected(slot->error());
-    chains.push_back(std::move(**slot));
-  }
-  return chains;
-}
-
 void append(Findings& all, Findings more) {
   std::move(more.begin(), more.end(), std::back_inserter(all));
 }
 
-void add_posterior_findings(const CalibrationProblem& problem, const ConvergenceGate& gate,
-                            Calibration& c) {
+void add_posterior_findings(const CalibrationProblem& problem, Calibration& c) {
   append(c.findings, edge_findings(problem.parameters, c.chains));
   append(c.findings, conflict_findings(c.hyperparameters[0], c.hyper_prior.discrepancy_precision));
   append(c.findings, conflict_findings(c.hyperparameters[1], c.hyper_prior.error_precision));
-  Findings unconverged = gate_findings(c.parameters, gate);
-  append(unconverged, gate_findings(c.hyperparameters, gate));
-  c.converged = unconverged.empty();
-  append(c.findings, std::move(unconverged));
+}
+
+/// What the posterior is worth, beyond its draws. None of it is a condition: where one of these
+/// cannot be had it is left out.
+void check_model(const Posterior& prototype, const Eigen::MatrixXd& points,
+                 const CalibrationProblem& problem, const RunContext& context, Calibration& c) {
+  Posterior posterior(prototype);
+  Rng rng(context.seed, kBridgeStream);
+  if (auto evidence = bridge_log_evidence(posterior, points, rng)) c.evidence = *evidence;
+  append(c.findings, evidence_findings(c.sampling, c.evidence));
+  for (const int months : {1, 3}) {
+    if (auto score = leave_out_score(posterior, c.chains, months)) c.leave_out.push_back(*score);
+  }
+  c.weak_directions = find_weak_directions(posterior, c.chains, c.posterior_mean);
+  append(c.findings, weak_direction_findings(c.weak_directions, problem.parameters));
+  append(c.findings, discrepancy_findings(problem.outputs, c.normalisation, c.chains));
 }
 
 }  // namespace
@@ -141,25 +109,21 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
       Posterior::make(prototype, problem.parameters,
                       normalise_problem(problem, result.normalisation), result.hyper_prior);
   if (!posterior) return tl::unexpected(posterior.error());
-  auto chains = run_chains(*posterior, options, context);
-  if (!chains) return tl::unexpected(chains.error());
-  long jitter_count = 0;
-  for (SampledChain& chain : *chains) {
-    jitter_count += chain.jitter_count;
-    result.chains.push_back(std::move(chain.draws));
-  }
-  append(result.findings, jitter_findings(jitter_count));
-
-  result.parameters = summarise_parameters(problem.parameters, result.chains, context.executor);
-  const auto names = hyperparameter_names(problem.inputs.names, posterior->has_output_dimension());
-  result.hyperparameters =
-      summarise_hyperparameters(result.hyper_prior, names, result.chains, context.executor);
+  auto sampled = sample_posterior(*posterior, problem.inputs.names, options.sampling, context);
+  if (!sampled) return tl::unexpected(std::move(sampled.error()));
+  result.chains = std::move(sampled->chains);
+  result.parameters = std::move(sampled->parameters);
+  result.hyperparameters = std::move(sampled->hyperparameters);
+  result.sampling = std::move(sampled->report);
+  result.converged = sampled->converged;
   result.posterior_mean.resize(static_cast<Eigen::Index>(result.parameters.size()));
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     result.posterior_mean(static_cast<Eigen::Index>(j)) = result.parameters[j].mean;
   }
   result.thinned = thin(result.chains, options.thinned_draws);
-  add_posterior_findings(problem, options.gate, result);
+  add_posterior_findings(problem, result);
+  append(result.findings, std::move(sampled->findings));
+  check_model(*posterior, sampled->points, problem, context, result);
   return result;
 }
 

@@ -3,25 +3,24 @@
 /// Method of Li, Gu, Augenbroe, Wu, Brown (2015), "A generic approach to calibrate building energy
 /// models under uncertainty using Bayesian inference", Building Simulation ("the seed"): triangular
 /// priors, a Latin hypercube of runs that fixes the normalisation, a Gaussian process for what the
-/// model lacks, random-walk Metropolis, and draws to push back through the model.
+/// model lacks, Markov chains, and draws to push back through the model.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <functional>
-#include <string>
+#include <optional>
 #include <variant>
 #include <vector>
 
+#include "core/calibration/bridge.hpp"
 #include "core/calibration/draws.hpp"
 #include "core/calibration/findings.hpp"
 #include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/leave_out.hpp"
 #include "core/calibration/normalisation.hpp"
 #include "core/calibration/problem.hpp"
-#include "core/calibration/sampler.hpp"
-#include "core/calibration/seed_rwm.hpp"
-#include "core/calibration/summary.hpp"
-#include "core/executor.hpp"
+#include "core/calibration/sampling.hpp"
+#include "core/calibration/weak_directions.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/result.hpp"
 
@@ -30,31 +29,8 @@ namespace recald::calibration {
 struct CalibrationOptions {
   int design_runs = 200;  ///< >= 20
   std::variant<HyperPriorProfile, HyperPrior> hyper_prior = HyperPriorProfile::scaled;
-  SamplerOptions sampling;
-  Sampler sampler = seed_rwm;
-  int chains = 4;           ///< >= 2, or R-hat says little. Chain k draws from Rng{seed, k}.
+  SamplingOptions sampling;
   int thinned_draws = 270;  ///< Equally spaced over the pooled chains.
-  ConvergenceGate gate;
-};
-
-/// What is being done. Comes from any thread the executor uses, so the observer has to be safe for
-/// that.
-struct Progress {
-  enum class Stage { design, sampling };
-  Stage stage;
-  int chain;  ///< 0 during the design.
-  int done;   ///< Design runs, or iterations of this chain.
-  int total;
-};
-
-/// Returns false to cancel.
-using Observer = std::function<bool(const Progress&)>;
-
-/// How a caller takes part: chance, threads, and the wish to stop.
-struct RunContext {
-  std::uint64_t seed = 1;
-  ForEachIndex executor = for_each_index_serially;
-  Observer observer = {};  ///< May be empty.
 };
 
 /// The model at every point of a Latin hypercube through the priors.
@@ -71,8 +47,14 @@ struct Calibration {
   std::vector<ChainDraws> chains;
   std::vector<Summary> parameters;       ///< (q)
   std::vector<Summary> hyperparameters;  ///< lambda_delta, lambda_eps, beta_<input> …, beta_out
-  Eigen::VectorXd posterior_mean;        ///< (q) theta, the point estimate.
+  SamplingReport sampling;
+  Eigen::VectorXd posterior_mean;  ///< (q) theta, the point estimate.
   ThinnedDraws thinned;
+  /// log p(y) by bridge sampling; absent where it was not found. Compare models by it only where
+  /// both calibrations converged, and know that it moves with the width of the priors.
+  std::optional<BridgeEstimate> evidence;
+  std::vector<LeaveOutScore> leave_out;        ///< Single months, then quarters of a year.
+  std::vector<WeakDirection> weak_directions;  ///< What the data leave as the priors had it.
   bool converged;     ///< The gate holds for every parameter and hyper-parameter.
   Findings findings;  ///< Everything to be said in words; empty for a calibration without a remark.
   std::uint64_t seed;

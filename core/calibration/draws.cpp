@@ -67,9 +67,12 @@ std::vector<Summary> summarise_all(const std::vector<Quantity>& quantities,
 
 ChainDraws to_natural_units(const Chain& chain, const Posterior& posterior) {
   const Eigen::Index n = chain.draws.rows();
-  ChainDraws draws{
-      Eigen::MatrixXd(n, posterior.parameter_count()),  Eigen::VectorXd(n), Eigen::VectorXd(n),
-      Eigen::MatrixXd(n, posterior.kernel_dimension()), chain.log_density,  chain.acceptance_rate};
+  ChainDraws draws{Eigen::MatrixXd(n, posterior.parameter_count()),
+                   Eigen::VectorXd(n),
+                   Eigen::VectorXd(n),
+                   Eigen::MatrixXd(n, posterior.kernel_dimension()),
+                   chain.log_density,
+                   chain.statistics.acceptance_rate};
   Eigen::VectorXd theta(posterior.parameter_count());
   Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(posterior.kernel_dimension())};
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -18,6 +18,14 @@ std::string_view to_string(FindingKind kind) {
       return "not_converged";
     case FindingKind::prior_driven:
       return "prior_driven";
+    case FindingKind::sampler_replaced:
+      return "sampler_replaced";
+    case FindingKind::weak_direction:
+      return "weak_direction";
+    case FindingKind::evidence_disagrees:
+      return "evidence_disagrees";
+    case FindingKind::discrepancy_size:
+      return "discrepancy_size";
     case FindingKind::jitter_used:
       return "jitter_used";
   }

@@ -14,6 +14,10 @@ enum class FindingKind {
   hyperprior_conflict,  ///< A precision's posterior mean outside its prior's 1-99 % range.
   not_converged,        ///< The convergence gate failed for a quantity.
   prior_driven,         ///< A parameter follows the discrepancy prior rather than the data.
+  sampler_replaced,     ///< Chains could not agree and populations took their place.
+  weak_direction,       ///< A combination of parameters that the data leave as the prior had it.
+  evidence_disagrees,   ///< Two ways to the evidence differ by more than half a nat.
+  discrepancy_size,     ///< What the model misses, and so what cannot be read from it.
   jitter_used,          ///< Some covariance had no factor until jitter was added.
 };
 

@@ -9,9 +9,15 @@
 namespace recald::calibration {
 namespace {
 
-
 constexpr double kEdgeWidth = 0.05;  // of the prior's range
 constexpr double kEdgeMass = 0.20;
+constexpr double kEvidenceTolerance = 0.5;  // nats
+
+/// 287.4 -> 290: enough for a standard deviation in a sentence.
+double two_digits(double value) {
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::round(value / step) * step;
+}
 
 Finding edge_finding(const Parameter& parameter, double share, double end) {
   std::string sentence = percent_text(share);
@@ -31,22 +37,22 @@ Findings edge_findings(const std::vector<Parameter>& parameters,
                        const std::vector<ChainDraws>& chains) {
   Findings findings;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const TriangularPrior& prior = parameters[j].prior;
-    const double width = kEdgeWidth * (prior.max - prior.min);
+    const Prior& prior = parameters[j].prior;
+    const double width = kEdgeWidth * (prior.max() - prior.min());
     double low = 0.0;
     double high = 0.0;
     double total = 0.0;
     for (const ChainDraws& chain : chains) {
       const auto values = chain.theta.col(static_cast<Eigen::Index>(j)).array();
-      low += static_cast<double>((values < prior.min + width).count());
-      high += static_cast<double>((values > prior.max - width).count());
+      low += static_cast<double>((values < prior.min() + width).count());
+      high += static_cast<double>((values > prior.max() - width).count());
       total += static_cast<double>(values.size());
     }
     if (low / total > kEdgeMass) {
-      findings.push_back(edge_finding(parameters[j], low / total, prior.min));
+      findings.push_back(edge_finding(parameters[j], low / total, prior.min()));
     }
     if (high / total > kEdgeMass) {
-      findings.push_back(edge_finding(parameters[j], high / total, prior.max));
+      findings.push_back(edge_finding(parameters[j], high / total, prior.max()));
     }
   }
   return findings;
@@ -62,6 +68,62 @@ Findings conflict_findings(const Summary& precision, const GammaPrior& prior) {
                number_text(precision.mean) + ", prior 1-99 % range " + number_text(low) + " to " +
                number_text(high) + ", that is a standard deviation of " + sd(precision.mean) +
                " of the output range where " + sd(high) + " to " + sd(low) + " was believed."}};
+}
+
+Findings trajectory_findings(const std::vector<ChainStatistics>& chains,
+                             const ConvergenceGate& gate) {
+  Findings findings;
+  long divergences = 0;
+  for (const ChainStatistics& chain : chains) divergences += chain.divergences;
+  if (divergences > gate.divergences_max) {
+    findings.push_back({FindingKind::not_converged, "trajectories",
+                        std::to_string(divergences) +
+                            " trajectories of the sampler diverged: there are places that it could "
+                            "not enter, and the posterior's figures leave them out."});
+  }
+  for (std::size_t k = 0; k < chains.size(); ++k) {
+    if (std::isnan(chains[k].e_bfmi) || chains[k].e_bfmi >= gate.e_bfmi_min) continue;
+    findings.push_back({FindingKind::not_converged, "energy",
+                        "Chain " + std::to_string(k + 1) +
+                            " explores the energies too slowly (E-BFMI " +
+                            number_text(chains[k].e_bfmi, 2) + ", below " +
+                            number_text(gate.e_bfmi_min) + "): its tails may be missing."});
+  }
+  return findings;
+}
+
+Findings evidence_findings(const SamplingReport& report,
+                           const std::optional<BridgeEstimate>& bridge) {
+  if (!bridge || std::isnan(report.log_evidence)) return {};
+  if (std::abs(bridge->log_evidence - report.log_evidence) <= kEvidenceTolerance) return {};
+  return {{FindingKind::evidence_disagrees, "evidence",
+           "Two ways to the model's evidence disagree: log p(y) is " +
+               number_text(report.log_evidence, 5) + " by populations and " +
+               number_text(bridge->log_evidence, 5) +
+               " by a bridge. Do not compare models by either."}};
+}
+
+Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
+                              const Normalisation& normalisation,
+                              const std::vector<ChainDraws>& chains) {
+  double sd = 0.0;
+  for (const ChainDraws& chain : chains) {
+    sd += chain.discrepancy_precision.array().rsqrt().mean() / static_cast<double>(chains.size());
+  }
+  std::string list;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    if (outputs[k].measured_months() == 0) continue;
+    double sum = 0.0;
+    for (const double value : outputs[k].values) sum += std::isnan(value) ? 0.0 : value;
+    const double in_unit = sd * normalisation.scales[k].range();
+    const double mean = sum / outputs[k].measured_months();
+    list += (list.empty() ? "" : ", ") + outputs[k].name + " " + number_text(two_digits(in_unit)) + " " +
+            outputs[k].unit + " (" + percent_text(in_unit / std::abs(mean)) + " of its mean)";
+  }
+  if (list.empty()) return {};
+  return {{FindingKind::discrepancy_size, "discrepancy",
+           "What the model misses, month by month, has a standard deviation of: " + list +
+               ". Differences smaller than that, savings for example, cannot be read from it."}};
 }
 
 Findings jitter_findings(long count) {

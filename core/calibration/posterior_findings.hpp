@@ -1,11 +1,15 @@
 /// What a posterior says against the model or the beliefs that went into it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "core/calibration/bridge.hpp"
 #include "core/calibration/draws.hpp"
 #include "core/calibration/findings.hpp"
 #include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/normalisation.hpp"
+#include "core/calibration/sampling.hpp"
 #include "core/calibration/summary.hpp"
 #include "core/model/parameter.hpp"
 
@@ -19,6 +23,22 @@ namespace recald::calibration {
 
 /// `hyperprior_conflict`: the posterior mean of a precision outside its prior's 1-99 % range.
 [[nodiscard]] Findings conflict_findings(const Summary& precision, const GammaPrior& prior);
+
+/// `not_converged`: trajectories that diverged, or an energy that a chain explores too slowly.
+/// Where that happens part of the posterior may never have been visited, whatever R-hat says.
+[[nodiscard]] Findings trajectory_findings(const std::vector<ChainStatistics>& chains,
+                                           const ConvergenceGate& gate);
+
+/// `evidence_disagrees`: bridge and populations, where both were had, differ by more than 0.5.
+[[nodiscard]] Findings evidence_findings(const SamplingReport& report,
+                                         const std::optional<BridgeEstimate>& bridge);
+
+/// `discrepancy_size`: the sd of the discrepancy of each measured output in its unit and as a share
+/// of the measured mean, in one sentence. Nothing smaller can be read from the model, and the
+/// discrepancy belongs to the months that were measured: it is never carried elsewhere.
+[[nodiscard]] Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
+                                            const Normalisation& normalisation,
+                                            const std::vector<ChainDraws>& chains);
 
 /// `jitter_used`: `count` covariances had no Cholesky factor as they were.
 [[nodiscard]] Findings jitter_findings(long count);

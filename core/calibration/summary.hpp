@@ -37,6 +37,8 @@ struct ConvergenceGate {
   double rhat_max = 1.01;
   double ess_min = 400.0;        ///< Bulk and tail, over all chains.
   double mcse_share_max = 0.05;  ///< Of the posterior sd.
+  double e_bfmi_min = 0.3;       ///< Of every chain that has one.
+  long divergences_max = 0;      ///< Over all chains.
 };
 
 /// One finding a failing quantity; empty: the gate passes.

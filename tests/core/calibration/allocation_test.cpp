@@ -7,6 +7,7 @@
 
 #include "core/calibration/posterior.hpp"
 #include "core/calibration/seed_rwm.hpp"
+#include "tests/core/calibration/small_case.hpp"
 #include "tests/core/calibration/toy_models.hpp"
 #include "tests/support/allocations.hpp"
 
@@ -47,15 +48,43 @@ TEST(Allocation, NoneInAnEvaluationOfThePosterior) {
   }
 }
 
+TEST(Allocation, NoneInAGradient) {
+  constexpr int n = 24;
+  PosteriorData general;
+  general.month_inputs = Eigen::VectorXd::LinSpaced(n, 0.0, 1.0);
+  for (int i = 0; i < n; ++i) general.points.push_back({0, i});
+  general.values = Eigen::VectorXd::Constant(n, 0.4);
+  general.extra_variances = Eigen::VectorXd::LinSpaced(n, 0.0, 1e-3);
+  general.common_errors.resize(n, 0);
+  general.scales = {{0.0, 1.0}};
+  general.weights = {1.0};
+  Posterior dense = Posterior::make(RampModel(n), {{"level", "-", {0.0, 0.5, 1.0}}}, general,
+                                    make_hyper_prior(HyperPriorProfile::scaled, 0.05))
+                        .value();
+  Posterior decoupled = small_posterior(0.03);
+  for (Posterior* posterior : {&dense, &decoupled}) {
+    Rng rng(1);
+    Eigen::VectorXd point = posterior->draw_start(rng);
+    Eigen::VectorXd gradient(point.size());
+    const NoEigenAllocation guard;
+    const long before = testing::allocation_count();
+    for (int i = 0; i < 50; ++i) {
+      point(i % point.size()) += 0.01;
+      ASSERT_TRUE(posterior->log_density_and_gradient(point, gradient).has_value());
+    }
+    EXPECT_EQ(testing::allocation_count() - before, 0);
+  }
+}
+
 // From the first observation after burn-in to the last; adaptation before may allocate.
 TEST(Allocation, NoneInAKeptIterationOfTheRandomWalk) {
   Posterior posterior = toy_posterior(24);
   Rng rng(2);
   long first = -1;
   long last = -1;
-  const SamplerObserver observer = [&](int done, int) {
+  const SamplerObserver observer = [&](int done, int total) {
     if (done < 1000) return true;
-    Eigen::internal::set_is_malloc_allowed(false);
+    Eigen::internal::set_is_malloc_allowed(done == total);  // what follows is no iteration
     if (first < 0) first = testing::allocation_count();
     last = testing::allocation_count();
     return true;

@@ -16,10 +16,13 @@ namespace {
 
 using testing::HasSubstr;
 
-CalibrationOptions short_options() {
+CalibrationOptions short_options(int iterations = 4000, int burn_in = 1000) {
   CalibrationOptions options;
   options.design_runs = 60;
-  options.sampling = {4000, 1000};
+  options.sampling.sampler = find_sampler("seed_rwm").value();
+  options.sampling.iterations = iterations;
+  options.sampling.burn_in = burn_in;
+  options.sampling.doublings_max = 0;
   return options;
 }
 
@@ -36,9 +39,8 @@ bool has(const Findings& findings, FindingKind kind, const std::string& subject)
 
 // The whole way on a problem whose truth is known up to a wiggle of 2 %.
 TEST(Calibrate, FindsTheParametersOfTheToyBuilding) {
-  CalibrationOptions options = short_options();
-  options.sampling = {20'000, 3'000};
-  options.gate = {.rhat_max = 1.03, .ess_min = 100.0, .mcse_share_max = 0.1};
+  CalibrationOptions options = short_options(20'000, 3'000);
+  options.sampling.gate = {.rhat_max = 1.03, .ess_min = 100.0, .mcse_share_max = 0.1};
   const auto c = calibrate(toy_model(2, 24), toy_problem(2, 24), options, {.seed = 3});
   ASSERT_TRUE(c.has_value()) << c.error().message;
 
@@ -94,18 +96,17 @@ TEST(Calibrate, ThreadsDoNotChangeTheBytes) {
 // Chain k depends on (seed, k) only, so asking for more chains leaves the first ones alone.
 TEST(Calibrate, MoreChainsLeaveTheFirstOnesAlone) {
   CalibrationOptions options = short_options();
-  options.chains = 2;
+  options.sampling.chains = 2;
   const auto two = calibrate(toy_model(1, 12), toy_problem(1, 12), options, {.seed = 5});
-  options.chains = 3;
+  options.sampling.chains = 3;
   const auto three = calibrate(toy_model(1, 12), toy_problem(1, 12), options, {.seed = 5});
   EXPECT_TRUE(two->chains[1].theta == three->chains[1].theta);
 }
 
 TEST(Calibrate, StopsWhenToldAtAnyStep) {
   int calls_in_all = 0;
-  CalibrationOptions options = short_options();
+  CalibrationOptions options = short_options(1000, 500);
   options.design_runs = 20;
-  options.sampling = {1000, 500};
   const auto run = [&](int stop_at) {
     calls_in_all = 0;
     return calibrate(
@@ -168,8 +169,7 @@ TEST(Calibrate, APosteriorAtTheEdgeOfItsPriorIsFound) {
 }
 
 TEST(Calibrate, ShortChainsFailTheGateAndSaySo) {
-  CalibrationOptions options = short_options();
-  options.sampling = {300, 100};
+  const CalibrationOptions options = short_options(300, 100);
   const auto c = calibrate(toy_model(2, 12), toy_problem(2, 12), options, {.seed = 1});
   ASSERT_TRUE(c.has_value());
   EXPECT_FALSE(c->converged);
@@ -217,14 +217,10 @@ TEST(Calibrate, OptionsOutOfRangeAreRefused) {
   options.design_runs = 5;
   EXPECT_THAT(message(options), HasSubstr("at least 20 runs, but 5"));
   options = short_options();
-  options.chains = 1;
+  options.sampling.chains = 1;
   EXPECT_THAT(message(options), HasSubstr("at least 2 chains"));
-  options = short_options();
-  options.sampling.burn_in = options.sampling.iterations;
-  EXPECT_THAT(message(options), HasSubstr("burn-in is 4000 of 4000"));
-  options = short_options();
-  options.sampling = {1004, 1000};
-  EXPECT_THAT(message(options), HasSubstr("at least 8 iterations"));
+  EXPECT_THAT(message(short_options(4000, 4000)), HasSubstr("burn-in is 4000 of 4000"));
+  EXPECT_THAT(message(short_options(1004, 1000)), HasSubstr("at least 8 iterations"));
   options = short_options();
   options.thinned_draws = 0;
   EXPECT_THAT(message(options), HasSubstr("at least 1 thinned draw"));

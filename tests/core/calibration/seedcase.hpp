@@ -3,11 +3,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -16,6 +14,7 @@
 #include "core/calibration/normalisation.hpp"
 #include "core/calibration/posterior.hpp"
 #include "core/calibration/problem.hpp"
+#include "core/model/metamodel/builders.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter.hpp"
 
@@ -40,76 +39,31 @@ inline std::vector<std::vector<std::string>> read_rows(const std::filesystem::pa
   return rows;
 }
 
-/// Given regression on scaled inputs: columns drybulb, rh, winddir, windspeed, out, then theta.
-class RegressionModel final : public MonthlyModel {
- public:
-  RegressionModel(const std::vector<std::vector<std::string>>& terms, Eigen::MatrixXd weather)
-      : weather_(std::move(weather)) {
-    for (const auto& row : terms) {
-      const auto colon = row[0].find(':');
-      const double coefficient = std::stod(row[1]);
-      if (row[0] == "(Intercept)") {
-        terms_.push_back({-1, -1, coefficient});
-      } else if (colon == std::string::npos) {
-        terms_.push_back({column(row[0]), -1, coefficient});
-      } else {
-        terms_.push_back(
-            {column(row[0].substr(0, colon)), column(row[0].substr(colon + 1)), coefficient});
-      }
-    }
-  }
-
-  [[nodiscard]] std::unique_ptr<MonthlyModel> clone() const override {
-    return std::make_unique<RegressionModel>(*this);
-  }
-  [[nodiscard]] int parameter_count() const override { return 6; }
-  [[nodiscard]] int output_count() const override { return 2; }
-  [[nodiscard]] int month_count() const override { return static_cast<int>(weather_.rows()); }
-
-  void evaluate(std::span<const double> theta, std::span<double> outputs) override {
-    std::copy(theta.begin(), theta.end(), d_.begin() + 5);
-    for (int out = 0; out < 2; ++out) {
-      d_[4] = out;
-      for (Eigen::Index i = 0; i < weather_.rows(); ++i) {
-        for (std::size_t s = 0; s < 4; ++s) d_[s] = weather_(i, static_cast<Eigen::Index>(s));
-        double sum = 0.0;
-        for (const auto& [a, b, coefficient] : terms_) {
-          sum += coefficient * (a < 0 ? 1.0 : at(a)) * (b < 0 ? 1.0 : at(b));
-        }
-        outputs[static_cast<std::size_t>(out * weather_.rows() + i)] = sum;
-      }
-    }
-  }
-
- private:
-  struct Term {
-    int a;
-    int b;
-    double coefficient;
-  };
-
-  [[nodiscard]] double at(int column) const { return d_[static_cast<std::size_t>(column)]; }
-
-  static int column(const std::string& name) {
-    static const std::map<std::string, int> columns{
-        {"drybulb", 0},   {"rh", 1},       {"winddir", 2},    {"windspeed", 3},
-        {"out", 4},       {"t_cool", 5},   {"occ_office", 6}, {"occ_class", 7},
-        {"oa_office", 8}, {"oa_class", 9}, {"oa_lab", 10}};
-    return columns.at(name);
-  }
-
-  Eigen::MatrixXd weather_;
-  std::vector<Term> terms_;
-  std::array<double, 11> d_{};
-};
-
 /// Everything on the scaled axes of the case's own statement: theta in (0, 1), outputs normalised.
 struct Seedcase {
   std::vector<Parameter> parameters;
-  std::unique_ptr<RegressionModel> model;
+  std::unique_ptr<MonthlyModel> model;
   PosteriorData data;
   double pooled_variance;
 };
+
+/// The case's coefficients on axes that are scaled already: every scale is {0, 1}.
+inline std::unique_ptr<MonthlyModel> given_model(const Seedcase& c) {
+  model::metamodel::GivenRegression given;
+  for (const auto& row : read_rows(seedcase_folder() / "metamodel.csv")) {
+    given.terms.push_back({row[0], std::stod(row[1])});
+  }
+  for (const Parameter& parameter : c.parameters) given.parameters.push_back(parameter.name);
+  given.parameter_scales.assign(given.parameters.size(), {0.0, 1.0});
+  given.inputs = {"drybulb", "rh", "winddir", "windspeed"};
+  given.input_scales.assign(4, {0.0, 1.0});
+  given.output_scales.assign(2, {0.0, 1.0});
+  model::metamodel::MonthInputs inputs{given.inputs, {}, c.data.month_inputs};
+  for (Eigen::Index i = 0; i < c.data.month_inputs.rows(); ++i) {
+    inputs.months.push_back(std::to_string(i + 1));
+  }
+  return model::metamodel::model_of(given, inputs).value().clone();
+}
 
 inline Seedcase read_seedcase() {
   const auto folder = seedcase_folder();
@@ -150,8 +104,7 @@ inline Seedcase read_seedcase() {
   problem.inputs = {{"drybulb", "rh", "winddir", "windspeed"}, weather};
   c.data = normalise_problem(problem, normalisation);
   c.data.scales = {{0.0, 1.0}, {0.0, 1.0}};  // the meta-model speaks in normalised outputs
-  c.model =
-      std::make_unique<RegressionModel>(read_rows(folder / "metamodel.csv"), c.data.month_inputs);
+  c.model = given_model(c);
   return c;
 }
 

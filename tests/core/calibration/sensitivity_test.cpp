@@ -13,7 +13,10 @@ namespace {
 CalibrationOptions options() {
   CalibrationOptions options;
   options.design_runs = 60;
-  options.sampling = {12'000, 2'000};
+  options.sampling.sampler = find_sampler("seed_rwm").value();
+  options.sampling.iterations = 12'000;
+  options.sampling.burn_in = 2'000;
+  options.sampling.doublings_max = 0;
   return options;
 }
 

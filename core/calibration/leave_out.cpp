@@ -1,0 +1,112 @@
+#include "core/calibration/leave_out.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/calibration/psis.hpp"
+#include "core/calibration/summary.hpp"
+
+namespace recald::calibration {
+namespace {
+
+constexpr double kParetoKMax = 0.7;  // Vehtari et al. (2024): beyond, the estimate is unreliable
+
+/// Gaussian log density of one block given the rest, from the precision of all.
+class BlockDensity {
+ public:
+  BlockDensity(const Eigen::MatrixXd& precision, const Eigen::VectorXd& weighted_residual)
+      : precision_(precision), weighted_residual_(weighted_residual) {}
+
+  [[nodiscard]] double operator()(const std::vector<Eigen::Index>& block) const {
+    const Eigen::MatrixXd own = precision_(block, block);
+    const Eigen::VectorXd alpha = weighted_residual_(block);
+    const Eigen::LLT<Eigen::MatrixXd> factor(own);
+    const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    const auto size = static_cast<double>(block.size());
+    return 0.5 * (log_determinant - alpha.dot(factor.solve(alpha)) -
+                  size * std::log(2.0 * std::numbers::pi));
+  }
+
+ private:
+  const Eigen::MatrixXd& precision_;
+  const Eigen::VectorXd& weighted_residual_;
+};
+
+}  // namespace
+
+PointBlocks blocks_of_months(const std::vector<PointIndex>& points, int months) {
+  assert(months >= 1);
+  std::vector<int> in_use;
+  for (const PointIndex& point : points) in_use.push_back(point.month);
+  std::sort(in_use.begin(), in_use.end());
+  in_use.erase(std::unique(in_use.begin(), in_use.end()), in_use.end());
+  PointBlocks blocks((in_use.size() + static_cast<std::size_t>(months) - 1) /
+                     static_cast<std::size_t>(months));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto at = std::lower_bound(in_use.begin(), in_use.end(), points[i].month);
+    const auto block =
+        static_cast<std::size_t>(at - in_use.begin()) / static_cast<std::size_t>(months);
+    blocks[block].push_back(static_cast<Eigen::Index>(i));
+  }
+  return blocks;
+}
+
+Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
+                                         const std::vector<ChainDraws>& chains, int count,
+                                         const PointBlocks& blocks) {
+  if (blocks.empty()) {
+    return failure(ErrorCode::not_enough_data, "there is no measured month to leave out");
+  }
+  const ThinnedDraws thinned = thin(chains, count);
+  const Eigen::Index m = posterior.point_count();
+  Eigen::MatrixXd precision(m, m);
+  Eigen::MatrixXd scores(thinned.theta.rows(), static_cast<Eigen::Index>(blocks.size()));
+  for (Eigen::Index d = 0; d < scores.rows(); ++d) {
+    const auto draw = static_cast<std::size_t>(d);
+    const ChainDraws& chain = chains[static_cast<std::size_t>(thinned.chain[draw])];
+    const int row = thinned.iteration[draw];
+    const Hyperparameters hyper{chain.discrepancy_precision(row), chain.error_precision(row),
+                                chain.beta.row(row).transpose()};
+    if (!posterior.set_hyperparameters(hyper)) {
+      return failure(ErrorCode::not_positive_definite,
+                     "the covariance of the measured points has no Cholesky factor at a draw of "
+                     "the posterior; the measurement error is believed far too small");
+    }
+    posterior.precision(precision);
+    const Eigen::VectorXd theta = thinned.theta.row(d);
+    const Eigen::VectorXd weighted =
+        precision * posterior.residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
+    const BlockDensity density(precision, weighted);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      scores(d, static_cast<Eigen::Index>(b)) = density(blocks[b]);
+    }
+  }
+  if (!scores.allFinite()) {
+    return failure(ErrorCode::not_finite,
+                   "the model gives a value that is not finite at a draw of the posterior");
+  }
+  return scores;
+}
+
+Result<LeaveOutScore> leave_out_score(Posterior& posterior, const std::vector<ChainDraws>& chains,
+                                      int months, int count) {
+  const PointBlocks blocks = blocks_of_months(posterior.data().points, months);
+  const auto scores = block_log_scores(posterior, chains, count, blocks);
+  if (!scores) return tl::unexpected(scores.error());
+  const auto loo = psis_loo(*scores);
+  if (!loo) return tl::unexpected(loo.error());
+  LeaveOutScore result{months,
+                       static_cast<int>(blocks.size()),
+                       loo->elpd,
+                       loo->standard_error,
+                       loo->pareto_k.maxCoeff(),
+                       0};
+  result.unreliable = static_cast<int>((loo->pareto_k.array() > kParetoKMax).count());
+  return result;
+}
+
+}  // namespace recald::calibration
