@@ -5,7 +5,7 @@
 
 BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnant-date-dev tzdata
   libexpected-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev"
-TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium"
+TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r-cran-posterior"
 
 is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q '^install ok installed'

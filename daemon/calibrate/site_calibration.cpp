@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
 
-#include "core/design/model_runs.hpp"
 #include "core/model/epc/prepare.hpp"
 #include "core/weather/monthly_inputs.hpp"
 
@@ -23,14 +20,6 @@ constexpr double kLeastWeatherCoverage = 0.5;
 constexpr double kGoodWeatherCoverage = 0.9;
 // One standard deviation of the share of lights and plugs that heats the zone, relative.
 constexpr double kHeatShareSd = 0.15;
-// An output that the whole design moves by less than this share of its mean tells nothing about the
-// parameters that Guideline 14's tolerance of ±5 % would not also forgive.
-constexpr double kLeastResponse = 0.10;
-// The predictive noise has a random stream of its own, far from those of the chains.
-constexpr std::uint64_t kPredictiveStream = 1'000'000;
-
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
 struct Months {
   std::vector<Month> all;
   std::vector<MonthRole> roles;
@@ -134,7 +123,8 @@ std::vector<OutputCalibration> collect_outputs(const SiteConfig& site, const Rec
   for (const std::string& id : site.model->outputs) {
     const std::size_t meter = *site.meter_index(id);
     const auto weight = site.model->weights.find(id);
-    OutputCalibration output{.meter = meter, .name = id + "_daily_kWh"};
+    OutputCalibration output{
+        .name = id + "_daily_kWh", .label = id, .unit = "kWh/day", .meter = meter};
     if (weight != site.model->weights.end()) output.weight = weight->second;
     for (const Month month : months) {
       const metering::MonthlyFigure* figure = find_figure(recording.meters[meter], month);
@@ -176,18 +166,6 @@ Result<void> choose_parameters(const SiteConfig& site, SiteCalibration& result) 
   return {};
 }
 
-std::vector<double> prior_points(const std::vector<Parameter>& parameters, bool mode) {
-  std::vector<double> theta;
-  for (const Parameter& p : parameters) theta.push_back(mode ? p.prior.mode : p.prior.mean());
-  return theta;
-}
-
-std::vector<double> evaluate(MonthlyModel& model, std::span<const double> theta) {
-  std::vector<double> outputs(static_cast<std::size_t>(model.output_count() * model.month_count()));
-  model.evaluate(theta, outputs);
-  return outputs;
-}
-
 /// How all months move together when more or less of the lights and plugs heats the zone: the
 /// profile fixes their power, not where it ends up.
 Eigen::VectorXd heat_share_error(const model::Building& building, EpcModel& model,
@@ -204,95 +182,18 @@ Eigen::VectorXd heat_share_error(const model::Building& building, EpcModel& mode
          Eigen::Map<const Eigen::VectorXd>(moved.data(), static_cast<Eigen::Index>(moved.size()));
 }
 
-calibration::CalibrationProblem make_problem(const SiteCalibration& result,
-                                             const weather::MonthlyInputs& inputs,
-                                             std::size_t calibration_months) {
-  calibration::CalibrationProblem problem;
-  problem.parameters = result.parameters;
-  for (std::size_t i = 0; i < calibration_months; ++i) {
-    problem.month_names.push_back(metering::to_string(result.months[i]));
+/// The columns whose names are among `names`.
+weather::MonthlyInputs also_in(const weather::MonthlyInputs& inputs,
+                               const std::vector<std::string>& names) {
+  std::vector<Eigen::Index> columns;
+  weather::MonthlyInputs kept;
+  for (std::size_t j = 0; j < inputs.names.size(); ++j) {
+    if (std::ranges::find(names, inputs.names[j]) == names.end()) continue;
+    columns.push_back(static_cast<Eigen::Index>(j));
+    kept.names.push_back(inputs.names[j]);
   }
-  for (const OutputCalibration& output : result.outputs) {
-    const auto n = static_cast<std::ptrdiff_t>(calibration_months);
-    problem.outputs.push_back(
-        {.name = output.name,
-         .unit = "kWh/day",
-         .values = {output.measured.begin(), output.measured.begin() + n},
-         .extra_variances = {output.extra_variances.begin(), output.extra_variances.begin() + n},
-         .weight = output.weight});
-  }
-  problem.inputs = {inputs.names, inputs.values};
-  return problem;
-}
-
-/// Outputs that the parameters hardly move are taken out of the fit. Electricity fixed by its own
-/// profile is one: normalised by a range of two per cent, its harmless misfit would set the size of
-/// the discrepancy for all outputs.
-void set_aside_unresponsive(const calibration::DesignRuns& design, SiteCalibration& result,
-                            calibration::CalibrationProblem& problem) {
-  const auto months = static_cast<Eigen::Index>(problem.month_names.size());
-  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
-    const auto block = design.outputs.middleCols(static_cast<Eigen::Index>(k) * months, months);
-    const double spread = (block.colwise().maxCoeff() - block.colwise().minCoeff()).maxCoeff();
-    if (spread > kLeastResponse * std::abs(block.mean())) continue;
-    result.outputs[k].calibrated = false;
-    std::ranges::fill(problem.outputs[k].values, kAbsent);
-    result.warnings.push_back(fmt::format(
-        "{}: the calibration parameters move it by {:.1f} % at most, so it is shown against the "
-        "model and not fitted.",
-        result.outputs[k].name, 100.0 * spread / std::abs(block.mean())));
-  }
-}
-
-Eigen::VectorXd spread_sds(const calibration::Calibration& calibration, std::size_t output,
-                           double weight) {
-  const calibration::ThinnedDraws& thinned = calibration.thinned;
-  const double range = calibration.normalisation.scales[output].range();
-  Eigen::VectorXd sd(static_cast<Eigen::Index>(thinned.chain.size()));
-  for (std::size_t d = 0; d < thinned.chain.size(); ++d) {
-    const auto& chain = calibration.chains[static_cast<std::size_t>(thinned.chain[d])];
-    const int row = thinned.iteration[d];
-    const double variance =
-        1.0 / chain.discrepancy_precision[row] + 1.0 / chain.error_precision[row];
-    // A doubted output has its own share of error on top, as in the likelihood.
-    sd[static_cast<Eigen::Index>(d)] = range * std::sqrt(variance / weight);
-  }
-  return sd;
-}
-
-Result<void> assess(EpcModel& model, const calibration::RunContext& context,
-                    SiteCalibration& result) {
-  const std::vector<double> at_mode = evaluate(model, prior_points(result.parameters, true));
-  const std::vector<double> at_mean = evaluate(model, prior_points(result.parameters, false));
-  const Eigen::VectorXd& mean = result.calibration.posterior_mean;
-  const std::vector<double> after =
-      evaluate(model, {mean.data(), static_cast<std::size_t>(mean.size())});
-  const auto draws = design::run_model(model, result.parameters, result.calibration.thinned.theta,
-                                       context.executor);
-  if (!draws) return tl::unexpected(draws.error());
-
-  const std::size_t n = result.months.size();
-  Rng rng{context.seed, kPredictiveStream};
-  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
-    OutputCalibration& output = result.outputs[k];
-    const auto part = [&](const std::vector<double>& all) {
-      return std::span{all}.subspan(k * n, n);
-    };
-    const Eigen::MatrixXd simulated =
-        draws->middleCols(static_cast<Eigen::Index>(k * n), static_cast<Eigen::Index>(n));
-    const Eigen::VectorXd spread = output.calibrated
-                                       ? spread_sds(result.calibration, k, output.weight)
-                                       : Eigen::VectorXd::Zero(simulated.rows()).eval();
-    output.assessment =
-        assessment::assess_output(output.measured, result.roles,
-                                  {.prior_mode = part(at_mode),
-                                   .prior_mean = part(at_mean),
-                                   .posterior_mean = part(after),
-                                   .draws = simulated,
-                                   .predictive = assessment::add_discrepancy_and_error(
-                                       simulated, spread, output.extra_variances, rng)});
-  }
-  return {};
+  kept.values = inputs.values(Eigen::all, columns);
+  return kept;
 }
 
 void warn_about_level_changes(const Recording& recording, SiteCalibration& result) {
@@ -309,14 +210,6 @@ void warn_about_level_changes(const Recording& recording, SiteCalibration& resul
 }
 
 void add_words(const Recording& recording, const SiteWeather& weather, SiteCalibration& result) {
-  for (const calibration::Finding& finding : result.calibration.findings) {
-    result.warnings.push_back(finding.sentence);
-  }
-  if (result.sensitivity) {
-    for (const calibration::Finding& finding : result.sensitivity->findings) {
-      result.warnings.push_back(finding.sentence);
-    }
-  }
   warn_about_level_changes(recording, result);
   if (!result.profile.check.constant) result.warnings.push_back(result.profile.check.words);
   result.warnings.insert(result.warnings.end(), weather.notes.begin(), weather.notes.end());
@@ -337,17 +230,17 @@ Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
   return fit_site_profile(site, recording, place, months.calibration);
 }
 
-Result<SiteCalibration> calibrate_site(const SiteConfig& site,
-                                       const metering::LocalCalendar& calendar,
-                                       const Recording& recording, const SiteWeather& weather,
-                                       const CalibrateOptions& options,
-                                       const calibration::RunContext& context) {
-  SiteCalibration result;
+Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                                  const Recording& recording, const SiteWeather& weather) {
+  PreparedSite prepared;
+  SiteCalibration& result = prepared.so_far;
   const Months months = choose_months(*site.period, weather, result.warnings);
   if (auto enough = require_months(months, *site.period, weather); !enough) {
     return tl::unexpected(enough.error());
   }
+  result.model = site.model->kind;
   result.months = months.all;
+  for (const Month month : months.all) result.month_names.push_back(metering::to_string(month));
   result.roles = months.roles;
   if (const auto chosen = choose_parameters(site, result); !chosen) {
     return tl::unexpected(chosen.error());
@@ -364,32 +257,42 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
   const auto climate =
       model::epc::prepare_climate(months.calibration, *site.building, result.profile.loads, place);
   if (!climate) return tl::unexpected(climate.error());
-  EpcModel model{*site.building, result.definitions, *maps, *climate};
-  const auto inputs = weather::monthly_inputs(weather.filled.series, calendar, months.calibration);
-  auto problem = make_problem(result, inputs, months.calibration.size());
-  problem.common_errors.push_back(heat_share_error(*site.building, model, result.definitions, *maps,
-                                                   *climate,
-                                                   prior_points(result.parameters, true)));
-
-  auto design = calibration::run_design(model, problem, options.calibration.design_runs, context);
-  if (!design) return tl::unexpected(design.error());
-  set_aside_unresponsive(*design, result, problem);
-  auto calibrated = calibration::calibrate_on_design(model, problem, options.calibration,
-                                                     std::move(*design), context);
-  if (!calibrated) return tl::unexpected(calibrated.error());
-  result.calibration = std::move(*calibrated);
-  if (options.prior_sensitivity) {
-    auto sensitivity = calibration::prior_sensitivity(model, problem, options.calibration,
-                                                      result.calibration, context);
-    if (!sensitivity) return tl::unexpected(sensitivity.error());
-    result.sensitivity = std::move(*sensitivity);
-  }
-
   const auto whole_climate =
       model::epc::prepare_climate(months.all, *site.building, result.profile.loads, place);
   if (!whole_climate) return tl::unexpected(whole_climate.error());
-  EpcModel whole{*site.building, result.definitions, *maps, *whole_climate};
-  if (const auto assessed = assess(whole, context, result); !assessed) {
+  auto model = std::make_unique<EpcModel>(*site.building, result.definitions, *maps, *climate);
+  prepared.whole_model =
+      std::make_unique<EpcModel>(*site.building, result.definitions, *maps, *whole_climate);
+
+  const auto inputs = weather::monthly_inputs(weather.filled.series, calendar, months.calibration);
+  prepared.problem = problem_of(result, months.calibration.size());
+  prepared.problem.inputs = {inputs.names, inputs.values};
+  prepared.inputs =
+      also_in(weather::monthly_inputs(weather.filled.series, calendar, months.all), inputs.names);
+  prepared.problem.common_errors.push_back(heat_share_error(
+      *site.building, *model, result.definitions, *maps, *climate, prior_modes(result.parameters)));
+  prepared.model = std::move(model);
+  return prepared;
+}
+
+Result<SiteCalibration> calibrate_site(const SiteConfig& site,
+                                       const metering::LocalCalendar& calendar,
+                                       const Recording& recording, const SiteWeather& weather,
+                                       const CalibrateOptions& options,
+                                       const calibration::RunContext& context) {
+  auto prepared = prepare_site(site, calendar, recording, weather);
+  if (!prepared) return tl::unexpected(prepared.error());
+  SiteCalibration result = std::move(prepared->so_far);
+  auto design = calibration::run_design(*prepared->model, prepared->problem,
+                                        options.calibration.design_runs, context);
+  if (!design) return tl::unexpected(design.error());
+  set_aside_unresponsive(*design, result, prepared->problem);
+  if (auto done = calibrate_into(*prepared->model, prepared->problem, options.calibration,
+                                 options.prior_sensitivity, std::move(*design), context, result);
+      !done) {
+    return tl::unexpected(done.error());
+  }
+  if (auto assessed = assess(*prepared->whole_model, context, result); !assessed) {
     return tl::unexpected(assessed.error());
   }
   add_words(recording, weather, result);

@@ -1,50 +1,47 @@
 /// A site's calibration from its recording: what a report, a file or a store is made from.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
+#include <memory>
 #include <vector>
 
-#include "core/assessment/output_assessment.hpp"
-#include "core/calibration/calibration.hpp"
-#include "core/calibration/sensitivity.hpp"
+#include "core/model/monthly_model.hpp"
 #include "core/model/parameter_library.hpp"
 #include "core/profile/electricity_profile.hpp"
 #include "core/result.hpp"
+#include "core/weather/monthly_inputs.hpp"
+#include "daemon/calibrate/assessed_calibration.hpp"
 #include "daemon/config/site_config.hpp"
 #include "daemon/replay/recording.hpp"
 #include "daemon/replay/site_weather.hpp"
 
 namespace recald::daemon {
 
-/// One modelled meter over all months of calibration and validation.
-struct OutputCalibration {
-  std::size_t meter;  ///< Index into the recording.
-  std::string name;   ///< "steam_daily_kWh"
-  double weight = 1.0;
-  bool calibrated = true;               ///< False: parameters hardly move it: shown, not fitted.
-  std::vector<double> measured;         ///< (months) kWh/day; NaN where there is no usable figure.
-  std::vector<double> extra_variances;  ///< (months) (kWh/day)², from estimated slots.
-  assessment::OutputAssessment assessment;
+struct SiteCalibration : AssessedCalibration {
+  std::vector<metering::Month> months;  ///< Those of `month_names`.
+  std::vector<const model::ParameterDefinition*> definitions;
+  profile::ElectricityProfile profile;
 };
 
-struct SiteCalibration {
-  std::vector<metering::Month> months;
-  std::vector<assessment::MonthRole> roles;  ///< (months)
-  std::vector<const model::ParameterDefinition*> definitions;
-  std::vector<Parameter> parameters;
-  profile::ElectricityProfile profile;
-  calibration::Calibration calibration;
-  std::vector<OutputCalibration> outputs;
-  std::optional<calibration::PriorSensitivity> sensitivity;
-  std::vector<std::string> warnings;  ///< In words, in order of discovery.
+/// A site of which everything is known but the parameters: what a calibration samples and a design
+/// of experiments runs.
+struct PreparedSite {
+  SiteCalibration so_far;  ///< Months, parameters, outputs, profile, warnings; nothing calibrated.
+  std::unique_ptr<MonthlyModel> model;        ///< Of the calibration months.
+  std::unique_ptr<MonthlyModel> whole_model;  ///< Of all months.
+  calibration::CalibrationProblem problem;
+  weather::MonthlyInputs inputs;  ///< Of all months; those that `problem` has, where all have them.
 };
 
 struct CalibrateOptions {
   calibration::CalibrationOptions calibration;
   bool prior_sensitivity = false;
 };
+
+/// Profile, model and measurements. @pre the site has a model
+[[nodiscard]] Result<PreparedSite> prepare_site(const SiteConfig& site,
+                                                const metering::LocalCalendar& calendar,
+                                                const Recording& recording,
+                                                const SiteWeather& weather);
 
 /// Profile, model, design, chains, assessment. @pre the site has a model
 [[nodiscard]] Result<SiteCalibration> calibrate_site(const SiteConfig& site,

@@ -1,40 +1,24 @@
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 
 #include "adapters/report/report.hpp"
 #include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/calibrate/site_calibration.hpp"
+#include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/results/calibration_files.hpp"
 #include "daemon/results/report_of.hpp"
+#include "daemon/results/result_folder.hpp"
 #include "daemon/results/result_table.hpp"
 #include "daemon/results/run_facts.hpp"
 
 namespace recald::daemon {
 namespace {
-
-/// Set by Ctrl-C; a calibration stops at its next report of progress.
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch such");
-
-class InterruptGuard {
- public:
-  InterruptGuard() : previous_(std::signal(SIGINT, [](int) { interrupted = true; })) {
-    interrupted = false;
-  }
-  ~InterruptGuard() { std::signal(SIGINT, previous_); }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  void (*previous_)(int);
-};
 
 /// Everything that one calibration leaves behind.
 struct Finished {
@@ -44,52 +28,17 @@ struct Finished {
   RunFacts facts;
 };
 
-Result<CalibrateOptions> options_of(const CalibrateArguments& arguments) {
-  const auto profile = calibration::parse_hyper_prior_profile(arguments.hyper_prior);
-  if (!profile) return tl::unexpected(profile.error());
-  CalibrateOptions options;
-  options.calibration.hyper_prior = *profile;
-  options.calibration.design_runs = arguments.design_runs;
-  options.calibration.chains = arguments.chains;
-  options.calibration.sampling = {arguments.iterations, arguments.burn_in};
-  options.prior_sensitivity = arguments.prior_sensitivity;
-  return options;
-}
-
-RunFacts complete_facts(RunFacts facts, const CalibrateArguments& arguments) {
-  facts.sampler = arguments.sampler;
-  facts.hyper_prior_profile = arguments.hyper_prior;
-  facts.seed = arguments.seed;
-  facts.iterations = arguments.iterations;
-  facts.burn_in = arguments.burn_in;
-  facts.chains = arguments.chains;
-  facts.design_runs = arguments.design_runs;
-  return facts;
-}
-
 /// From the site file to the calibration; failures are printed and come back as an exit code.
 tl::expected<Finished, int> finish_calibration(const CalibrateArguments& arguments,
                                                const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
-  auto site = open_site(arguments.site);
-  if (!site) return tl::unexpected(console.fail(site.error()));
-  const auto fail = [&](const Error& error) { return tl::unexpected(console.fail(error)); };
-  if (auto modelled = require_model(site->config); !modelled) return fail(modelled.error());
-  const auto options = options_of(arguments);
-  if (!options) return fail(options.error());
-  if (const auto checked = calibration::check_options(options->calibration.sampling); !checked) {
-    console.fail(checked.error());
-    return tl::unexpected(kUsage);
-  }
-  auto facts = facts_of(site->config);
-  if (!facts) return fail(facts.error());
-
-  VirtualClock clock{metering::Instant{}};
-  auto recording = replay_meters(site->config, site->calendar, {}, clock, {});
-  if (!recording) return fail(recording.error());
-  print_data_words(*recording, console);
-  const auto weather = load_weather(site->config, site->calendar, whole_period(site->config));
-  if (!weather) return fail(weather.error());
+  auto calibration = calibration_options(arguments, console);
+  if (!calibration) return tl::unexpected(calibration.error());
+  calibration->design_runs = arguments.design_runs;
+  const CalibrateOptions options{std::move(*calibration), arguments.prior_sensitivity};
+  auto modelled = open_modelled_site(arguments.site, console);
+  if (!modelled) return tl::unexpected(modelled.error());
+  auto& [site, recording, weather, facts] = *modelled;
 
   const InterruptGuard guard;
   ProgressLine line{console};
@@ -97,14 +46,14 @@ tl::expected<Finished, int> finish_calibration(const CalibrateArguments& argumen
                                         .executor = system::parallel_for(arguments.threads),
                                         .observer = [&](const calibration::Progress& progress) {
                                           line.show(progress);
-                                          return !interrupted;
+                                          return !guard.interrupted();
                                         }};
   auto calibrated =
-      calibrate_site(site->config, site->calendar, *recording, *weather, *options, context);
-  if (!calibrated) return fail(calibrated.error());
-  RunFacts complete = complete_facts(std::move(*facts), arguments);
+      calibrate_site(site.config, site.calendar, recording, weather, options, context);
+  if (!calibrated) return tl::unexpected(console.fail(calibrated.error()));
+  RunFacts complete = with_sampling(std::move(facts), arguments, calibrated->calibration);
   complete.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return Finished{std::move(*site), std::move(*recording), std::move(*calibrated),
+  return Finished{std::move(site), std::move(recording), std::move(*calibrated),
                   std::move(complete)};
 }
 
@@ -144,16 +93,18 @@ Result<void> write_all(const Finished& done, const std::string& json,
 }  // namespace
 
 int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
+  if (!arguments.design.folder.empty()) return run_calibrate_design(arguments, console);
   const auto done = finish_calibration(arguments, console);
   if (!done) return done.error();
-  const std::string json = calibration_json(done->calibration, done->recording, done->facts);
+  const std::string json = calibration_json(done->calibration, done->facts);
+  const auto folder = result_folder(arguments.out, done->calibration.calibration.converged);
   if (!arguments.out.empty()) {
-    if (auto written = write_all(*done, json, arguments.out); !written) {
+    if (auto written = write_all(*done, json, folder); !written) {
       return console.fail(written.error());
     }
   }
-  console.out << (arguments.json ? json : result_table(done->calibration, done->recording));
-  return kSuccess;
+  console.out << (arguments.json ? json : result_table(done->calibration));
+  return folder == arguments.out ? kSuccess : console.fail(kept_sentence(folder));
 }
 
 int run_report(const CalibrateArguments& arguments, const Console& console) {
@@ -163,7 +114,7 @@ int run_report(const CalibrateArguments& arguments, const Console& console) {
     return console.fail(written.error());
   }
   if (arguments.json) {
-    console.out << calibration_json(done->calibration, done->recording, done->facts);
+    console.out << calibration_json(done->calibration, done->facts);
   } else {
     console.out << arguments.out.string() << "\n";
   }

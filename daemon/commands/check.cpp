@@ -36,9 +36,10 @@ std::vector<std::string> check_model(const SiteConfig& site, const Console& cons
       continue;
     }
     if (json) continue;
-    const TriangularPrior& prior = parameter->prior;
+    const Prior& prior = parameter->prior;
     console.out << fmt::format("  parameter {:<20} triangular {:.4g} / {:.4g} / {:.4g} {}\n",
-                               parameter->name, prior.min, prior.mode, prior.max, parameter->unit);
+                               parameter->name, prior.min(), prior.mode(), prior.max(),
+                               parameter->unit);
   }
   return problems;
 }

@@ -25,18 +25,53 @@ struct ProfileArguments : SiteArguments {
   std::filesystem::path out;
 };
 
-struct CalibrateArguments : SiteArguments {
-  std::filesystem::path out;  ///< Folder; for `report` the page itself.
-  std::string model = "epc";
-  std::string sampler = "seed_rwm";
-  std::string hyper_prior = "scaled";
-  int iterations = 30'000;  ///< A chain, burn-in included.
-  int burn_in = 3'000;
+/// A design of experiments on disk, and how to regress on it.
+struct DesignArguments {
+  std::filesystem::path folder;
+  std::string design;                     ///< Name of another design in the folder, or empty.
+  std::string form;                       ///< "seed", "monthly", or empty: the better one.
+  std::string wind_direction = "sincos";  ///< Or "degrees", as the seed.
+};
+
+/// How to sample a posterior.
+struct SamplingArguments {
+  std::string sampler = "auto";
+  std::string hyper_prior = "scaled";  ///< A profile, or a file that ends in .toml.
+  std::optional<int> iterations;       ///< A chain, burn-in included; absent: the sampler's own.
+  std::optional<int> burn_in;
   int chains = 4;
-  int design_runs = 200;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: one a core. No result depends on it.
   bool prior_sensitivity = false;
+};
+
+/// A site, or a design of experiments in its place.
+struct CalibrateArguments : SiteArguments, SamplingArguments {
+  std::filesystem::path out;  ///< Folder; for `report` the page itself.
+  std::string model;          ///< "epc", "metamodel", or empty: what goes with site or design.
+  int design_runs = 200;      ///< Of a site.
+  DesignArguments design;     ///< `folder` empty: a site.
+  std::filesystem::path metamodel;     ///< Given regression, or empty.
+  std::filesystem::path measurements;  ///< Empty: measurements.csv of the folder.
+  std::string parameters;              ///< "screened", "all" or names; empty: screened.
+};
+
+struct ScreenArguments {
+  DesignArguments design;
+  std::filesystem::path out;  ///< Folder for screen.json, or empty.
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+struct MetamodelArguments : ScreenArguments {
+  std::string parameters = "all";  ///< Or names separated by commas.
+};
+
+struct DoeArguments : SiteArguments {
+  std::filesystem::path out;
+  int runs = 200;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
 };
 
 int run_check(const SiteArguments& arguments, const Console& console);
@@ -44,7 +79,13 @@ int run_replay(const ReplayArguments& arguments, const Console& console);
 int run_profile(const ProfileArguments& arguments, const Console& console);
 /// Writes calibration.json, draws, months.csv, profile.json and report.html into the folder.
 int run_calibrate(const CalibrateArguments& arguments, const Console& console);
-/// The same calibration, of which only the page is kept.
+/// The same from a design of experiments: calibration.json, draws, screen.json, metamodel.json.
+int run_calibrate_design(const CalibrateArguments& arguments, const Console& console);
+/// The site's calibration, of which only the page is kept.
 int run_report(const CalibrateArguments& arguments, const Console& console);
+int run_screen(const ScreenArguments& arguments, const Console& console);
+int run_metamodel(const MetamodelArguments& arguments, const Console& console);
+/// Runs the site's model over a Latin hypercube into a design folder, or goes on with one.
+int run_doe(const DoeArguments& arguments, const Console& console);
 
 }  // namespace recald::daemon

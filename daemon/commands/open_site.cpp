@@ -61,4 +61,22 @@ Result<void> require_model(const SiteConfig& site) {
                   site.file.filename().string()));
 }
 
+tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
+                                                   const Console& console) {
+  auto site = open_site(file);
+  if (!site) return tl::unexpected(console.fail(site.error()));
+  const auto fail = [&](const Error& error) { return tl::unexpected(console.fail(error)); };
+  if (auto modelled = require_model(site->config); !modelled) return fail(modelled.error());
+  auto facts = facts_of(site->config);
+  if (!facts) return fail(facts.error());
+  VirtualClock clock{metering::Instant{}};
+  auto recording = replay_meters(site->config, site->calendar, {}, clock, {});
+  if (!recording) return fail(recording.error());
+  print_data_words(*recording, console);
+  auto weather = load_weather(site->config, site->calendar, whole_period(site->config));
+  if (!weather) return fail(weather.error());
+  return ModelledSite{std::move(*site), std::move(*recording), std::move(*weather),
+                      std::move(*facts)};
+}
+
 }  // namespace recald::daemon

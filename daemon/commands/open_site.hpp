@@ -6,6 +6,7 @@
 #include "daemon/config/site_config.hpp"
 #include "daemon/replay/recording.hpp"
 #include "daemon/replay/site_weather.hpp"
+#include "daemon/results/run_facts.hpp"
 
 namespace recald::daemon {
 
@@ -26,5 +27,18 @@ void print_data_words(const Recording& recording, const Console& console);
 
 /// Whether the site can be modelled at all; the sentence says what is missing.
 [[nodiscard]] Result<void> require_model(const SiteConfig& site);
+
+/// All that a model of the site is made from.
+struct ModelledSite {
+  OpenSite site;
+  Recording recording;
+  SiteWeather weather;
+  RunFacts facts;
+};
+
+/// Reads and replays everything; what the data show goes to err in words.
+/// @return the site, or the exit code after saying what is wrong.
+[[nodiscard]] tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
+                                                                 const Console& console);
 
 }  // namespace recald::daemon

@@ -34,16 +34,10 @@ void print_profile(const profile::ElectricityProfile& profile, const Console& co
 }  // namespace
 
 int run_profile(const ProfileArguments& arguments, const Console& console) {
-  const auto site = open_site(arguments.site);
-  if (!site) return console.fail(site.error());
-  if (auto modelled = require_model(site->config); !modelled) return console.fail(modelled.error());
-  VirtualClock clock{metering::Instant{}};
-  const auto recording = replay_meters(site->config, site->calendar, {}, clock, {});
-  if (!recording) return console.fail(recording.error());
-  print_data_words(*recording, console);
-  const auto weather = load_weather(site->config, site->calendar, whole_period(site->config));
-  if (!weather) return console.fail(weather.error());
-  const auto profile = profile_site(site->config, site->calendar, *recording, *weather);
+  const auto modelled = open_modelled_site(arguments.site, console);
+  if (!modelled) return modelled.error();
+  const auto& [site, recording, weather, facts] = *modelled;
+  const auto profile = profile_site(site.config, site.calendar, recording, weather);
   if (!profile) return console.fail(profile.error());
 
   if (!arguments.out.empty()) {

@@ -41,18 +41,46 @@ Json summary_json(const calibration::Summary& s) {
           {"mcse", number(s.mcse)}};
 }
 
-Json parameters_json(const SiteCalibration& result) {
+/// Ends that a prior does not have are null.
+Json prior_json(const Prior& prior) {
+  return {{"distribution", prior.name()}, {"min", number(prior.min())},
+          {"mode", number(prior.mode())}, {"max", number(prior.max())},
+          {"mean", number(prior.mean())}, {"sd", number(std::sqrt(prior.variance()))}};
+}
+
+Json parameters_json(const AssessedCalibration& result) {
   Json list = Json::array();
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     Json entry = summary_json(result.calibration.parameters[j]);
-    const TriangularPrior& prior = result.parameters[j].prior;
-    entry["prior"] = {{"distribution", "triangular"},
-                      {"min", prior.min},
-                      {"mode", prior.mode},
-                      {"max", prior.max}};
+    entry["prior"] = prior_json(result.parameters[j].prior);
     list.push_back(std::move(entry));
   }
   return list;
+}
+
+/// Parameters that the model has and the calibration leaves at their prior means.
+Json fixed_parameters_json(const AssessedCalibration& result) {
+  Json list = Json::array();
+  for (const Parameter& parameter : result.fixed_parameters) {
+    list.push_back({{"name", parameter.name},
+                    {"unit", parameter.unit},
+                    {"value", number(parameter.prior.mean())},
+                    {"prior", prior_json(parameter.prior)}});
+  }
+  return list;
+}
+
+Json metamodel_json(const AssessedCalibration& result) {
+  if (!result.metamodel) return nullptr;
+  const MetamodelFacts& facts = *result.metamodel;
+  Json sigma_r = Json::object();
+  for (std::size_t k = 0; k < facts.sigma_r.size(); ++k) {
+    sigma_r[result.outputs[k].name] = number(facts.sigma_r[k]);
+  }
+  return {{"form", facts.form},
+          {"why", facts.why},
+          {"r2_left_out", number(facts.r2_left_out)},
+          {"sigma_r", sigma_r}};
 }
 
 Json metrics_json(const std::optional<assessment::FitMetrics>& metrics) {
@@ -63,7 +91,7 @@ Json metrics_json(const std::optional<assessment::FitMetrics>& metrics) {
           {"months", metrics->n}};
 }
 
-Json stage_json(const SiteCalibration& result,
+Json stage_json(const AssessedCalibration& result,
                 assessment::PeriodMetrics assessment::OutputAssessment::*stage) {
   Json calibration = Json::object();
   Json validation = Json::object();
@@ -75,7 +103,7 @@ Json stage_json(const SiteCalibration& result,
   return {{"calibration", calibration}, {"validation", validation}};
 }
 
-Json guideline_json(const SiteCalibration& result) {
+Json guideline_json(const AssessedCalibration& result) {
   Json outputs = Json::object();
   bool pass = true;
   std::string why;
@@ -93,52 +121,60 @@ Json guideline_json(const SiteCalibration& result) {
   return {{"pass", pass}, {"why", why}, {"outputs", outputs}};
 }
 
-Json range_json(const SiteCalibration& result, const std::vector<calibration::OutOfRange>& points) {
+Json range_json(const AssessedCalibration& result,
+                const std::vector<calibration::OutOfRange>& points) {
   Json list = Json::array();
   for (const calibration::OutOfRange& point : points) {
-    list.push_back(
-        {{"output", result.outputs[static_cast<std::size_t>(point.output)].name},
-         {"month", metering::to_string(result.months[static_cast<std::size_t>(point.month)])},
-         {"value", number(point.value)},
-         {"range", {number(point.low), number(point.high)}}});
+    list.push_back({{"output", result.outputs[static_cast<std::size_t>(point.output)].name},
+                    {"month", result.month_names[static_cast<std::size_t>(point.month)]},
+                    {"value", number(point.value)},
+                    {"range", {number(point.low), number(point.high)}}});
   }
   return list;
 }
 
-Json scores_json(const std::optional<assessment::PredictiveScores>& scores) {
+/// "measured_kWh", "measured_kW": a number is not written without its unit.
+std::string with_unit(const char* name, const OutputCalibration& output) {
+  const std::string unit = output.unit.substr(0, output.unit.find('/'));  // a day's kWh
+  return unit.empty() ? name : fmt::format("{}_{}", name, unit);
+}
+
+Json scores_json(const std::optional<assessment::PredictiveScores>& scores,
+                 const OutputCalibration& output) {
   if (!scores) return nullptr;
   return {{"months", scores->months},
           {"inside_50", scores->inside_50},
           {"inside_90", scores->inside_90},
-          {"crps_kWh", number(scores->crps)}};
+          {with_unit("crps", output), number(scores->crps)}};
 }
 
-Json outputs_json(const SiteCalibration& result, const Recording& recording) {
+Json outputs_json(const AssessedCalibration& result) {
   Json list = Json::array();
   for (const OutputCalibration& output : result.outputs) {
     Json months = Json::array();
-    for (std::size_t i = 0; i < result.months.size(); ++i) {
+    for (std::size_t i = 0; i < result.month_names.size(); ++i) {
       const assessment::BoxPlot& box = output.assessment.boxes[i];
-      months.push_back({{"month", metering::to_string(result.months[i])},
+      months.push_back({{"month", result.month_names[i]},
                         {"role", role_word(result.roles[i])},
-                        {"measured_kWh", number(output.measured[i])},
+                        {with_unit("measured", output), number(output.measured[i])},
                         {"draws_q25", number(box.q25)},
                         {"draws_q50", number(box.q50)},
                         {"draws_q75", number(box.q75)}});
     }
     list.push_back({{"name", output.name},
-                    {"meter", recording.meters[output.meter].meter.id},
+                    {"meter", output.label},
+                    {"unit", output.unit},
                     {"weight", output.weight},
                     {"calibrated", output.calibrated},
                     {"predictive",
-                     {{"calibration", scores_json(output.assessment.scores_calibration)},
-                      {"validation", scores_json(output.assessment.scores_validation)}}},
+                     {{"calibration", scores_json(output.assessment.scores_calibration, output)},
+                      {"validation", scores_json(output.assessment.scores_validation, output)}}},
                     {"months", months}});
   }
   return list;
 }
 
-Json sensitivity_json(const SiteCalibration& result) {
+Json sensitivity_json(const AssessedCalibration& result) {
   if (!result.sensitivity) return nullptr;
   Json list = Json::array();
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
@@ -150,6 +186,68 @@ Json sensitivity_json(const SiteCalibration& result) {
                     {"prior_driven", s.prior_driven}});
   }
   return {{"factor", result.sensitivity->factor}, {"parameters", list}};
+}
+
+Json sampling_json(const calibration::SamplingReport& report) {
+  long divergences = 0;
+  long depth_limit_hits = 0;
+  Json acceptance = Json::array();
+  Json e_bfmi = Json::array();
+  for (const calibration::ChainStatistics& chain : report.chains) {
+    divergences += chain.divergences;
+    depth_limit_hits += chain.depth_limit_hits;
+    acceptance.push_back(number(chain.acceptance_rate));
+    e_bfmi.push_back(number(chain.e_bfmi));
+  }
+  return {{"draws", report.kept},
+          {"doublings", report.doublings},
+          {"taken_over", report.taken_over.empty() ? Json(nullptr) : Json(report.taken_over)},
+          {"acceptance_rate", acceptance},
+          {"divergences", divergences},
+          {"depth_limit_hits", depth_limit_hits},
+          {"e_bfmi", e_bfmi},
+          {"density_evaluations", report.density_evaluations},
+          {"gradient_evaluations", report.gradient_evaluations}};
+}
+
+Json evidence_json(const calibration::Calibration& calibration) {
+  Json json = {{"by_bridge", nullptr}, {"by_populations", nullptr}};
+  if (calibration.evidence) {
+    json["by_bridge"] = {{"log_evidence", number(calibration.evidence->log_evidence)},
+                         {"mcse", number(calibration.evidence->mcse)}};
+  }
+  if (std::isfinite(calibration.sampling.log_evidence)) {
+    json["by_populations"] = {{"log_evidence", number(calibration.sampling.log_evidence)},
+                              {"mcse", number(calibration.sampling.log_evidence_se)}};
+  }
+  return json;
+}
+
+Json leave_out_json(const calibration::Calibration& calibration) {
+  Json list = Json::array();
+  for (const calibration::LeaveOutScore& score : calibration.leave_out) {
+    list.push_back({{"months_left_out_together", score.block_months},
+                    {"blocks", score.blocks},
+                    {"elpd", number(score.elpd)},
+                    {"se", number(score.standard_error)},
+                    {"pareto_k_max", number(score.pareto_k_max)},
+                    {"unreliable_blocks", score.unreliable}});
+  }
+  return list;
+}
+
+/// In units of prior standard deviations.
+Json weak_directions_json(const AssessedCalibration& result) {
+  Json list = Json::array();
+  for (const calibration::WeakDirection& direction : result.calibration.weak_directions) {
+    Json loadings = Json::object();
+    for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+      loadings[result.parameters[j].name] =
+          number(direction.loadings[static_cast<Eigen::Index>(j)]);
+    }
+    list.push_back({{"information", number(direction.information)}, {"loadings", loadings}});
+  }
+  return list;
 }
 
 Json schedule_json(const model::HourlySchedule& schedule) {
@@ -180,12 +278,10 @@ Json profile_object(const profile::ElectricityProfile& profile) {
 
 }  // namespace
 
-std::string calibration_json(const SiteCalibration& result, const Recording& recording,
-                             const RunFacts& facts) {
+std::string calibration_json(const AssessedCalibration& result, const RunFacts& facts) {
   Json months = Json::array();
-  for (std::size_t i = 0; i < result.months.size(); ++i) {
-    months.push_back(
-        {{"month", metering::to_string(result.months[i])}, {"role", role_word(result.roles[i])}});
+  for (std::size_t i = 0; i < result.month_names.size(); ++i) {
+    months.push_back({{"month", result.month_names[i]}, {"role", role_word(result.roles[i])}});
   }
   Json hyperparameters = Json::array();
   for (const calibration::Summary& s : result.calibration.hyperparameters) {
@@ -194,11 +290,13 @@ std::string calibration_json(const SiteCalibration& result, const Recording& rec
     hyperparameters.push_back(std::move(entry));
   }
   const auto& calibration = result.calibration;
-  Json json = {{"model", "epc"},
+  Json json = {{"model", result.model},
                {"status", calibration.converged ? "converged" : "unconverged"},
                {"months", months},
                {"parameters", parameters_json(result)},
+               {"fixed_parameters", fixed_parameters_json(result)},
                {"hyperparameters", hyperparameters},
+               {"metamodel", metamodel_json(result)},
                {"before", stage_json(result, &assessment::OutputAssessment::before)},
                {"prior_mean", stage_json(result, &assessment::OutputAssessment::prior_mean)},
                {"after", stage_json(result, &assessment::OutputAssessment::after)},
@@ -207,7 +305,7 @@ std::string calibration_json(const SiteCalibration& result, const Recording& rec
                {"range_fail", range_json(result, calibration.range.by_month)},
                {"prior_sensitivity", sensitivity_json(result)},
                {"warnings", result.warnings},
-               {"outputs", outputs_json(result, recording)},
+               {"outputs", outputs_json(result)},
                {"sampler", facts.sampler},
                {"hyper_prior", calibration.hyper_prior.name},
                {"iterations", facts.iterations},
@@ -220,15 +318,14 @@ std::string calibration_json(const SiteCalibration& result, const Recording& rec
                {"recald_version", facts.recald_version},
                {"tzdata", facts.time_zone_data},
                {"wall_s", facts.wall_s}};
-  Json acceptance = Json::array();
-  for (const calibration::ChainDraws& chain : calibration.chains) {
-    acceptance.push_back(number(chain.acceptance_rate));
-  }
-  json["acceptance_rate"] = acceptance;
+  json["sampling"] = sampling_json(calibration.sampling);
+  json["evidence"] = evidence_json(calibration);
+  json["leave_out"] = leave_out_json(calibration);
+  json["weak_directions"] = weak_directions_json(result);
   return json.dump(2) + "\n";
 }
 
-std::string draws_csv(const SiteCalibration& result, std::size_t chain, const RunFacts& facts) {
+std::string draws_csv(const AssessedCalibration& result, std::size_t chain, const RunFacts& facts) {
   const calibration::ChainDraws& draws = result.calibration.chains[chain];
   std::string text = fmt::format(
       "# model = {}\n# method = sample\n# num_samples = {}\n# num_warmup = {}\n# save_warmup = 0\n"

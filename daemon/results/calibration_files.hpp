@@ -11,11 +11,11 @@
 namespace recald::daemon {
 
 /// One JSON object as text, indented; absent numbers are null.
-[[nodiscard]] std::string calibration_json(const SiteCalibration& result,
-                                           const Recording& recording, const RunFacts& facts);
+[[nodiscard]] std::string calibration_json(const AssessedCalibration& result,
+                                           const RunFacts& facts);
 
 /// Draws of one chain as CmdStan writes them, so that ArviZ and R's posterior read them.
-[[nodiscard]] std::string draws_csv(const SiteCalibration& result, std::size_t chain,
+[[nodiscard]] std::string draws_csv(const AssessedCalibration& result, std::size_t chain,
                                     const RunFacts& facts);
 
 /// `month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,revision,

@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "daemon/calibrate/site_calibration.hpp"
+#include "daemon/calibrate/assessed_calibration.hpp"
 
 namespace recald::daemon {
 
 /// Fit before and after by meter and period, then the parameters, then the warnings.
-[[nodiscard]] std::string result_table(const SiteCalibration& result, const Recording& recording);
+[[nodiscard]] std::string result_table(const AssessedCalibration& result);
 
 }  // namespace recald::daemon

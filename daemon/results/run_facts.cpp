@@ -28,4 +28,17 @@ Result<RunFacts> facts_of(const SiteConfig& site) {
   return facts;
 }
 
+Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
+                                const std::string& model) {
+  system::Sha256 digest;
+  for (const auto& file : files) {
+    if (auto added = digest.add_file(file); !added) return tl::unexpected(added.error());
+  }
+  RunFacts facts;
+  facts.recald_version = kVersion;
+  facts.data_revision = digest.hex();
+  facts.model_version = model + "-" + facts.data_revision.substr(0, 12);
+  return facts;
+}
+
 }  // namespace recald::daemon

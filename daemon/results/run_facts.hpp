@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "daemon/config/site_config.hpp"
@@ -26,5 +28,10 @@ struct RunFacts {
 
 /// Hashes what the site's results depend on. @return not_found or io_failed for a data file.
 [[nodiscard]] Result<RunFacts> facts_of(const SiteConfig& site);
+
+/// The same for a design of experiments, over the files it was read from.
+/// @param model  Kind of model: the version is this and the digest of the files, shortened.
+[[nodiscard]] Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
+                                              const std::string& model);
 
 }  // namespace recald::daemon

@@ -221,6 +221,22 @@ TEST_F(EndToEnd, CalibrationLeavesEverythingAndRepeatsItself) {
   EXPECT_THAT(report, HasSubstr("2026-09-21"));  // SOURCE_DATE_EPOCH
 }
 
+// Fail closed: what stands in the folder is a calibration that passed its gate, and stays.
+TEST_F(EndToEnd, AFailedCalibrationDoesNotReplaceAGoodOne) {
+  std::filesystem::create_directories(folder_ / "kept");
+  const std::string good = "{\"status\": \"converged\"}\n";
+  std::ofstream(folder_ / "kept/calibration.json") << good;
+  const Outcome failed = run({"calibrate", path("site.toml"), "--draws", "120", "--burn-in", "20",
+                              "--chains", "2", "--design-runs", "40", "--out", path("kept")});
+  EXPECT_EQ(failed.exit_code, kFailure);
+  EXPECT_THAT(failed.err, HasSubstr("the chains have not converged"));
+  EXPECT_THAT(failed.err, HasSubstr("is kept; this one is in"));
+  EXPECT_EQ(read_text(folder_ / "kept/calibration.json"), good);
+  const Json json = Json::parse(read_text(folder_ / "kept/unconverged/calibration.json"));
+  EXPECT_EQ(json["status"], "unconverged");
+  EXPECT_EQ(json["sampling"]["draws"], 100);
+}
+
 // The sampler sees two years of chilled water, so the posterior must know more than the prior about
 // the air that is cooled most of all.
 TEST_F(EndToEnd, CalibrationLearnsTheOutdoorAir) {

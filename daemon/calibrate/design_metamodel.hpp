@@ -1,0 +1,64 @@
+/// The regression that stands in for a design's simulation: fitted in both forms, one chosen.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/doe/design_folder.hpp"
+#include "core/model/metamodel/builders.hpp"
+#include "core/model/monthly_model.hpp"
+#include "core/regression/design_data.hpp"
+#include "core/regression/monthly_form.hpp"
+#include "core/regression/seed_form.hpp"
+#include "core/result.hpp"
+
+namespace recald::daemon {
+
+enum class MetamodelForm {
+  seed,     ///< One regression a meter over all months: also speaks of months outside the design.
+  monthly,  ///< One regression a month: more exact, and only for the design's months.
+};
+
+[[nodiscard]] std::string_view to_string(MetamodelForm form);
+
+struct MetamodelOptions {
+  std::optional<MetamodelForm> form;  ///< Absent: what predicts left-out runs better.
+  bool wind_in_degrees = false;       ///< The seed's plain number instead of sine and cosine.
+  std::uint64_t seed = 1;             ///< Deals the runs into folds.
+};
+
+/// Streams of a seed that a design uses besides those of chains and Latin hypercube.
+inline constexpr std::uint64_t kFoldStream = 2'000'000;
+inline constexpr std::uint64_t kScreeningStream = 3'000'000;
+
+struct FittedMetamodel {
+  std::optional<regression::SeedForm> seed_form;  ///< Absent where it could not be fitted.
+  std::optional<regression::MonthlyForm> monthly_form;
+  MetamodelForm form;  ///< Chosen; that one is there.
+  std::string why;     ///< In words, with both figures.
+  std::vector<std::string> notes;
+
+  [[nodiscard]] const regression::DesignQuality& quality(MetamodelForm of) const;
+  [[nodiscard]] const regression::DesignQuality& quality() const { return quality(form); }
+  /// (outputs) error of a form in output units.
+  [[nodiscard]] std::vector<double> sigma_r(MetamodelForm of) const;
+};
+
+/// The design as regressions read it.
+[[nodiscard]] regression::DesignData design_data(const doe::DesignFolder& design);
+
+/// Some months' model inputs. @pre each month has a row in `inputs`
+[[nodiscard]] model::metamodel::MonthInputs month_inputs(const doe::MonthlyTable& inputs,
+                                                         std::span<const doe::DesignMonth> months);
+
+/// Fits both forms. @return what `fit_seed_form` or `fit_monthly_form` finds, for the form that was
+/// asked for, or when neither can be fitted.
+[[nodiscard]] Result<FittedMetamodel> fit_metamodel(const regression::DesignData& design,
+                                                    const MetamodelOptions& options);
+
+}  // namespace recald::daemon

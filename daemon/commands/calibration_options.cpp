@@ -1,0 +1,43 @@
+#include "daemon/commands/calibration_options.hpp"
+
+#include "core/calibration/samplers.hpp"
+#include "daemon/config/hyper_prior_file.hpp"
+
+namespace recald::daemon {
+
+tl::expected<calibration::CalibrationOptions, int> calibration_options(
+    const SamplingArguments& arguments, const Console& console) {
+  auto hyper_prior = choose_hyper_prior(arguments.hyper_prior);
+  if (!hyper_prior) {
+    console.fail(hyper_prior.error());
+    return tl::unexpected(arguments.hyper_prior.ends_with(".toml") ? kFailure : kUsage);
+  }
+  calibration::CalibrationOptions options;
+  options.hyper_prior = std::move(*hyper_prior);
+  if (arguments.sampler != "auto") {
+    const auto sampler = calibration::find_sampler(arguments.sampler);
+    if (!sampler) return tl::unexpected(console.misused(sampler.error().message));
+    options.sampling.sampler = *sampler;
+  }
+  options.sampling.iterations = arguments.iterations;
+  options.sampling.burn_in = arguments.burn_in;
+  options.sampling.chains = arguments.chains;
+  const auto usable = calibration::check_sampling(options.sampling);
+  if (!usable) return tl::unexpected(console.misused(usable.error().message));
+  return options;
+}
+
+RunFacts with_sampling(RunFacts facts, const SamplingArguments& arguments,
+                       const calibration::Calibration& calibration) {
+  const calibration::SamplingReport& report = calibration.sampling;
+  facts.sampler = report.sampler;
+  facts.hyper_prior_profile = calibration.hyper_prior.name;
+  facts.seed = arguments.seed;
+  facts.iterations = report.burn_in + report.kept;
+  facts.burn_in = report.burn_in;
+  facts.chains = static_cast<int>(calibration.chains.size());
+  facts.design_runs = static_cast<int>(calibration.design.theta.rows());
+  return facts;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,19 @@
+/// What a command line says about sampling, as core takes it.
+#pragma once
+
+#include "core/calibration/calibration.hpp"
+#include "daemon/commands/commands.hpp"
+#include "daemon/results/run_facts.hpp"
+
+namespace recald::daemon {
+
+/// @return the options; or the exit code, after saying what is wrong: kUsage for words and numbers
+///         of the command line, kFailure for a file.
+[[nodiscard]] tl::expected<calibration::CalibrationOptions, int> calibration_options(
+    const SamplingArguments& arguments, const Console& console);
+
+/// `facts` with what the command line said and what the sampling took.
+[[nodiscard]] RunFacts with_sampling(RunFacts facts, const SamplingArguments& arguments,
+                                     const calibration::Calibration& calibration);
+
+}  // namespace recald::daemon

@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "adapters/system/parallel_for.hpp"
+#include "daemon/calibrate/site_design.hpp"
+#include "daemon/commands/commands.hpp"
+#include "daemon/commands/interrupt.hpp"
+#include "daemon/commands/open_site.hpp"
+
+namespace recald::daemon {
+namespace {
+
+std::string design_json(const DoeArguments& arguments, const doe::DesignPlan& plan, int before,
+                        const std::vector<std::string>& warnings) {
+  std::vector<std::string> parameters;
+  for (const Parameter& parameter : plan.parameters) parameters.push_back(parameter.name);
+  const nlohmann::ordered_json json = {{"folder", arguments.out.string()},
+                                       {"runs", plan.theta.rows()},
+                                       {"runs_before", before},
+                                       {"parameters", parameters},
+                                       {"outputs", plan.output_names},
+                                       {"months", plan.months.size()},
+                                       {"seed", plan.seed},
+                                       {"warnings", warnings}};
+  return json.dump(2) + "\n";
+}
+
+std::string design_words(const DoeArguments& arguments, const doe::DesignPlan& plan, int before,
+                         const std::vector<std::string>& warnings) {
+  std::string text = fmt::format("{}: {} runs of {} parameters, {} outputs in {} months",
+                                 arguments.out.string(), plan.theta.rows(), plan.parameters.size(),
+                                 plan.output_names.size(), plan.months.size());
+  text += before == 0 ? ".\n" : fmt::format("; {} of them were there already.\n", before);
+  for (const std::string& warning : warnings) text += "! " + warning + "\n";
+  return text;
+}
+
+}  // namespace
+
+int run_doe(const DoeArguments& arguments, const Console& console) {
+  auto modelled = open_modelled_site(arguments.site, console);
+  if (!modelled) return modelled.error();
+  const auto& [site, recording, weather, facts] = *modelled;
+  const auto prepared = prepare_site(site.config, site.calendar, recording, weather);
+  if (!prepared) return console.fail(prepared.error());
+  const SiteDesignOptions options{
+      .runs = arguments.runs,
+      .seed = arguments.seed,
+      .fingerprint =
+          fmt::format("{} {} {}", facts.model_version, facts.data_revision, facts.recald_version)};
+  const doe::DesignPlan plan = plan_design(*prepared, options);
+
+  const InterruptGuard guard;
+  const auto before = [&] {
+    ProgressLine line{console};
+    return run_into_folder(*prepared, plan, arguments.out, system::parallel_for(arguments.threads),
+                           [&](int done, int total) {
+                             line.show({calibration::Progress::Stage::design, 0, done, total});
+                             return !guard.interrupted();
+                           });
+  }();
+  if (!before) return console.fail(before.error());
+  const auto& warnings = prepared->so_far.warnings;
+  console.out << (arguments.json ? design_json(arguments, plan, *before, warnings)
+                                 : design_words(arguments, plan, *before, warnings));
+  return kSuccess;
+}
+
+}  // namespace recald::daemon

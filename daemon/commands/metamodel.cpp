@@ -1,0 +1,52 @@
+#include <chrono>
+
+#include "daemon/calibrate/design_calibration.hpp"
+#include "daemon/commands/commands.hpp"
+#include "daemon/commands/design_input.hpp"
+#include "daemon/results/design_files.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// The design with some of its parameters; what the others do becomes error of the regression.
+Result<regression::DesignData> chosen_data(const doe::DesignFolder& design,
+                                           const std::string& parameters) {
+  regression::DesignData data = design_data(design);
+  if (parameters == "all") return data;
+  const auto chosen = named_parameters(design.parameters, parameters);
+  if (!chosen) return tl::unexpected(chosen.error());
+  data.theta = data.theta(Eigen::all, *chosen).eval();
+  data.parameters.clear();
+  for (const int j : *chosen) {
+    data.parameters.push_back(design.parameters[static_cast<std::size_t>(j)].name);
+  }
+  return data;
+}
+
+}  // namespace
+
+int run_metamodel(const MetamodelArguments& arguments, const Console& console) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto design = open_design_folder(arguments.design, console);
+  if (!design) return design.error();
+  const auto data = chosen_data(*design, arguments.parameters);
+  if (!data) return console.fail(data.error());
+  const auto fitted = fit_metamodel(*data, metamodel_options(arguments.design, arguments.seed));
+  if (!fitted) return console.fail(fitted.error());
+  auto facts = facts_of_files(design->files, "design");
+  if (!facts) return console.fail(facts.error());
+  facts->seed = arguments.seed;
+  facts->design_runs = static_cast<int>(design->runs.size());
+  facts->wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+  std::vector<std::string> notes = design->notes;
+  notes.insert(notes.end(), fitted->notes.begin(), fitted->notes.end());
+  const std::string json = metamodel_json(*fitted, notes, *facts);
+  if (auto written = write_result(arguments.out, "metamodel.json", json); !written) {
+    return console.fail(written.error());
+  }
+  console.out << (arguments.json ? json : metamodel_table(*fitted, notes));
+  return kSuccess;
+}
+
+}  // namespace recald::daemon
