@@ -1,5 +1,6 @@
 #include "core/calibration/posterior_findings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -38,7 +39,9 @@ Findings edge_findings(const std::vector<Parameter>& parameters,
   Findings findings;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const Prior& prior = parameters[j].prior;
-    const double width = kEdgeWidth * (prior.max() - prior.min());
+    // An endless tail has no end to pile up at; its length counts without its last thousandth.
+    const double width = kEdgeWidth * (std::min(prior.max(), prior.quantile(0.999)) -
+                                       std::max(prior.min(), prior.quantile(0.001)));
     double low = 0.0;
     double high = 0.0;
     double total = 0.0;
@@ -117,8 +120,8 @@ Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
     for (const double value : outputs[k].values) sum += std::isnan(value) ? 0.0 : value;
     const double in_unit = sd * normalisation.scales[k].range();
     const double mean = sum / outputs[k].measured_months();
-    list += (list.empty() ? "" : ", ") + outputs[k].name + " " + number_text(two_digits(in_unit)) + " " +
-            outputs[k].unit + " (" + percent_text(in_unit / std::abs(mean)) + " of its mean)";
+    list += (list.empty() ? "" : ", ") + outputs[k].name + " " + number_text(two_digits(in_unit)) +
+            " " + outputs[k].unit + " (" + percent_text(in_unit / std::abs(mean)) + " of its mean)";
   }
   if (list.empty()) return {};
   return {{FindingKind::discrepancy_size, "discrepancy",

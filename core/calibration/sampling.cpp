@@ -31,7 +31,7 @@ constexpr int kJumpSweeps = 60;
 constexpr int kPointsMax = 2'000;  // kept for a bridge to the evidence
 
 // A pilot has seen a hill that the chains have not when so many of its particles stand further out
-// than any draw of the chains.
+// than any draw of the chains, and as high as these.
 constexpr double kMissedShare = 0.03;
 
 /// One chain with all it needs to go on.
@@ -193,6 +193,15 @@ Eigen::MatrixXd pooled_draws(const std::vector<Worker>& workers) {
   return all;
 }
 
+Eigen::VectorXd pooled_densities(const std::vector<Worker>& workers) {
+  const Eigen::Index n = workers.front().chain.log_density.size();
+  Eigen::VectorXd all(n * static_cast<Eigen::Index>(workers.size()));
+  for (std::size_t k = 0; k < workers.size(); ++k) {
+    all.segment(static_cast<Eigen::Index>(k) * n, n) = workers[k].chain.log_density;
+  }
+  return all;
+}
+
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& draws) {
   const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
   return centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
@@ -254,16 +263,21 @@ class Sampling {
       }
       return std::move(result_);
     }
-    std::string why = result_.converged ? disagreement_ : "its chains did not agree";
-    why = std::string(chains.name) + " was given up: " + why;
+    const bool apart = !disagreement_.empty() || worst_rhat() > options_.gate.rhat_max;
+    std::string why(chains.name);
+    why += " was given up: ";
+    why += !disagreement_.empty() ? disagreement_
+           : apart                ? "its chains did not agree"
+                                  : "its draws were too few or its trajectories failed";
     if (auto ran = run_populations(populations); !ran) {
       return tl::unexpected(std::move(ran.error()));
     }
     result_.report.taken_over = why;
     result_.findings.push_back({FindingKind::sampler_replaced, result_.report.sampler,
-                                "The posterior is not one connected hill for " + why +
-                                    ". Tempered populations (smc) took over; they weigh separate "
-                                    "hills against each other."});
+                                "Tempered populations (smc) took the place of chains, as " + why +
+                                    (apart ? ". Parameters may have more than one region that the "
+                                             "data allow; the draws weigh them."
+                                           : ".")});
     return std::move(result_);
   }
 
@@ -378,11 +392,17 @@ class Sampling {
       return factor.matrixL().solve(centred).colwise().squaredNorm().transpose();
     };
     const double furthest = squared_distances(draws).maxCoeff();
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Worker& worker : chains.workers()) {
+      lowest = std::min(lowest, worker.chain.log_density.minCoeff());
+    }
+    const Eigen::VectorXd densities = pooled_densities(pilot.workers());
     const Eigen::VectorXd distances = squared_distances(particles);
     Eigen::RowVectorXd outside = Eigen::RowVectorXd::Zero(mean.size());
     int count = 0;
     for (Eigen::Index i = 0; i < distances.size(); ++i) {
-      if (distances(i) <= furthest) continue;
+      // A straggler that the pilot did not move far enough stands outside too, but low.
+      if (distances(i) <= furthest || densities(i) < lowest) continue;
       outside += particles.row(i) - mean;
       ++count;
     }

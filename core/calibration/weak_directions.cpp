@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kStep = 0.01;          // of a prior sd, for differences
 constexpr double kWeak = 1.0;           // the prior's own information
+constexpr std::size_t kNamedMax = 4;    // in a sentence, weakest first
 constexpr double kLeastLoading = 0.35;  // worth a word: an eighth of the direction
 
 double median(std::vector<double> values) {
@@ -68,6 +69,11 @@ std::string in_words(const WeakDirection& direction, const std::vector<Parameter
   for (Eigen::Index j = 0; j < direction.loadings.size(); ++j) {
     if (std::abs(direction.loadings(j)) >= kLeastLoading) order.push_back(j);
   }
+  if (order.empty()) {  // spread over many: the largest stands for them
+    Eigen::Index largest = 0;
+    direction.loadings.cwiseAbs().maxCoeff(&largest);
+    order.push_back(largest);
+  }
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
     return std::abs(direction.loadings(a)) > std::abs(direction.loadings(b));
   });
@@ -105,9 +111,12 @@ Findings weak_direction_findings(const std::vector<WeakDirection>& directions,
                                  const std::vector<Parameter>& parameters) {
   if (directions.empty()) return {};
   std::string list;
-  for (const WeakDirection& direction : directions) {
+  for (std::size_t k = 0; k < std::min(directions.size(), kNamedMax); ++k) {
     if (!list.empty()) list += "; ";
-    list += in_words(direction, parameters);
+    list += in_words(directions[k], parameters);
+  }
+  if (directions.size() > kNamedMax) {
+    list += "; and " + std::to_string(directions.size() - kNamedMax) + " more";
   }
   return {{FindingKind::weak_direction, "parameters",
            "The data say less than the priors do about " + std::to_string(directions.size()) +

@@ -17,8 +17,8 @@ std::vector<int> random_order(int count, Rng& rng) {
 }
 
 RunFolds::RunFolds(int runs, int folds, Rng& rng)
-    : runs_(runs), left_out_(static_cast<std::size_t>(folds)) {
-  assert(folds >= 2 && folds <= runs);
+    : runs_(runs), left_out_(static_cast<std::size_t>(std::min(folds, runs))) {
+  assert(folds >= 2 && runs >= 2);
   const std::vector<int> order = random_order(runs, rng);
   for (std::size_t i = 0; i < order.size(); ++i) {
     left_out_[i % left_out_.size()].push_back(order[i]);

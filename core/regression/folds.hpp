@@ -14,7 +14,7 @@ namespace recald::regression {
 /// has seen eleven of them has seen the twelfth, and rows left out singly would flatter it.
 class RunFolds {
  public:
-  /// @pre 2 <= folds <= runs
+  /// Fewer runs than folds are left out one by one. @pre 2 <= folds, 2 <= runs
   RunFolds(int runs, int folds, Rng& rng);
 
   [[nodiscard]] int count() const { return static_cast<int>(left_out_.size()); }

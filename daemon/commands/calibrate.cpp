@@ -74,6 +74,7 @@ std::string render(const Finished& done) {
 Result<void> write_all(const Finished& done, const std::string& json,
                        const std::filesystem::path& folder) {
   if (auto made = system::make_folder(folder); !made) return made;
+  clear_results(folder);
   for (std::size_t chain = 0; chain < done.calibration.calibration.chains.size(); ++chain) {
     const auto file = folder / fmt::format("draws_{}.csv", chain + 1);
     auto written = system::write_file(file, draws_csv(done.calibration, chain, done.facts));
@@ -97,14 +98,14 @@ int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
   const auto done = finish_calibration(arguments, console);
   if (!done) return done.error();
   const std::string json = calibration_json(done->calibration, done->facts);
-  const auto folder = result_folder(arguments.out, done->calibration.calibration.converged);
+  const auto folder = folder_for(done->calibration.calibration.converged, arguments);
   if (!arguments.out.empty()) {
     if (auto written = write_all(*done, json, folder); !written) {
       return console.fail(written.error());
     }
   }
   console.out << (arguments.json ? json : result_table(done->calibration));
-  return folder == arguments.out ? kSuccess : console.fail(kept_sentence(folder));
+  return gate_verdict(done->calibration.calibration.converged, arguments, folder, console);
 }
 
 int run_report(const CalibrateArguments& arguments, const Console& console) {

@@ -43,6 +43,7 @@ DesignCalibrationOptions design_options(const CalibrateArguments& arguments,
 Result<void> write_all(const DesignCalibration& result, const doe::DesignFolder& design,
                        const RunFacts& facts, const std::string& json,
                        const std::filesystem::path& folder) {
+  clear_results(folder);
   for (std::size_t chain = 0; chain < result.calibration.chains.size(); ++chain) {
     const std::string name = fmt::format("draws_{}.csv", chain + 1);
     auto written = write_result(folder, name.c_str(), draws_csv(result, chain, facts));
@@ -93,13 +94,13 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
   complete.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   const std::string json = calibration_json(*calibrated, complete);
-  const auto folder = result_folder(arguments.out, calibrated->calibration.converged);
+  const auto folder = folder_for(calibrated->calibration.converged, arguments);
   if (!arguments.out.empty()) {
     auto written = write_all(*calibrated, *design, complete, json, folder);
     if (!written) return console.fail(written.error());
   }
   console.out << (arguments.json ? json : result_table(*calibrated));
-  return folder == arguments.out ? kSuccess : console.fail(kept_sentence(folder));
+  return gate_verdict(calibrated->calibration.converged, arguments, folder, console);
 }
 
 }  // namespace recald::daemon

@@ -2,6 +2,7 @@
 
 #include "core/calibration/samplers.hpp"
 #include "daemon/config/hyper_prior_file.hpp"
+#include "daemon/results/result_folder.hpp"
 
 namespace recald::daemon {
 
@@ -25,6 +26,19 @@ tl::expected<calibration::CalibrationOptions, int> calibration_options(
   const auto usable = calibration::check_sampling(options.sampling);
   if (!usable) return tl::unexpected(console.misused(usable.error().message));
   return options;
+}
+
+std::filesystem::path folder_for(bool converged, const CalibrateArguments& arguments) {
+  if (arguments.out.empty()) return {};
+  return result_folder(arguments.out, converged, arguments.iterations.has_value());
+}
+
+int gate_verdict(bool converged, const CalibrateArguments& arguments,
+                 const std::filesystem::path& folder, const Console& console) {
+  if (converged) return kSuccess;
+  if (folder != arguments.out) return console.fail(kept_sentence(folder));
+  if (arguments.iterations) return kSuccess;
+  return console.fail("the chains have not converged; these figures are not to be relied on");
 }
 
 RunFacts with_sampling(RunFacts facts, const SamplingArguments& arguments,

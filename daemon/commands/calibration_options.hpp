@@ -12,6 +12,12 @@ namespace recald::daemon {
 [[nodiscard]] tl::expected<calibration::CalibrationOptions, int> calibration_options(
     const SamplingArguments& arguments, const Console& console);
 
+/// Where the files of a calibration go, and the exit code after they are written: a gate that
+/// failed is a failure unless the user set the number of draws and nothing good was there to lose.
+[[nodiscard]] std::filesystem::path folder_for(bool converged, const CalibrateArguments& arguments);
+[[nodiscard]] int gate_verdict(bool converged, const CalibrateArguments& arguments,
+                               const std::filesystem::path& folder, const Console& console);
+
 /// `facts` with what the command line said and what the sampling took.
 [[nodiscard]] RunFacts with_sampling(RunFacts facts, const SamplingArguments& arguments,
                                      const calibration::Calibration& calibration);

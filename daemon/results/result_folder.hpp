@@ -6,9 +6,15 @@
 
 namespace recald::daemon {
 
-/// `out`, unless the calibration failed its gate and `out` holds one that passed: that one is kept,
-/// and the failed one goes into `out`/unconverged.
-[[nodiscard]] std::filesystem::path result_folder(const std::filesystem::path& out, bool converged);
+/// `out`; but `out`/unconverged for a calibration that failed its gate, so that what stands in
+/// `out` is kept. Only who asked for a number of draws, and has no good result there to lose, gets
+/// a failed one into `out` itself.
+[[nodiscard]] std::filesystem::path result_folder(const std::filesystem::path& out, bool converged,
+                                                  bool draws_given);
+
+/// Removes what an earlier calibration left: its chains may have been more, its model another.
+/// calibration.json goes first, so that an interruption leaves no result rather than half of two.
+void clear_results(const std::filesystem::path& folder);
 
 /// What to say when that happened.
 [[nodiscard]] std::string kept_sentence(const std::filesystem::path& folder);
