@@ -266,10 +266,14 @@ void add_model_variances(const Metamodel& metamodel, const std::vector<Eigen::Ve
 void say_how_months_are_modelled(const FittedMetamodel& fitted, const DesignCalibration& result,
                                  std::size_t calibration_months, std::vector<std::string>& notes) {
   if (fitted.form == MetamodelForm::seed || result.month_names.size() == calibration_months) return;
+  const std::string& first = result.month_names[calibration_months];
+  const std::string& last = result.month_names.back();
   notes.push_back(fmt::format(
-      "{} to {} are not in the design, and one regression a month says nothing of them: there the "
-      "seed's form is used, with a left-out R2 of {:.4f}.",
-      result.month_names[calibration_months], result.month_names.back(),
+      "{} not in the design, and one regression a month says nothing of them: there the one for "
+      "all "
+      "months is used (form seed), with a left-out R2 of {:.4f} in the design's own months. It has "
+      "not seen these; its bands there are too narrow.",
+      first == last ? first + " is" : first + " to " + last + " are",
       fitted.quality(MetamodelForm::seed).all.r2_left_out));
 }
 

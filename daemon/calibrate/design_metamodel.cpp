@@ -11,7 +11,8 @@ namespace recald::daemon {
 namespace {
 
 const char* description(MetamodelForm form) {
-  return form == MetamodelForm::seed ? "the seed's single regression" : "one regression a month";
+  return form == MetamodelForm::seed ? "one regression for all months (form seed)"
+                                     : "one regression a month";
 }
 
 /// Chooses among the forms that could be fitted, and says why.

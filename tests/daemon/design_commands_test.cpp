@@ -159,9 +159,10 @@ TEST_F(DesignCommands, CalibrationLeavesItsContract) {
       }
     }
   }
-  EXPECT_THAT(warnings_of(json),
-              Contains(HasSubstr("2021-01 to 2021-03 are not in the design, and one regression a "
-                                 "month says nothing of them: there the seed's form is used")));
+  EXPECT_THAT(
+      warnings_of(json),
+      Contains(HasSubstr("2021-01 to 2021-03 are not in the design, and one regression a "
+                         "month says nothing of them: there the one for all months is used")));
 }
 
 // Noise of 2 % on a simulation that the meta-model knows: the data must bring the model closer, and
