@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "simulators/building_feed.hpp"
+#include "simulators/feed/building_feed.hpp"
 
 namespace {
 

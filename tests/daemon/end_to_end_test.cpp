@@ -12,7 +12,7 @@
 
 #include "command_line.hpp"
 #include "core/metering/civil_time.hpp"
-#include "simulators/building_feed.hpp"
+#include "simulators/feed/building_feed.hpp"
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 

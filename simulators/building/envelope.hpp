@@ -1,0 +1,66 @@
+/// The building's constructions: makes the eighteen zones and sets what acts on their outer faces.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "simulators/building/truth.hpp"
+#include "simulators/building/zone.hpp"
+#include "simulators/climate/weather.hpp"
+
+namespace recald::simulators {
+
+/// Sun through a zone's windows, and air through its cracks, in one step.
+struct EnvelopeEffect {
+  double transmitted_sun_W = 0.0;
+  double infiltration_kg_s = 0.0;
+};
+
+class Envelope {
+ public:
+  Envelope(const Truth& truth, AirState initial);
+
+  /// Sets every outer face for the next step and finds sun and infiltration of each zone.
+  /// @param pressurised per storey: whether the office air handler brings in outdoor air.
+  const std::array<EnvelopeEffect, drawings::zones>& expose(
+      const Outdoors& outdoors, const std::array<bool, drawings::storeys>& pressurised);
+
+  /// Heat into all faces that see weather or ground, during the zones' last step.
+  [[nodiscard]] double exposed_heat_W() const;
+
+  [[nodiscard]] std::vector<Zone>& zones() { return zones_; }
+  [[nodiscard]] const std::vector<Zone>& zones() const { return zones_; }
+
+ private:
+  enum class Face { wall, window, roof, ground };
+  struct Exposed {
+    std::size_t zone;
+    std::size_t surface;
+    Face face;
+    std::size_t side;  ///< Facade of a wall or window.
+    double area_m2;
+  };
+  /// Two halves of one partition or slab, in different zones, joined at its middle.
+  struct Joint {
+    std::size_t first_zone, first_surface;
+    std::size_t second_zone, second_surface;
+    double conductance_W_m2K;
+  };
+  void build_zone(const Truth& truth, std::size_t zone, AirState initial);
+  void join_neighbours();
+  void expose_faces(const Outdoors& outdoors, const std::array<Irradiance, 5>& irradiance);
+  /// Outer side of a pane; what passes straight through goes to the zone's effect.
+  [[nodiscard]] OuterSide expose_window(const Exposed& face, const OuterSide& film,
+                                        const Irradiance& sun);
+  void join_halves();
+  [[nodiscard]] double infiltration_kg_s(std::size_t zone, const Outdoors& outdoors,
+                                         bool pressurised) const;
+
+  Truth truth_;
+  std::vector<Zone> zones_;
+  std::vector<Exposed> exposed_;
+  std::vector<Joint> joints_;
+  std::array<EnvelopeEffect, drawings::zones> effects_{};
+};
+
+}  // namespace recald::simulators

@@ -1,0 +1,46 @@
+/// Runs weather and building over whole local years and keeps their 15-minute means.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simulators/building/building.hpp"
+#include "simulators/climate/weather.hpp"
+
+namespace recald::simulators {
+
+inline constexpr std::chrono::seconds kInterval{900};
+
+/// First and last year are local calendar years in the building's time zone.
+struct Period {
+  int start_year = 2021;
+  int years = 3;
+};
+
+/// What a perfect weather station would have reported for one interval.
+struct WeatherMean {
+  double dry_bulb_C;
+  double relative_humidity;  ///< 0…1
+  double wind_speed_m_s;
+  double wind_from_deg;  ///< Of the mean wind vector.
+  double global_horizontal_W_m2;
+};
+
+/// Gapless, `kInterval` apart, start-stamped from `begin`.
+struct Recording {
+  metering::Instant begin;
+  std::vector<WeatherMean> weather;
+  std::vector<UtilityPower> power;
+
+  [[nodiscard]] metering::Instant start_of(std::size_t slot) const {
+    return begin + static_cast<std::int64_t>(slot) * kInterval;
+  }
+};
+
+/// Simulates the period after a month that lets walls and rooms forget their start.
+/// @return not_found if the system has no zone files.
+/// @pre years >= 1 and the period lies in 1971…2037
+[[nodiscard]] Result<Recording> record(const Truth& truth, const Period& period,
+                                       std::uint64_t seed);
+
+}  // namespace recald::simulators

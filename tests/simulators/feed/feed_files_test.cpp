@@ -1,0 +1,134 @@
+#include "simulators/feed/feed_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace recald::simulators {
+namespace {
+
+constexpr Period kYear{2023, 1};
+
+struct Feed {
+  Recording recording;
+  std::array<MeterFeed, kMeters> meters;
+  WeatherFeed weather;
+};
+
+Feed make_feed(std::uint64_t seed) {
+  auto recording = record(draw_truth(seed), kYear, seed);
+  EXPECT_TRUE(recording.has_value());
+  return {*recording,
+          {read_meter(*recording, MeterKind::chilled_water, seed, true),
+           read_meter(*recording, MeterKind::electricity, seed, true),
+           read_meter(*recording, MeterKind::steam, seed, true)},
+          read_weather_station(*recording, seed, true)};
+}
+
+std::string truth_of(const Feed& feed, std::uint64_t seed) {
+  const auto text =
+      truth_json(draw_truth(seed), kYear, seed, feed.recording, feed.meters, feed.weather);
+  EXPECT_TRUE(text.has_value());
+  return *text;
+}
+
+TEST(FeedFiles, ReadingsParseBackToWhatTheMetersShowed) {
+  const Feed feed = make_feed(4);
+  std::istringstream text(readings_csv(feed.recording, feed.meters));
+  std::string line;
+  std::getline(text, line);
+  EXPECT_EQ(line, "timestamp,meter,value,unit");
+  std::string before;
+  for (std::size_t slot = 0; slot < feed.recording.power.size(); ++slot) {
+    for (const MeterFeed& meter : feed.meters) {
+      const Cell& cell = meter.cells[slot];
+      if (cell.state == CellState::absent) continue;
+      ASSERT_TRUE(std::getline(text, line));
+      const MeterPlate& plate = plate_of(meter.kind);
+      const std::string prefix =
+          metering::to_string(feed.recording.start_of(slot)) + "," + std::string(plate.id) + ",";
+      ASSERT_EQ(line.substr(0, prefix.size()), prefix);
+      ASSERT_GT(prefix, before);  // ordered by time, then meter
+      before = prefix;
+      const std::string rest = line.substr(prefix.size());
+      const std::string value = rest.substr(0, rest.find(','));
+      ASSERT_EQ(rest.substr(rest.find(',') + 1), plate.unit);
+      if (cell.state == CellState::blank) {
+        ASSERT_EQ(value, "");
+      } else {
+        ASSERT_NEAR(std::stod(value), cell.value, 1e-9);
+      }
+    }
+  }
+  EXPECT_FALSE(std::getline(text, line));
+}
+
+TEST(FeedFiles, WeatherHasItsHeaderAndOneRowAnInterval) {
+  const Feed feed = make_feed(4);
+  std::istringstream text(weather_csv(feed.recording, feed.weather));
+  std::string line;
+  std::getline(text, line);
+  EXPECT_EQ(line, "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2");
+  for (std::size_t slot = 0; slot < feed.weather.cells.size(); ++slot) {
+    if (feed.weather.cells[slot].absent) continue;
+    ASSERT_TRUE(std::getline(text, line));
+    ASSERT_EQ(std::count(line.begin(), line.end(), ','), 5);
+    ASSERT_EQ(line.substr(0, 20), metering::to_string(feed.recording.start_of(slot)));
+  }
+  EXPECT_FALSE(std::getline(text, line));
+}
+
+TEST(FeedFiles, SiteFileQuotesDrawingsAndSplitsThePeriod) {
+  const std::string three = site_toml({2021, 3});
+  EXPECT_NE(three.find("calibration = { from = \"2021-01\", to = \"2022-12\" }"),
+            std::string::npos);
+  EXPECT_NE(three.find("validation = { from = \"2023-01\", to = \"2023-12\" }"), std::string::npos);
+  EXPECT_NE(three.find("floor_area_m2 = 7800\n"), std::string::npos);
+  EXPECT_NE(three.find("outdoor_air_m3_s = 13.2\n"), std::string::npos);
+  EXPECT_NE(three.find("\"2022-07-04\""), std::string::npos);
+  const std::string one = site_toml({2024, 1});
+  EXPECT_NE(one.find("calibration = { from = \"2024-01\", to = \"2024-08\" }"), std::string::npos);
+  EXPECT_NE(one.find("validation = { from = \"2024-09\", to = \"2024-12\" }"), std::string::npos);
+}
+
+TEST(FeedFiles, TruthHasTheSharedParametersAndCleanMonths) {
+  const Feed feed = make_feed(4);
+  const auto json = nlohmann::json::parse(truth_of(feed, 4));
+  const Truth truth = draw_truth(4);
+  const auto& parameters = json.at("parameters");
+  EXPECT_DOUBLE_EQ(parameters.at("occupancy_density").at("value"),
+                   truth.occupancy_density_person_m2);
+  EXPECT_DOUBLE_EQ(parameters.at("outdoor_airflow").at("value"), truth.outdoor_airflow_m3_s);
+  EXPECT_DOUBLE_EQ(parameters.at("cooling_setpoint").at("value"), truth.cooling_setpoint_C);
+  const auto& months = json.at("meters").at("electricity").at("monthly");
+  ASSERT_EQ(months.size(), 12u);
+  // March has 31 days but 743 hours: the mean power is taken over the slots that exist.
+  double march_kWh = 0.0;
+  const auto calendar = metering::LocalCalendar::open(drawings::time_zone);
+  const auto march = calendar->month_span(std::chrono::year{2023} / std::chrono::March);
+  double peak_kW = 0.0;
+  for (std::size_t slot = 0; slot < feed.recording.power.size(); ++slot) {
+    if (!march.contains(feed.recording.start_of(slot))) continue;
+    march_kWh += 0.25 * feed.recording.power[slot].electricity_kW;
+    peak_kW = std::max(peak_kW, feed.recording.power[slot].electricity_kW);
+  }
+  EXPECT_EQ(months[2].at("month"), "2023-03");
+  EXPECT_NEAR(months[2].at("daily_average_kWh"), march_kWh / 31.0, 1e-6);
+  EXPECT_NEAR(months[2].at("peak_kW"), peak_kW, 1e-9);
+}
+
+TEST(FeedFiles, TruthDeclaresEveryFault) {
+  const Feed feed = make_feed(4);
+  const auto json = nlohmann::json::parse(truth_of(feed, 4));
+  const auto& faults = json.at("meters").at("steam").at("faults");
+  const MeterFeed& steam = feed.meters[2];
+  ASSERT_EQ(faults.size(), steam.faults.size());
+  ASSERT_FALSE(steam.faults.empty());
+  EXPECT_EQ(faults[0].at("kind"), to_string(steam.faults[0].kind));
+  EXPECT_EQ(faults[0].at("from"),
+            metering::to_string(feed.recording.start_of(steam.faults[0].first)));
+}
+
+}  // namespace
+}  // namespace recald::simulators
