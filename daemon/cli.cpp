@@ -1,6 +1,9 @@
 #include "daemon/cli.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <vector>
 
 #include "core/calibration/samplers.hpp"
 #include "daemon/commands/commands.hpp"
@@ -138,13 +141,8 @@ std::string misuse_of(const CalibrateArguments& arguments) {
   return "";
 }
 
-}  // namespace
-
-int run_cli(int argc, const char* const* argv, const Console& console) {
-  CLI::App app{"Keeps a building's energy model calibrated to its meters.", "recald"};
-  app.set_version_flag("--version", kVersion);
-  app.require_subcommand(1);
-
+/// What every command was given on the command line; only one of them is run.
+struct Arguments {
   SiteArguments check;
   ReplayArguments replay;
   ProfileArguments profile;
@@ -153,63 +151,95 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   ScreenArguments screen;
   MetamodelArguments metamodel;
   DoeArguments doe;
+};
 
-  CLI::App* check_command = app.add_subcommand("check", "Explain what a site file gets wrong");
-  add_site(*check_command, check);
+struct Verb {
+  CLI::App* command;
+  std::function<int(const Console&)> run;
+};
 
-  CLI::App* replay_command =
+void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* check = app.add_subcommand("check", "Explain what a site file gets wrong");
+  add_site(*check, given.check);
+  verbs.push_back({check, [&](const Console& console) { return run_check(given.check, console); }});
+
+  CLI::App* replay =
       app.add_subcommand("replay", "Recorded readings to monthly figures, on a virtual clock");
-  add_site(*replay_command, replay);
-  replay_command->add_option("--from", replay.from, "First local day, YYYY-MM-DD");
-  replay_command->add_option("--to", replay.to, "Last local day, YYYY-MM-DD");
-  replay_command->add_option("--out", replay.out, "Folder for months.csv");
+  add_site(*replay, given.replay);
+  replay->add_option("--from", given.replay.from, "First local day, YYYY-MM-DD");
+  replay->add_option("--to", given.replay.to, "Last local day, YYYY-MM-DD");
+  replay->add_option("--out", given.replay.out, "Folder for months.csv");
+  verbs.push_back(
+      {replay, [&](const Console& console) { return run_replay(given.replay, console); }});
 
-  CLI::App* profile_command =
+  CLI::App* profile =
       app.add_subcommand("profile", "Lighting and plug schedules from the electricity meter");
-  add_site(*profile_command, profile);
-  profile_command->add_option("--out", profile.out, "Folder for profile.json");
+  add_site(*profile, given.profile);
+  profile->add_option("--out", given.profile.out, "Folder for profile.json");
+  verbs.push_back(
+      {profile, [&](const Console& console) { return run_profile(given.profile, console); }});
+}
 
-  CLI::App* calibrate_command = app.add_subcommand("calibrate", "One calibration now");
-  add_calibrate(*calibrate_command, calibrate);
+void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* calibrate = app.add_subcommand("calibrate", "One calibration now");
+  add_calibrate(*calibrate, given.calibrate);
+  verbs.push_back({calibrate, [&](const Console& console) {
+                     const std::string why = misuse_of(given.calibrate);
+                     return why.empty() ? run_calibrate(given.calibrate, console)
+                                        : console.misused(why);
+                   }});
 
-  CLI::App* report_command = app.add_subcommand("report", "Calibrate and write the page");
-  report_command->add_option("site", report.site, "Site file (TOML)")->required();
-  add_calibration(*report_command, report);
-  report_command->add_option("--out", report.out, "The page, such as report.html")->required();
+  CLI::App* report = app.add_subcommand("report", "Calibrate and write the page");
+  report->add_option("site", given.report.site, "Site file (TOML)")->required();
+  add_calibration(*report, given.report);
+  report->add_option("--out", given.report.out, "The page, such as report.html")->required();
+  verbs.push_back(
+      {report, [&](const Console& console) { return run_report(given.report, console); }});
+}
 
-  CLI::App* doe_command =
+void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* doe =
       app.add_subcommand("doe", "Run the site's model over a Latin hypercube of its parameters");
-  add_doe(*doe_command, doe);
+  add_doe(*doe, given.doe);
+  verbs.push_back({doe, [&](const Console& console) { return run_doe(given.doe, console); }});
 
-  CLI::App* screen_command =
+  CLI::App* screen =
       app.add_subcommand("screen", "Which parameters of a design matter to its outputs");
-  add_screen(*screen_command, screen);
+  add_screen(*screen, given.screen);
+  verbs.push_back(
+      {screen, [&](const Console& console) { return run_screen(given.screen, console); }});
 
-  CLI::App* metamodel_command =
+  CLI::App* metamodel =
       app.add_subcommand("metamodel", "A regression in the place of a design's simulation");
-  add_screen(*metamodel_command, metamodel);
-  add_form(*metamodel_command, metamodel.design);
-  metamodel_command
-      ->add_option("--parameters", metamodel.parameters, "all, or names separated by commas")
+  add_screen(*metamodel, given.metamodel);
+  add_form(*metamodel, given.metamodel.design);
+  metamodel
+      ->add_option("--parameters", given.metamodel.parameters, "all, or names separated by commas")
       ->capture_default_str();
+  verbs.push_back(
+      {metamodel, [&](const Console& console) { return run_metamodel(given.metamodel, console); }});
+}
 
+}  // namespace
+
+int run_cli(int argc, const char* const* argv, const Console& console) {
+  CLI::App app{"Keeps a building's energy model calibrated to its meters.", "recald"};
+  app.set_version_flag("--version", kVersion);
+  app.require_subcommand(1);
+  Arguments given;
+  std::vector<Verb> verbs;
+  add_site_verbs(app, given, verbs);
+  add_calibration_verbs(app, given, verbs);
+  add_design_verbs(app, given, verbs);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // CLI11 prints help and version through the same door, with exit code 0.
     return app.exit(error, console.out, console.err) == 0 ? kSuccess : kUsage;
   }
-  if (check_command->parsed()) return run_check(check, console);
-  if (replay_command->parsed()) return run_replay(replay, console);
-  if (profile_command->parsed()) return run_profile(profile, console);
-  if (calibrate_command->parsed()) {
-    if (const std::string why = misuse_of(calibrate); !why.empty()) return console.misused(why);
-    return run_calibrate(calibrate, console);
-  }
-  if (doe_command->parsed()) return run_doe(doe, console);
-  if (screen_command->parsed()) return run_screen(screen, console);
-  if (metamodel_command->parsed()) return run_metamodel(metamodel, console);
-  return run_report(report, console);
+  const auto verb =
+      std::ranges::find_if(verbs, [](const Verb& one) { return one.command->parsed(); });
+  return verb->run(console);  // CLI11 saw to it that there is one
 }
 
 }  // namespace recald::daemon
