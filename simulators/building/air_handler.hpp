@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "simulators/building/cooling_coil.hpp"
+#include "simulators/building/operation.hpp"
 
 namespace recald::simulators {
 
@@ -51,12 +52,15 @@ enum class AirHandlerMode {
   off,
   ventilate,    ///< Outdoor air as designed, supply air at its set-point.
   recirculate,  ///< Start-up and night cycle: outdoor damper shut.
+  purge,        ///< Outdoor air as it is, boxes open, coils shut.
 };
 
 struct AirHandlerCommand {
   AirHandlerMode mode;
   double outdoor_share = 1.0;   ///< Of the design outdoor air, while ventilating.
   double min_flow_share = 1.0;  ///< Scales the boxes' minimum flow.
+  double run_share = 1.0;       ///< Of the handler: its boxes, outdoor air and fans alike.
+  AirOperation operation = {};
 };
 
 struct BoxSupply {
@@ -72,6 +76,7 @@ struct AirHandlerWork {
   double fan_W = 0.0;
   double fan_to_air_W = 0.0;
   double condensate_kg_s = 0.0;
+  double humidifier_W = 0.0;  ///< Heat of the steam that is added.
   double supply_kg_s = 0.0;
   double outdoor_kg_s = 0.0;
   AirState mixed{20.0, 0.008};
@@ -96,9 +101,14 @@ class AirHandler {
                       double step_s);
   [[nodiscard]] double outdoor_flow_kg_s(const AirHandlerCommand& command, const AirState& outdoor,
                                          const AirState& returned, double coil_target_C) const;
+  void purge(const AirHandlerCommand& command, const AirState& outdoor);
+  [[nodiscard]] double supply_setpoint_C(const AirOperation& operation, double outdoor_C) const;
+  [[nodiscard]] double asked_outdoor_kg_s(const AirHandlerCommand& command) const;
+  [[nodiscard]] double fan_W(const AirHandlerCommand& command) const;
+  void humidify(const AirOperation& operation);
   void treat(const AirHandlerCommand& command, const AirState& outdoor, const AirState& returned,
              double pressure_Pa);
-  void reheat();
+  void reheat(double leak_share);
 
   AirHandlerDesign design_;
   std::vector<BoxDesign> boxes_;

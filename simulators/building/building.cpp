@@ -6,171 +6,262 @@
 namespace recald::simulators {
 namespace {
 
-using namespace drawings;
-
 constexpr AirState kInitialAir{22.0, 0.007};
 constexpr double kDesignDensity_kg_m3 = 1.15;
+constexpr RunningHours kNever{24.0, 0.0};
 
-/// Even air handlers serve offices, odd ones laboratories, two a storey.
-bool serves_offices(std::size_t air_handler) { return air_handler % 2 == 0; }
+/// Even air handlers serve the perimeter, odd ones the core, two a storey.
+bool serves_perimeter(std::size_t air_handler) { return air_handler % 2 == 0; }
+
+std::size_t first_side(std::size_t air_handler) {
+  return serves_perimeter(air_handler) ? south : core;
+}
+std::size_t last_side(std::size_t air_handler) {
+  return serves_perimeter(air_handler) ? west : special;
+}
+
+AirHandlerDesign design_of(const Truth& truth, std::size_t index, double supply_kg_s) {
+  const Drawings& drawings = truth.drawings;
+  const bool perimeter = serves_perimeter(index);
+  const AirHandlerPlate& plate = perimeter ? drawings.perimeter_air : drawings.core_air;
+  const bool scheduled = perimeter || !drawings.core_runs_always;
+  return {.supply_kg_s = supply_kg_s,
+          .outdoor_kg_s = kDesignDensity_kg_m3 * truth.outdoor_m3_s[index],
+          .supply_C = truth.supply_C[index],
+          .supply_reset_K = scheduled ? truth.supply_reset_K : 0.0,
+          .preheat_W = 1000.0 * plate.preheat_kW,
+          .coil = {.capacity_W = truth.coil_scale * 1000.0 * plate.coil_kW,
+                   .design_flow_kg_s = supply_kg_s,
+                   .design_bypass_factor = plate.coil_bypass_factor,
+                   .lowest_apparatus_dew_point_C = 8.5},
+          .fan = {.design_W = truth.fan_scale * 1000.0 * plate.fan_kW,
+                  .idle_share = 0.12,
+                  .exponent = truth.fan_exponent,
+                  .share_in_airstream = plate.fan_share_in_airstream},
+          .economiser_limit_C = drawings.economiser_limit_C};
+}
 
 AirHandler make_air_handler(const Truth& truth, std::size_t index) {
-  const bool office = serves_offices(index);
+  const Drawings& drawings = truth.drawings;
   const double supply_kg_s =
-      kDesignDensity_kg_m3 * (office ? office_supply_m3_s : core_supply_m3_s);
-  const CoolingCoil coil{
-      .capacity_W = truth.coil_scale * 1000.0 * (office ? office_coil_kW : laboratory_coil_kW),
-      .design_flow_kg_s = supply_kg_s,
-      .design_bypass_factor = office ? 0.10 : 0.07,
-      .lowest_apparatus_dew_point_C = 8.5};
-  const Fan fan{.design_W = truth.fan_scale * 1000.0 * (office ? office_fan_kW : laboratory_fan_kW),
-                .idle_share = 0.12,
-                .exponent = truth.fan_exponent,
-                .share_in_airstream = office ? 0.70 : 0.60};
-  const AirHandlerDesign design{.supply_kg_s = supply_kg_s,
-                                .outdoor_kg_s = kDesignDensity_kg_m3 * truth.outdoor_m3_s[index],
-                                .supply_C = truth.supply_C[index],
-                                .supply_reset_K = office ? truth.office_supply_reset_K : 0.0,
-                                .preheat_W = office ? 60e3 : 160e3,
-                                .coil = coil,
-                                .fan = fan,
-                                .economiser_limit_C = std::nullopt};
+      kDesignDensity_kg_m3 *
+      (serves_perimeter(index) ? drawings.perimeter_supply_m3_s() : drawings.core_supply_m3_s());
   std::vector<BoxDesign> boxes;
-  for (std::size_t side = office ? south : laboratory; side <= (office ? west : equipment);
-       ++side) {
-    const double min_share = truth.box_minimum_scale * (office               ? office_min_share
-                                                        : side == laboratory ? laboratory_min_share
-                                                                             : equipment_min_share);
-    const double max_kg_s = kDesignDensity_kg_m3 * zone_supply_m3_s[side];
-    boxes.push_back({max_kg_s, min_share, 13'000.0 * max_kg_s});
+  for (std::size_t side = first_side(index); side <= last_side(index); ++side) {
+    const double max_kg_s = kDesignDensity_kg_m3 * drawings.zone_supply_m3_s[side];
+    boxes.push_back(
+        {max_kg_s, truth.box_minimum_scale * drawings.min_share(side), 13'000.0 * max_kg_s});
   }
-  return AirHandler(design, std::move(boxes));
+  return AirHandler(design_of(truth, index, supply_kg_s), std::move(boxes));
+}
+
+Truth rebuilt(Truth truth, const HiddenEffects& effects) {
+  for (const auto& effect : effects) effect->build(truth);
+  return truth;
 }
 
 }  // namespace
 
-Building::Building(const Truth& truth, std::uint64_t seed)
-    : truth_(truth),
-      envelope_(truth, kInitialAir),
-      people_(truth.occupancy_density_person_m2, stream_of(seed, Stream::people)),
-      internal_loads_(truth, stream_of(seed, Stream::loads)),
-      services_(truth, stream_of(seed, Stream::hot_water)) {
-  for (std::size_t i = 0; i < drawings::air_handlers; ++i) {
-    air_handlers_.push_back(make_air_handler(truth, i));
+Building::Building(Truth truth, std::chrono::seconds step, std::uint64_t seed,
+                   HiddenEffects effects)
+    : truth_(rebuilt(std::move(truth), effects)),
+      step_s_(static_cast<double>(step.count())),
+      calendar_(truth_.drawings.calendar),
+      envelope_(truth_, kInitialAir),
+      people_(truth_, stream_of(seed, Stream::people)),
+      internal_loads_(truth_, step_s_, stream_of(seed, Stream::loads)),
+      plant_(truth_, step_s_, stream_of(seed, Stream::hot_water)),
+      effects_(std::move(effects)),
+      night_cycle_(truth_.drawings.air_handlers(), false),
+      pressurised_(truth_.drawings.storeys_simulated(), 0.0),
+      zone_loads_(truth_.drawings.zones()),
+      work_(truth_.drawings.air_handlers()),
+      zone_imbalance_J_(truth_.drawings.zones(), 0.0) {
+  for (std::size_t i = 0; i < truth_.drawings.air_handlers(); ++i) {
+    air_handlers_.push_back(make_air_handler(truth_, i));
   }
 }
 
 void Building::begin_day(metering::Day day) {
   today_ = day;
-  today_kind_ = day_kind(day);
-  people_.begin_day(day);
+  day_kind_ = calendar_.kind_of(day);
+  const bool saturday = day_kind_ == DayKind::saturday && truth_.saturday_operation;
+  timetable_ = {.kind = day_kind_,
+                .air = day_kind_ == DayKind::workday
+                           ? RunningHours{truth_.occupied_from_h, truth_.occupied_to_h}
+                       : saturday ? RunningHours{8.0, 14.0}
+                                  : kNever};
+  for (const auto& effect : effects_) effect->plan(day, timetable_);
+  people_.begin_day(day, day_kind_, calendar_.season_attendance(day), timetable_.attendance);
   internal_loads_.begin_day();
 }
 
-AirHandlerCommand Building::command_office(std::size_t storey, const Clock& clock) {
-  const bool workday = clock.kind == DayKind::workday;
-  const bool saturday = clock.kind == DayKind::saturday && truth_.saturday_operation;
-  const double from_h = workday ? truth_.occupied_from_h : 8.0;
-  const double to_h = workday ? truth_.occupied_to_h : 14.0;
-  if (workday || saturday) {
-    night_cycle_[storey] = night_cycle_[storey] && clock.hour < from_h - 1.0;
-    if (clock.hour >= from_h && clock.hour < to_h) return {AirHandlerMode::ventilate, 1.0, 1.0};
-    if (clock.hour >= from_h - 1.0 && clock.hour < from_h) {
-      return {AirHandlerMode::recirculate, 0.0, 1.0};
+bool Building::runs_by_timetable(double hour) const {
+  return hour >= timetable_.air.from_h && hour < timetable_.air.to_h;
+}
+
+Moment Building::moment(const Outdoors& outdoors, metering::Instant instant,
+                        const metering::LocalTime& local) const {
+  return {instant,
+          local,
+          day_kind_,
+          outdoors,
+          step_s_,
+          load_.people_share,
+          runs_by_timetable(local.minute_of_day / 60.0)};
+}
+
+Operation Building::as_built() const {
+  Operation operation{};
+  operation.rooms.cooling_C = truth_.cooling_setpoint_C;
+  operation.rooms.heating_C = truth_.heating_setpoint_C;
+  operation.rooms.night_cooling_C = truth_.night_cooling_C;
+  operation.rooms.night_heating_C = truth_.night_heating_C;
+  return operation;
+}
+
+AirHandlerCommand Building::command_scheduled(std::size_t air_handler, const Moment& now,
+                                              const Operation& operation) {
+  const RunningHours& hours = timetable_.air;
+  const double warm_up_from_h = hours.from_h - timetable_.warm_up_h;
+  if (hours.to_h > hours.from_h) {
+    if (now.hour() >= warm_up_from_h && now.hour() < hours.to_h) night_cycle_[air_handler] = false;
+    if (now.air_runs) return {AirHandlerMode::ventilate, 1.0, 1.0, 1.0, operation.air};
+    if (now.hour() >= warm_up_from_h && now.hour() < hours.from_h) {
+      return {AirHandlerMode::recirculate, 0.0, 1.0, 1.0, operation.air};
     }
   }
+  return command_at_night(air_handler, now, operation);
+}
+
+AirHandlerCommand Building::command_at_night(std::size_t air_handler, const Moment& now,
+                                             const Operation& operation) {
+  const AirOperation& air = operation.air;
   double coldest_C = 100.0;
   double warmest_C = -100.0;
-  for (std::size_t side = south; side <= west; ++side) {
-    const double felt_C = zones()[storey * zones_per_storey + side].operative_C();
+  const std::size_t first_zone = air_handler / 2 * kZonesPerStorey;
+  for (std::size_t side = first_side(air_handler); side <= last_side(air_handler); ++side) {
+    const double felt_C = zones()[first_zone + side].operative_C();
     coldest_C = std::min(coldest_C, felt_C);
     warmest_C = std::max(warmest_C, felt_C);
   }
-  const double hysteresis_K = night_cycle_[storey] ? 1.2 : 0.0;
-  night_cycle_[storey] = coldest_C < truth_.office_night_heating_C + hysteresis_K ||
-                         warmest_C > truth_.office_night_cooling_C - hysteresis_K;
-  if (night_cycle_[storey]) return {AirHandlerMode::recirculate, 0.0, 1.0};
-  return {AirHandlerMode::off, 0.0, 1.0};
+  const double hysteresis_K = night_cycle_[air_handler] ? 1.2 : 0.0;
+  night_cycle_[air_handler] = coldest_C < operation.rooms.night_heating_C + hysteresis_K ||
+                              warmest_C > operation.rooms.night_cooling_C - hysteresis_K;
+  if (night_cycle_[air_handler]) return {AirHandlerMode::recirculate, 0.0, 1.0, 1.0, air};
+  if (air.night_run_share > 0.0) {
+    return {AirHandlerMode::ventilate, 1.0, 1.0, air.night_run_share, air};
+  }
+  const bool worth_it = warmest_C > now.outdoors.air.temperature_C + 2.0;
+  if (air.purge_share > 0.0 && worth_it && coldest_C > operation.rooms.heating_C) {
+    return {AirHandlerMode::purge, 1.0, 1.0, air.purge_share, air};
+  }
+  return {AirHandlerMode::off, 0.0, 1.0, 1.0, air};
 }
 
-AirHandlerCommand Building::command_laboratory(const Clock& clock) const {
-  const bool day = clock.kind == DayKind::workday && clock.hour >= truth_.occupied_from_h &&
-                   clock.hour < truth_.occupied_to_h;
-  const double share = day ? 1.0 : truth_.laboratory_night_share;
-  return {AirHandlerMode::ventilate, share, share};
+AirHandlerCommand Building::command_always(const Moment& now, const Operation& operation) const {
+  const bool day = now.day_kind == DayKind::workday && now.air_runs;
+  const double share = day ? 1.0 : std::max(truth_.core_night_share, operation.air.night_run_share);
+  return {AirHandlerMode::ventilate, share, share, 1.0, operation.air};
 }
 
-void Building::run_air_handlers(const Outdoors& outdoors, const Clock& clock) {
-  load_.cooling_W = load_.heating_W = load_.fans_W = 0.0;
-  for (std::size_t index = 0; index < drawings::air_handlers; ++index) {
-    const std::size_t storey = index / 2;
-    const bool office = serves_offices(index);
-    const AirHandlerCommand command =
-        office ? command_office(storey, clock) : command_laboratory(clock);
-    if (office) pressurised_[storey] = command.mode == AirHandlerMode::ventilate;
-    const bool night = office && night_cycle_[storey];
-    const std::size_t first = storey * zones_per_storey + (office ? south : laboratory);
-    const std::size_t count = office ? 4 : 2;
-    std::array<BoxDemand, 4> demands{};
-    for (std::size_t box = 0; box < count; ++box) {
-      const Zone& zone = zones()[first + box];
-      const double offset_K = truth_.thermostat_offset_K[first + box];
-      demands[box] = {
-          zone.air(), zone.operative_C(),
-          (night ? truth_.office_night_cooling_C - 1.0 : truth_.cooling_setpoint_C) + offset_K,
-          (night ? truth_.office_night_heating_C + 1.0 : truth_.heating_setpoint_C) + offset_K,
-          truth_.thermostat_band_K};
-    }
-    work_[index] = air_handlers_[index].advance(command, std::span(demands.data(), count),
-                                                outdoors.air, outdoors.pressure_Pa, kStep_s);
-    for (std::size_t box = 0; box < count; ++box) {
-      zone_loads_[first + box].supply_kg_s = air_handlers_[index].supplies()[box].kg_s;
-      zone_loads_[first + box].supply = air_handlers_[index].supplies()[box].air;
-    }
-    load_.cooling_W += work_[index].cooling_W;
-    load_.heating_W += work_[index].preheat_W + work_[index].reheat_W;
-    load_.fans_W += work_[index].fan_W;
+void Building::run_air_handler(std::size_t index, const Moment& now, const Operation& operation) {
+  const RoomOperation& rooms = operation.rooms;
+  const std::size_t storey = index / 2;
+  const bool scheduled = serves_perimeter(index) || !truth_.drawings.core_runs_always;
+  const AirHandlerCommand command =
+      scheduled ? command_scheduled(index, now, operation) : command_always(now, operation);
+  if (serves_perimeter(index)) {
+    pressurised_[storey] = command.mode == AirHandlerMode::ventilate ? command.run_share : 0.0;
+  }
+  const bool night = scheduled && (night_cycle_[index] || command.run_share < 1.0);
+  const std::size_t first = storey * kZonesPerStorey + first_side(index);
+  const std::size_t count = last_side(index) - first_side(index) + 1;
+  std::array<BoxDemand, 4> demands{};
+  for (std::size_t box = 0; box < count; ++box) {
+    const Zone& zone = zones()[first + box];
+    const double offset_K = truth_.thermostat_offset_K[first + box];
+    demands[box] = {
+        zone.air(), zone.operative_C(),
+        (night ? std::max(rooms.night_cooling_C - 1.0, rooms.cooling_C) : rooms.cooling_C) +
+            offset_K,
+        (night ? std::min(rooms.night_heating_C + 1.0, rooms.heating_C) : rooms.heating_C) +
+            offset_K,
+        truth_.thermostat_band_K};
+  }
+  work_[index] = air_handlers_[index].advance(command, std::span(demands.data(), count),
+                                              now.outdoors.air, now.outdoors.pressure_Pa, step_s_);
+  for (std::size_t box = 0; box < count; ++box) {
+    zone_loads_[first + box].supply_kg_s = air_handlers_[index].supplies()[box].kg_s;
+    zone_loads_[first + box].supply = air_handlers_[index].supplies()[box].air;
   }
 }
 
-void Building::add_gains(const Clock& clock, const Outdoors& outdoors) {
+void Building::run_air_handlers(const Moment& now, const Operation& operation) {
+  load_.cooling_W = load_.heating_W = load_.fans_W = 0.0;
+  for (std::size_t index = 0; index < air_handlers_.size(); ++index) {
+    run_air_handler(index, now, operation);
+    const double weight = truth_.drawings.storey_weight(index / 2);
+    load_.cooling_W += weight * work_[index].cooling_W;
+    load_.heating_W +=
+        weight * (work_[index].preheat_W + work_[index].reheat_W + work_[index].humidifier_W);
+    load_.fans_W += weight * work_[index].fan_W;
+  }
+}
+
+void Building::add_gains(const Moment& now, const Operation& operation) {
   constexpr double lights_radiant = 0.55;
   constexpr double plugs_radiant = 0.30;
   constexpr double people_radiant = 0.50;
-  const auto& effects = envelope_.expose(outdoors, pressurised_);
+  const Drawings& drawings = truth_.drawings;
+  const RoomOperation& rooms = operation.rooms;
+  const auto& effects = envelope_.expose(now.outdoors, pressurised_, operation.envelope);
   const auto& powers =
-      internal_loads_.advance(people_, clock.minute_of_day, clock.kind == DayKind::workday);
-  load_.lights_and_plugs_W = 0.0;
-  people_present_ = 0;
-  for (std::size_t zone = 0; zone < drawings::zones; ++zone) {
-    const int present = people_.present(zone, clock.minute_of_day);
-    const double people_W = present * sensible_W_person;
-    const double lights_W = truth_.zone_heat_share * powers[zone].lights_W;
-    const double plugs_W = truth_.zone_heat_share * powers[zone].plugs_W;
+      internal_loads_.advance(people_, now.local.minute_of_day, day_kind_ == DayKind::workday);
+  const double floor_m2 = drawings.floor_area_m2();
+  const double special_m2 = static_cast<double>(drawings.storeys) * drawings.zone_m2(special);
+  load_.lights_and_plugs_W = load_.other_electricity_W = load_.other_fuel_W = 0.0;
+  people_present_ = 0.0;
+  double planned_present = 0.0;
+  for (std::size_t zone = 0; zone < zone_loads_.size(); ++zone) {
+    const std::size_t side = zone % kZonesPerStorey;
+    const double weight = drawings.storey_weight(zone / kZonesPerStorey);
+    const double share = drawings.zone_m2(side) / floor_m2;
+    const double server_W =
+        side == special ? rooms.server_W * drawings.zone_m2(side) / special_m2 : 0.0;
+    const int planned = people_.present(zone, now.local.minute_of_day);
+    const double present = planned + share * rooms.extra_people;
+    const double drawn_lights_W =
+        rooms.lights_factor * powers[zone].lights_W + share * rooms.extra_lights_W;
+    const double drawn_plugs_W =
+        rooms.plugs_factor * powers[zone].plugs_W + share * rooms.extra_plugs_W + server_W;
+    const double people_W = present * drawings.sensible_W_person;
+    const double lights_W = truth_.zone_heat_share * drawn_lights_W;
+    const double plugs_W = truth_.zone_heat_share * drawn_plugs_W;
     ZoneLoads& loads = zone_loads_[zone];
     loads.radiant_W = lights_radiant * lights_W + plugs_radiant * plugs_W +
                       people_radiant * people_W + effects[zone].transmitted_sun_W;
     loads.convective_W = (1.0 - lights_radiant) * lights_W + (1.0 - plugs_radiant) * plugs_W +
                          (1.0 - people_radiant) * people_W;
-    loads.moisture_kg_s = present * latent_W_person / kEvaporation_J_kg;
+    loads.moisture_kg_s = present * drawings.latent_W_person / kEvaporation_J_kg;
     loads.infiltration_kg_s = effects[zone].infiltration_kg_s;
-    loads.outdoor = outdoors.air;
-    load_.lights_and_plugs_W += powers[zone].lights_W + powers[zone].plugs_W;
-    people_present_ += present;
+    loads.outdoor = now.outdoors.air;
+    load_.lights_and_plugs_W += weight * (drawn_lights_W + drawn_plugs_W);
+    people_present_ += weight * present;
+    planned_present += planned;
   }
-  load_.people_share =
-      people_.assigned() > 0 ? static_cast<double>(people_present_) / people_.assigned() : 0.0;
+  load_.people_share = people_.assigned() > 0 ? planned_present / people_.assigned() : 0.0;
   constexpr double dusk_sine = -0.05;  // lamps switch when the sun is 3 degrees below the horizon
-  load_.dark = outdoors.sun.up < dusk_sine;
+  load_.dark = now.outdoors.sun.up < dusk_sine;
 }
 
 void Building::exchange_through_doors() {
   constexpr double exchange_per_door_kg_s = 0.12;
   for (ZoneLoads& loads : zone_loads_) loads.exchange_W = loads.exchange_moisture_kg_s = 0.0;
-  for (std::size_t storey = 0; storey < storeys; ++storey) {
-    const std::size_t centre = storey * zones_per_storey + laboratory;
-    for (const std::size_t side : {south, north, east, west, equipment}) {
-      const std::size_t room = storey * zones_per_storey + side;
+  for (std::size_t storey = 0; storey < truth_.drawings.storeys_simulated(); ++storey) {
+    const std::size_t centre = storey * kZonesPerStorey + core;
+    for (const std::size_t side : {south, north, east, west, special}) {
+      const std::size_t room = storey * kZonesPerStorey + side;
       const AirState& inner = zones()[centre].air();
       const AirState& outer = zones()[room].air();
       const double heat_W =
@@ -187,23 +278,32 @@ void Building::exchange_through_doors() {
 
 void Building::advance_zones() {
   heat_imbalance_J_ = 0.0;
-  for (std::size_t zone = 0; zone < drawings::zones; ++zone) {
+  for (std::size_t zone = 0; zone < zone_loads_.size(); ++zone) {
     Zone& room = envelope_.zones()[zone];
-    heat_imbalance_J_ += room.stored_J();
-    const ZoneHeat heat = room.advance(zone_loads_[zone], kStep_s);
+    const double before_J = room.stored_J();
+    heat_imbalance_J_ += before_J;
+    const ZoneHeat heat = room.advance(zone_loads_[zone], step_s_);
     heat_imbalance_J_ += heat.gains_J + heat.supply_J + heat.infiltration_J - room.stored_J();
+    zone_imbalance_J_[zone] = heat.gains_J + heat.supply_J + heat.infiltration_J + heat.exchange_J +
+                              heat.constructions_J + before_J - room.stored_J();
   }
-  heat_imbalance_J_ += envelope_.exposed_heat_W() * kStep_s;
+  heat_imbalance_J_ += envelope_.exposed_heat_W() * step_s_;
 }
 
-UtilityPower Building::advance(const Outdoors& outdoors, const metering::LocalTime& local) {
+UtilityPower Building::advance(const Outdoors& outdoors, metering::Instant instant,
+                               const metering::LocalTime& local) {
   if (today_ != local.date) begin_day(local.date);
-  const Clock clock{today_kind_, local.minute_of_day, local.minute_of_day / 60.0};
-  run_air_handlers(outdoors, clock);
-  add_gains(clock, outdoors);
+  const Moment now = moment(outdoors, instant, local);
+  Operation operation = as_built();
+  for (const auto& effect : effects_) effect->operate(now, operation);
+  run_air_handlers(now, operation);
+  add_gains(now, operation);
   exchange_through_doors();
   advance_zones();
-  return services_.advance(load_);
+  for (const auto& effect : effects_) effect->load(now, load_);
+  UtilityPower power = plant_.advance(load_, operation.plant, outdoors);
+  for (const auto& effect : effects_) effect->supply(now, power);
+  return power;
 }
 
 }  // namespace recald::simulators

@@ -1,63 +1,85 @@
-/// The campus laboratory building at work: people, loads, envelope, air handlers, services.
+/// A building at work: people, loads, envelope, air handlers, plant, and what is hidden in it.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "simulators/building/air_handler.hpp"
-#include "simulators/building/campus_calendar.hpp"
-#include "simulators/building/district_service.hpp"
+#include "simulators/building/calendar.hpp"
 #include "simulators/building/envelope.hpp"
+#include "simulators/building/hidden_effect.hpp"
 #include "simulators/building/internal_loads.hpp"
 #include "simulators/building/people.hpp"
+#include "simulators/building/plant.hpp"
 
 namespace recald::simulators {
 
+using HiddenEffects = std::vector<std::unique_ptr<HiddenEffect>>;
+
 class Building {
  public:
-  Building(const Truth& truth, std::uint64_t seed);
+  /// @param effects  asked in their order; may be empty
+  Building(Truth truth, std::chrono::seconds step, std::uint64_t seed, HiddenEffects effects);
 
-  /// One step of `kStep` under this weather. @pre local days come in order
-  UtilityPower advance(const Outdoors& outdoors, const metering::LocalTime& local);
+  /// One step under this weather. @pre local days come in order
+  UtilityPower advance(const Outdoors& outdoors, metering::Instant instant,
+                       const metering::LocalTime& local);
 
   // For tests and for people who want to look inside.
+  [[nodiscard]] const Truth& truth() const { return truth_; }
+  [[nodiscard]] std::chrono::seconds step() const {
+    return std::chrono::seconds{static_cast<std::int64_t>(step_s_)};
+  }
+  [[nodiscard]] const HiddenEffects& effects() const { return effects_; }
   [[nodiscard]] const std::vector<Zone>& zones() const { return envelope_.zones(); }
   [[nodiscard]] const AirHandlerWork& air_handler_work(std::size_t i) const { return work_[i]; }
   [[nodiscard]] const ServiceLoad& load() const { return load_; }
-  [[nodiscard]] int people_present() const { return people_present_; }
-  /// Heat that entered the building from outside, gains and supply air in the last step, minus what
-  /// rooms and walls stored of it; 0 but for rounding. Heat between rooms must cancel.
+  [[nodiscard]] double people_present() const { return people_present_; }
+  /// What a zone took up in the last step from outside, neighbours, gains and supply air, minus
+  /// what its air and constructions stored of it; 0 but for rounding.
+  [[nodiscard]] double heat_imbalance_J(std::size_t zone) const { return zone_imbalance_J_[zone]; }
+  /// The same for all zones together: heat between rooms must cancel.
   [[nodiscard]] double heat_imbalance_J() const { return heat_imbalance_J_; }
 
  private:
-  struct Clock {
-    DayKind kind;
-    int minute_of_day;
-    double hour;
-  };
   void begin_day(metering::Day day);
-  [[nodiscard]] AirHandlerCommand command_office(std::size_t storey, const Clock& clock);
-  [[nodiscard]] AirHandlerCommand command_laboratory(const Clock& clock) const;
-  void run_air_handlers(const Outdoors& outdoors, const Clock& clock);
-  void add_gains(const Clock& clock, const Outdoors& outdoors);
+  [[nodiscard]] Moment moment(const Outdoors& outdoors, metering::Instant instant,
+                              const metering::LocalTime& local) const;
+  [[nodiscard]] Operation as_built() const;
+  [[nodiscard]] bool runs_by_timetable(double hour) const;
+  [[nodiscard]] AirHandlerCommand command_scheduled(std::size_t air_handler, const Moment& now,
+                                                    const Operation& operation);
+  [[nodiscard]] AirHandlerCommand command_at_night(std::size_t air_handler, const Moment& now,
+                                                   const Operation& operation);
+  [[nodiscard]] AirHandlerCommand command_always(const Moment& now,
+                                                 const Operation& operation) const;
+  void run_air_handlers(const Moment& now, const Operation& operation);
+  void run_air_handler(std::size_t index, const Moment& now, const Operation& operation);
+  void add_gains(const Moment& now, const Operation& operation);
   void exchange_through_doors();
   void advance_zones();
 
   Truth truth_;
+  double step_s_;
+  Calendar calendar_;
   Envelope envelope_;
   People people_;
   InternalLoads internal_loads_;
-  DistrictService services_;
-  std::vector<AirHandler> air_handlers_;  ///< Offices at 2·storey, laboratories at 2·storey + 1.
-  std::array<bool, drawings::storeys> night_cycle_{};
-  std::array<bool, drawings::storeys> pressurised_{};
-  std::array<ZoneLoads, drawings::zones> zone_loads_{};
-  std::array<AirHandlerWork, drawings::air_handlers> work_{};
+  Plant plant_;
+  HiddenEffects effects_;
+  std::vector<AirHandler>
+      air_handlers_;               ///< The perimeter's at 2·storey, the core's at 2·storey + 1.
+  std::vector<bool> night_cycle_;  ///< By air handler.
+  std::vector<double> pressurised_;        ///< By storey, 0…1.
+  std::vector<ZoneLoads> zone_loads_;
+  std::vector<AirHandlerWork> work_;
+  std::vector<double> zone_imbalance_J_;
   std::optional<metering::Day> today_;
-  DayKind today_kind_ = DayKind::workday;
+  Timetable timetable_{};
+  DayKind day_kind_ = DayKind::workday;  ///< As the calendar has it.
   ServiceLoad load_;
-  int people_present_ = 0;
+  double people_present_ = 0.0;
   double heat_imbalance_J_ = 0.0;
 };
 

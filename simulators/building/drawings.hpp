@@ -1,116 +1,194 @@
-/// The campus laboratory building as its drawings and nameplates show it.
+/// A building as its drawings and nameplates show it.
 ///
-/// Three storeys of 65 m × 40 m; offices 6 m deep along all four facades around a laboratory core.
-/// The site file quotes these numbers; the simulated truth scatters around them.
+/// The site file quotes these numbers; the simulated truth scatters around them. Without change
+/// they describe the campus laboratory: three storeys of 65 m × 40 m; offices 6 m deep along all
+/// four facades around a laboratory core.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 
+#include "simulators/climate/climates.hpp"
 #include "simulators/climate/sun.hpp"
 
-namespace recald::simulators::drawings {
+namespace recald::simulators {
 
-inline constexpr std::string_view time_zone = "America/New_York";
-inline constexpr Place place{33.65, -84.43, 308.0};
+enum class Use { laboratory, office, school };
+enum class CoolingPlant { district, chiller };
+enum class HeatingPlant { district_steam, district_water, boiler, heat_pump };
 
-inline constexpr std::size_t storeys = 3;
-inline constexpr std::size_t zones_per_storey = 6;
-inline constexpr std::size_t zones = storeys * zones_per_storey;
-inline constexpr std::size_t air_handlers = 2 * storeys;  ///< Per storey: offices, laboratories.
-inline constexpr double storey_height_m = 4.2;
-inline constexpr double length_m = 65.0;  ///< South and north facades.
-inline constexpr double width_m = 40.0;   ///< East and west facades.
-inline constexpr double perimeter_depth_m = 6.0;
-inline constexpr double storey_area_m2 = length_m * width_m;
-inline constexpr double floor_area_m2 = storeys * storey_area_m2;
+/// A storey's zones: rooms along the four facades, the core, and special rooms inside it. In the
+/// laboratory these are offices, the open laboratory, and equipment rooms, which are small and hot.
+enum Side : std::size_t { south, north, east, west, core, special };
+inline constexpr std::size_t kZonesPerStorey = 6;
+inline constexpr std::array<std::string_view, 4> kSideNames{"south", "north", "east", "west"};
+inline constexpr std::array<double, 4> kFacadeAzimuth_deg{180.0, 0.0, 90.0, 270.0};
+/// Storeys between the lowest and the highest are alike: one of them stands for all.
+inline constexpr std::size_t kStoreysSimulated = 3;
 
-/// A storey's zones: four offices, the open laboratory, and the equipment rooms inside it
-/// (freezers, instruments), which are small and hot.
-enum Side : std::size_t { south, north, east, west, laboratory, equipment };
-inline constexpr std::array<std::string_view, 4> side_names{"south", "north", "east", "west"};
-inline constexpr std::array<double, 4> facade_azimuth_deg{180.0, 0.0, 90.0, 270.0};
-inline constexpr std::array<double, 4> facade_length_m{length_m, length_m, width_m, width_m};
-inline constexpr double core_area_m2 =
-    (length_m - 2 * perimeter_depth_m) * (width_m - 2 * perimeter_depth_m);
-inline constexpr double equipment_share_of_core = 0.3;
-/// The long facades own the corners.
-inline constexpr std::array<double, zones_per_storey> zone_area_m2{
-    length_m * perimeter_depth_m,
-    length_m* perimeter_depth_m,
-    (width_m - 2 * perimeter_depth_m) * perimeter_depth_m,
-    (width_m - 2 * perimeter_depth_m) * perimeter_depth_m,
-    (1.0 - equipment_share_of_core) * core_area_m2,
-    equipment_share_of_core* core_area_m2};
-inline constexpr double laboratory_area_m2 = storeys * core_area_m2;
-inline constexpr double office_area_m2 = floor_area_m2 - laboratory_area_m2;
+/// What happens in the rooms of one kind.
+struct RoomUse {
+  double crowding;  ///< People per area against the rooms of the perimeter; 0: nobody sits there.
+  double arrival_h, stay_h;  ///< Of the people who sit there, on average.
+  double weekend_share_max;  ///< Of weekend days on which the keenest of them shows up.
+  double evening_share_max;  ///< Of days on which the keenest of them returns after dinner.
+  double lighting_W_m2;
+  double plugs_W_m2;            ///< Installed.
+  double plugs_standing_share;  ///< Of the installed plugs, always.
+  double plugs_people_share;    ///< Of them, with the share of people present.
+  double plugs_working_share;   ///< Of them, 8 to 18 h on working days.
+  double plugs_habit;           ///< One standard deviation from day to day.
+  bool appliance_runs;          ///< Autoclaves, ovens, kilns: started and left to end.
+};
 
-inline constexpr double window_share = 0.35;
-inline constexpr double wall_u_W_m2K = 0.45;
-inline constexpr double roof_u_W_m2K = 0.30;
-inline constexpr double window_u_W_m2K = 2.4;
-inline constexpr double ground_u_W_m2K = 0.35;
-inline constexpr double window_shgc = 0.38;
-inline constexpr double window_frame_share = 0.15;
-inline constexpr double window_shading_factor = 0.8;
-inline constexpr double wall_absorptance = 0.6;
-inline constexpr double roof_absorptance = 0.7;
-inline constexpr double leakage_cm2_m2 = 1.3;  ///< At 4 Pa, per m² of exterior wall and roof.
+/// One air handler's nameplate.
+struct AirHandlerPlate {
+  double outdoor_m3_s;
+  double fan_kW;  ///< All its fans, exhaust included.
+  double fan_share_in_airstream;
+  double coil_kW;
+  double coil_bypass_factor;
+  double preheat_kW;
+};
 
-inline constexpr double occupancy_person_m2 = 0.05;
-inline constexpr double sensible_W_person = 75.0;
-inline constexpr double latent_W_person = 55.0;
-inline constexpr double office_lighting_W_m2 = 9.5;
-inline constexpr double laboratory_lighting_W_m2 = 10.5;
-inline constexpr double office_plugs_W_m2 = 11.0;
-inline constexpr double laboratory_plugs_W_m2 = 27.0;
-inline constexpr double equipment_plugs_W_m2 = 60.0;
-inline constexpr double exterior_kW = 6.0;
-inline constexpr double zone_heat_share = 0.9;
+struct Drawings {
+  Use use = Use::laboratory;
+  Use calendar = Use::laboratory;  ///< Whose holidays and breaks it keeps.
+  std::string id = "campus-lab";
+  std::string name = "Campus laboratory building";
+  std::string description =
+      "Campus laboratory building: three storeys, offices around a laboratory core, six air "
+      "handlers (variable air volume, reheat), chilled water and steam from the district, "
+      "electricity from the utility.";
+  std::string time_zone = "America/New_York";
+  Place place{33.65, -84.43, 308.0};
+  ClimateKind climate = ClimateKind::hot_humid;
 
-inline constexpr double cooling_setpoint_C = 24.0;
-inline constexpr double heating_setpoint_C = 21.0;
-inline constexpr double office_night_cooling_C = 29.0;
-inline constexpr double office_night_heating_C = 17.0;
-inline constexpr double occupied_from_h = 6.0;
-inline constexpr double occupied_to_h = 20.0;
+  std::size_t storeys = 3;
+  double storey_height_m = 4.2;
+  double length_m = 65.0;  ///< South and north facades.
+  double width_m = 40.0;   ///< East and west facades.
+  double perimeter_depth_m = 6.0;
+  double special_share_of_core = 0.3;
 
-inline constexpr double supply_C = 13.0;
-/// Largest supply flow of the zone on one storey, m³/s, in the order of `Side`.
-inline constexpr std::array<double, zones_per_storey> zone_supply_m3_s{1.9,  1.4, 1.15,
-                                                                       1.25, 6.0, 2.6};
-inline constexpr double office_supply_m3_s = zone_supply_m3_s[south] + zone_supply_m3_s[north] +
-                                             zone_supply_m3_s[east] + zone_supply_m3_s[west];
-inline constexpr double core_supply_m3_s =
-    zone_supply_m3_s[laboratory] + zone_supply_m3_s[equipment];
-inline constexpr double office_min_share = 0.35;
-inline constexpr double laboratory_min_share = 0.66;
-inline constexpr double equipment_min_share = 0.30;
-inline constexpr double office_outdoor_m3_s = 0.9;
-inline constexpr double laboratory_outdoor_m3_s = 3.5;
-inline constexpr double laboratory_night_share = 0.9;  ///< Of outdoor air and minimum flow.
-inline constexpr double outdoor_air_m3_s =
-    storeys * (office_outdoor_m3_s + laboratory_outdoor_m3_s);
-inline constexpr double supply_design_m3_s = storeys * (office_supply_m3_s + core_supply_m3_s);
-inline constexpr double supply_min_m3_s =
-    storeys *
-    (office_min_share * office_supply_m3_s + laboratory_min_share * zone_supply_m3_s[laboratory] +
-     equipment_min_share * zone_supply_m3_s[equipment]);
-inline constexpr double office_fan_kW = 10.0;      ///< One air handler, all its fans.
-inline constexpr double laboratory_fan_kW = 18.0;  ///< Exhaust included.
-inline constexpr double fan_kW = storeys * (office_fan_kW + laboratory_fan_kW);
-inline constexpr double pump_kW = 12.0;
-inline constexpr double office_coil_kW = 150.0;
-inline constexpr double laboratory_coil_kW = 340.0;
+  double window_share = 0.35;
+  double skylight_share = 0.0;  ///< Of the core's roof.
+  double wall_u_W_m2K = 0.45;
+  double roof_u_W_m2K = 0.30;
+  double window_u_W_m2K = 2.4;
+  double ground_u_W_m2K = 0.35;
+  double window_shgc = 0.38;
+  double window_frame_share = 0.15;
+  double window_shading_factor = 0.8;
+  double wall_absorptance = 0.6;
+  double roof_absorptance = 0.7;
+  double leakage_cm2_m2 = 1.3;  ///< At 4 Pa, per m² of exterior wall and roof.
+  bool heavy = true;            ///< Concrete slabs and block walls, or steel deck and stud walls.
 
-inline constexpr double chilled_water_loss = 0.03;
-inline constexpr double steam_loss = 0.08;
-inline constexpr double converter_efficiency = 0.97;
-inline constexpr double hot_water_m3_day = 6.0;
-inline constexpr double hot_water_C = 55.0;
-inline constexpr double mains_C = 17.0;
-inline constexpr double hot_water_efficiency = 0.85;
-inline constexpr double ground_C = 18.0;
+  double occupancy_person_m2 = 0.05;
+  double sensible_W_person = 75.0;
+  double latent_W_person = 55.0;
+  RoomUse perimeter_rooms{1.35, 8.5, 8.7, 0.08, 0.04, 9.5, 11.0, 0.30, 0.62, 0.0, 0.03, false};
+  RoomUse core_rooms{1.0, 9.0, 9.2, 0.25, 0.16, 10.5, 27.0, 0.42, 0.32, 0.0, 0.06, true};
+  RoomUse special_rooms{0.0, 0.0, 0.0, 0.0, 0.0, 10.5, 60.0, 0.60, 0.0, 0.06, 0.06, true};
+  /// People present / assigned by local hour, as the site file has it.
+  std::array<double, 24> presence_workday{0,    0,    0,    0,    0,    0,    0.03, 0.15,
+                                          0.41, 0.67, 0.78, 0.79, 0.62, 0.68, 0.79, 0.80,
+                                          0.72, 0.46, 0.19, 0.07, 0.04, 0.03, 0.01, 0};
+  std::array<double, 24> presence_weekend{0,    0,    0,    0,    0,    0,    0,    0.01,
+                                          0.01, 0.02, 0.03, 0.04, 0.04, 0.04, 0.03, 0.03,
+                                          0.02, 0.01, 0.01, 0,    0,    0,    0,    0};
+  double exterior_kW = 6.0;
+  double zone_heat_share = 0.9;  ///< Of lights and plugs; the rest leaves with the exhaust.
 
-}  // namespace recald::simulators::drawings
+  double cooling_setpoint_C = 24.0;
+  double heating_setpoint_C = 21.0;
+  double night_cooling_C = 29.0;
+  double night_heating_C = 17.0;
+  double occupied_from_h = 6.0;
+  double occupied_to_h = 20.0;
+
+  bool core_runs_always = true;   ///< The core's air handlers never stop.
+  double core_night_share = 0.9;  ///< Of their outdoor air and minimum flow, where they never stop.
+  double supply_C = 13.0;
+  /// Largest supply flow of the zone on one storey, m³/s, in the order of `Side`.
+  std::array<double, kZonesPerStorey> zone_supply_m3_s{1.9, 1.4, 1.15, 1.25, 6.0, 2.6};
+  double perimeter_min_share = 0.35;
+  double core_min_share = 0.66;
+  double special_min_share = 0.30;
+  AirHandlerPlate perimeter_air{0.9, 10.0, 0.70, 150.0, 0.10, 60.0};  ///< One a storey.
+  AirHandlerPlate core_air{3.5, 18.0, 0.60, 340.0, 0.07, 160.0};      ///< One a storey.
+  /// Above this dry bulb no extra outdoor air is taken. Absent: no economiser is fitted, as
+  /// ASHRAE 90.1 allows in climate zone 3A.
+  std::optional<double> economiser_limit_C;
+
+  CoolingPlant cooling = CoolingPlant::district;
+  HeatingPlant heating = HeatingPlant::district_steam;
+  double chilled_water_design_kW = 900.0;
+  double heating_design_kW = 700.0;
+  double pump_kW = 12.0;
+  double chilled_water_loss = 0.03;
+  double heating_loss = 0.08;
+  double heating_efficiency = 0.97;  ///< Of converter, heat exchanger or boiler.
+  double chiller_cop = 5.2;          ///< Nameplate at full load, towers included.
+  double heat_pump_cop = 3.2;        ///< Nameplate at 8.3 degC outdoors.
+  double hot_water_m3_day = 6.0;
+  double hot_water_C = 55.0;
+  double mains_C = 17.0;
+  double hot_water_efficiency = 0.85;
+  double ground_C = 18.0;
+
+  // The meters' sizes: what the site file calls rated, in kW.
+  double electricity_rated_kW = 900.0;
+  double cooling_rated_kW = 2500.0;
+  double heat_rated_kW = 2000.0;
+
+  [[nodiscard]] std::size_t storeys_simulated() const {
+    return storeys < kStoreysSimulated ? storeys : kStoreysSimulated;
+  }
+  /// How many real storeys this simulated one stands for.
+  [[nodiscard]] double storey_weight(std::size_t storey) const {
+    return storey == 1 && storeys > kStoreysSimulated
+               ? static_cast<double>(storeys - kStoreysSimulated + 1)
+               : 1.0;
+  }
+  [[nodiscard]] std::size_t zones() const { return storeys_simulated() * kZonesPerStorey; }
+  [[nodiscard]] std::size_t air_handlers() const { return 2 * storeys_simulated(); }
+  [[nodiscard]] double storey_m2() const { return length_m * width_m; }
+  [[nodiscard]] double floor_area_m2() const { return static_cast<double>(storeys) * storey_m2(); }
+  [[nodiscard]] double core_and_special_m2() const {
+    return (length_m - 2 * perimeter_depth_m) * (width_m - 2 * perimeter_depth_m);
+  }
+  [[nodiscard]] double facade_length_m(std::size_t side) const {
+    return side == south || side == north ? length_m : width_m;
+  }
+  /// Of one storey. The long facades own the corners.
+  [[nodiscard]] double zone_m2(std::size_t side) const;
+  [[nodiscard]] double skylight_m2() const { return skylight_share * zone_m2(core); }
+  [[nodiscard]] const RoomUse& rooms(std::size_t side) const {
+    return side == special ? special_rooms : side == core ? core_rooms : perimeter_rooms;
+  }
+  [[nodiscard]] double min_share(std::size_t side) const {
+    return side == special ? special_min_share
+           : side == core  ? core_min_share
+                           : perimeter_min_share;
+  }
+  [[nodiscard]] double perimeter_supply_m3_s() const {
+    return zone_supply_m3_s[south] + zone_supply_m3_s[north] + zone_supply_m3_s[east] +
+           zone_supply_m3_s[west];
+  }
+  [[nodiscard]] double core_supply_m3_s() const {
+    return zone_supply_m3_s[core] + zone_supply_m3_s[special];
+  }
+  /// All air handlers of all storeys together.
+  [[nodiscard]] double outdoor_air_m3_s() const {
+    return static_cast<double>(storeys) * (perimeter_air.outdoor_m3_s + core_air.outdoor_m3_s);
+  }
+};
+
+[[nodiscard]] std::string_view to_string(Use use);
+
+}  // namespace recald::simulators

@@ -1,9 +1,10 @@
-/// The building's constructions: makes the eighteen zones and sets what acts on their outer faces.
+/// The building's constructions: makes the zones and sets what acts on their outer faces.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "simulators/building/operation.hpp"
 #include "simulators/building/truth.hpp"
 #include "simulators/building/zone.hpp"
 #include "simulators/climate/weather.hpp"
@@ -21,9 +22,10 @@ class Envelope {
   Envelope(const Truth& truth, AirState initial);
 
   /// Sets every outer face for the next step and finds sun and infiltration of each zone.
-  /// @param pressurised per storey: whether the office air handler brings in outdoor air.
-  const std::array<EnvelopeEffect, drawings::zones>& expose(
-      const Outdoors& outdoors, const std::array<bool, drawings::storeys>& pressurised);
+  /// @param pressurised per storey, 0…1: how far the perimeter's air handler brings in outdoor air.
+  const std::vector<EnvelopeEffect>& expose(const Outdoors& outdoors,
+                                            const std::vector<double>& pressurised,
+                                            const EnvelopeOperation& operation);
 
   /// Heat into all faces that see weather or ground, during the zones' last step.
   [[nodiscard]] double exposed_heat_W() const;
@@ -32,7 +34,7 @@ class Envelope {
   [[nodiscard]] const std::vector<Zone>& zones() const { return zones_; }
 
  private:
-  enum class Face { wall, window, roof, ground };
+  enum class Face { wall, window, skylight, roof, ground };
   struct Exposed {
     std::size_t zone;
     std::size_t surface;
@@ -46,21 +48,29 @@ class Envelope {
     std::size_t second_zone, second_surface;
     double conductance_W_m2K;
   };
-  void build_zone(const Truth& truth, std::size_t zone, AirState initial);
+  void build_zone(std::size_t zone, AirState initial);
+  void add_facade(std::size_t zone, std::size_t side, std::vector<ZoneSurface>& surfaces,
+                  double start_C);
   void join_neighbours();
-  void expose_faces(const Outdoors& outdoors, const std::array<Irradiance, 5>& irradiance);
+  void expose_faces(const Outdoors& outdoors, const std::array<Irradiance, 5>& irradiance,
+                    const EnvelopeOperation& operation);
   /// Outer side of a pane; what passes straight through goes to the zone's effect.
   [[nodiscard]] OuterSide expose_window(const Exposed& face, const OuterSide& film,
-                                        const Irradiance& sun);
+                                        const Irradiance& sun, double sun_factor);
   void join_halves();
   [[nodiscard]] double infiltration_kg_s(std::size_t zone, const Outdoors& outdoors,
-                                         bool pressurised) const;
+                                         double pressurised,
+                                         const EnvelopeOperation& operation) const;
+  [[nodiscard]] double shaft_kg_s(std::size_t storey, double warmer_inside_K, double density,
+                                  const Outdoors& outdoors, double shaft_m2) const;
+  [[nodiscard]] double open_window_kg_s(std::size_t zone, double warmer_inside_K, double density,
+                                        double wind_m_s, double all_windows_m2) const;
 
   Truth truth_;
   std::vector<Zone> zones_;
   std::vector<Exposed> exposed_;
   std::vector<Joint> joints_;
-  std::array<EnvelopeEffect, drawings::zones> effects_{};
+  std::vector<EnvelopeEffect> effects_;
 };
 
 }  // namespace recald::simulators

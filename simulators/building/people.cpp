@@ -1,65 +1,79 @@
 #include "simulators/building/people.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-
-#include "simulators/building/campus_calendar.hpp"
 
 namespace recald::simulators {
 namespace {
-
-/// People per area relative to the building's mean; laboratories are emptier than offices.
-constexpr double kOfficeCrowding = 1.35;
-
-std::size_t draw_zone(Rng& rng) {
-  using namespace drawings;
-  constexpr double office_share = kOfficeCrowding * office_area_m2 / floor_area_m2;
-  const std::size_t storey = rng.below(storeys);
-  if (rng.uniform() >= office_share) return storey * zones_per_storey + laboratory;
-  double place_m2 = rng.uniform() * (storey_area_m2 - core_area_m2);
-  std::size_t side = south;
-  while (side < west && place_m2 >= zone_area_m2[side]) place_m2 -= zone_area_m2[side++];
-  return storey * zones_per_storey + side;
-}
 
 /// Monday to Sunday; working days only matter from Monday to Friday.
 constexpr std::array<double, 7> kWeekdayAttendance{0.95, 1.0, 1.0, 0.97, 0.86, 1.0, 1.0};
 
 }  // namespace
 
-People::People(double density_person_m2, Rng rng) : rng_(rng) {
+People::People(const Truth& truth, Rng rng)
+    : rng_(rng),
+      numbers_(rng.below(std::uint64_t{1} << 62U)),  // from the copy: `rng_` has not moved
+      assigned_(truth.drawings.zones(), 0),
+      present_(truth.drawings.zones() * kSlotsPerDay, 0) {
+  const Drawings& drawings = truth.drawings;
+  const double simulated_m2 =
+      static_cast<double>(drawings.storeys_simulated()) * drawings.storey_m2();
   const auto count = static_cast<std::size_t>(
-      std::lround(std::max(0.0, density_person_m2) * drawings::floor_area_m2));
+      std::lround(std::max(0.0, truth.occupancy_density_person_m2) * simulated_m2));
   people_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t zone = draw_zone(rng_);
-    const bool researcher = zone % drawings::zones_per_storey == drawings::laboratory;
+    const std::size_t zone = draw_zone(drawings);
+    const RoomUse& use = drawings.rooms(zone % kZonesPerStorey);
     people_.push_back({.zone = zone,
-                       .arrival_h = (researcher ? 9.0 : 8.5) + 0.8 * rng_.normal(),
-                       .stay_h = (researcher ? 9.2 : 8.7) + 0.7 * rng_.normal(),
-                       .weekend_share = rng_.uniform() * (researcher ? 0.25 : 0.08),
-                       .evening_share = rng_.uniform() * (researcher ? 0.16 : 0.04),
+                       .arrival_h = use.arrival_h + 0.8 * rng_.normal(),
+                       .stay_h = use.stay_h + 0.7 * rng_.normal(),
+                       .weekend_share = rng_.uniform() * use.weekend_share_max,
+                       .evening_share = rng_.uniform() * use.evening_share_max,
                        .days_away = 0});
     ++assigned_[zone];
   }
 }
 
-void People::attend(std::size_t zone, double from_h, double to_h) {
+std::size_t People::draw_zone(const Drawings& drawings) {
+  const double perimeter_m2 = drawings.storey_m2() - drawings.core_and_special_m2();
+  const double perimeter_share =
+      drawings.perimeter_rooms.crowding * perimeter_m2 / drawings.storey_m2();
+  const std::size_t first = kZonesPerStorey * rng_.below(drawings.storeys_simulated());
+  if (rng_.uniform() >= perimeter_share) return first + core;
+  double place_m2 = rng_.uniform() * perimeter_m2;
+  std::size_t side = south;
+  while (side < west && place_m2 >= drawings.zone_m2(side)) place_m2 -= drawings.zone_m2(side++);
+  return first + side;
+}
+
+/// In 0…1, the same whatever else was drawn.
+double People::number_of(std::size_t person, metering::Day day) const {
+  const auto date = std::chrono::sys_days{day}.time_since_epoch().count();
+  Rng own{numbers_ + static_cast<std::uint64_t>(date), static_cast<std::uint64_t>(person)};
+  return own.uniform();
+}
+
+void People::attend(std::size_t zone, double from_h, double to_h, bool kept_away) {
+  if (kept_away) return;
   // Whoever stays past midnight goes home at midnight: no one is counted twice.
   const int first = std::clamp(static_cast<int>(std::lround(from_h * 12.0)), 0, 288);
   const int last = std::clamp(static_cast<int>(std::lround(to_h * 12.0)), 0, 288);
-  for (int slot = first; slot < last; ++slot) ++present_[zone][static_cast<std::size_t>(slot)];
+  for (int slot = first; slot < last; ++slot) {
+    ++present_[zone * kSlotsPerDay + static_cast<std::size_t>(slot)];
+  }
 }
 
-void People::plan_day(Person& person, metering::Day day, double attendance) {
+void People::plan_day(Person& person, DayKind kind, double attendance, bool kept_away) {
   if (person.days_away > 0) {
     --person.days_away;
     return;
   }
-  if (day_kind(day) != DayKind::workday) {
+  if (kind != DayKind::workday) {
     if (rng_.uniform() >= person.weekend_share) return;
     const double from_h = 11.0 + 2.0 * rng_.normal();
-    attend(person.zone, from_h, from_h + 2.0 + 3.0 * rng_.uniform());
+    attend(person.zone, from_h, from_h + 2.0 + 3.0 * rng_.uniform(), kept_away);
     return;
   }
   if (rng_.uniform() < 0.009) {
@@ -72,24 +86,27 @@ void People::plan_day(Person& person, metering::Day day, double attendance) {
   const double lunch_h = 12.2 + 0.5 * rng_.normal();
   const bool lunches_out = rng_.uniform() < 0.6 && lunch_h > from_h && lunch_h + 0.8 < to_h;
   if (lunches_out) {
-    attend(person.zone, from_h, lunch_h);
-    attend(person.zone, lunch_h + 0.4 + 0.5 * rng_.uniform(), to_h);
+    attend(person.zone, from_h, lunch_h, kept_away);
+    attend(person.zone, lunch_h + 0.4 + 0.5 * rng_.uniform(), to_h, kept_away);
   } else {
-    attend(person.zone, from_h, to_h);
+    attend(person.zone, from_h, to_h, kept_away);
   }
   if (rng_.uniform() < person.evening_share) {
-    attend(person.zone, std::max(to_h, 19.5), std::max(to_h, 19.5) + 1.0 + 2.5 * rng_.uniform());
+    attend(person.zone, std::max(to_h, 19.5), std::max(to_h, 19.5) + 1.0 + 2.5 * rng_.uniform(),
+           kept_away);
   }
 }
 
-void People::begin_day(metering::Day day) {
-  for (auto& slots : present_) slots.fill(0);
+void People::begin_day(metering::Day day, DayKind kind, double season, double attendance) {
+  std::ranges::fill(present_, 0);
   const unsigned weekday = std::chrono::weekday{std::chrono::sys_days{day}}.iso_encoding() - 1;
   // Some days most people are elsewhere together (a conference, ice on the roads).
   const double common = 1.0 - 0.04 * std::abs(rng_.normal()) - (rng_.uniform() < 0.01 ? 0.3 : 0.0);
-  const double attendance =
-      std::clamp(0.95 * kWeekdayAttendance[weekday] * season_attendance(day) * common, 0.0, 1.0);
-  for (Person& person : people_) plan_day(person, day, attendance);
+  const double willing = std::clamp(0.95 * kWeekdayAttendance[weekday] * season * common, 0.0, 1.0);
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    const bool kept_away = attendance < 1.0 && number_of(i, day) >= attendance;
+    plan_day(people_[i], kind, willing, kept_away);
+  }
 }
 
 }  // namespace recald::simulators

@@ -1,31 +1,34 @@
 /// The building's people, one by one: when each comes, lunches, leaves and is away.
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include "core/metering/civil_time.hpp"
-#include "simulators/building/drawings.hpp"
+#include "simulators/building/operation.hpp"
+#include "simulators/building/truth.hpp"
 #include "simulators/chance/chance.hpp"
 
 namespace recald::simulators {
 
 class People {
  public:
-  /// @param density_person_m2 people assigned per floor area; rounded to whole people.
-  People(double density_person_m2, Rng rng);
+  /// Those of the simulated storeys; how many follows from density and floor area.
+  People(const Truth& truth, Rng rng);
 
   /// Draws the whole local day. Call once a day, in order.
-  void begin_day(metering::Day day);
+  /// @param season share that comes at all
+  /// @param attendance share of those that is not kept away by a hidden effect; decided by each
+  ///        person's own number for the day, so that everybody else's day stays as it was
+  void begin_day(metering::Day day, DayKind kind, double season, double attendance);
 
   /// People in the zone at this local minute of the day that was begun.
   [[nodiscard]] int present(std::size_t zone, int minute_of_day) const {
-    return present_[zone][static_cast<std::size_t>(minute_of_day / 5)];
+    return present_[zone * kSlotsPerDay + static_cast<std::size_t>(minute_of_day / 5)];
   }
   [[nodiscard]] int assigned(std::size_t zone) const { return assigned_[zone]; }
   [[nodiscard]] int assigned() const { return static_cast<int>(people_.size()); }
 
  private:
+  static constexpr std::size_t kSlotsPerDay = 288;
   struct Person {
     std::size_t zone;
     double arrival_h;
@@ -34,13 +37,16 @@ class People {
     double evening_share;  ///< Of days on which this person returns after dinner.
     int days_away;         ///< Left of a vacation or illness.
   };
-  void plan_day(Person& person, metering::Day day, double attendance);
-  void attend(std::size_t zone, double from_h, double to_h);
+  [[nodiscard]] std::size_t draw_zone(const Drawings& drawings);
+  [[nodiscard]] double number_of(std::size_t person, metering::Day day) const;
+  void plan_day(Person& person, DayKind kind, double attendance, bool kept_away);
+  void attend(std::size_t zone, double from_h, double to_h, bool kept_away);
 
   Rng rng_;
+  std::uint64_t numbers_;  ///< Seed of the persons' own numbers.
   std::vector<Person> people_;
-  std::array<int, drawings::zones> assigned_{};
-  std::array<std::array<int, 288>, drawings::zones> present_{};
+  std::vector<int> assigned_;
+  std::vector<int> present_;  ///< zones × slots of five minutes
 };
 
 }  // namespace recald::simulators

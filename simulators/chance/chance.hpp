@@ -15,6 +15,9 @@ enum class Stream : std::uint64_t {
   weather_station = 6,
   meter_noise = 16,   ///< + index of the meter
   meter_faults = 32,  ///< + index of the meter
+  neighbour = 48,
+  decoys = 49,
+  effects = 64,  ///< + index of the kind of effect
 };
 
 [[nodiscard]] inline Rng stream_of(std::uint64_t seed, Stream stream, std::uint64_t index = 0) {

@@ -49,6 +49,30 @@ double enthalpy_J_kg(const AirState& air) {
          air.humidity_kg_kg * (kEvaporation_J_kg + kVapourHeat_J_kgK * air.temperature_C);
 }
 
+double wet_bulb_C(const AirState& air, double pressure_Pa) {
+  // Air that takes up water of the wet-bulb temperature until it is saturated there keeps its
+  // enthalpy but for what that water brings:
+  // f(t) = h(t, ws(t)) − h(air) − (ws(t) − w) cw t = 0.
+  // f rises with t and is curved upwards, so Newton's steps from the dry bulb fall on the root.
+  constexpr int steps_max = 30;
+  constexpr double difference_K = 1e-3;
+  const double enthalpy = enthalpy_J_kg(air);
+  const auto excess_J_kg = [&](double t_C) {
+    const double saturated = saturation_humidity_kg_kg(t_C, pressure_Pa);
+    return enthalpy_J_kg({t_C, saturated}) - enthalpy -
+           (saturated - air.humidity_kg_kg) * kWaterHeat_J_kgK * t_C;
+  };
+  double wet_C = air.temperature_C;
+  for (int step = 0; step < steps_max; ++step) {
+    const double excess = excess_J_kg(wet_C);
+    if (excess <= 0.0) break;  // saturated from the start, or on the root
+    const double slope = (excess - excess_J_kg(wet_C - difference_K)) / difference_K;
+    wet_C -= excess / slope;
+    if (excess / slope < 1e-6) break;
+  }
+  return wet_C;
+}
+
 double density_kg_m3(double temperature_C, double pressure_Pa) {
   return pressure_Pa / (kDryAirGasConstant_J_kgK * (temperature_C + 273.15));
 }

@@ -28,6 +28,10 @@ struct AirState {
 /// 0…1, capped at 1.
 [[nodiscard]] double relative_humidity(const AirState& air, double pressure_Pa);
 
+/// Thermodynamic (adiabatic saturation) wet bulb, over liquid water below 0 degC too. The air's own
+/// temperature if it is saturated or beyond. @see ASHRAE Handbook Fundamentals, chapter 1
+[[nodiscard]] double wet_bulb_C(const AirState& air, double pressure_Pa);
+
 /// Per kg of dry air, zero for dry air at 0 degC.
 [[nodiscard]] double enthalpy_J_kg(const AirState& air);
 [[nodiscard]] inline double heat_capacity_J_kgK(const AirState& air) {

@@ -1,50 +1,22 @@
-/// Invented weather of a hot-humid place: fronts, air masses that persist, clouds, sun.
+/// Invented weather: fronts, air masses that persist, clouds, sun, rain and snow.
 ///
 /// The generator steps air masses rather than marginal distributions: a front arrives, cools and
-/// dries the air, turns the wind to the north-west and clears the sky behind it. Temperature,
-/// humidity, cloud and wind are correlated because they share that cause.
+/// dries the air, turns the wind and clears the sky behind it. Temperature, humidity, cloud, wind
+/// and rain are correlated because they share that cause. What kind of place it is, `Climate` says.
 #pragma once
-
-#include <array>
-#include <vector>
 
 #include "simulators/chance/chance.hpp"
 #include "simulators/climate/air.hpp"
+#include "simulators/climate/climates.hpp"
 #include "simulators/climate/sun.hpp"
 
 namespace recald::simulators {
 
+/// The step of those who do not choose one.
 inline constexpr std::chrono::seconds kStep{300};
 inline constexpr double kStep_s = 300.0;
 
-/// Twelve monthly means as a smooth curve through the year (mean and two harmonics).
-class SeasonalCurve {
- public:
-  explicit SeasonalCurve(const std::array<double, 12>& monthly_means);
-
-  /// @param year_share 0 at the start of January, 1 at the end of December.
-  [[nodiscard]] double at(double year_share) const;
-
- private:
-  double mean_;
-  std::array<double, 2> cosine_;
-  std::array<double, 2> sine_;
-};
-
-/// What the generator aims at; published 1991-2020 normals of Atlanta where there are any.
-struct Climate {
-  Place place;
-  SeasonalCurve dry_bulb_C;
-  SeasonalCurve dew_point_C;
-  SeasonalCurve cloud_tendency;       ///< Logit of the typical cloud cover.
-  SeasonalCurve front_amplitude_K;    ///< Typical strength of a front.
-  SeasonalCurve front_interval_days;  ///< Mean time between fronts.
-  SeasonalCurve wind_speed_m_s;
-};
-
-[[nodiscard]] Climate hot_humid_climate(const Place& place);
-
-/// The outdoors, constant over one step of `kStep`.
+/// The outdoors, constant over one step.
 struct Outdoors {
   AirState air;
   double pressure_Pa;
@@ -55,14 +27,21 @@ struct Outdoors {
   double global_horizontal_W_m2;
   SkyRadiation sky;
   SunPosition sun;
+  double precipitation_mm_h;  ///< Water, rain and melted snow alike.
+  double snow_share;          ///< Of the precipitation, 0…1; 0 when dry.
+  double snow_cover_mm;       ///< Water lying as snow on flat unheated surfaces.
+  double ground_reflectance;  ///< 0.2 without snow.
 };
 
-/// Steps the atmosphere. The same rng state gives the same weather.
+/// Steps the atmosphere. The same rng state and step give the same weather; another step gives
+/// other weather of the same statistics.
 class WeatherGenerator {
  public:
-  WeatherGenerator(Climate climate, metering::Instant begin, Rng rng);
+  /// @pre step is 1 to 60 minutes
+  WeatherGenerator(const Climate& climate, metering::Instant begin, Rng rng,
+                   std::chrono::seconds step = kStep);
 
-  /// The next `kStep`, beginning at `begin` on the first call.
+  /// The next step, beginning at `begin` on the first call.
   Outdoors advance();
 
  private:
@@ -70,6 +49,7 @@ class WeatherGenerator {
     double anomaly_K;    ///< Of the daily mean against the season.
     double dryness_K;    ///< Added to the dew point.
     double cloud_logit;  ///< Added to the tendency.
+    double lift;         ///< See `RainCause`.
     double gust_factor;
     double wind_from_deg;
   };
@@ -78,22 +58,31 @@ class WeatherGenerator {
   struct Moment {
     double year_share;
     double solar_hour;
-    double winter;  ///< 1 in mid-winter, 0 in mid-summer.
+    double winter;      ///< 1 in mid-winter, 0 in mid-summer.
+    double monsoon;     ///< 0…1.
+    double convection;  ///< Afternoon cumulus, logits.
+  };
+
+  struct Wind {
+    double speed_m_s;
+    double from_deg;
   };
 
   [[nodiscard]] Moment moment(metering::Instant t) const;
   void schedule_next_front(double year_share);
   void move_fronts(double year_share, double anomaly_K);
-  [[nodiscard]] double dry_bulb_C(const AirMass& mass, const Moment& when, double spell_K);
-  [[nodiscard]] double dew_C(const AirMass& mass, const Moment& when, double spell_K, double air_C);
-  [[nodiscard]] double wind_m_s(const AirMass& mass, const Moment& when);
   [[nodiscard]] AirMass air_mass() const;
   [[nodiscard]] double cloud_cover(const AirMass& mass, const Moment& when);
-  [[nodiscard]] SkyRadiation radiation(double cloud, double up, double winter) const;
+  [[nodiscard]] double dry_bulb_C(const AirMass& mass, const Moment& when, double spell_K);
+  [[nodiscard]] double dew_C(const AirMass& mass, const Moment& when, double spell_K, double air_C);
+  [[nodiscard]] Wind wind(const AirMass& mass, const Moment& when, double cloud);
+  void precipitate(const RainCause& cause, Outdoors& outdoors);
 
   Climate climate_;
   Rng rng_;
   metering::Instant now_;
+  std::chrono::seconds step_;
+  double step_s_;
   double days_since_front_ = 0.0;
   double days_to_front_ = 0.0;
   double last_front_K_ = 0.0;
@@ -108,6 +97,8 @@ class WeatherGenerator {
   Persistence wind_level_;
   Persistence wind_turn_;
   Persistence pressure_;
+  Precipitation precipitation_;
+  SnowCover snow_;
 };
 
 }  // namespace recald::simulators

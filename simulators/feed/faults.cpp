@@ -80,6 +80,10 @@ std::vector<FaultHabit> steam_pit_habits() {
           {FaultKind::negative, 25.0, 0.25, 2.0}};
 }
 
+std::vector<FaultHabit> gap_habits() {
+  return {{FaultKind::gap, 19.0, 2.0, 60.0}, {FaultKind::gap, 30.0, 0.25, 1.5}};
+}
+
 std::vector<FaultHabit> weather_station_habits() {
   return {{FaultKind::gap, 5.0, 0.25, 9.0}, {FaultKind::blank, 3.0, 0.5, 5.0}};
 }

@@ -39,6 +39,8 @@ struct FaultHabit {
 [[nodiscard]] std::vector<FaultHabit> healthy_habits();
 /// The condensate meter in the steam pit.
 [[nodiscard]] std::vector<FaultHabit> steam_pit_habits();
+/// A logger that loses its connection, and nothing worse.
+[[nodiscard]] std::vector<FaultHabit> gap_habits();
 [[nodiscard]] std::vector<FaultHabit> weather_station_habits();
 
 /// Draws faults that do not touch each other, ordered by slot. The first half day stays whole.

@@ -22,20 +22,34 @@ void append_text(fmt::memory_buffer& out, std::string_view text) {
 
 }  // namespace
 
-std::string readings_csv(const Recording& recording, const std::array<MeterFeed, kMeters>& feeds) {
+std::string readings_csv(const Recording& recording, const std::vector<MeterFeed>& feeds) {
   fmt::memory_buffer out;
   append_text(out, "timestamp,meter,value,unit\n");
   for (std::size_t slot = 0; slot < recording.power.size(); ++slot) {
     for (const MeterFeed& feed : feeds) {
       const Cell& cell = feed.cells[slot];
       if (cell.state == CellState::absent) continue;
-      const MeterPlate& plate = plate_of(feed.kind);
+      const MeterPlate& plate = feed.plate;
       append_stamp(out, recording.start_of(slot));
       fmt::format_to(std::back_inserter(out), FMT_COMPILE(",{},"), plate.id);
       if (cell.state == CellState::value) {
         fmt::format_to(std::back_inserter(out), FMT_COMPILE("{:.{}f}"), cell.value, plate.decimals);
       }
       fmt::format_to(std::back_inserter(out), FMT_COMPILE(",{}\n"), plate.unit);
+    }
+  }
+  return fmt::to_string(out);
+}
+
+std::string footprint_csv(const Recording& recording, const std::vector<MeterPlate>& plates,
+                          const std::vector<std::vector<double>>& footprint_kW) {
+  fmt::memory_buffer out;
+  append_text(out, "timestamp,meter,value,unit\n");
+  for (std::size_t slot = 0; slot < recording.power.size(); ++slot) {
+    for (std::size_t meter = 0; meter < plates.size(); ++meter) {
+      append_stamp(out, recording.start_of(slot));
+      fmt::format_to(std::back_inserter(out), FMT_COMPILE(",{},{:.3f},kW\n"), plates[meter].id,
+                     footprint_kW[meter][slot]);
     }
   }
   return fmt::to_string(out);

@@ -8,45 +8,95 @@ namespace {
 
 constexpr double kTon_kW = 3.516853;
 constexpr double kBtuPerQuarterHour_kW = 4.0 * 0.29307107;
+constexpr double kThermPerQuarterHour_kW = 100.0 * kBtuPerQuarterHour_kW;
 
-constexpr std::array<MeterPlate, kMeters> kPlates{{
-    {.id = "chilled_water",
-     .unit = "ton",
-     .unit_kW = kTon_kW,
-     .resolution = 0.1,
-     .decimals = 1,
-     .noise_share = 0.008,
-     .noise_floor = 0.15,
-     .gain_error_share = 0.005,
-     .counts = false,
-     .spike_min = 1000.0,
-     .spike_max = 7000.0,
-     .in_steam_pit = false},
-    {.id = "electricity",
-     .unit = "kW",
-     .unit_kW = 1.0,
-     .resolution = 0.5,
-     .decimals = 1,
-     .noise_share = 0.005,
-     .noise_floor = 0.3,
-     .gain_error_share = 0.003,
-     .counts = true,
-     .spike_min = 1300.0,
-     .spike_max = 9000.0,
-     .in_steam_pit = false},
-    {.id = "steam",
-     .unit = "kBtu",
-     .unit_kW = kBtuPerQuarterHour_kW,
-     .resolution = 1.0,
-     .decimals = 0,
-     .noise_share = 0.03,
-     .noise_floor = 2.0,
-     .gain_error_share = 0.01,
-     .counts = true,
-     .spike_min = 4000.0,
-     .spike_max = 60'000.0,
-     .in_steam_pit = true},
-}};
+MeterPlate chilled_water_plate(double rated_kW) {
+  const double size = rated_kW / 2500.0;
+  return {.utility = Utility::cooling,
+          .id = "chilled_water",
+          .kind = "chilled_water",
+          .unit = "ton",
+          .unit_kW = kTon_kW,
+          .resolution = 0.1,
+          .decimals = 1,
+          .noise_share = 0.008,
+          .noise_floor = 0.15 * size,
+          .gain_error_share = 0.005,
+          .counts = false,
+          .spike_min = 1000.0 * size,
+          .spike_max = 7000.0 * size,
+          .rated_kW = rated_kW,
+          .in_steam_pit = false};
+}
+
+MeterPlate electricity_plate(double rated_kW) {
+  const double size = rated_kW / 900.0;
+  return {.utility = Utility::electricity,
+          .id = "electricity",
+          .kind = "electricity",
+          .unit = "kW",
+          .unit_kW = 1.0,
+          .resolution = rated_kW < 400.0 ? 0.1 : 0.5,  // the current transformers' ratio
+          .decimals = 1,
+          .noise_share = 0.005,
+          .noise_floor = 0.3 * size,
+          .gain_error_share = 0.003,
+          .counts = true,
+          .spike_min = 1300.0 * size,
+          .spike_max = 9000.0 * size,
+          .rated_kW = rated_kW,
+          .in_steam_pit = false};
+}
+
+MeterPlate steam_plate(double rated_kW) {
+  const double size = rated_kW / 2000.0;
+  return {.utility = Utility::heat,
+          .id = "steam",
+          .kind = "steam",
+          .unit = "kBtu",
+          .unit_kW = kBtuPerQuarterHour_kW,
+          .resolution = 1.0,
+          .decimals = 0,
+          .noise_share = 0.03,
+          .noise_floor = 2.0 * size,
+          .gain_error_share = 0.01,
+          .counts = true,
+          .spike_min = 4000.0 * size,
+          .spike_max = 60'000.0 * size,
+          .rated_kW = rated_kW,
+          .in_steam_pit = true};
+}
+
+MeterPlate heating_plate(double rated_kW) {
+  MeterPlate plate = steam_plate(rated_kW);
+  plate.id = "heating";
+  plate.kind = "heating";
+  plate.unit = "kWh";
+  plate.unit_kW = 4.0;
+  plate.resolution = 0.1;
+  plate.decimals = 1;
+  plate.noise_share = 0.01;
+  plate.noise_floor = 0.0002 * rated_kW;
+  plate.spike_min = 0.6 * rated_kW;
+  plate.spike_max = 4.0 * rated_kW;
+  plate.in_steam_pit = false;
+  return plate;
+}
+
+MeterPlate gas_plate(double rated_kW) {
+  MeterPlate plate = heating_plate(rated_kW);
+  plate.id = "gas";
+  plate.kind = "gas";
+  plate.unit = "therm";
+  plate.unit_kW = kThermPerQuarterHour_kW;
+  plate.resolution = 0.01;
+  plate.decimals = 2;
+  plate.noise_share = 0.005;
+  plate.noise_floor = 0.0;  // a bellows meter counts or does not
+  plate.spike_min = 2.4 * rated_kW / kThermPerQuarterHour_kW;
+  plate.spike_max = 16.0 * rated_kW / kThermPerQuarterHour_kW;
+  return plate;
+}
 
 /// Turns true power into what the display shows, without faults.
 class Register {
@@ -104,43 +154,77 @@ void strike(MeterFeed& feed, const Fault& fault, const MeterPlate& plate, Rng& r
 
 }  // namespace
 
-const MeterPlate& plate_of(MeterKind kind) { return kPlates[static_cast<std::size_t>(kind)]; }
-
-double power_of(const UtilityPower& power, MeterKind kind) {
-  switch (kind) {
-    case MeterKind::chilled_water:
-      return power.chilled_water_kW;
-    case MeterKind::electricity:
-      return power.electricity_kW;
-    case MeterKind::steam:
-      return power.steam_kW;
+std::vector<MeterPlate> plates_of(const Drawings& drawings) {
+  std::vector<MeterPlate> plates{chilled_water_plate(drawings.cooling_rated_kW),
+                                 electricity_plate(drawings.electricity_rated_kW)};
+  switch (drawings.heating) {
+    case HeatingPlant::district_steam:
+      plates.push_back(steam_plate(drawings.heat_rated_kW));
+      break;
+    case HeatingPlant::district_water:
+      plates.push_back(heating_plate(drawings.heat_rated_kW));
+      break;
+    case HeatingPlant::boiler:
+      plates.push_back(gas_plate(drawings.heat_rated_kW));
+      break;
+    case HeatingPlant::heat_pump:
+      break;
   }
-  return 0.0;
+  return plates;
 }
 
-MeterFeed read_meter(const Recording& recording, MeterKind kind, std::uint64_t seed,
-                     bool with_faults) {
-  const MeterPlate& plate = plate_of(kind);
-  const auto index = static_cast<std::uint64_t>(kind);
+MeterPlate neighbour_plate() {
+  MeterPlate plate = electricity_plate(200.0);
+  plate.id = "neighbour";
+  return plate;
+}
+
+namespace {
+
+/// Effects in the meter see what its display shows, and the file keeps its digits.
+void distort(MeterFeed& feed, const Recording& recording, const HiddenEffects& effects,
+             const metering::LocalCalendar& calendar) {
+  const MeterPlate& plate = feed.plate;
+  std::vector<double> shown_kW;
+  for (const Cell& cell : feed.cells) shown_kW.push_back(cell.value * plate.unit_kW);
+  const std::vector<double> before_kW = shown_kW;
+  for (const auto& effect : effects) {
+    effect->distort({plate.utility, recording.begin, calendar, shown_kW});
+  }
+  for (std::size_t slot = 0; slot < shown_kW.size(); ++slot) {
+    if (shown_kW[slot] == before_kW[slot]) continue;
+    feed.cells[slot].value = rounded_to(shown_kW[slot] / plate.unit_kW, plate.resolution);
+  }
+}
+
+}  // namespace
+
+MeterFeed read_meter(const Recording& recording, const MeterPlate& plate, MeterCare care,
+                     std::uint64_t seed, const HiddenEffects& effects,
+                     const metering::LocalCalendar& calendar) {
+  const auto index = static_cast<std::uint64_t>(plate.utility);
   Rng noise = stream_of(seed, Stream::meter_noise, index);
-  MeterFeed feed{kind, 1.0 + plate.gain_error_share * noise.normal(), {}, {}};
+  MeterFeed feed{plate, 1.0 + plate.gain_error_share * noise.normal(), {}, {}};
   Register meter(plate, noise);
   feed.cells.reserve(recording.power.size());
   for (const UtilityPower& power : recording.power) {
-    feed.cells.push_back({meter.read(power_of(power, kind), feed.gain), CellState::value});
+    feed.cells.push_back({meter.read(power[plate.utility], feed.gain), CellState::value});
   }
-  if (!with_faults) return feed;
+  distort(feed, recording, effects, calendar);
+  if (care == MeterCare::perfect) return feed;
   Rng chance = stream_of(seed, Stream::meter_faults, index);
   const double years = static_cast<double>(recording.power.size()) / (365.25 * 96.0);
-  const int lost_months =
-      plate.in_steam_pit ? std::max(1, static_cast<int>(std::lround(0.6 * years))) : 0;
-  feed.faults = plan_faults(plate.in_steam_pit ? steam_pit_habits() : healthy_habits(), lost_months,
-                            feed.cells.size(), chance);
+  const bool poor = care == MeterCare::usual && plate.in_steam_pit;
+  const int lost_months = poor ? std::max(1, static_cast<int>(std::lround(0.6 * years))) : 0;
+  feed.faults = plan_faults(poor                       ? steam_pit_habits()
+                            : care == MeterCare::usual ? healthy_habits()
+                                                       : gap_habits(),
+                            lost_months, feed.cells.size(), chance);
   for (const Fault& fault : feed.faults) strike(feed, fault, plate, chance);
   return feed;
 }
 
-WeatherFeed read_weather_station(const Recording& recording, std::uint64_t seed, bool with_faults) {
+WeatherFeed read_weather_station(const Recording& recording, MeterCare care, std::uint64_t seed) {
   Rng rng = stream_of(seed, Stream::weather_station);
   WeatherFeed feed{0.15 * rng.normal(), 0.012 * rng.normal(), 1.0 + 0.012 * rng.normal(), {}, {}};
   feed.cells.reserve(recording.weather.size());
@@ -156,7 +240,7 @@ WeatherFeed read_weather_station(const Recording& recording, std::uint64_t seed,
         std::max(0.0, feed.pyranometer_gain * read.global_horizontal_W_m2 + noise_W_m2);
     feed.cells.push_back({read, false, false});
   }
-  if (!with_faults) return feed;
+  if (care == MeterCare::perfect) return feed;
   feed.faults = plan_faults(weather_station_habits(), 0, feed.cells.size(), rng);
   for (const Fault& fault : feed.faults) {
     for (std::size_t slot = fault.first; slot < fault.first + fault.count; ++slot) {

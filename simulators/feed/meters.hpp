@@ -1,7 +1,6 @@
 /// Revenue meters: gain error, noise, resolution, and faults on the way to the file.
 #pragma once
 
-#include <array>
 #include <string_view>
 #include <vector>
 
@@ -10,12 +9,11 @@
 
 namespace recald::simulators {
 
-enum class MeterKind : std::size_t { chilled_water, electricity, steam };  ///< In file order.
-inline constexpr std::size_t kMeters = 3;
-
 /// What is written on the meter.
 struct MeterPlate {
+  Utility utility;
   std::string_view id;
+  std::string_view kind;  ///< As site files call the utility.
   std::string_view unit;
   double unit_kW;     ///< Mean power over an interval that reads as 1.
   double resolution;  ///< In its unit.
@@ -26,11 +24,23 @@ struct MeterPlate {
   bool counts;              ///< Carries the unread remainder over, as pulses do.
   double spike_min;         ///< In its unit; beyond 1.2 times the rating in the site file.
   double spike_max;
+  double rated_kW;    ///< What the site file calls rated.
   bool in_steam_pit;  ///< Suffers accordingly.
 };
 
-[[nodiscard]] const MeterPlate& plate_of(MeterKind kind);
-[[nodiscard]] double power_of(const UtilityPower& power, MeterKind kind);
+/// The building's meters in the order of files: chilled water, electricity, and heat where it does
+/// not come from a heat pump (steam, hot water or gas).
+[[nodiscard]] std::vector<MeterPlate> plates_of(const Drawings& drawings);
+
+/// The meter of the building next door, in the same file by mistake.
+[[nodiscard]] MeterPlate neighbour_plate();
+
+/// What is wrong with meters besides noise and resolution.
+enum class MeterCare {
+  perfect,  ///< Nothing.
+  usual,    ///< One or two per cent lost; of a steam meter a fifth.
+  gaps,     ///< About five per cent lost in gaps of hours to days, and nothing else.
+};
 
 enum class CellState : std::uint8_t { value, blank, absent };
 
@@ -41,15 +51,16 @@ struct Cell {
 };
 
 struct MeterFeed {
-  MeterKind kind;
+  MeterPlate plate;
   double gain;  ///< The meter's constant factor, near 1.
   std::vector<Fault> faults;
   std::vector<Cell> cells;
 };
 
-/// @param with_faults false leaves noise and resolution only.
-[[nodiscard]] MeterFeed read_meter(const Recording& recording, MeterKind kind, std::uint64_t seed,
-                                   bool with_faults);
+/// @param effects  those in the meters act between display and file
+[[nodiscard]] MeterFeed read_meter(const Recording& recording, const MeterPlate& plate,
+                                   MeterCare care, std::uint64_t seed, const HiddenEffects& effects,
+                                   const metering::LocalCalendar& calendar);
 
 struct WeatherCell {
   WeatherMean reading;
@@ -65,7 +76,7 @@ struct WeatherFeed {
   std::vector<WeatherCell> cells;
 };
 
-[[nodiscard]] WeatherFeed read_weather_station(const Recording& recording, std::uint64_t seed,
-                                               bool with_faults);
+[[nodiscard]] WeatherFeed read_weather_station(const Recording& recording, MeterCare care,
+                                               std::uint64_t seed);
 
 }  // namespace recald::simulators

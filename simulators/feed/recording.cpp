@@ -7,7 +7,6 @@
 namespace recald::simulators {
 namespace {
 
-constexpr int kStepsPerInterval = static_cast<int>(kInterval / kStep);
 constexpr std::chrono::days kRunIn{31};
 
 struct Sum {
@@ -16,11 +15,10 @@ struct Sum {
   double wind_east = 0.0;
   double wind_north = 0.0;
 
-  void add(const Outdoors& outdoors, const UtilityPower& now) {
-    constexpr double share = 1.0 / kStepsPerInterval;
+  void add(const Outdoors& outdoors, const UtilityPower& now, double share) {
     power.electricity_kW += share * now.electricity_kW;
-    power.chilled_water_kW += share * now.chilled_water_kW;
-    power.steam_kW += share * now.steam_kW;
+    power.cooling_kW += share * now.cooling_kW;
+    power.heat_kW += share * now.heat_kW;
     weather.dry_bulb_C += share * outdoors.air.temperature_C;
     weather.relative_humidity += share * outdoors.relative_humidity;
     weather.wind_speed_m_s += share * outdoors.wind_speed_m_s;
@@ -40,9 +38,10 @@ struct Sum {
 
 }  // namespace
 
-Result<Recording> record(const Truth& truth, const Period& period, std::uint64_t seed) {
-  assert(period.years >= 1);
-  const auto calendar = metering::LocalCalendar::open(drawings::time_zone);
+Result<Recording> record(Building& building, const Period& period, std::uint64_t seed) {
+  assert(period.years >= 1 && kInterval % building.step() == std::chrono::seconds{0});
+  const Drawings& drawings = building.truth().drawings;
+  const auto calendar = metering::LocalCalendar::open(drawings.time_zone);
   if (!calendar) return tl::unexpected(calendar.error());
   using std::chrono::January;
   const std::chrono::year first{period.start_year};
@@ -50,11 +49,12 @@ Result<Recording> record(const Truth& truth, const Period& period, std::uint64_t
   const metering::Instant begin = calendar->month_span(first / January).begin;
   const metering::Instant end = calendar->month_span(after / January).begin;
 
-  WeatherGenerator weather(hot_humid_climate(drawings::place), begin - kRunIn,
-                           stream_of(seed, Stream::weather));
-  Building building(truth, seed);
-  for (metering::Instant now = begin - kRunIn; now < begin; now += kStep) {
-    building.advance(weather.advance(), calendar->local_time(now));
+  const std::chrono::seconds step = building.step();
+  const auto steps = static_cast<int>(kInterval / step);
+  WeatherGenerator weather(climate_of(drawings.climate, drawings.place), begin - kRunIn,
+                           stream_of(seed, Stream::weather), step);
+  for (metering::Instant now = begin - kRunIn; now < begin; now += step) {
+    building.advance(weather.advance(), now, calendar->local_time(now));
   }
   Recording recording{begin, {}, {}};
   const auto slots = static_cast<std::size_t>((end - begin) / kInterval);
@@ -63,15 +63,29 @@ Result<Recording> record(const Truth& truth, const Period& period, std::uint64_t
   for (metering::Instant now = begin; now < end; now += kInterval) {
     Sum sum;
     const metering::LocalTime local = calendar->local_time(now);
-    for (int step = 0; step < kStepsPerInterval; ++step) {
+    for (int i = 0; i < steps; ++i) {
       const Outdoors outdoors = weather.advance();
-      const int minute = local.minute_of_day + step * static_cast<int>(kStep_s / 60.0);
-      sum.add(outdoors, building.advance(outdoors, {local.date, minute}));
+      const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(i * step);
+      const int minute = local.minute_of_day + static_cast<int>(minutes.count());
+      sum.add(outdoors, building.advance(outdoors, now + i * step, {local.date, minute}),
+              1.0 / steps);
     }
     recording.weather.push_back(sum.weather_mean());
     recording.power.push_back(sum.power);
   }
   return recording;
+}
+
+std::vector<double> metered_kW(const Recording& recording, Utility utility,
+                               const HiddenEffects& effects,
+                               const metering::LocalCalendar& calendar) {
+  std::vector<double> shown_kW;
+  shown_kW.reserve(recording.power.size());
+  for (const UtilityPower& power : recording.power) shown_kW.push_back(power[utility]);
+  for (const auto& effect : effects) {
+    effect->distort({utility, recording.begin, calendar, shown_kW});
+  }
+  return shown_kW;
 }
 
 }  // namespace recald::simulators

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "simulators/building/building.hpp"
 #include "simulators/climate/weather.hpp"
 
 namespace recald::simulators {
-
-inline constexpr std::chrono::seconds kInterval{900};
 
 /// First and last year are local calendar years in the building's time zone.
 struct Period {
@@ -37,10 +36,16 @@ struct Recording {
   }
 };
 
-/// Simulates the period after a month that lets walls and rooms forget their start.
+/// Runs the building through the period after a month that lets walls and rooms forget their start.
+/// The weather is that of the drawings' climate; `seed` decides how it turns out.
 /// @return not_found if the system has no zone files.
-/// @pre years >= 1 and the period lies in 1971…2037
-[[nodiscard]] Result<Recording> record(const Truth& truth, const Period& period,
+/// @pre period.years >= 1, the period lies in 1971…2037, the building's step divides `kInterval`
+[[nodiscard]] Result<Recording> record(Building& building, const Period& period,
                                        std::uint64_t seed);
+
+/// What the meters would show without noise: `recording.power`, but for effects in the meters.
+[[nodiscard]] std::vector<double> metered_kW(const Recording& recording, Utility utility,
+                                             const HiddenEffects& effects,
+                                             const metering::LocalCalendar& calendar);
 
 }  // namespace recald::simulators

@@ -48,6 +48,45 @@ TEST(Air, MixingConservesEnthalpyAndWater) {
   EXPECT_NEAR(mixed.humidity_kg_kg, 0.3 * 0.018 + 0.7 * 0.009, 1e-15);
 }
 
+// ASHRAE Handbook Fundamentals 2017, chapter 1, eq. (33): humidity ratio of air at t whose wet
+// bulb is t*, from the handbook's saturated humidity ratio (table 2). The worked example there is
+// 40 / 20 degC, 6.5 g/kg.
+TEST(Air, WetBulbMeetsAshraeEquation) {
+  struct Case {
+    double dry_C;
+    double wet_C;
+    double saturated_kg_kg;  ///< At the wet bulb, 101.325 kPa.
+  };
+  for (const Case& c :
+       {Case{40.0, 20.0, 0.014758}, Case{35.0, 25.0, 0.020170}, Case{30.0, 30.0, 0.027329},
+        Case{20.0, 10.0, 0.007661}, Case{5.0, 1.0, 0.004076}}) {
+    SCOPED_TRACE(c.dry_C);
+    const double humidity =
+        ((2501.0 - 2.326 * c.wet_C) * c.saturated_kg_kg - 1.006 * (c.dry_C - c.wet_C)) /
+        (2501.0 + 1.86 * c.dry_C - 4.186 * c.wet_C);
+    EXPECT_NEAR(wet_bulb_C({c.dry_C, humidity}, kSeaLevel_Pa), c.wet_C, 0.06);
+  }
+}
+
+TEST(Air, WetBulbLiesBetweenDewPointAndDryBulb) {
+  for (double dry_C = -30.0; dry_C <= 48.0; dry_C += 6.0) {
+    double drier_C = -99.0;
+    for (const double humidity : {0.05, 0.3, 0.6, 0.9}) {
+      const double pressure_Pa = 97'000.0;
+      const double vapour_Pa = humidity * saturation_pressure_Pa(dry_C);
+      const double wet_C =
+          wet_bulb_C({dry_C, humidity_from_vapour_kg_kg(vapour_Pa, pressure_Pa)}, pressure_Pa);
+      EXPECT_LT(wet_C, dry_C);
+      EXPECT_GT(wet_C, dew_point_C(vapour_Pa));
+      EXPECT_GT(wet_C, drier_C) << "moister air has the higher wet bulb";
+      drier_C = wet_C;
+    }
+    const AirState saturated{dry_C, saturation_humidity_kg_kg(dry_C, kSeaLevel_Pa)};
+    EXPECT_NEAR(wet_bulb_C(saturated, kSeaLevel_Pa), dry_C, 1e-6);
+    EXPECT_EQ(wet_bulb_C({dry_C, 1.01 * saturated.humidity_kg_kg}, kSeaLevel_Pa), dry_C);
+  }
+}
+
 // Standard atmosphere (ICAO): 95,461 Pa at 500 m.
 TEST(Air, PressureFallsWithAltitude) {
   EXPECT_NEAR(pressure_at_altitude_Pa(0.0), kSeaLevel_Pa, 1e-9);

@@ -5,49 +5,52 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "simulators/scenario/scenario_files.hpp"
+
 namespace recald::simulators {
 namespace {
 
-constexpr Period kYear{2023, 1};
-
-struct Feed {
-  Recording recording;
-  std::array<MeterFeed, kMeters> meters;
-  WeatherFeed weather;
-};
-
-Feed make_feed(std::uint64_t seed) {
-  auto recording = record(draw_truth(seed), kYear, seed);
-  EXPECT_TRUE(recording.has_value());
-  return {*recording,
-          {read_meter(*recording, MeterKind::chilled_water, seed, true),
-           read_meter(*recording, MeterKind::electricity, seed, true),
-           read_meter(*recording, MeterKind::steam, seed, true)},
-          read_weather_station(*recording, seed, true)};
+Scenario one_year() {
+  Scenario scenario;
+  scenario.period = {2023, 1};
+  return scenario;
 }
 
-std::string truth_of(const Feed& feed, std::uint64_t seed) {
-  const auto text =
-      truth_json(draw_truth(seed), kYear, seed, feed.recording, feed.meters, feed.weather);
-  EXPECT_TRUE(text.has_value());
-  return *text;
+const metering::LocalCalendar& calendar() {
+  static const auto opened = metering::LocalCalendar::open("America/New_York");
+  return *opened;
+}
+
+struct FeedOf {
+  explicit FeedOf(std::uint64_t seed)
+      : simulated(*simulate(one_year(), seed, calendar())),
+        feeds(read_feeds(one_year(), seed, simulated, calendar())),
+        truth(truth_json(one_year(), seed, simulated, feeds.meters, feeds.weather, calendar())) {}
+  Simulated simulated;
+  Feeds feeds;
+  std::string truth;
+};
+
+const FeedOf& feed_of_seed_4() {
+  static const FeedOf feed(4);
+  return feed;
 }
 
 TEST(FeedFiles, ReadingsParseBackToWhatTheMetersShowed) {
-  const Feed feed = make_feed(4);
-  std::istringstream text(readings_csv(feed.recording, feed.meters));
+  const FeedOf& feed = feed_of_seed_4();
+  std::istringstream text(readings_csv(feed.simulated.recording, feed.feeds.meters));
   std::string line;
   std::getline(text, line);
   EXPECT_EQ(line, "timestamp,meter,value,unit");
   std::string before;
-  for (std::size_t slot = 0; slot < feed.recording.power.size(); ++slot) {
-    for (const MeterFeed& meter : feed.meters) {
+  for (std::size_t slot = 0; slot < feed.simulated.recording.power.size(); ++slot) {
+    for (const MeterFeed& meter : feed.feeds.meters) {
       const Cell& cell = meter.cells[slot];
       if (cell.state == CellState::absent) continue;
       ASSERT_TRUE(std::getline(text, line));
-      const MeterPlate& plate = plate_of(meter.kind);
-      const std::string prefix =
-          metering::to_string(feed.recording.start_of(slot)) + "," + std::string(plate.id) + ",";
+      const MeterPlate& plate = meter.plate;
+      const std::string prefix = metering::to_string(feed.simulated.recording.start_of(slot)) +
+                                 "," + std::string(plate.id) + ",";
       ASSERT_EQ(line.substr(0, prefix.size()), prefix);
       ASSERT_GT(prefix, before);  // ordered by time, then meter
       before = prefix;
@@ -65,37 +68,39 @@ TEST(FeedFiles, ReadingsParseBackToWhatTheMetersShowed) {
 }
 
 TEST(FeedFiles, WeatherHasItsHeaderAndOneRowAnInterval) {
-  const Feed feed = make_feed(4);
-  std::istringstream text(weather_csv(feed.recording, feed.weather));
+  const FeedOf& feed = feed_of_seed_4();
+  std::istringstream text(weather_csv(feed.simulated.recording, feed.feeds.weather));
   std::string line;
   std::getline(text, line);
   EXPECT_EQ(line, "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2");
-  for (std::size_t slot = 0; slot < feed.weather.cells.size(); ++slot) {
-    if (feed.weather.cells[slot].absent) continue;
+  for (std::size_t slot = 0; slot < feed.feeds.weather.cells.size(); ++slot) {
+    if (feed.feeds.weather.cells[slot].absent) continue;
     ASSERT_TRUE(std::getline(text, line));
     ASSERT_EQ(std::count(line.begin(), line.end(), ','), 5);
-    ASSERT_EQ(line.substr(0, 20), metering::to_string(feed.recording.start_of(slot)));
+    ASSERT_EQ(line.substr(0, 20), metering::to_string(feed.simulated.recording.start_of(slot)));
   }
   EXPECT_FALSE(std::getline(text, line));
 }
 
 TEST(FeedFiles, SiteFileQuotesDrawingsAndSplitsThePeriod) {
-  const std::string three = site_toml({2021, 3});
+  Scenario scenario;
+  const std::string three = site_toml(scenario);
   EXPECT_NE(three.find("calibration = { from = \"2021-01\", to = \"2022-12\" }"),
             std::string::npos);
   EXPECT_NE(three.find("validation = { from = \"2023-01\", to = \"2023-12\" }"), std::string::npos);
   EXPECT_NE(three.find("floor_area_m2 = 7800\n"), std::string::npos);
   EXPECT_NE(three.find("outdoor_air_m3_s = 13.2\n"), std::string::npos);
   EXPECT_NE(three.find("\"2022-07-04\""), std::string::npos);
-  const std::string one = site_toml({2024, 1});
+  scenario.period = {2024, 1};
+  const std::string one = site_toml(scenario);
   EXPECT_NE(one.find("calibration = { from = \"2024-01\", to = \"2024-08\" }"), std::string::npos);
   EXPECT_NE(one.find("validation = { from = \"2024-09\", to = \"2024-12\" }"), std::string::npos);
 }
 
 TEST(FeedFiles, TruthHasTheSharedParametersAndCleanMonths) {
-  const Feed feed = make_feed(4);
-  const auto json = nlohmann::json::parse(truth_of(feed, 4));
-  const Truth truth = draw_truth(4);
+  const FeedOf& feed = feed_of_seed_4();
+  const auto json = nlohmann::json::parse(feed.truth);
+  const Truth truth = draw_truth({}, 4);
   const auto& parameters = json.at("parameters");
   EXPECT_DOUBLE_EQ(parameters.at("occupancy_density").at("value"),
                    truth.occupancy_density_person_m2);
@@ -105,13 +110,12 @@ TEST(FeedFiles, TruthHasTheSharedParametersAndCleanMonths) {
   ASSERT_EQ(months.size(), 12u);
   // March has 31 days but 743 hours: the mean power is taken over the slots that exist.
   double march_kWh = 0.0;
-  const auto calendar = metering::LocalCalendar::open(drawings::time_zone);
-  const auto march = calendar->month_span(std::chrono::year{2023} / std::chrono::March);
+  const auto march = calendar().month_span(std::chrono::year{2023} / std::chrono::March);
   double peak_kW = 0.0;
-  for (std::size_t slot = 0; slot < feed.recording.power.size(); ++slot) {
-    if (!march.contains(feed.recording.start_of(slot))) continue;
-    march_kWh += 0.25 * feed.recording.power[slot].electricity_kW;
-    peak_kW = std::max(peak_kW, feed.recording.power[slot].electricity_kW);
+  for (std::size_t slot = 0; slot < feed.simulated.recording.power.size(); ++slot) {
+    if (!march.contains(feed.simulated.recording.start_of(slot))) continue;
+    march_kWh += 0.25 * feed.simulated.recording.power[slot].electricity_kW;
+    peak_kW = std::max(peak_kW, feed.simulated.recording.power[slot].electricity_kW);
   }
   EXPECT_EQ(months[2].at("month"), "2023-03");
   EXPECT_NEAR(months[2].at("daily_average_kWh"), march_kWh / 31.0, 1e-6);
@@ -119,15 +123,15 @@ TEST(FeedFiles, TruthHasTheSharedParametersAndCleanMonths) {
 }
 
 TEST(FeedFiles, TruthDeclaresEveryFault) {
-  const Feed feed = make_feed(4);
-  const auto json = nlohmann::json::parse(truth_of(feed, 4));
+  const FeedOf& feed = feed_of_seed_4();
+  const auto json = nlohmann::json::parse(feed.truth);
   const auto& faults = json.at("meters").at("steam").at("faults");
-  const MeterFeed& steam = feed.meters[2];
+  const MeterFeed& steam = feed.feeds.meters[2];
   ASSERT_EQ(faults.size(), steam.faults.size());
   ASSERT_FALSE(steam.faults.empty());
   EXPECT_EQ(faults[0].at("kind"), to_string(steam.faults[0].kind));
   EXPECT_EQ(faults[0].at("from"),
-            metering::to_string(feed.recording.start_of(steam.faults[0].first)));
+            metering::to_string(feed.simulated.recording.start_of(steam.faults[0].first)));
 }
 
 }  // namespace

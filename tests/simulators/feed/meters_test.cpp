@@ -21,21 +21,36 @@ Recording wave() {
   return recording;
 }
 
-constexpr std::array<MeterKind, 3> kAll{MeterKind::chilled_water, MeterKind::electricity,
-                                        MeterKind::steam};
+const metering::LocalCalendar& calendar() {
+  static const auto opened = metering::LocalCalendar::open("America/New_York");
+  return *opened;
+}
+
+MeterFeed read(const Recording& recording, const MeterPlate& plate, MeterCare care,
+               std::uint64_t seed) {
+  return read_meter(recording, plate, care, seed, {}, calendar());
+}
+
+/// Chilled water, electricity, steam.
+const std::vector<MeterPlate>& all_plates() {
+  static const std::vector<MeterPlate> plates = plates_of({});
+  return plates;
+}
+const MeterPlate& plate_for(Utility utility) {
+  return all_plates()[static_cast<std::size_t>(utility)];
+}
 
 TEST(Meters, WithoutFaultsTheyReadWithinTheirClass) {
   const Recording recording = wave();
-  for (const MeterKind kind : kAll) {
-    const MeterPlate& plate = plate_of(kind);
+  for (const MeterPlate& plate : all_plates()) {
     SCOPED_TRACE(plate.id);
-    const MeterFeed feed = read_meter(recording, kind, 1, false);
+    const MeterFeed feed = read(recording, plate, MeterCare::perfect, 1);
     EXPECT_TRUE(feed.faults.empty());
     double read_kWh = 0.0;
     double true_kWh = 0.0;
     for (std::size_t slot = 0; slot < feed.cells.size(); ++slot) {
       ASSERT_EQ(feed.cells[slot].state, CellState::value);
-      const double power_kW = power_of(recording.power[slot], kind);
+      const double power_kW = recording.power[slot][plate.utility];
       const double read_kW = feed.cells[slot].value * plate.unit_kW;
       ASSERT_NEAR(read_kW, power_kW, 0.25 * power_kW + 5.0 * plate.resolution * plate.unit_kW);
       const double steps = feed.cells[slot].value / plate.resolution;
@@ -52,7 +67,7 @@ TEST(Meters, WithoutFaultsTheyReadWithinTheirClass) {
 TEST(Meters, CountingMetersLoseNoEnergyToResolution) {
   Recording recording{sys_days{2021y / January / 1}, {}, {}};
   recording.power.assign(100'000, {0.1, 0.1, 0.1});
-  const MeterFeed feed = read_meter(recording, MeterKind::electricity, 1, false);
+  const MeterFeed feed = read(recording, plate_for(Utility::electricity), MeterCare::perfect, 1);
   double mean_kW = 0.0;
   for (const Cell& cell : feed.cells) mean_kW += cell.value / 100'000.0;
   EXPECT_NEAR(mean_kW, 0.1, 0.005);  // five standard errors of the noise
@@ -60,13 +75,12 @@ TEST(Meters, CountingMetersLoseNoEnergyToResolution) {
 
 TEST(Meters, EveryDeclaredFaultShowsInTheFeedAndNothingElseIsTouched) {
   const Recording recording = wave();
-  for (const MeterKind kind : kAll) {
-    const MeterPlate& plate = plate_of(kind);
+  for (const MeterPlate& plate : all_plates()) {
     for (const std::uint64_t seed : {1, 2, 3}) {
       SCOPED_TRACE(plate.id);
       SCOPED_TRACE(seed);
-      const MeterFeed clean = read_meter(recording, kind, seed, false);
-      const MeterFeed feed = read_meter(recording, kind, seed, true);
+      const MeterFeed clean = read(recording, plate, MeterCare::perfect, seed);
+      const MeterFeed feed = read(recording, plate, MeterCare::usual, seed);
       std::vector<bool> faulty(feed.cells.size(), false);
       for (const Fault& fault : feed.faults) {
         for (std::size_t slot = fault.first; slot < fault.first + fault.count; ++slot) {
@@ -108,40 +122,61 @@ TEST(Meters, EveryDeclaredFaultShowsInTheFeedAndNothingElseIsTouched) {
 }
 
 TEST(Meters, SpikesExceedTheRatingsOfTheSiteFile) {
-  EXPECT_GT(plate_of(MeterKind::electricity).spike_min, 1.2 * 900.0);
-  EXPECT_GT(
-      plate_of(MeterKind::chilled_water).spike_min * plate_of(MeterKind::chilled_water).unit_kW,
-      1.2 * 2500.0);
-  EXPECT_GT(plate_of(MeterKind::steam).spike_min * plate_of(MeterKind::steam).unit_kW,
-            1.2 * 2000.0);
+  for (const HeatingPlant heating :
+       {HeatingPlant::district_steam, HeatingPlant::district_water, HeatingPlant::boiler}) {
+    Drawings drawings;
+    drawings.heating = heating;
+    for (const MeterPlate& plate : plates_of(drawings)) {
+      EXPECT_GT(plate.spike_min * plate.unit_kW, 1.2 * plate.rated_kW) << plate.id;
+    }
+  }
 }
 
 TEST(Meters, SteamIsBadlyButNotHopelesslyCorrupted) {
   const Recording recording = wave();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    const auto lost = [&](MeterKind kind) {
-      const MeterFeed feed = read_meter(recording, kind, seed, true);
+    const auto lost = [&](Utility utility) {
+      const MeterFeed feed = read(recording, plate_for(utility), MeterCare::usual, seed);
       double slots = 0.0;
       for (const Fault& fault : feed.faults) slots += static_cast<double>(fault.count);
       return slots / static_cast<double>(feed.cells.size());
     };
-    const double steam = lost(MeterKind::steam);
+    const double steam = lost(Utility::heat);
     EXPECT_GT(steam, 0.12);
     EXPECT_LT(steam, 0.33);
-    EXPECT_LT(lost(MeterKind::electricity), 0.04);
-    EXPECT_LT(lost(MeterKind::chilled_water), 0.04);
+    EXPECT_LT(lost(Utility::electricity), 0.04);
+    EXPECT_LT(lost(Utility::cooling), 0.04);
   }
 }
 
 TEST(Meters, UnitsAreThoseOfTheFile) {
-  EXPECT_NEAR(plate_of(MeterKind::chilled_water).unit_kW, 12'000.0 * 0.29307107e-3, 1e-6);
-  EXPECT_NEAR(plate_of(MeterKind::steam).unit_kW, 4.0 * 0.29307107, 1e-12);
+  EXPECT_NEAR(plate_for(Utility::cooling).unit_kW, 12'000.0 * 0.29307107e-3, 1e-6);
+  EXPECT_NEAR(plate_for(Utility::heat).unit_kW, 4.0 * 0.29307107, 1e-12);
+}
+
+TEST(Meters, LoggersWithGapsLoseAboutATwentiethAndNothingElse) {
+  const Recording recording = wave();
+  double lost = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const MeterFeed feed = read(recording, plate_for(Utility::heat), MeterCare::gaps, seed);
+    for (const Fault& fault : feed.faults) {
+      ASSERT_EQ(fault.kind, FaultKind::gap);
+      lost += static_cast<double>(fault.count) / static_cast<double>(feed.cells.size()) / 20.0;
+    }
+  }
+  EXPECT_NEAR(lost, 0.05, 0.01);
+}
+
+TEST(Meters, AHeatPumpsHeatIsNotMetered) {
+  Drawings drawings;
+  drawings.heating = HeatingPlant::heat_pump;
+  EXPECT_EQ(plates_of(drawings).size(), 2u);
 }
 
 TEST(WeatherStation, ReadsNearTheTruthAndDeclaresItsGaps) {
   const Recording recording = wave();
-  const WeatherFeed feed = read_weather_station(recording, 1, true);
+  const WeatherFeed feed = read_weather_station(recording, MeterCare::usual, 1);
   std::size_t absent = 0;
   std::size_t blank = 0;
   for (std::size_t slot = 0; slot < feed.cells.size(); ++slot) {

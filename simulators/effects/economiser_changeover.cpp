@@ -1,0 +1,38 @@
+#include "simulators/effects/effect_kind.hpp"
+
+namespace recald::simulators {
+namespace {
+
+/// The limit above which no extra outdoor air is taken was entered wrongly, or the outdoor sensor
+/// reads wrongly. Too high: warm, humid air is let in. Too low: free cooling ends early.
+class EconomiserChangeover final : public HiddenEffect {
+ public:
+  EconomiserChangeover(const EffectSettings& settings, const Drawings& /*drawings*/)
+      : settings_(settings) {}
+
+  void operate(const Moment& now, Operation& operation) override {
+    if (!settings_.covers(now.local.date)) return;
+    operation.air.economiser_shift_K += settings_.strength;
+  }
+
+ private:
+  EffectSettings settings_;
+};
+
+}  // namespace
+
+EffectKind economiser_changeover() {
+  return {
+      .id = "economiser_changeover",
+      .title = "Free cooling ends at the wrong temperature",
+      .group = EffectClass::outdoor_air,
+      .sentence =
+          "The dampers change over at the wrong outdoor temperature: warm humid air is let in "
+          "and must be cooled, or free cooling stops too early in mild weather.",
+      .strength = {-10.0, -6.0, 10.0, "K that the change-over is too high, negative for too low"},
+      .needs = {.cooling_meter = true, .economiser = true},
+      .turns = "economiser",
+      .make = make_effect<EconomiserChangeover>};
+}
+
+}  // namespace recald::simulators

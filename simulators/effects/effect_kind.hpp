@@ -1,0 +1,94 @@
+/// The kinds of hidden effects: what each is called, what it needs, how strong it can be.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulators/building/drawings.hpp"
+#include "simulators/building/hidden_effect.hpp"
+
+namespace recald::simulators {
+
+enum class EffectClass {
+  schedules,
+  outdoor_air,
+  air_system,
+  envelope,
+  plant,
+  electrical,
+  meters,
+  outside_catalogue,  ///< Real, but no diagnosis is told that it exists.
+};
+
+[[nodiscard]] std::string_view to_string(EffectClass group);
+
+/// Strength 0 is "not there". `typical` is what an engineer would call plain to see.
+struct StrengthRange {
+  double min;
+  double typical;
+  double max;
+  std::string_view unit;
+};
+
+/// What a building must have for the effect to exist and to show.
+struct EffectNeeds {
+  bool cooling_meter = false;
+  bool heat_meter = false;
+  bool own_chiller = false;
+  bool heat_pump = false;
+  bool fuel = false;  ///< A boiler's gas meter.
+  bool economiser = false;
+  bool timetable = false;  ///< Rooms whose air handlers stop at night.
+  bool skylight = false;
+};
+
+/// One effect of one scenario.
+struct EffectSettings {
+  double strength = 0.0;
+  std::optional<metering::Day> from;  ///< First local day; absent: from the beginning.
+  std::optional<metering::Day> to;    ///< Last local day; absent: to the end.
+  std::optional<Utility> meter;       ///< For effects of one meter.
+  const metering::LocalCalendar* calendar = nullptr;
+  Rng rng{0, 0};  ///< The effect's own chance.
+
+  /// Whether the effect is there on this day.
+  [[nodiscard]] bool covers(metering::Day day) const {
+    return (!from || day >= *from) && (!to || day <= *to);
+  }
+};
+
+/// Filled in with designated initialisers in the effect's own file.
+struct EffectKind {
+  std::string_view id;     ///< snake_case, as scenario files and answers name it.
+  std::string_view title;  ///< "Night set-back missing".
+  EffectClass group;
+  std::string_view sentence;  ///< For the people who run the building: what happens and what shows.
+  StrengthRange strength;
+  EffectNeeds needs = {};
+  /// What it turns; two effects that turn the same thing contradict each other.
+  std::string_view turns;
+  bool dated = false;         ///< Begins (or is confined) at a date: scenarios give `from`.
+  bool of_one_meter = false;  ///< Scenarios give `meter`.
+  std::unique_ptr<HiddenEffect> (*make)(const EffectSettings&, const Drawings&);
+};
+
+/// What `EffectKind::make` is for an effect constructed from its settings and the drawings.
+template <class Effect>
+std::unique_ptr<HiddenEffect> make_effect(const EffectSettings& settings,
+                                          const Drawings& drawings) {
+  return std::make_unique<Effect>(settings, drawings);
+}
+
+/// What `--list-effects` says of one: name, class, sentence, strengths, needs.
+[[nodiscard]] std::string explain(const EffectKind& kind);
+
+/// All kinds, by class and then as listed in `catalogue.cpp`.
+[[nodiscard]] std::span<const EffectKind> effect_kinds();
+/// @return nullptr where no effect has this id.
+[[nodiscard]] const EffectKind* find_effect_kind(std::string_view id);
+
+}  // namespace recald::simulators

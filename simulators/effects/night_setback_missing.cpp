@@ -1,0 +1,39 @@
+#include "simulators/effects/effect_kind.hpp"
+
+namespace recald::simulators {
+namespace {
+
+/// The clock that should let rooms float at night does not reach the thermostats.
+class NightSetbackMissing final : public HiddenEffect {
+ public:
+  NightSetbackMissing(const EffectSettings& settings, const Drawings& /*drawings*/)
+      : settings_(settings) {}
+
+  void operate(const Moment& now, Operation& operation) override {
+    if (!settings_.covers(now.local.date)) return;
+    RoomOperation& rooms = operation.rooms;
+    rooms.night_heating_C += settings_.strength * (rooms.heating_C - rooms.night_heating_C);
+    rooms.night_cooling_C += settings_.strength * (rooms.cooling_C - rooms.night_cooling_C);
+  }
+
+ private:
+  EffectSettings settings_;
+};
+
+}  // namespace
+
+EffectKind night_setback_missing() {
+  return {
+      .id = "night_setback_missing",
+      .title = "Night set-back missing",
+      .group = EffectClass::schedules,
+      .sentence =
+          "Rooms are kept at daytime temperature all night and all weekend: heating and cooling "
+          "run when nobody is there.",
+      .strength = {0.0, 1.0, 1.0, "share of the set-back that is missing"},
+      .needs = {.heat_meter = true, .timetable = true},
+      .turns = "night set-points",
+      .make = make_effect<NightSetbackMissing>};
+}
+
+}  // namespace recald::simulators

@@ -1,0 +1,37 @@
+#include "simulators/effects/effect_kind.hpp"
+
+namespace recald::simulators {
+namespace {
+
+/// Somebody turned the minimum position: for fresher air, or to save.
+class OutdoorAirAmount final : public HiddenEffect {
+ public:
+  OutdoorAirAmount(const EffectSettings& settings, const Drawings& /*drawings*/)
+      : settings_(settings) {}
+
+  void operate(const Moment& now, Operation& operation) override {
+    if (!settings_.covers(now.local.date)) return;
+    operation.air.outdoor_factor *= 1.0 + settings_.strength;
+  }
+
+ private:
+  EffectSettings settings_;
+};
+
+}  // namespace
+
+EffectKind outdoor_air_amount() {
+  return {
+      .id = "outdoor_air_amount",
+      .title = "Minimum outdoor air changed",
+      .group = EffectClass::outdoor_air,
+      .sentence =
+          "From one date the air handlers take in more outdoor air than designed (or less): "
+          "heating in winter and cooling on humid days rise (or fall), mild days hardly change.",
+      .strength = {-0.6, 0.5, 1.5, "share added to the designed outdoor air"},
+      .turns = "outdoor-air amount",
+      .dated = true,
+      .make = make_effect<OutdoorAirAmount>};
+}
+
+}  // namespace recald::simulators

@@ -1,0 +1,51 @@
+#include <algorithm>
+
+#include "simulators/chance/chance.hpp"
+#include "simulators/effects/effect_kind.hpp"
+
+namespace recald::simulators {
+namespace {
+
+constexpr double kDay_s = 86'400.0;
+
+/// Traps that blow through and bare pipes: heat goes away whatever the weather, in amounts that
+/// wander with the pressure in the pipe.
+class SteamTrapLeak final : public HiddenEffect {
+ public:
+  SteamTrapLeak(const EffectSettings& settings, const Drawings& drawings)
+      : settings_(settings),
+        leak_W_(settings.strength * 1000.0 * drawings.heating_design_kW),
+        pressure_(20.0 * kDay_s, kDay_s, settings_.rng) {}
+
+  void plan(metering::Day /*day*/, Timetable& /*timetable*/) override {
+    today_ = std::clamp(1.0 + 0.08 * pressure_.advance(settings_.rng), 0.7, 1.3);
+  }
+
+  void operate(const Moment& now, Operation& operation) override {
+    if (!settings_.covers(now.local.date)) return;
+    operation.plant.heating_standing_W += leak_W_ * today_;
+  }
+
+ private:
+  EffectSettings settings_;
+  double leak_W_;
+  Persistence pressure_;
+  double today_ = 1.0;
+};
+
+}  // namespace
+
+EffectKind steam_trap_leak() {
+  return {.id = "steam_trap_leak",
+          .title = "Leaking traps and bare pipes",
+          .group = EffectClass::plant,
+          .sentence =
+              "Traps blow through and pipes are bare: the heat meter shows the same extra use day "
+              "and night, summer and winter.",
+          .strength = {0.0, 0.025, 0.12, "share of the heating plant's capacity"},
+          .needs = {.heat_meter = true},
+          .turns = "pipe losses",
+          .make = make_effect<SteamTrapLeak>};
+}
+
+}  // namespace recald::simulators

@@ -1,0 +1,207 @@
+#include "simulators/footprint/effect_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <ranges>
+
+#include "simulators/footprint/plot.hpp"
+
+namespace recald::simulators {
+namespace {
+
+constexpr double kWidth = 900.0;
+constexpr double kMargin = 22.0;
+constexpr double kPlotHeight = 170.0;
+constexpr int kIntervals = 6;  ///< Of a scale, at most.
+
+/// Below this a meter is called unchanged: no meter of a building resolves a watt.
+constexpr double kNothing_kW = 0.001;
+
+bool changed(const MeterFootprint& meter) {
+  return std::ranges::any_of(meter.added_kW,
+                             [](double added) { return std::abs(added) > kNothing_kW; });
+}
+
+IntervalSeries added(const Footprint& footprint, const MeterFootprint& meter) {
+  return {footprint.begin, meter.added_kW};
+}
+
+/// The mean days of one diagram.
+struct DayCurve {
+  Utility utility;
+  PartOfWeek part_of_week;
+  MeanDay mean_kW;
+};
+
+std::vector<DayCurve> day_curves(const Footprint& footprint, HalfYear half_year,
+                                 const metering::LocalCalendar& calendar) {
+  std::vector<DayCurve> curves;
+  for (const MeterFootprint& meter : footprint.meters) {
+    if (!changed(meter)) continue;
+    for (const PartOfWeek part : {PartOfWeek::weekend, PartOfWeek::working_days}) {
+      const DayGroup group{half_year, part, footprint.effect.from, footprint.effect.to};
+      const auto mean_kW = mean_day(added(footprint, meter), group, calendar);
+      if (mean_kW) curves.push_back({meter.utility, part, *mean_kW});
+    }
+  }
+  return curves;
+}
+
+/// % of the meter's mean month, so that the mean of the bars is its share of the year.
+MonthlySum monthly_percent(const Footprint& footprint, const MeterFootprint& meter,
+                           const metering::LocalCalendar& calendar) {
+  const MonthlySum plain_kWh = monthly_kWh({footprint.begin, meter.plain_kW}, calendar);
+  const double mean_kWh = std::accumulate(plain_kWh.begin(), plain_kWh.end(), 0.0) / 12.0;
+  MonthlySum percent = monthly_kWh(added(footprint, meter), calendar);
+  for (double& month : percent) month = mean_kWh > 0.0 ? 100.0 * month / mean_kWh : 0.0;
+  return percent;
+}
+
+void draw_day(Svg& svg, const Box& frame, const Ticks& scale, std::string_view caption,
+              const std::vector<DayCurve>& curves) {
+  Plot plot(svg, frame, 24.0, scale);
+  plot.caption(caption);
+  const std::vector<Mark> hours{{0, "0"}, {6, "6"}, {12, "12"}, {18, "18"}, {24, "24 h"}};
+  plot.x_marks(hours);
+  plot.x_rules(4);
+  plot.zero_line();
+  for (const DayCurve& curve : curves) {
+    plot.curve(curve.mean_kW, {.colour = colour_of(curve.utility),
+                               .width = 1.8,
+                               .dashed = curve.part_of_week == PartOfWeek::weekend});
+  }
+}
+
+/// Both half-years to one scale.
+void draw_days(Svg& svg, double top, const Footprint& footprint,
+               const metering::LocalCalendar& calendar) {
+  const auto winter = day_curves(footprint, HalfYear::winter, calendar);
+  const auto summer = day_curves(footprint, HalfYear::summer, calendar);
+  ValueRange range;
+  for (const DayCurve& curve : winter) range.include(curve.mean_kW);
+  for (const DayCurve& curve : summer) range.include(curve.mean_kW);
+  const Ticks scale = range.ticks(kIntervals);
+  const Box left{66.0, top, 222.0, kPlotHeight};
+  const Box right{336.0, top, 222.0, kPlotHeight};
+  draw_day(svg, left, scale, "Mean day, October to March, kW", winter);
+  draw_day(svg, right, scale, "April to September, kW", summer);
+  const double key_y = top + kPlotHeight + 36.0;
+  svg.line({66.0, key_y - 4.0}, {90.0, key_y - 4.0}, {.colour = kFaintInk, .width = 1.8});
+  svg.text({96.0, key_y}, "Monday to Friday", {.size = 11.0, .colour = kFaintInk});
+  svg.line({196.0, key_y - 4.0}, {220.0, key_y - 4.0},
+           {.colour = kFaintInk, .width = 1.8, .dashed = true});
+  svg.text({226.0, key_y}, "Saturday and Sunday", {.size = 11.0, .colour = kFaintInk});
+}
+
+void draw_months(Svg& svg, double top, const Footprint& footprint,
+                 const metering::LocalCalendar& calendar) {
+  std::vector<std::pair<Utility, MonthlySum>> shown;
+  ValueRange range;
+  for (const MeterFootprint& meter : footprint.meters | std::views::filter(changed)) {
+    shown.emplace_back(meter.utility, monthly_percent(footprint, meter, calendar));
+    range.include(shown.back().second);
+  }
+  const Box frame{612.0, top, 266.0, kPlotHeight};
+  Plot plot(svg, frame, 12.0, range.ticks(kIntervals));
+  plot.caption("By month, % of a mean month");
+  std::vector<Mark> months;
+  for (const char initial : std::string_view("JFMAMJJASOND")) {
+    months.push_back({static_cast<double>(months.size()) + 0.5, std::string(1, initial)});
+  }
+  plot.x_marks(months);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    plot.bars(shown[i].second, colour_of(shown[i].first), i, shown.size());
+  }
+  plot.zero_line();
+}
+
+void draw_shares(Svg& svg, double y, const Footprint& footprint) {
+  constexpr TextStyle style{.size = 13.0, .bold = true};
+  double x = kMargin;
+  for (const MeterFootprint& meter : footprint.meters) {
+    svg.rectangle({x, y - 10.0, 11.0, 11.0}, colour_of(meter.utility));
+    const std::string text = share_text(meter);
+    svg.text({x + 17.0, y}, text, style);
+    x += 17.0 + 1.1 * text_width(text, style.size) + 22.0;  // bold is wider
+  }
+  svg.text({x, y}, "of the year", {.size = 13.0, .colour = kFaintInk});
+}
+
+}  // namespace
+
+double MeterFootprint::share() const {
+  const double plain = std::accumulate(plain_kW.begin(), plain_kW.end(), 0.0);
+  const double more = std::accumulate(added_kW.begin(), added_kW.end(), 0.0);
+  return plain > 0.0 ? more / plain : 0.0;
+}
+
+std::string_view colour_of(Utility utility) {
+  // Told apart by everybody: Okabe, Ito (2008), Color Universal Design.
+  switch (utility) {
+    case Utility::electricity:
+      return "#4d4d4d";
+    case Utility::cooling:
+      return "#0072b2";
+    case Utility::heat:
+      return "#d55e00";
+  }
+  return kInk;
+}
+
+std::string share_text(const MeterFootprint& meter) {
+  if (!changed(meter)) return meter.name + " unchanged";
+  const double percent = 100.0 * meter.share();
+  const std::string number = signed_number(percent, std::abs(percent) < 1.0 ? 2 : 1);
+  return fmt::format("{} {} %", meter.name, number == "0" ? "\u00b10" : number);
+}
+
+std::string share_text(const Footprint& footprint) {
+  std::string text;
+  for (const MeterFootprint& meter : footprint.meters) {
+    text += (text.empty() ? "" : ", ") + share_text(meter);
+  }
+  return text;
+}
+
+std::string strength_text(const HiddenChoice& effect) {
+  std::string text =
+      fmt::format("Strength {:.3g}: {}", effect.strength, effect.kind->strength.unit);
+  if (effect.meter) text += "; in one meter";
+  if (effect.from) text += "; from " + metering::to_string(*effect.from);
+  if (effect.to) text += " to " + metering::to_string(*effect.to);
+  return text + '.';
+}
+
+std::string effect_figure(const Footprint& footprint, const metering::LocalCalendar& calendar) {
+  const EffectKind& kind = *footprint.effect.kind;
+  constexpr double text_px = kWidth - 2.0 * kMargin;
+  const auto sentence = wrap_text(kind.sentence, 13.0, text_px);
+  const auto details =
+      wrap_text(strength_text(footprint.effect) + ' ' + footprint.building + '.', 12.0, text_px);
+  const double shares_y = 62.0 + 18.0 * static_cast<double>(sentence.size()) +
+                          16.0 * static_cast<double>(details.size());
+  const double plots_y = shares_y + 44.0;
+
+  Svg svg(kWidth, plots_y + kPlotHeight + 52.0,
+          fmt::format("{}: {}", kind.title, share_text(footprint)));
+  svg.text({kMargin, 32.0}, kind.title, {.size = 18.0, .bold = true});
+  svg.text({kWidth - kMargin, 32.0}, kind.id,
+           {.size = 12.0, .colour = kFaintInk, .anchor = Anchor::end});
+  double y = 56.0;
+  for (const std::string& line : sentence) {
+    svg.text({kMargin, y}, line, {.size = 13.0});
+    y += 18.0;
+  }
+  for (const std::string& line : details) {
+    svg.text({kMargin, y}, line, {.size = 12.0, .colour = kFaintInk});
+    y += 16.0;
+  }
+  draw_shares(svg, shares_y, footprint);
+  draw_days(svg, plots_y, footprint, calendar);
+  draw_months(svg, plots_y, footprint, calendar);
+  return svg.finished();
+}
+
+}  // namespace recald::simulators

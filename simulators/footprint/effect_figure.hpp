@@ -1,0 +1,45 @@
+/// The figure of one effect's footprint: what it adds to each meter, by hour and by month.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulators/footprint/means.hpp"
+#include "simulators/scenario/scenario.hpp"
+
+namespace recald::simulators {
+
+/// One meter over the same intervals twice.
+struct MeterFootprint {
+  Utility utility;
+  std::string name;  ///< "chilled water"
+  std::vector<double> plain_kW;
+  std::vector<double> added_kW;  ///< By the effect; what the meter shows with it is the sum.
+
+  /// Added / plain; 0 where the meter shows nothing.
+  [[nodiscard]] double share() const;
+};
+
+struct Footprint {
+  HiddenChoice effect;
+  std::string building;  ///< In a few words.
+  metering::Instant begin;
+  std::vector<MeterFootprint> meters;
+};
+
+[[nodiscard]] std::string_view colour_of(Utility utility);
+
+/// "electricity +1.2 %", or "electricity unchanged" where nothing was ever added.
+[[nodiscard]] std::string share_text(const MeterFootprint& meter);
+/// Of all meters, with commas.
+[[nodiscard]] std::string share_text(const Footprint& footprint);
+/// "Strength 3 hours later than planned …, from 2022-04-01."
+[[nodiscard]] std::string strength_text(const HiddenChoice& effect);
+
+/// Left the mean day in the winter and in the summer half-year, working days and weekends apart,
+/// over the days on which the effect is there; right each month against the meter's mean month.
+/// @return an SVG file
+[[nodiscard]] std::string effect_figure(const Footprint& footprint,
+                                        const metering::LocalCalendar& calendar);
+
+}  // namespace recald::simulators

@@ -1,0 +1,20 @@
+/// Figures of what every hidden effect does to the meters, for people who want to see before they
+/// believe.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "core/result.hpp"
+
+namespace recald::simulators {
+
+/// Simulates each kind of effect at its typical strength, with and without, and writes to the
+/// folder, which is made if absent: `<effect id>.svg` for each kind, `week_<use>.svg` for each use
+/// of building without effects, and a `README.md` that shows them all. Same build, same bytes.
+/// About half a second a figure.
+/// @return number of figures, or
+///         io_failed  the folder or a file in it cannot be written.
+[[nodiscard]] Result<std::size_t> draw_footprints(const std::filesystem::path& folder);
+
+}  // namespace recald::simulators

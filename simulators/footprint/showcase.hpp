@@ -1,0 +1,41 @@
+/// In which building an effect is shown: one that has what it needs, where the weather brings it
+/// out.
+#pragma once
+
+#include <string>
+
+#include "simulators/scenario/archetypes.hpp"
+#include "simulators/scenario/scenario.hpp"
+
+namespace recald::simulators {
+
+inline constexpr std::uint64_t kShowSeed = 1;
+inline constexpr int kShowYear = 2022;
+
+enum class ShowBuilding : std::size_t {
+  office,  ///< Mixed climate, all services from the district; where nothing speaks for another.
+  office_with_chiller,
+  office_with_heat_pump,
+  office_with_boiler,
+  office_with_skylight,
+  office_in_cold,
+  office_in_hot_dry,
+  office_in_hot_humid,
+  office_in_marine,
+  laboratory,
+  school,
+};
+inline constexpr std::size_t kShowBuildings = 11;
+
+[[nodiscard]] ShowBuilding show_building_of(const EffectKind& kind);
+
+/// One year of 15-minute steps, nothing hidden.
+[[nodiscard]] Scenario show_scenario(ShowBuilding building);
+
+/// Typical strength; dates and a meter where the kind asks for them.
+[[nodiscard]] HiddenChoice show_choice(const EffectKind& kind);
+
+/// "Office, 7200 m² on 4 storeys, mixed climate, district cooling, district hot water, 2022".
+[[nodiscard]] std::string describe_scenario(const Scenario& scenario);
+
+}  // namespace recald::simulators

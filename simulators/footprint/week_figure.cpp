@@ -1,0 +1,133 @@
+#include "simulators/footprint/week_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "simulators/footprint/effect_figure.hpp"
+#include "simulators/footprint/plot.hpp"
+#include "simulators/footprint/showcase.hpp"
+
+namespace recald::simulators {
+namespace {
+
+constexpr int kDays = 7;
+constexpr double kWidth = 900.0;
+constexpr double kMargin = 22.0;
+
+/// Mondays of weeks without holidays in which all uses are at work, schools too.
+constexpr metering::Day kWinterMonday{std::chrono::year{kShowYear}, std::chrono::January,
+                                      std::chrono::day{24}};
+constexpr metering::Day kSummerMonday{std::chrono::year{kShowYear}, std::chrono::August,
+                                      std::chrono::day{22}};
+
+/// Columns of one week: temperature above, loads below.
+struct Week {
+  std::string caption;
+  std::vector<double> outdoor_C;
+  std::vector<std::vector<double>> loads_W_m2;  ///< In the order of the meters.
+};
+
+struct MeterYear {
+  MeterPlate plate;
+  std::vector<double> load_W_m2;
+
+  [[nodiscard]] double annual_kWh_m2() const {
+    constexpr double interval_kh = 0.25 / 1000.0;
+    return interval_kh * std::accumulate(load_W_m2.begin(), load_W_m2.end(), 0.0);
+  }
+  [[nodiscard]] std::string name() const {
+    std::string words(plate.kind);
+    std::ranges::replace(words, '_', ' ');
+    return words;
+  }
+};
+
+std::vector<MeterYear> meter_years(const Simulated& simulated,
+                                   const metering::LocalCalendar& calendar) {
+  const Drawings& drawings = simulated.building.truth().drawings;
+  std::vector<MeterYear> meters;
+  for (const MeterPlate& plate : plates_of(drawings)) {
+    std::vector<double> load =
+        metered_kW(simulated.recording, plate.utility, simulated.building.effects(), calendar);
+    for (double& value : load) value *= 1000.0 / drawings.floor_area_m2();
+    meters.push_back({plate, std::move(load)});
+  }
+  return meters;
+}
+
+Week week_from(metering::Day monday, const Recording& recording,
+               const std::vector<MeterYear>& meters, const metering::LocalCalendar& calendar) {
+  std::vector<double> outdoor_C;
+  outdoor_C.reserve(recording.weather.size());
+  for (const WeatherMean& weather : recording.weather) outdoor_C.push_back(weather.dry_bulb_C);
+  Week week{"Week of " + metering::to_string(monday),
+            hourly_means({recording.begin, outdoor_C}, monday, kDays, calendar),
+            {}};
+  for (const MeterYear& meter : meters) {
+    week.loads_W_m2.push_back(
+        hourly_means({recording.begin, meter.load_W_m2}, monday, kDays, calendar));
+  }
+  return week;
+}
+
+void draw_week(Svg& svg, double left, double top, const Week& week,
+               const std::vector<MeterYear>& meters, const Ticks& scale) {
+  constexpr double width = 390.0;
+  constexpr std::array<std::string_view, kDays> names{"Mon", "Tue", "Wed", "Thu",
+                                                      "Fri", "Sat", "Sun"};
+  const auto [coldest, warmest] = std::ranges::minmax(week.outdoor_C);
+  Plot temperature(svg, {left, top, width, 62.0}, kDays, nice_ticks(coldest, warmest, 4));
+  temperature.caption(week.caption + ": outdoors, degC");
+  temperature.x_rules(kDays);
+  temperature.curve(week.outdoor_C, {.colour = "#009e73", .width = 1.5});
+
+  Plot loads(svg, {left, top + 96.0, width, 190.0}, kDays, scale);
+  loads.caption("Meters, W/m² of floor");
+  loads.x_rules(kDays);
+  std::vector<Mark> marks;
+  for (const auto name : names) {
+    marks.push_back({static_cast<double>(marks.size()) + 0.5, std::string(name)});
+  }
+  loads.x_marks(marks);
+  for (std::size_t i = 0; i < meters.size(); ++i) {
+    loads.curve(week.loads_W_m2[i], {.colour = colour_of(meters[i].plate.utility), .width = 1.5});
+  }
+  loads.zero_line();
+}
+
+void draw_years(Svg& svg, double y, const std::vector<MeterYear>& meters) {
+  double x = kMargin;
+  for (const MeterYear& meter : meters) {
+    const std::string text =
+        fmt::format("{} {:.0f} kWh/m² a year", meter.name(), meter.annual_kWh_m2());
+    svg.rectangle({x, y - 10.0, 11.0, 11.0}, colour_of(meter.plate.utility));
+    svg.text({x + 17.0, y}, text, {.size = 13.0, .bold = true});
+    x += 17.0 + 1.1 * text_width(text, 13.0) + 22.0;
+  }
+}
+
+}  // namespace
+
+std::string week_figure(const Scenario& scenario, const Simulated& simulated,
+                        const metering::LocalCalendar& calendar) {
+  const auto meters = meter_years(simulated, calendar);
+  const std::array weeks{week_from(kWinterMonday, simulated.recording, meters, calendar),
+                         week_from(kSummerMonday, simulated.recording, meters, calendar)};
+  ValueRange range;
+  for (const Week& week : weeks) {
+    for (const auto& load_W_m2 : week.loads_W_m2) range.include(load_W_m2);
+  }
+  const Ticks scale = range.ticks(7);
+  const std::string building = describe_scenario(scenario);
+  Svg svg(kWidth, 430.0, building);
+  svg.text({kMargin, 32.0}, building, {.size = 15.0, .bold = true});
+  draw_years(svg, 60.0, meters);
+  draw_week(svg, 56.0, 102.0, weeks[0], meters, scale);
+  draw_week(svg, 494.0, 102.0, weeks[1], meters, scale);
+  return svg.finished();
+}
+
+}  // namespace recald::simulators

@@ -1,0 +1,71 @@
+#include "simulators/scenario/building_feed.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "simulators/feed/feed_files.hpp"
+#include "simulators/scenario/scenario_files.hpp"
+
+namespace recald::simulators {
+namespace {
+
+Result<void> write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+  file.close();
+  if (file) return {};
+  return failure(ErrorCode::io_failed, "cannot write " + path.string() + ": " +
+                                           std::strerror(errno) +
+                                           "; choose a folder with --out that can be written");
+}
+
+Result<void> write_twin(const BuildingFeedOptions& options, const Simulated& with,
+                        const metering::LocalCalendar& calendar) {
+  const Scenario twin = twin_of(options.scenario);
+  const auto without = simulate(twin, options.seed, calendar);
+  if (!without) return tl::unexpected(without.error());
+  const Feeds feeds = read_feeds(twin, options.seed, *without, calendar);
+  const auto written =
+      write_file(options.out / "twin_readings.csv", readings_csv(without->recording, feeds.meters));
+  if (!written) return written;
+  return write_file(options.out / "footprint.csv",
+                    footprint_csv(with.recording, plates_of(twin.drawings),
+                                  footprint_kW(with, *without, calendar)));
+}
+
+}  // namespace
+
+Result<std::size_t> write_building_feed(const BuildingFeedOptions& options) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) {
+    return failure(ErrorCode::io_failed, "cannot make the folder " + options.out.string() + ": " +
+                                             error.message() + "; choose another with --out");
+  }
+  const Scenario& scenario = options.scenario;
+  const auto calendar = metering::LocalCalendar::open(scenario.drawings.time_zone);
+  if (!calendar) return tl::unexpected(calendar.error());
+  // The smallest file first: an unwritable folder is found before seconds of simulation.
+  if (const auto written = write_file(options.out / "site.toml", site_toml(scenario)); !written) {
+    return tl::unexpected(written.error());
+  }
+  const auto simulated = simulate(scenario, options.seed, *calendar);
+  if (!simulated) return tl::unexpected(simulated.error());
+  const Recording& recording = simulated->recording;
+  const Feeds feeds = read_feeds(scenario, options.seed, *simulated, *calendar);
+  const std::string truth =
+      truth_json(scenario, options.seed, *simulated, feeds.meters, feeds.weather, *calendar);
+
+  Result<void> written =
+      write_file(options.out / "readings.csv", readings_csv(recording, feeds.meters));
+  if (written) {
+    written = write_file(options.out / "weather.csv", weather_csv(recording, feeds.weather));
+  }
+  if (written) written = write_file(options.out / "truth.json", truth);
+  if (written && options.twin) written = write_twin(options, *simulated, *calendar);
+  if (!written) return tl::unexpected(written.error());
+  return recording.power.size();
+}
+
+}  // namespace recald::simulators

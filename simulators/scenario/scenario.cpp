@@ -1,0 +1,126 @@
+#include "simulators/scenario/scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace recald::simulators {
+namespace {
+
+tl::unexpected<Error> refuse(std::string sentence) {
+  return failure(ErrorCode::invalid_value, std::move(sentence));
+}
+
+bool has_heat_meter(const Drawings& drawings) {
+  return drawings.heating != HeatingPlant::heat_pump;
+}
+
+/// What the building lacks for the effect, as the end of a sentence; empty where nothing is
+/// missing.
+std::string missing_for(const EffectNeeds& needs, const Drawings& drawings) {
+  const auto lacks = [](bool needed, bool there) { return needed && !there; };
+  if (lacks(needs.heat_meter, has_heat_meter(drawings))) {
+    return "a heat meter, and a heat pump's heat is not metered: choose another [plant] heating";
+  }
+  if (lacks(needs.own_chiller, drawings.cooling == CoolingPlant::chiller)) {
+    return "an own chiller: set cooling = \"chiller\" in [plant]";
+  }
+  if (lacks(needs.heat_pump, drawings.heating == HeatingPlant::heat_pump)) {
+    return "a heat pump: set heating = \"heat_pump\" in [plant]";
+  }
+  if (lacks(needs.fuel, drawings.heating == HeatingPlant::boiler)) {
+    return "a gas meter: set heating = \"boiler\" in [plant]";
+  }
+  if (lacks(needs.economiser, drawings.economiser_limit_C.has_value())) {
+    return "an economiser: set economiser_limit_C in [controls]";
+  }
+  if (lacks(needs.skylight, drawings.skylight_m2() > 0.0)) {
+    return "a skylight: set skylight_share in [building]";
+  }
+  return "";
+}
+
+Result<void> check_alone(const HiddenChoice& choice, const Drawings& drawings) {
+  const EffectKind& kind = *choice.kind;
+  if (!(choice.strength >= kind.strength.min && choice.strength <= kind.strength.max)) {
+    return refuse(fmt::format("effect {}: strength {} is outside {} to {} ({})", kind.id,
+                              choice.strength, kind.strength.min, kind.strength.max,
+                              kind.strength.unit));
+  }
+  if (const std::string missing = missing_for(kind.needs, drawings); !missing.empty()) {
+    return refuse(fmt::format("effect {} needs {}", kind.id, missing));
+  }
+  if (kind.dated && !choice.from) {
+    return refuse(fmt::format("effect {} begins at a date: give from = \"YYYY-MM-DD\"", kind.id));
+  }
+  if (choice.from && choice.to && *choice.to < *choice.from) {
+    return refuse(fmt::format("effect {}: to {} lies before from {}", kind.id,
+                              metering::to_string(*choice.to), metering::to_string(*choice.from)));
+  }
+  if (kind.of_one_meter && !choice.meter) {
+    return refuse(
+        fmt::format("effect {} is in one meter: give meter = \"electricity\" or another", kind.id));
+  }
+  if (choice.meter == Utility::heat && !has_heat_meter(drawings)) {
+    return refuse(fmt::format("effect {}: this building has no heat meter", kind.id));
+  }
+  return {};
+}
+
+/// The same thing cannot be turned twice, unless it is that of two different meters.
+bool contradict(const HiddenChoice& one, const HiddenChoice& other) {
+  const bool of_other_meters = one.meter && other.meter && *one.meter != *other.meter;
+  return one.kind->turns == other.kind->turns && !of_other_meters;
+}
+
+/// FNV-1a of the name: whatever else is hidden or ever listed, this effect's chance stays the same.
+std::uint64_t number_of(const EffectKind& kind) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : kind.id) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  }
+  return hash >> 1U;  // leaves room for the offset of the streams
+}
+
+}  // namespace
+
+Result<void> check_effects(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.effects.size(); ++i) {
+    const HiddenChoice& choice = scenario.effects[i];
+    if (const auto alone = check_alone(choice, scenario.drawings); !alone) return alone;
+    for (std::size_t j = 0; j < i; ++j) {
+      const HiddenChoice& earlier = scenario.effects[j];
+      if (!contradict(choice, earlier)) continue;
+      return refuse(
+          fmt::format("effects {} and {} contradict each other: both turn {}; leave one out",
+                      earlier.kind->id, choice.kind->id, choice.kind->turns));
+    }
+  }
+  return {};
+}
+
+HiddenEffects make_effects(const Scenario& scenario, std::uint64_t seed,
+                           const metering::LocalCalendar& calendar) {
+  HiddenEffects effects;
+  for (const HiddenChoice& choice : scenario.effects) {
+    effects.push_back(
+        choice.kind->make({.strength = choice.strength,
+                           .from = choice.from,
+                           .to = choice.to,
+                           .meter = choice.meter,
+                           .calendar = &calendar,
+                           .rng = stream_of(seed, Stream::effects, number_of(*choice.kind))},
+                          scenario.drawings));
+  }
+  return effects;
+}
+
+std::string_view to_string(Decoy decoy) {
+  return decoy == Decoy::wind_of_another_year ? "wind_of_another_year" : "neighbour_meter";
+}
+
+bool has_decoy(const Scenario& scenario, Decoy decoy) {
+  return std::ranges::find(scenario.decoys, decoy) != scenario.decoys.end();
+}
+
+}  // namespace recald::simulators

@@ -1,0 +1,360 @@
+#include "simulators/scenario/scenario_file.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "core/text/nearest.hpp"
+#include "simulators/scenario/archetypes.hpp"
+
+namespace recald::simulators {
+namespace {
+
+/// Collects the first thing that is wrong, so that reading need not stop at every key.
+class Complaint {
+ public:
+  explicit Complaint(std::string file) : file_(std::move(file)) {}
+
+  void about(const toml::node* node, const std::string& sentence) {
+    if (!sentence_.empty()) return;
+    sentence_ = node == nullptr
+                    ? fmt::format("{}: {}", file_, sentence)
+                    : fmt::format("{}:{}: {}", file_, node->source().begin.line, sentence);
+  }
+  [[nodiscard]] bool empty() const { return sentence_.empty(); }
+  [[nodiscard]] const std::string& sentence() const { return sentence_; }
+
+ private:
+  std::string file_;
+  std::string sentence_;
+};
+
+template <class T>
+struct Word {
+  std::string_view text;
+  T value;
+};
+
+using Names = std::set<std::string, std::less<>>;
+
+std::string did_you_mean(std::string_view text, const Names& names) {
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  const std::string_view meant = nearest_name(text, known);
+  return meant.empty() ? "" : fmt::format("; did you mean {}?", meant);
+}
+
+/// One table; remembers which keys were asked for, so that the rest are unknown.
+class Table {
+ public:
+  Table(const toml::table* table, std::string_view name, Complaint& complaint)
+      : table_(table), name_(name), complaint_(complaint) {}
+
+  void number(std::string_view key, double least, double most, double& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const auto given = node->value<double>();
+    if (!given || !node->is_number() || !(*given >= least && *given <= most)) {
+      complaint_.about(
+          node, fmt::format("{} in [{}] must be a number from {} to {}", key, name_, least, most));
+      return;
+    }
+    value = *given;
+  }
+
+  void number(std::string_view key, double least, double most, std::optional<double>& value) {
+    if (find(key) == nullptr) return;
+    double given = least;
+    number(key, least, most, given);
+    value = given;
+  }
+
+  void whole(std::string_view key, std::int64_t least, std::int64_t most, std::int64_t& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const auto given = node->value<std::int64_t>();
+    if (!node->is_integer() || !given || *given < least || *given > most) {
+      complaint_.about(node, fmt::format("{} in [{}] must be a whole number from {} to {}", key,
+                                         name_, least, most));
+      return;
+    }
+    value = *given;
+  }
+
+  template <class T, std::size_t N>
+  void word(std::string_view key, const std::array<Word<T>, N>& words, T& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const auto given = node->value<std::string_view>().value_or("");
+    const auto found = std::ranges::find(words, given, &Word<T>::text);
+    if (found != words.end()) {
+      value = found->value;
+      return;
+    }
+    std::string list;
+    for (const Word<T>& word : words) list += (list.empty() ? "" : ", ") + std::string(word.text);
+    complaint_.about(node, fmt::format("{} in [{}] is one of {}", key, name_, list));
+  }
+
+  [[nodiscard]] std::string text(std::string_view key) {
+    const toml::node* node = find(key);
+    return node == nullptr ? "" : node->value_or(std::string());
+  }
+
+  [[nodiscard]] std::optional<metering::Day> day(std::string_view key) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return std::nullopt;
+    const auto day = metering::parse_day(node->value_or(std::string_view()));
+    if (!day) {
+      complaint_.about(
+          node, fmt::format("{} in [{}] must be a date in quotes, \"YYYY-MM-DD\"", key, name_));
+      return std::nullopt;
+    }
+    return *day;
+  }
+
+  void no_other_keys() {
+    if (table_ == nullptr) return;
+    for (const auto& [key, node] : *table_) {
+      if (asked_.contains(key.str())) continue;
+      complaint_.about(&node, fmt::format("unknown key {} in [{}]{}", key.str(), name_,
+                                          did_you_mean(key.str(), asked_)));
+    }
+  }
+
+  [[nodiscard]] const toml::node* node() const { return table_; }
+
+ private:
+  const toml::node* find(std::string_view key) {
+    asked_.emplace(key);
+    return table_ == nullptr ? nullptr : table_->get(key);
+  }
+
+  const toml::table* table_;
+  std::string_view name_;
+  Complaint& complaint_;
+  Names asked_;
+};
+
+constexpr std::array kUses{Word<Use>{"laboratory", Use::laboratory},
+                           Word<Use>{"office", Use::office}, Word<Use>{"school", Use::school}};
+constexpr std::array kMasses{Word<bool>{"heavy", true}, Word<bool>{"light", false}};
+constexpr std::array kCoolings{Word<CoolingPlant>{"district", CoolingPlant::district},
+                               Word<CoolingPlant>{"chiller", CoolingPlant::chiller}};
+constexpr std::array kHeatings{Word<HeatingPlant>{"district_steam", HeatingPlant::district_steam},
+                               Word<HeatingPlant>{"district_water", HeatingPlant::district_water},
+                               Word<HeatingPlant>{"boiler", HeatingPlant::boiler},
+                               Word<HeatingPlant>{"heat_pump", HeatingPlant::heat_pump}};
+constexpr std::array kCares{Word<MeterCare>{"perfect", MeterCare::perfect},
+                            Word<MeterCare>{"usual", MeterCare::usual},
+                            Word<MeterCare>{"gaps", MeterCare::gaps}};
+constexpr std::array kMeterNames{
+    Word<Utility>{"electricity", Utility::electricity},
+    Word<Utility>{"chilled_water", Utility::cooling}, Word<Utility>{"steam", Utility::heat},
+    Word<Utility>{"heating", Utility::heat}, Word<Utility>{"gas", Utility::heat}};
+constexpr std::array kSteps{Word<std::chrono::seconds>{"5m", std::chrono::seconds{300}},
+                            Word<std::chrono::seconds>{"15m", std::chrono::seconds{900}}};
+constexpr std::array kDecoys{Word<Decoy>{"wind_of_another_year", Decoy::wind_of_another_year},
+                             Word<Decoy>{"neighbour_meter", Decoy::neighbour_meter}};
+
+std::array<Word<ClimateKind>, kClimateKinds.size()> climate_words() {
+  std::array<Word<ClimateKind>, kClimateKinds.size()> words{};
+  for (std::size_t i = 0; i < words.size(); ++i)
+    words[i] = {name_of(kClimateKinds[i]), kClimateKinds[i]};
+  return words;
+}
+
+/// What decides the sizes of everything else comes first.
+Drawings read_brief(Table& building, Table& climate, Table& plant) {
+  Brief brief;
+  building.word("use", kUses, brief.use);
+  if (brief.use == Use::laboratory) brief = {brief.use, ClimateKind::hot_humid, 3, 65.0, 40.0};
+  auto storeys = static_cast<std::int64_t>(brief.storeys);
+  building.whole("storeys", 1, 40, storeys);
+  brief.storeys = static_cast<std::size_t>(storeys);
+  building.number("length_m", 15.0, 300.0, brief.length_m);
+  building.number("width_m", 10.0, 200.0, brief.width_m);
+  building.number("window_share", 0.02, 0.95, brief.window_share);
+  building.number("skylight_share", 0.0, 0.5, brief.skylight_share);
+  building.word("mass", kMasses, brief.heavy);
+  climate.word("name", climate_words(), brief.climate);
+  plant.word("cooling", kCoolings, brief.cooling);
+  plant.word("heating", kHeatings, brief.heating);
+  return draw_up(brief);
+}
+
+void read_constructions(Table& building, Drawings& drawings) {
+  building.number("storey_height_m", 2.5, 8.0, drawings.storey_height_m);
+  building.number("wall_u_W_m2K", 0.08, 2.5, drawings.wall_u_W_m2K);
+  building.number("roof_u_W_m2K", 0.05, 2.0, drawings.roof_u_W_m2K);
+  building.number("window_u_W_m2K", 0.5, 5.0, drawings.window_u_W_m2K);
+  building.number("window_shgc", 0.1, 0.8, drawings.window_shgc);
+  building.number("leakage_cm2_m2", 0.1, 10.0, drawings.leakage_cm2_m2);
+  building.number("occupancy_person_m2", 0.0, 0.5, drawings.occupancy_person_m2);
+  building.number("lighting_W_m2", 1.0, 40.0, drawings.perimeter_rooms.lighting_W_m2);
+  building.number("plugs_W_m2", 0.5, 150.0, drawings.perimeter_rooms.plugs_W_m2);
+  building.number("core_plugs_W_m2", 0.5, 150.0, drawings.core_rooms.plugs_W_m2);
+}
+
+void read_controls(Table& controls, Drawings& drawings) {
+  controls.number("cooling_setpoint_C", 21.0, 27.5, drawings.cooling_setpoint_C);
+  controls.number("heating_setpoint_C", 20.3, 21.9, drawings.heating_setpoint_C);
+  controls.number("night_cooling_C", 24.0, 35.0, drawings.night_cooling_C);
+  controls.number("night_heating_C", 10.0, 20.0, drawings.night_heating_C);
+  controls.number("occupied_from_h", 2.0, 12.0, drawings.occupied_from_h);
+  controls.number("occupied_to_h", 13.0, 23.0, drawings.occupied_to_h);
+  controls.number("supply_C", 11.0, 16.0, drawings.supply_C);
+  controls.number("economiser_limit_C", 5.0, 30.0, drawings.economiser_limit_C);
+}
+
+void read_period(Table& period, Scenario& scenario) {
+  std::int64_t start = scenario.period.start_year;
+  std::int64_t years = scenario.period.years;
+  period.whole("start", 1972, 2036, start);
+  period.whole("years", 1, 20, years);
+  period.word("step", kSteps, scenario.step);
+  scenario.period = {static_cast<int>(start), static_cast<int>(years)};
+}
+
+HiddenChoice read_effect(Table& table, Complaint& complaint) {
+  HiddenChoice choice{};
+  const std::string name = table.text("name");
+  choice.kind = find_effect_kind(name);
+  if (choice.kind == nullptr) {
+    Names names;
+    for (const EffectKind& kind : effect_kinds()) names.emplace(kind.id);
+    complaint.about(table.node(), name.empty()
+                                      ? std::string("an [[effect]] needs a name")
+                                      : fmt::format("unknown effect {}{}; recald-sim building "
+                                                    "--list-effects explains them all",
+                                                    name, did_you_mean(name, names)));
+    return choice;
+  }
+  choice.strength = choice.kind->strength.typical;
+  table.number("strength", -1e9, 1e9, choice.strength);
+  choice.from = table.day("from");
+  choice.to = table.day("to");
+  if (!table.text("meter").empty()) {
+    Utility utility = Utility::electricity;
+    table.word("meter", kMeterNames, utility);
+    choice.meter = utility;
+  }
+  return choice;
+}
+
+class Reader {
+ public:
+  Reader(const toml::table& file, Complaint& complaint) : file_(file), complaint_(complaint) {}
+
+  Scenario read() {
+    Table building = table("building");
+    Table climate = table("climate");
+    Table plant = table("plant");
+    Table controls = table("controls");
+    Table calendar = table("calendar");
+    Table meters = table("meters");
+    Table period = table("period");
+    Scenario scenario;
+    scenario.drawings = read_brief(building, climate, plant);
+    read_constructions(building, scenario.drawings);
+    size_services(scenario.drawings);
+    read_controls(controls, scenario.drawings);
+    plant.number("chiller_cop", 2.0, 9.0, scenario.drawings.chiller_cop);
+    plant.number("heat_pump_cop", 1.5, 6.0, scenario.drawings.heat_pump_cop);
+    plant.number("heating_efficiency", 0.5, 0.99, scenario.drawings.heating_efficiency);
+    calendar.word("of", kUses, scenario.drawings.calendar);
+    meters.word("care", kCares, scenario.care);
+    read_period(period, scenario);
+    for (Table* each : {&building, &climate, &plant, &controls, &calendar, &meters, &period}) {
+      each->no_other_keys();
+    }
+    read_lists(scenario);
+    no_other_tables();
+    return scenario;
+  }
+
+ private:
+  Table table(std::string_view name) {
+    names_.emplace(name);
+    const toml::node* node = file_.get(name);
+    if (node != nullptr && !node->is_table()) {
+      complaint_.about(node, fmt::format("{} must be a table: write [{}]", name, name));
+    }
+    return {node == nullptr ? nullptr : node->as_table(), name, complaint_};
+  }
+
+  template <class Read>
+  void each_in(std::string_view name, const Read& read) {
+    names_.emplace(name);
+    const toml::node* node = file_.get(name);
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    if (list == nullptr || !list->is_array_of_tables()) {
+      complaint_.about(node, fmt::format("{} must be a list: write [[{}]]", name, name));
+      return;
+    }
+    for (const toml::node& entry : *list) {
+      Table table(entry.as_table(), name, complaint_);
+      read(table);
+      table.no_other_keys();
+    }
+  }
+
+  void read_lists(Scenario& scenario) {
+    each_in("effect",
+            [&](Table& table) { scenario.effects.push_back(read_effect(table, complaint_)); });
+    each_in("decoy", [&](Table& table) {
+      Decoy decoy = Decoy::neighbour_meter;
+      table.word("name", kDecoys, decoy);
+      scenario.decoys.push_back(decoy);
+    });
+  }
+
+  void no_other_tables() {
+    for (const auto& [key, node] : file_) {
+      if (names_.contains(key.str())) continue;
+      complaint_.about(
+          &node, fmt::format("unknown table {}{}", key.str(), did_you_mean(key.str(), names_)));
+    }
+  }
+
+  const toml::table& file_;
+  Complaint& complaint_;
+  Names names_;
+};
+
+Result<toml::table> parse(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    return failure(ErrorCode::not_found,
+                   fmt::format("cannot read the scenario {}; check its path", path.string()));
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  try {
+    return toml::parse(text.str());
+  } catch (const toml::parse_error& error) {
+    return failure(ErrorCode::malformed,
+                   fmt::format("{}:{}: not TOML: {}", path.string(), error.source().begin.line,
+                               error.description()));
+  }
+}
+
+}  // namespace
+
+Result<Scenario> read_scenario(const std::filesystem::path& path) {
+  const auto file = parse(path);
+  if (!file) return tl::unexpected(file.error());
+  Complaint complaint(path.string());
+  Scenario scenario = Reader(*file, complaint).read();
+  if (!complaint.empty()) return failure(ErrorCode::invalid_value, complaint.sentence());
+  if (const auto possible = check_effects(scenario); !possible) {
+    return failure(ErrorCode::invalid_value, path.string() + ": " + possible.error().message);
+  }
+  return scenario;
+}
+
+}  // namespace recald::simulators

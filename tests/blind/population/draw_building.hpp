@@ -1,0 +1,20 @@
+/// Buildings as an owner might have them, and site files as their engineer might write them.
+#pragma once
+
+#include "core/random/rng.hpp"
+#include "simulators/effects/effect_kind.hpp"
+#include "simulators/scenario/archetypes.hpp"
+
+namespace recald::blind {
+
+/// A building that has what the effects need. @param needs  may contradict only as plants do: a
+/// heat
+///        pump and a gas boiler; the last one asked for wins
+[[nodiscard]] simulators::Drawings draw_building(const std::vector<simulators::EffectNeeds>& needs,
+                                                 Rng& rng);
+
+/// The drawings as their engineer remembers them: constructions, densities and nameplates off by
+/// some ten per cent, rounded as people round; geometry, plant and hours are known.
+[[nodiscard]] simulators::Drawings misremembered(simulators::Drawings drawings, Rng& rng);
+
+}  // namespace recald::blind

@@ -1,0 +1,43 @@
+/// Turns a plan into a case: finds the strengths, runs building and twin, writes files.
+#pragma once
+
+#include <filesystem>
+
+#include "simulators/scenario/twin.hpp"
+#include "tests/blind/population/plan.hpp"
+
+namespace recald::blind {
+
+/// One effect as it came out.
+struct HiddenAtStrength {
+  simulators::HiddenChoice choice;
+  double target_share = 0.0;
+  double reached_share = 0.0;  ///< Of the meter it moves most: moves within parts of the day count.
+  bool attained = false;
+  std::vector<double> share_of_meter;  ///< Signed, in the order of `plates_of`.
+};
+
+struct SettledCase {
+  simulators::Scenario scenario;  ///< With the effects at their strengths.
+  std::vector<HiddenAtStrength> effects;
+  std::vector<std::string>
+      refused;  ///< Effects drawn before that could not be made to show enough.
+  int simulations = 0;
+};
+
+/// Finds for each wanted effect the strength that shows as much as asked, or a stand-in that can.
+/// @return not_found if the system has no zone files.
+[[nodiscard]] Result<SettledCase> settle(const CasePlan& plan);
+
+struct CaseFolders {
+  std::filesystem::path cases;    ///< Gets `<id>/` with readings.csv, weather.csv, site.toml.
+  std::filesystem::path answers;  ///< Gets `<id>.json`, last: a case with an answer is whole.
+  /// Gets `<id>/` with the twin's files and footprint.csv, where not empty.
+  std::filesystem::path twins;
+};
+
+/// Writes what a user would have, and the answer apart. @return io_failed, not_found.
+[[nodiscard]] Result<void> write_case(const CasePlan& plan, const SettledCase& settled,
+                                      const CaseFolders& folders);
+
+}  // namespace recald::blind

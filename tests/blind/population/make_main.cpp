@@ -1,0 +1,139 @@
+// Draws a blind population: cases as users would have them, answers apart and sealed.
+//
+//   blind_make --population sealed --seed N --out DIR [--cases 1-20] [--twins] [--threads 0]
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <iostream>
+#include <mutex>
+
+#include "adapters/system/parallel_for.hpp"
+#include "adapters/system/write_file.hpp"
+#include "tests/blind/population/make_case.hpp"
+#include "tests/blind/scoring/seal.hpp"
+
+namespace {
+
+using namespace recald;
+using namespace recald::blind;
+
+struct Arguments {
+  std::string population;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;
+  std::string cases;
+  bool twins = false;
+  unsigned threads = 0;
+};
+
+int failed(const std::string& sentence, int code = 1) {
+  std::cerr << "blind_make: " << sentence << '\n';
+  return code;
+}
+
+/// "3" or "3-17", counted from 1; empty for all.
+std::optional<std::pair<std::size_t, std::size_t>> range_of(const std::string& text,
+                                                            std::size_t size) {
+  if (text.empty()) return std::pair{std::size_t{1}, size};
+  std::size_t first = 0;
+  std::size_t last = 0;
+  char dash = 0;
+  char rest = 0;
+  std::istringstream words(text);
+  if (!(words >> first)) return std::nullopt;
+  last = words >> dash ? 0 : first;
+  if (dash != 0 && (dash != '-' || !(words >> last))) return std::nullopt;
+  if (words >> rest || first < 1 || first > last || last > size) return std::nullopt;
+  return std::pair{first, last};
+}
+
+/// Makes those of the plans that have no answer yet; a run that was stopped goes on where it was.
+class Maker {
+ public:
+  Maker(const CaseFolders& folders, std::size_t total) : folders_(folders), total_(total) {}
+
+  void make(const CasePlan& plan) {
+    if (stopped_ || std::filesystem::exists(folders_.answers / (plan.id + ".json"))) return;
+    auto settled = settle(plan);
+    const auto written = settled ? write_case(plan, *settled, folders_)
+                                 : Result<void>(tl::unexpected(settled.error()));
+    const std::lock_guard lock(mutex_);
+    if (!written) {
+      stopped_ = true;
+      error_ = plan.id + ": " + written.error().message;
+      return;
+    }
+    // Neither block nor effect is said: whoever makes a sealed population must not learn it.
+    std::cerr << fmt::format("\r{} of {} ({} simulations)   ", ++made_, total_,
+                             simulations_ += settled->simulations + 1);
+  }
+
+  [[nodiscard]] const std::string& error() const { return error_; }
+
+ private:
+  const CaseFolders& folders_;
+  std::size_t total_;
+  std::mutex mutex_;
+  std::atomic<bool> stopped_ = false;
+  std::size_t made_ = 0;
+  int simulations_ = 0;
+  std::string error_;
+};
+
+int make(const Arguments& given) {
+  const auto kind = population_kind(given.population);
+  if (!kind) return failed(kind.error().message, 2);
+  const std::vector<CasePlan> plans = plan_population(*kind, given.seed);
+  const auto range = range_of(given.cases, plans.size());
+  if (!range) {
+    return failed(fmt::format("--cases {}: give one number or two with a dash, 1 to {}",
+                              given.cases, plans.size()),
+                  2);
+  }
+  const CaseFolders folders{given.out / "cases", given.out / "answers",
+                            given.twins ? given.out / "twins" : std::filesystem::path()};
+  for (const auto& folder : {folders.cases, folders.answers}) {
+    if (const auto made = system::make_folder(folder); !made) return failed(made.error().message);
+  }
+  if (std::filesystem::exists(folders.answers / "answers.sha256")) {
+    return failed(fmt::format("{} is sealed already; choose another --out", given.out.string()));
+  }
+  Maker maker(folders, range->second - range->first + 1);
+  system::parallel_for(given.threads)(range->second - range->first + 1, [&](std::size_t i) {
+    maker.make(plans[range->first - 1 + i]);
+  });
+  std::cerr << '\n';
+  if (!maker.error().empty()) return failed(maker.error());
+  if (range->second - range->first + 1 < plans.size()) {
+    std::cout << "part of the population, not sealed\n";
+    return 0;
+  }
+  const auto hash = seal_answers(folders.answers);
+  if (!hash) return failed(hash.error().message);
+  std::cout << fmt::format("{} cases of {} with seed {} in {}; answers sealed: {}\n", plans.size(),
+                           kind->name, given.seed, folders.cases.string(), *hash);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Draws a blind population: feeds and site files, answers apart and sealed.",
+               "blind_make"};
+  Arguments given;
+  app.add_option("--population", given.population, "smoke, training or sealed")->required();
+  app.add_option("--seed", given.seed, "of the population")->required();
+  app.add_option("--out", given.out, "folder; gets cases/ and answers/")->required();
+  app.add_option("--cases", given.cases, "only these, such as 1-20; then nothing is sealed");
+  app.add_flag("--twins", given.twins, "also each case without its effects, and its footprint");
+  app.add_option("--threads", given.threads, "0: one a core");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return make(given);
+}

@@ -1,0 +1,50 @@
+/// What stands in each case of a blind population, before any strength is known.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulators/scenario/scenario.hpp"
+#include "tests/blind/scoring/answers.hpp"
+
+namespace recald::blind {
+
+/// One effect that a case wants: the first of `candidates` that can be made to show enough is
+/// taken, the others stand by.
+struct Wanted {
+  std::vector<simulators::HiddenChoice> candidates;  ///< Strengths are limits: the sign is drawn.
+  double target_share;                               ///< Of the meter that it moves most.
+};
+
+struct CasePlan {
+  std::string id;  ///< "sealed-017"
+  Block block;
+  std::uint64_t seed;                ///< Decides truth, weather, people and noise.
+  simulators::Scenario scenario;     ///< Nothing hidden yet.
+  simulators::Drawings as_believed;  ///< What the site file says: the drawings, in part mistaken.
+  std::vector<Wanted> wanted;
+};
+
+struct BlockSizes {
+  int no_effect;
+  int single_plain;   ///< Will stand at d* = 8.
+  int single_strong;  ///< Will stand at d* = 16.
+  int out_of_catalogue;
+  int pairs;
+};
+
+/// Populations differ in name, and with it in every seed, building and weather.
+struct PopulationKind {
+  std::string name;
+  BlockSizes sizes;
+  int years;
+};
+
+/// "smoke" (12 cases of a year), "training" and "sealed" (200 of three years).
+/// @return not_found with the names for any other.
+[[nodiscard]] Result<PopulationKind> population_kind(std::string_view name);
+
+/// The same kind and seed give the same plans; case i does not depend on how many follow.
+[[nodiscard]] std::vector<CasePlan> plan_population(const PopulationKind& kind, std::uint64_t seed);
+
+}  // namespace recald::blind

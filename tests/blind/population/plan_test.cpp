@@ -1,0 +1,126 @@
+#include "tests/blind/population/plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+namespace recald::blind {
+namespace {
+
+using simulators::EffectClass;
+
+std::vector<CasePlan> plans_of(const char* name, std::uint64_t seed) {
+  return plan_population(*population_kind(name), seed);
+}
+
+TEST(Plan, HasTheBlocksOfTheProtocol) {
+  const auto plans = plans_of("sealed", 1);
+  ASSERT_EQ(plans.size(), 200u);
+  std::map<Block, int> count;
+  for (const CasePlan& plan : plans) ++count[plan.block];
+  EXPECT_EQ(count[Block::no_effect], 60);
+  EXPECT_EQ(count[Block::single], 100);
+  EXPECT_EQ(count[Block::out_of_catalogue], 20);
+  EXPECT_EQ(count[Block::pair], 20);
+  EXPECT_EQ(plans_of("smoke", 1).size(), 12u);
+  EXPECT_EQ(population_kind("secret").error().message,
+            "unknown population secret; there are smoke, training and sealed");
+}
+
+TEST(Plan, HidesWhatItsBlockSays) {
+  for (const CasePlan& plan : plans_of("training", 3)) {
+    SCOPED_TRACE(plan.id);
+    const std::size_t hidden = plan.wanted.size();
+    switch (plan.block) {
+      case Block::no_effect:
+        EXPECT_EQ(hidden, 0u);
+        break;
+      case Block::single:
+        EXPECT_EQ(hidden, 1u);
+        break;
+      case Block::pair:
+        EXPECT_EQ(hidden, 2u);
+        break;
+      case Block::out_of_catalogue:
+        EXPECT_EQ(hidden + plan.scenario.decoys.size(), 1u);
+        break;
+    }
+    for (const Wanted& wanted : plan.wanted) {
+      ASSERT_FALSE(wanted.candidates.empty());
+      for (const auto& candidate : wanted.candidates) {
+        EXPECT_EQ(candidate.kind->group == EffectClass::outside_catalogue,
+                  plan.block == Block::out_of_catalogue);
+        simulators::Scenario alone = plan.scenario;
+        alone.effects = {candidate};
+        const auto possible = simulators::check_effects(alone);
+        EXPECT_TRUE(possible.has_value()) << possible.error().message;
+      }
+    }
+  }
+}
+
+// Sixty plain singles over forty kinds: each comes at least once, none more than twice; a draw
+// without replacement, then another.
+TEST(Plan, DealsEveryKindBeforeAnyComesTwice) {
+  std::map<std::string_view, int> dealt;
+  for (const CasePlan& plan : plans_of("sealed", 9)) {
+    if (plan.block == Block::single) ++dealt[plan.wanted[0].candidates[0].kind->id];
+  }
+  EXPECT_EQ(dealt.size(), 40u);
+  for (const auto& [id, times] : dealt) {
+    EXPECT_GE(times, 2) << id;
+    EXPECT_LE(times, 3) << id;
+  }
+}
+
+TEST(Plan, TrainingAndSealedShareNoBuildingWeatherOrSeed) {
+  std::set<std::uint64_t> seeds;
+  std::set<std::pair<double, double>> buildings;  // what the engineer remembers is continuous
+  std::size_t cases = 0;
+  for (const char* name : {"smoke", "training", "sealed"}) {
+    for (const CasePlan& plan : plans_of(name, 7)) {
+      seeds.insert(plan.seed);
+      const auto& drawings = plan.scenario.drawings;
+      buildings.insert(
+          {drawings.length_m * 1000.0 + drawings.width_m + 1e-3 * drawings.window_share,
+           drawings.chilled_water_design_kW + 1e-6 * drawings.heating_design_kW});
+      ++cases;
+    }
+  }
+  EXPECT_EQ(seeds.size(), cases);
+  EXPECT_EQ(buildings.size(), cases);
+}
+
+TEST(Plan, SameSeedSamePlansAndOtherSeedOthers) {
+  const auto one = plans_of("training", 11);
+  const auto two = plans_of("training", 11);
+  const auto other = plans_of("training", 12);
+  int alike = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].seed, two[i].seed);
+    EXPECT_EQ(one[i].scenario.drawings.description, two[i].scenario.drawings.description);
+    EXPECT_EQ(one[i].block, two[i].block);
+    alike += one[i].block == other[i].block ? 1 : 0;
+    EXPECT_NE(one[i].seed, other[i].seed);
+  }
+  EXPECT_LT(alike, 150);
+}
+
+TEST(Plan, SiteFilesAreWrongButPlausible) {
+  double worst = 0.0;
+  for (const CasePlan& plan : plans_of("training", 5)) {
+    const auto& built = plan.scenario.drawings;
+    const auto& believed = plan.as_believed;
+    EXPECT_EQ(believed.floor_area_m2(), built.floor_area_m2());
+    EXPECT_EQ(believed.heating, built.heating);
+    const double off = believed.wall_u_W_m2K / built.wall_u_W_m2K - 1.0;
+    worst = std::max(worst, std::abs(off));
+    EXPECT_LT(std::abs(off), 0.35);
+    EXPECT_LT(believed.heating_efficiency, 1.0);
+  }
+  EXPECT_GT(worst, 0.1);
+}
+
+}  // namespace
+}  // namespace recald::blind
