@@ -69,9 +69,9 @@ class Building {
   Plant plant_;
   HiddenEffects effects_;
   std::vector<AirHandler>
-      air_handlers_;               ///< The perimeter's at 2·storey, the core's at 2·storey + 1.
-  std::vector<bool> night_cycle_;  ///< By air handler.
-  std::vector<double> pressurised_;        ///< By storey, 0…1.
+      air_handlers_;                 ///< The perimeter's at 2·storey, the core's at 2·storey + 1.
+  std::vector<bool> night_cycle_;    ///< By air handler.
+  std::vector<double> pressurised_;  ///< By storey, 0…1.
   std::vector<ZoneLoads> zone_loads_;
   std::vector<AirHandlerWork> work_;
   std::vector<double> zone_imbalance_J_;

@@ -111,6 +111,9 @@ struct Drawings {
   double occupied_from_h = 6.0;
   double occupied_to_h = 20.0;
 
+  /// Whether air handlers with a timetable run 8-14 h on Saturdays; absent: the drawings do not
+  /// say.
+  std::optional<bool> saturday_operation;
   bool core_runs_always = true;   ///< The core's air handlers never stop.
   double core_night_share = 0.9;  ///< Of their outdoor air and minimum flow, where they never stop.
   double supply_C = 13.0;

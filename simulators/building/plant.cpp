@@ -32,8 +32,10 @@ double Plant::hot_water_W(double people_share, const PlantOperation& operation) 
 }
 
 double Plant::pumps_W(const ServiceLoad& load, const PlantOperation& operation) const {
+  const bool loop_never_stops = truth_.drawings.core_runs_always;
   const auto speed = [&](double load_W, double design_kW) {
-    const double following = variable_speed(load_W / (1000.0 * design_kW));
+    const bool turns = load_W > 0.0 || loop_never_stops;
+    const double following = turns ? variable_speed(load_W / (1000.0 * design_kW)) : 0.0;
     return following + (1.0 - operation.pumps_follow_load) * (1.0 - following);
   };
   return 1000.0 * truth_.pump_kW *

@@ -87,7 +87,8 @@ void draw_air_system(Truth& truth, Rng& rng) {
   truth.occupied_to_h =
       Triangular{drawn.occupied_to_h - 1.0, drawn.occupied_to_h, drawn.occupied_to_h + 1.0}.draw(
           rng);
-  truth.saturday_operation = rng.uniform() < 0.5;
+  const bool saturdays = rng.uniform() < 0.5;
+  truth.saturday_operation = drawn.saturday_operation.value_or(saturdays);
   draw_air_handlers(truth, rng);
   truth.supply_reset_K = Triangular{0.0, 1.5, 3.0}.draw(rng);
   const double night = drawn.core_night_share / 0.9;

@@ -156,6 +156,13 @@ constexpr std::array kRows{
     Row{"snowfall as water, mm a year", 0, [](const Normals& n) { return n.snowfall_mm; }},
 };
 
+/// Without the sign of a zero.
+std::string rounded(double value, int decimals) {
+  const std::string text = fmt::format("{:.{}f}", value, decimals);
+  return text.find_first_of("123456789") == std::string::npos && text[0] == '-' ? text.substr(1)
+                                                                                : text;
+}
+
 }  // namespace
 
 std::string climate_table(int years, std::uint64_t seed) {
@@ -171,8 +178,8 @@ std::string climate_table(int years, std::uint64_t seed) {
   for (const Row& row : kRows) {
     table += fmt::format("| {} |", row.name);
     for (std::size_t i = 0; i < simulated.size(); ++i) {
-      table += fmt::format(" {:.{}f} / {:.{}f} |", row.value(simulated[i]), row.decimals,
-                           row.value(normals_of(kClimateKinds[i])), row.decimals);
+      table += fmt::format(" {} / {} |", rounded(row.value(simulated[i]), row.decimals),
+                           rounded(row.value(normals_of(kClimateKinds[i])), row.decimals));
     }
     table += '\n';
   }

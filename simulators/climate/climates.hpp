@@ -1,11 +1,12 @@
 /// Five climates for the weather generator, each made to resemble one city (see `normals.hpp`).
 ///
 /// A `Climate` is what the generator turns into weather. Its curves are what the generator aims at,
-/// not what comes out: fronts, clouds and the saturation limit shift the monthly means by some
-/// tenths of a kelvin, and the curves allow for that. The members below name causes, so that two
-/// climates differ by how their weather comes about and not by their means alone.
+/// not what comes out: fronts, clouds, the saturation limit and the monsoon shift the monthly
+/// means, and the curves allow for that. The members below name causes, so that two climates differ
+/// by how their weather comes about and not by their means alone.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -104,6 +105,8 @@ struct Climate {
   RainHabit rain;
 };
 
+/// @param place  northern hemisphere; gives the sun and the air pressure. The weather stays that of
+///               the comparable city.
 [[nodiscard]] Climate climate_of(ClimateKind kind, const Place& place);
 
 [[nodiscard]] inline Climate hot_humid_climate(const Place& place) {

@@ -106,9 +106,12 @@ WeatherGenerator::AirMass WeatherGenerator::air_mass() const {
   const double gust = 1.0 + 0.5 * strength * std::exp(-days_since_front_ / 0.5);
   const WindHabit& wind = climate_.wind;
   const double turned = wind.veer_deg * (1.0 - std::exp(-days_since_front_ / wind.veer_days));
-  return {anomaly, climate_.variability.dew_per_anomaly * anomaly,
-          cloud,   just_ahead + 0.3 * strength * just_behind,
-          gust,    wind.behind_front_from_deg + turned};
+  return {.anomaly_K = anomaly,
+          .dryness_K = climate_.variability.dew_per_anomaly * anomaly,
+          .cloud_logit = cloud,
+          .lift = just_ahead + 0.3 * strength * just_behind,
+          .gust_factor = gust,
+          .wind_from_deg = wind.behind_front_from_deg + turned};
 }
 
 double WeatherGenerator::cloud_cover(const AirMass& mass, const Moment& when) {

@@ -40,7 +40,7 @@ EffectKind after_hours() {
               "cooling and heating go on into the evening when people have left.",
           .strength = {0.0, 3.0, 6.0, "hours later than planned, on an average working day"},
           .needs = {.timetable = true},
-          .turns = "fan hours",
+          .turns = "fan hours in the evening",
           .make = make_effect<AfterHours>};
 }
 

@@ -51,7 +51,7 @@ EffectKind early_start() {
           "weekends: fans and heating are up at night while nobody is in yet.",
       .strength = {0.0, 3.0, 5.0, "hours earlier than planned when it is 5 degC outside"},
       .needs = {.timetable = true},
-      .turns = "fan hours",
+      .turns = "fan hours in the morning",
       .make = make_effect<EarlyStart>};
 }
 

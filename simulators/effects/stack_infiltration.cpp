@@ -42,7 +42,7 @@ EffectKind stack_infiltration() {
           .sentence =
               "A vent at the top of a stairwell does not close: in cold weather warm air leaves "
               "there and cold air follows below, so heating rises the more the colder it is.",
-          .strength = {0.0, 0.1, 0.4, "m² of open shaft for each 1000 m² of floor"},
+          .strength = {0.0, 0.05, 0.4, "m² of open shaft for each 1000 m² of floor"},
           .turns = "stack leak",
           .make = make_effect<StackInfiltration>};
 }

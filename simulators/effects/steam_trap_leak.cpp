@@ -42,7 +42,7 @@ EffectKind steam_trap_leak() {
           .sentence =
               "Traps blow through and pipes are bare: the heat meter shows the same extra use day "
               "and night, summer and winter.",
-          .strength = {0.0, 0.025, 0.12, "share of the heating plant's capacity"},
+          .strength = {0.0, 0.012, 0.12, "share of the heating plant's capacity"},
           .needs = {.heat_meter = true},
           .turns = "pipe losses",
           .make = make_effect<SteamTrapLeak>};

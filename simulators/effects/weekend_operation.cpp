@@ -52,7 +52,7 @@ EffectKind weekend_operation() {
           "days: fans, cooling and heating show weekday use while the building is empty.",
       .strength = {0.0, 2.0, 2.0, "weekend days a week that run like working days"},
       .needs = {.timetable = true},
-      .turns = "fan hours",
+      .turns = "fan hours on weekends",
       .make = make_effect<WeekendOperation>};
 }
 

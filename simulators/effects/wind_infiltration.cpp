@@ -63,7 +63,7 @@ EffectKind wind_infiltration() {
           .sentence =
               "A loading door and its facade are leaky, and wind blows in: heating, and cooling in "
               "summer, rise on windy days, most with wind from one side.",
-          .strength = {0.0, 0.6, 3.0, "m² of gap for each 1000 m² of facade"},
+          .strength = {0.0, 0.2, 3.0, "m² of gap for each 1000 m² of facade"},
           .turns = "wind leak",
           .make = make_effect<WindInfiltration>};
 }

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <ranges>
 
+#include "simulators/footprint/meter_key.hpp"
 #include "simulators/footprint/plot.hpp"
 
 namespace recald::simulators {
@@ -59,11 +60,11 @@ MonthlySum monthly_percent(const Footprint& footprint, const MeterFootprint& met
   return percent;
 }
 
-void draw_day(Svg& svg, const Box& frame, const Ticks& scale, std::string_view caption,
+void draw_day(Svg& svg, const Box& frame, const Scale& scale, std::string_view caption,
               const std::vector<DayCurve>& curves) {
   Plot plot(svg, frame, 24.0, scale);
   plot.caption(caption);
-  const std::vector<Mark> hours{{0, "0"}, {6, "6"}, {12, "12"}, {18, "18"}, {24, "24 h"}};
+  const std::vector<Mark> hours{{0, "0 h"}, {6, "6"}, {12, "12"}, {18, "18"}, {24, "24"}};
   plot.x_marks(hours);
   plot.x_rules(4);
   plot.zero_line();
@@ -82,29 +83,25 @@ void draw_days(Svg& svg, double top, const Footprint& footprint,
   ValueRange range;
   for (const DayCurve& curve : winter) range.include(curve.mean_kW);
   for (const DayCurve& curve : summer) range.include(curve.mean_kW);
-  const Ticks scale = range.ticks(kIntervals);
+  const Scale scale = range.scale(kIntervals);
   const Box left{66.0, top, 222.0, kPlotHeight};
   const Box right{336.0, top, 222.0, kPlotHeight};
   draw_day(svg, left, scale, "Mean day, October to March, kW", winter);
   draw_day(svg, right, scale, "April to September, kW", summer);
-  const double key_y = top + kPlotHeight + 36.0;
-  svg.line({66.0, key_y - 4.0}, {90.0, key_y - 4.0}, {.colour = kFaintInk, .width = 1.8});
-  svg.text({96.0, key_y}, "Monday to Friday", {.size = 11.0, .colour = kFaintInk});
-  svg.line({196.0, key_y - 4.0}, {220.0, key_y - 4.0},
-           {.colour = kFaintInk, .width = 1.8, .dashed = true});
-  svg.text({226.0, key_y}, "Saturday and Sunday", {.size = 11.0, .colour = kFaintInk});
 }
 
 void draw_months(Svg& svg, double top, const Footprint& footprint,
                  const metering::LocalCalendar& calendar) {
   std::vector<std::pair<Utility, MonthlySum>> shown;
   ValueRange range;
-  for (const MeterFootprint& meter : footprint.meters | std::views::filter(changed)) {
+  for (const MeterFootprint& meter : footprint.meters) {
+    if (!changed(meter)) continue;
     shown.emplace_back(meter.utility, monthly_percent(footprint, meter, calendar));
     range.include(shown.back().second);
   }
+  range.widen_to(1.0);
   const Box frame{612.0, top, 266.0, kPlotHeight};
-  Plot plot(svg, frame, 12.0, range.ticks(kIntervals));
+  Plot plot(svg, frame, 12.0, range.scale(kIntervals));
   plot.caption("By month, % of a mean month");
   std::vector<Mark> months;
   for (const char initial : std::string_view("JFMAMJJASOND")) {
@@ -117,16 +114,28 @@ void draw_months(Svg& svg, double top, const Footprint& footprint,
   plot.zero_line();
 }
 
+/// Below the diagrams: how to read the curves, and which building it is.
+void draw_foot(Svg& svg, double y, const Footprint& footprint) {
+  constexpr TextStyle style{.size = 11.0, .colour = kFaintInk};
+  constexpr Stroke sample{.colour = kFaintInk, .width = 1.8};
+  Stroke dashed = sample;
+  dashed.dashed = true;
+  svg.line({66.0, y - 4.0}, {90.0, y - 4.0}, sample);
+  svg.text({96.0, y}, "Monday to Friday", style);
+  svg.line({212.0, y - 4.0}, {236.0, y - 4.0}, dashed);
+  svg.text({242.0, y}, "Saturday and Sunday", style);
+  TextStyle at_right = style;
+  at_right.anchor = Anchor::end;
+  svg.text({kWidth - kMargin, y}, footprint.building, at_right);
+}
+
 void draw_shares(Svg& svg, double y, const Footprint& footprint) {
-  constexpr TextStyle style{.size = 13.0, .bold = true};
-  double x = kMargin;
+  std::vector<KeyEntry> key;
   for (const MeterFootprint& meter : footprint.meters) {
-    svg.rectangle({x, y - 10.0, 11.0, 11.0}, colour_of(meter.utility));
-    const std::string text = share_text(meter);
-    svg.text({x + 17.0, y}, text, style);
-    x += 17.0 + 1.1 * text_width(text, style.size) + 22.0;  // bold is wider
+    key.push_back({meter.utility, share_text(meter)});
   }
-  svg.text({x, y}, "of the year", {.size = 13.0, .colour = kFaintInk});
+  const Point after = draw_key(svg, {kMargin, y}, key);
+  svg.text(after, "of the year", {.size = 13.0, .colour = kFaintInk});
 }
 
 }  // namespace
@@ -135,19 +144,6 @@ double MeterFootprint::share() const {
   const double plain = std::accumulate(plain_kW.begin(), plain_kW.end(), 0.0);
   const double more = std::accumulate(added_kW.begin(), added_kW.end(), 0.0);
   return plain > 0.0 ? more / plain : 0.0;
-}
-
-std::string_view colour_of(Utility utility) {
-  // Told apart by everybody: Okabe, Ito (2008), Color Universal Design.
-  switch (utility) {
-    case Utility::electricity:
-      return "#4d4d4d";
-    case Utility::cooling:
-      return "#0072b2";
-    case Utility::heat:
-      return "#d55e00";
-  }
-  return kInk;
 }
 
 std::string share_text(const MeterFootprint& meter) {
@@ -166,9 +162,8 @@ std::string share_text(const Footprint& footprint) {
 }
 
 std::string strength_text(const HiddenChoice& effect) {
-  std::string text =
-      fmt::format("Strength {:.3g}: {}", effect.strength, effect.kind->strength.unit);
-  if (effect.meter) text += "; in one meter";
+  std::string text = fmt::format("Strength {}{:.3g}: {}", effect.strength < 0.0 ? "\u2212" : "",
+                                 std::abs(effect.strength), effect.kind->strength.unit);
   if (effect.from) text += "; from " + metering::to_string(*effect.from);
   if (effect.to) text += " to " + metering::to_string(*effect.to);
   return text + '.';
@@ -178,8 +173,7 @@ std::string effect_figure(const Footprint& footprint, const metering::LocalCalen
   const EffectKind& kind = *footprint.effect.kind;
   constexpr double text_px = kWidth - 2.0 * kMargin;
   const auto sentence = wrap_text(kind.sentence, 13.0, text_px);
-  const auto details =
-      wrap_text(strength_text(footprint.effect) + ' ' + footprint.building + '.', 12.0, text_px);
+  const auto details = wrap_text(strength_text(footprint.effect), 12.0, text_px);
   const double shares_y = 62.0 + 18.0 * static_cast<double>(sentence.size()) +
                           16.0 * static_cast<double>(details.size());
   const double plots_y = shares_y + 44.0;
@@ -201,6 +195,7 @@ std::string effect_figure(const Footprint& footprint, const metering::LocalCalen
   draw_shares(svg, shares_y, footprint);
   draw_days(svg, plots_y, footprint, calendar);
   draw_months(svg, plots_y, footprint, calendar);
+  draw_foot(svg, plots_y + kPlotHeight + 36.0, footprint);
   return svg.finished();
 }
 

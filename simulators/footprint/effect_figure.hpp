@@ -27,8 +27,6 @@ struct Footprint {
   std::vector<MeterFootprint> meters;
 };
 
-[[nodiscard]] std::string_view colour_of(Utility utility);
-
 /// "electricity +1.2 %", or "electricity unchanged" where nothing was ever added.
 [[nodiscard]] std::string share_text(const MeterFootprint& meter);
 /// Of all meters, with commas.

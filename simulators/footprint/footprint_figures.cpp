@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <optional>
 
+#include "simulators/feed/write_file.hpp"
 #include "simulators/footprint/effect_figure.hpp"
+#include "simulators/footprint/meter_key.hpp"
 #include "simulators/footprint/showcase.hpp"
 #include "simulators/footprint/week_figure.hpp"
 #include "simulators/scenario/twin.hpp"
@@ -43,16 +41,6 @@ class ShownBuildings {
   std::array<std::optional<Shown>, kShowBuildings> shown_;
 };
 
-Result<void> write_file(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  if (file) return {};
-  return failure(ErrorCode::io_failed, "cannot write " + path.string() + ": " +
-                                           std::strerror(errno) +
-                                           "; choose a folder with --out that can be written");
-}
-
 Result<Footprint> footprint_of(const EffectKind& kind, const Shown& shown) {
   Scenario scenario = shown.scenario;
   scenario.effects.push_back(show_choice(kind));
@@ -65,10 +53,8 @@ Result<Footprint> footprint_of(const EffectKind& kind, const Shown& shown) {
   Footprint footprint{
       scenario.effects.front(), describe_scenario(scenario), shown.plain.recording.begin, {}};
   for (const MeterPlate& plate : plates_of(scenario.drawings)) {
-    std::string name(plate.kind);
-    std::ranges::replace(name, '_', ' ');
     footprint.meters.push_back(
-        {plate.utility, std::move(name),
+        {plate.utility, in_words(plate.kind),
          metered_kW(shown.plain.recording, plate.utility, {}, shown.calendar),
          std::move(added_kW[footprint.meters.size()])});
   }
@@ -84,7 +70,8 @@ class Gallery {
     const auto shown = buildings_.get(building);
     if (!shown) return tl::unexpected(shown.error());
     const std::string name = fmt::format("week_{}", to_string(use));
-    list_ += fmt::format("\n![Two weeks of a building]({}.svg)\n", name);
+    list_ += fmt::format("\n![A week in winter and one in summer: {}]({}.svg)\n",
+                         describe_scenario((*shown)->scenario), name);
     return add(name, week_figure((*shown)->scenario, (*shown)->plain, (*shown)->calendar));
   }
 
@@ -114,12 +101,13 @@ class Gallery {
   std::size_t figures_ = 0;
   std::string list_ =
       "# Footprints of the hidden effects\n\n"
-      "Drawn by `recald-sim footprints`: what each effect adds to the meters of a building of "
-      "which\n"
-      "nothing else differs, weather and people included.\n";
+      "What each effect adds to the meters of a building in which nothing else differs, weather\n"
+      "and people included. Curves: its mean day. Bars: its months, as shares of what the meter\n"
+      "shows without it in a mean month, so that their mean is the share of the year.\n\n"
+      "Made by `recald-sim footprints --out FOLDER`.\n";
 };
 
-Result<void> draw_all(Gallery& gallery) {
+Result<void> draw_all(Gallery& gallery, std::span<const EffectKind> kinds) {
   gallery.add_heading("Buildings without effects");
   constexpr std::array<std::pair<Use, ShowBuilding>, 3> weeks{
       {{Use::office, ShowBuilding::office},
@@ -129,12 +117,10 @@ Result<void> draw_all(Gallery& gallery) {
     if (const auto drawn = gallery.add_week(use, building); !drawn) return drawn;
   }
   std::optional<EffectClass> group;
-  for (const EffectKind& kind : effect_kinds()) {
+  for (const EffectKind& kind : kinds) {
     if (kind.group != group) {
       group = kind.group;
-      std::string words(to_string(kind.group));
-      std::ranges::replace(words, '_', ' ');
-      gallery.add_heading(words);
+      gallery.add_heading(in_words(to_string(kind.group)));
     }
     if (const auto drawn = gallery.add_effect(kind); !drawn) return drawn;
   }
@@ -143,15 +129,11 @@ Result<void> draw_all(Gallery& gallery) {
 
 }  // namespace
 
-Result<std::size_t> draw_footprints(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return failure(ErrorCode::io_failed, "cannot make the folder " + folder.string() + ": " +
-                                             error.message() + "; choose another with --out");
-  }
+Result<std::size_t> draw_footprints(const std::filesystem::path& folder,
+                                    std::span<const EffectKind> kinds) {
+  if (const auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   Gallery gallery(folder);
-  if (const auto drawn = draw_all(gallery); !drawn) return tl::unexpected(drawn.error());
+  if (const auto drawn = draw_all(gallery, kinds); !drawn) return tl::unexpected(drawn.error());
   return gallery.figures();
 }
 

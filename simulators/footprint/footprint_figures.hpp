@@ -4,17 +4,21 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 
 #include "core/result.hpp"
+#include "simulators/effects/effect_kind.hpp"
 
 namespace recald::simulators {
 
 /// Simulates each kind of effect at its typical strength, with and without, and writes to the
 /// folder, which is made if absent: `<effect id>.svg` for each kind, `week_<use>.svg` for each use
 /// of building without effects, and a `README.md` that shows them all. Same build, same bytes.
-/// About half a second a figure.
+/// Takes the time of one simulated year for each figure.
+///
 /// @return number of figures, or
 ///         io_failed  the folder or a file in it cannot be written.
-[[nodiscard]] Result<std::size_t> draw_footprints(const std::filesystem::path& folder);
+[[nodiscard]] Result<std::size_t> draw_footprints(
+    const std::filesystem::path& folder, std::span<const EffectKind> kinds = effect_kinds());
 
 }  // namespace recald::simulators

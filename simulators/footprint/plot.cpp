@@ -14,10 +14,11 @@ constexpr TextStyle kSmall{.size = 11.0, .colour = kFaintInk};
 /// A quotient this near to a whole number is one: 0.3 / 0.1 is not 2.9999999999999996.
 constexpr double kRounding = 1e-9;
 
+/// Multiples of the step from `low` to `high`.
 Ticks ticks_of(double low, double high, double step) {
-  const double below = std::floor(low / step + kRounding);
-  const double above = std::ceil(high / step - kRounding);
-  return {below * step, step, static_cast<int>(above - below) + 1};
+  const double first = std::ceil(low / step - kRounding);
+  const double last = std::floor(high / step + kRounding);
+  return {first * step, step, static_cast<int>(last - first) + 1};
 }
 
 }  // namespace
@@ -30,9 +31,8 @@ std::string Ticks::label(int i) const {
 }
 
 Ticks nice_ticks(double low, double high, int intervals) {
-  assert(low <= high && std::isfinite(high - low) && intervals >= 2);
-  if (low == high) return {low, 1.0, 2};
-  // The largest power of ten that is too fine for sure, or just right.
+  assert(low < high && std::isfinite(high - low) && intervals >= 4);
+  // No finer step can do: half of this makes twice as many intervals.
   double power = std::pow(10.0, std::floor(std::log10((high - low) / intervals)));
   for (;; power *= 10.0) {
     for (const double factor : {1.0, 2.0, 5.0}) {
@@ -49,16 +49,30 @@ void ValueRange::include(std::span<const double> values) {
   }
 }
 
-Plot::Plot(Svg& svg, const Box& frame, double x_max, const Ticks& y)
+void ValueRange::widen_to(double span_min) {
+  if (high_ - low_ >= span_min) return;
+  low_ = std::min(low_, -0.5 * span_min);
+  high_ = std::max(high_, 0.5 * span_min);
+}
+
+Scale ValueRange::scale(int intervals) const {
+  if (low_ == high_) return {0.0, 1.0, nice_ticks(0.0, 1.0, intervals)};
+  const double air = 0.04 * (high_ - low_);
+  const double low = low_ < 0.0 ? low_ - air : 0.0;
+  const double high = high_ > 0.0 ? high_ + air : 0.0;
+  return {low, high, nice_ticks(low, high, intervals)};
+}
+
+Plot::Plot(Svg& svg, const Box& frame, double x_max, const Scale& y)
     : svg_(svg), frame_(frame), x_max_(x_max), y_(y) {
-  assert(x_max > 0.0 && y.count >= 2);
+  assert(x_max > 0.0 && y.low < y.high);
   TextStyle label = kSmall;
   label.anchor = Anchor::end;
   std::vector<Segment> grid;
-  for (int i = 0; i < y_.count; ++i) {
-    const double at_px = y_px(y_.at(i));
+  for (int i = 0; i < y_.ticks.count; ++i) {
+    const double at_px = y_px(y_.ticks.at(i));
     grid.push_back({{frame_.left, at_px}, {frame_.right(), at_px}});
-    svg_.text({frame_.left - 6.0, at_px + 4.0}, y_.label(i), label);
+    svg_.text({frame_.left - 6.0, at_px + 4.0}, y_.ticks.label(i), label);
   }
   svg_.lines(grid, {.colour = kGridInk});
 }
@@ -118,7 +132,7 @@ void Plot::zero_line() {
 double Plot::x_px(double x) const { return frame_.left + frame_.width * x / x_max_; }
 
 double Plot::y_px(double y) const {
-  return frame_.bottom() - frame_.height * (y - y_.first) / (y_.last() - y_.first);
+  return frame_.bottom() - frame_.height * (y - y_.low) / (y_.high - y_.low);
 }
 
 }  // namespace recald::simulators

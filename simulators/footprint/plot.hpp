@@ -1,4 +1,4 @@
-/// One diagram within a figure: a scale, a grid, curves and bars.
+/// One diagram within a figure: scale, grid, curves and bars.
 #pragma once
 
 #include <span>
@@ -22,16 +22,27 @@ struct Ticks {
   [[nodiscard]] std::string label(int i) const;
 };
 
-/// Ticks of 1, 2 or 5 times a power of ten that reach from below `low` to above `high` in at most
-/// `intervals` steps, as few as that allows. Where both are the same: from there to one above.
-/// @pre low <= high, both finite; intervals >= 2
+/// The finest ticks of 1, 2 or 5 times a power of ten of which at most `intervals + 1` lie from
+/// `low` to `high`; at least two do.
+/// @pre low < high, both finite; intervals >= 4
 [[nodiscard]] Ticks nice_ticks(double low, double high, int intervals);
 
-/// The y scale that holds all values and zero.
+/// What the height of a diagram stands for.
+struct Scale {
+  double low;
+  double high;
+  Ticks ticks;
+};
+
+/// Of all values seen, and zero, with a little air beyond the extremes but not beyond zero.
 class ValueRange {
  public:
   void include(std::span<const double> values);
-  [[nodiscard]] Ticks ticks(int intervals) const { return nice_ticks(low_, high_, intervals); }
+  /// Spreads a range below this to half of it on both sides of zero, so that nothing does not look
+  /// like something.
+  void widen_to(double span_min);
+  /// From 0 to 1 where no value differs from zero.
+  [[nodiscard]] Scale scale(int intervals) const;
 
  private:
   double low_ = 0.0;
@@ -47,7 +58,7 @@ struct Mark {
 class Plot {
  public:
   /// Draws the grid and its labels; x runs from 0 to `x_max`.
-  Plot(Svg& svg, const Box& frame, double x_max, const Ticks& y);
+  Plot(Svg& svg, const Box& frame, double x_max, const Scale& y);
 
   /// Above the top left corner.
   void caption(std::string_view what);
@@ -69,7 +80,7 @@ class Plot {
   Svg& svg_;
   Box frame_;
   double x_max_;
-  Ticks y_;
+  Scale y_;
 };
 
 }  // namespace recald::simulators

@@ -110,8 +110,8 @@ std::string describe_scenario(const Scenario& scenario) {
   std::string use(to_string(drawings.use));
   use.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(use.front())));
   return fmt::format(
-      "{}, {:.0f} m² on {} storeys, {} climate, {}, {}{}, {}", use, drawings.floor_area_m2(),
-      drawings.storeys, name_of(drawings.climate),
+      "{}, {:.0f} m², {} climate, {}, {}{}, {}", use, drawings.floor_area_m2(),
+      name_of(drawings.climate),
       drawings.cooling == CoolingPlant::district ? "district cooling" : "own chiller",
       heating_in_words(drawings.heating), drawings.skylight_share > 0.0 ? ", skylight" : "",
       scenario.period.start_year);

@@ -35,7 +35,7 @@ inline constexpr std::size_t kShowBuildings = 11;
 /// Typical strength; dates and a meter where the kind asks for them.
 [[nodiscard]] HiddenChoice show_choice(const EffectKind& kind);
 
-/// "Office, 7200 m² on 4 storeys, mixed climate, district cooling, district hot water, 2022".
+/// "Office, 7200 m², mixed climate, district cooling, district hot water, 2022".
 [[nodiscard]] std::string describe_scenario(const Scenario& scenario);
 
 }  // namespace recald::simulators

@@ -6,7 +6,8 @@
 #include <array>
 #include <numeric>
 
-#include "simulators/footprint/effect_figure.hpp"
+#include "simulators/footprint/means.hpp"
+#include "simulators/footprint/meter_key.hpp"
 #include "simulators/footprint/plot.hpp"
 #include "simulators/footprint/showcase.hpp"
 
@@ -37,11 +38,6 @@ struct MeterYear {
   [[nodiscard]] double annual_kWh_m2() const {
     constexpr double interval_kh = 0.25 / 1000.0;
     return interval_kh * std::accumulate(load_W_m2.begin(), load_W_m2.end(), 0.0);
-  }
-  [[nodiscard]] std::string name() const {
-    std::string words(plate.kind);
-    std::ranges::replace(words, '_', ' ');
-    return words;
   }
 };
 
@@ -74,12 +70,15 @@ Week week_from(metering::Day monday, const Recording& recording,
 }
 
 void draw_week(Svg& svg, double left, double top, const Week& week,
-               const std::vector<MeterYear>& meters, const Ticks& scale) {
+               const std::vector<MeterYear>& meters, const Scale& scale) {
   constexpr double width = 390.0;
   constexpr std::array<std::string_view, kDays> names{"Mon", "Tue", "Wed", "Thu",
                                                       "Fri", "Sat", "Sun"};
-  const auto [coldest, warmest] = std::ranges::minmax(week.outdoor_C);
-  Plot temperature(svg, {left, top, width, 62.0}, kDays, nice_ticks(coldest, warmest, 4));
+  const auto [coldest_C, warmest_C] = std::ranges::minmax(week.outdoor_C);
+  const double low_C = coldest_C - 1.0;
+  const double high_C = warmest_C + 1.0;
+  Plot temperature(svg, {left, top, width, 62.0}, kDays,
+                   {low_C, high_C, nice_ticks(low_C, high_C, 4)});
   temperature.caption(week.caption + ": outdoors, degC");
   temperature.x_rules(kDays);
   temperature.curve(week.outdoor_C, {.colour = "#009e73", .width = 1.5});
@@ -99,14 +98,13 @@ void draw_week(Svg& svg, double left, double top, const Week& week,
 }
 
 void draw_years(Svg& svg, double y, const std::vector<MeterYear>& meters) {
-  double x = kMargin;
+  std::vector<KeyEntry> key;
   for (const MeterYear& meter : meters) {
-    const std::string text =
-        fmt::format("{} {:.0f} kWh/m² a year", meter.name(), meter.annual_kWh_m2());
-    svg.rectangle({x, y - 10.0, 11.0, 11.0}, colour_of(meter.plate.utility));
-    svg.text({x + 17.0, y}, text, {.size = 13.0, .bold = true});
-    x += 17.0 + 1.1 * text_width(text, 13.0) + 22.0;
+    key.push_back(
+        {meter.plate.utility, fmt::format("{} {:.0f} kWh/m² a year", in_words(meter.plate.kind),
+                                          meter.annual_kWh_m2())});
   }
+  draw_key(svg, {kMargin, y}, key);
 }
 
 }  // namespace
@@ -120,7 +118,7 @@ std::string week_figure(const Scenario& scenario, const Simulated& simulated,
   for (const Week& week : weeks) {
     for (const auto& load_W_m2 : week.loads_W_m2) range.include(load_W_m2);
   }
-  const Ticks scale = range.ticks(7);
+  const Scale scale = range.scale(6);
   const std::string building = describe_scenario(scenario);
   Svg svg(kWidth, 430.0, building);
   svg.text({kMargin, 32.0}, building, {.size = 15.0, .bold = true});

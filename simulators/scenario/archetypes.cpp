@@ -253,6 +253,8 @@ Drawings draw_up(const Brief& brief) {
   drawings.heavy = brief.heavy;
   drawings.cooling = brief.cooling;
   drawings.heating = brief.heating;
+  // A plant that runs on Saturdays unknown to its drawings would be a hidden effect.
+  drawings.saturday_operation = false;
   drawings.heating_efficiency = brief.heating == HeatingPlant::boiler ? 0.86 : 0.97;
   if (brief.use == Use::office) use_as_office(drawings);
   if (brief.use == Use::school) use_as_school(drawings);

@@ -1,24 +1,11 @@
 #include "simulators/scenario/building_feed.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-
 #include "simulators/feed/feed_files.hpp"
+#include "simulators/feed/write_file.hpp"
 #include "simulators/scenario/scenario_files.hpp"
 
 namespace recald::simulators {
 namespace {
-
-Result<void> write_file(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  if (file) return {};
-  return failure(ErrorCode::io_failed, "cannot write " + path.string() + ": " +
-                                           std::strerror(errno) +
-                                           "; choose a folder with --out that can be written");
-}
 
 Result<void> write_twin(const BuildingFeedOptions& options, const Simulated& with,
                         const metering::LocalCalendar& calendar) {
@@ -37,12 +24,7 @@ Result<void> write_twin(const BuildingFeedOptions& options, const Simulated& wit
 }  // namespace
 
 Result<std::size_t> write_building_feed(const BuildingFeedOptions& options) {
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error) {
-    return failure(ErrorCode::io_failed, "cannot make the folder " + options.out.string() + ": " +
-                                             error.message() + "; choose another with --out");
-  }
+  if (const auto made = make_folder(options.out); !made) return tl::unexpected(made.error());
   const Scenario& scenario = options.scenario;
   const auto calendar = metering::LocalCalendar::open(scenario.drawings.time_zone);
   if (!calendar) return tl::unexpected(calendar.error());

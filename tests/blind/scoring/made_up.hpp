@@ -44,6 +44,7 @@ inline Answer single(std::string case_id, HiddenEffect hidden, double detectabil
 inline Answer pair(std::string case_id, HiddenEffect one, HiddenEffect other) {
   Answer answer = nothing_hidden(std::move(case_id));
   answer.block = Block::pair;
+  answer.detectability = 8.0;
   answer.effects = {std::move(one), std::move(other)};
   return answer;
 }

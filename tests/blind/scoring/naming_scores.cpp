@@ -73,7 +73,14 @@ PairScores pair_scores(const ScoredCases& cases) {
       return scored.judgement.hidden_named == count;
     });
   };
-  return {.both = naming(2), .only_one = naming(1), .neither = naming(0)};
+  const auto both = [](const ScoredCase& scored) { return scored.judgement.hidden_named == 2; };
+  const auto detectable = [](const ScoredCase& scored) {
+    return scored.answer->block == Block::pair && is_detectable(*scored.answer);
+  };
+  return {.both = naming(2),
+          .only_one = naming(1),
+          .neither = naming(0),
+          .both_detectable = share_of(cases, detectable, both)};
 }
 
 PlaceScores place_scores(const ScoredCases& cases) {

@@ -35,6 +35,7 @@ struct PairScores {
   std::optional<Score> both;  ///< Both added, whatever else was.
   std::optional<Score> only_one;
   std::optional<Score> neither;
+  std::optional<Score> both_detectable;  ///< Both added, of those at d* >= 8.
 };
 
 /// Where the residual pointed, for cases with an effect whose result gives `located`.

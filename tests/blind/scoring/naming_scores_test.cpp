@@ -163,7 +163,8 @@ TEST(NamingScores, PairsAreCountedByHowManyWereNamed) {
   add("p5", named("p5", {"A", "B", "C"}));
   add("p6", said("p6", Outcome::unknown));
   const NamingScores scores = naming_scores(population.cases());
-  EXPECT_EQ(counts(scores.pairs.both), (Counts{2, 6}));      // p1, p5
+  EXPECT_EQ(counts(scores.pairs.both), (Counts{2, 6}));  // p1, p5
+  EXPECT_EQ(counts(scores.pairs.both_detectable), (Counts{2, 6}));
   EXPECT_EQ(counts(scores.pairs.only_one), (Counts{2, 6}));  // p2, p3
   EXPECT_EQ(counts(scores.pairs.neither), (Counts{2, 6}));   // p4, p6
   EXPECT_EQ(counts(scores.right), (Counts{1, 6}));           // p1
@@ -171,6 +172,21 @@ TEST(NamingScores, PairsAreCountedByHowManyWereNamed) {
   EXPECT_EQ(scores.confusion.at("A + B").at("A + B"), 1);
   EXPECT_EQ(scores.confusion.at("A + B").at("A + B + C"), 1);
   EXPECT_EQ(scores.confusion.at("A + B").at("unknown"), 1);
+}
+
+// What claims d* >= 8 must have been measured to be so.
+TEST(NamingScores, DetectableIsWhatStatesSo) {
+  Answer answer = made_up::pair("p", effect("A"), effect("B"));
+  EXPECT_TRUE(is_detectable(answer));
+  answer.detectability = 4.0;
+  EXPECT_FALSE(is_detectable(answer));
+  answer.detectability = std::nullopt;
+  EXPECT_FALSE(is_detectable(answer));
+  made_up::Population population;
+  population.add(answer, named("p", {"A", "B"}));
+  const NamingScores scores = naming_scores(population.cases());
+  EXPECT_EQ(counts(scores.pairs.both), (Counts{1, 1}));
+  EXPECT_FALSE(scores.pairs.both_detectable);
 }
 
 // The class of a name that is hidden nowhere comes from the list; a name without a class is wrong.

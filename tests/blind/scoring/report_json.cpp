@@ -66,6 +66,7 @@ Json of_naming(const NamingScores& naming) {
           {"pair_both", of(naming.pairs.both)},
           {"pair_only_one", of(naming.pairs.only_one)},
           {"pair_neither", of(naming.pairs.neither)},
+          {"pair_both_detectable", of(naming.pairs.both_detectable)},
           {"decoys",
            {{"cases", naming.decoys.cases},
             {"right", of(naming.decoys.right)},

@@ -116,8 +116,7 @@ Judgement judge(const Answer& answer, const CaseResult& result, const EffectClas
 }
 
 bool is_detectable(const Answer& answer) {
-  if (answer.detectability) return *answer.detectability >= kDetectable;
-  return answer.block == Block::pair;
+  return answer.detectability.value_or(0.0) >= kDetectable;
 }
 
 ScoredCases cases_of_method(const AnswerKey& key, std::span<const CaseResult> results,

@@ -51,8 +51,7 @@ using ScoredCases = std::vector<ScoredCase>;
 [[nodiscard]] Judgement judge(const Answer& answer, const CaseResult& result,
                               const EffectClasses& classes);
 
-/// Whether the case counts for claims at d* >= 8: by its detectability, or, where a pair does not
-/// state one, by the rule that pairs are drawn so.
+/// Whether the case counts for claims at d* >= 8. One that states no detectability does not.
 [[nodiscard]] bool is_detectable(const Answer& answer);
 
 /// Joins results of one method with the answers. Cases without a result are left out.

@@ -118,7 +118,7 @@ TEST_F(ScenarioFile, RefusesEffectsThatCannotBe) {
   EXPECT_THAT(refusal("[[effect]]\nname = \"night_setback_missing\"\nstrength = 1.5\n"),
               HasSubstr("strength 1.5 is outside 0 to 1"));
   EXPECT_THAT(refusal("[[effect]]\nname = \"after_hours\"\n[[effect]]\nname = \"after_hours\"\n"),
-              HasSubstr("contradict each other: both turn fan hours"));
+              HasSubstr("contradict each other: both turn fan hours in the evening"));
   EXPECT_THAT(refusal("[[effect]]\nname = \"chiller_part_load\"\n"),
               HasSubstr("needs an own chiller: set cooling = \"chiller\" in [plant]"));
   EXPECT_THAT(refusal("[plant]\nheating = \"heat_pump\"\n[[effect]]\nname = \"steam_trap_leak\"\n"),

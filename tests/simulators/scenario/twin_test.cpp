@@ -111,9 +111,7 @@ std::vector<const EffectKind*> all_kinds() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryEffect, testing::ValuesIn(all_kinds()),
-                         [](const auto& tested) {
-                           return std::string(tested.param->id);
-                         });
+                         [](const auto& tested) { return std::string(tested.param->id); });
 
 TEST(Decoys, OfferAWindThatNeverBlewAndAMeterThatIsNotOurs) {
   Scenario scenario = suited_to(effect_kinds().front());
