@@ -27,6 +27,13 @@ TEST(StrengthSearch, FindsEffectsThatSaturateGrowOrSetInLate) {
   }
 }
 
+// Nothing for most of the way, then all at once: the secant alone would creep up from below.
+TEST(StrengthSearch, BisectsWhereTheSecantCreeps) {
+  const StrengthFound found = strength_for(0.02, 1.0, [](double s) { return std::pow(s, 12.0); });
+  EXPECT_TRUE(found.attained);
+  EXPECT_NEAR(found.strength, std::pow(0.02, 1.0 / 12.0), 0.01);
+}
+
 TEST(StrengthSearch, FollowsTheSignOfItsLimit) {
   const StrengthFound found = strength_for(0.02, -1.0, [](double s) { return std::abs(0.1 * s); });
   EXPECT_NEAR(found.strength, -0.2, 1e-12);
