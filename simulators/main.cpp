@@ -76,6 +76,7 @@ CLI::App* add_building(CLI::App& app, BuildingArguments& given) {
   building->add_option("--start", given.start, "first calendar year, 2021 unless it says")
       ->check(CLI::Range(1972, 2036));
   building->add_option("--seed", given.seed, "decides everything that the site file hides")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   building->add_flag("--no-faults", given.no_faults,
                      "noise and resolution only, no gaps or bad values");

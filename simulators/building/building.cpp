@@ -92,7 +92,9 @@ void Building::begin_day(metering::Day day) {
                        : saturday ? RunningHours{8.0, 14.0}
                                   : kNever};
   for (const auto& effect : effects_) effect->plan(day, timetable_);
-  people_.begin_day(day, day_kind_, calendar_.season_attendance(day), timetable_.attendance);
+  const double season =
+      truth_.drawings.attendance_follows_season ? calendar_.season_attendance(day) : 1.0;
+  people_.begin_day(day, day_kind_, season, timetable_.attendance);
   internal_loads_.begin_day();
 }
 

@@ -101,6 +101,8 @@ struct Drawings {
   std::array<double, 24> presence_weekend{0,    0,    0,    0,    0,    0,    0,    0.01,
                                           0.01, 0.02, 0.03, 0.04, 0.04, 0.04, 0.03, 0.03,
                                           0.02, 0.01, 0.01, 0,    0,    0,    0,    0};
+  /// Fewer people come in summer, between the years and in breaks, and nobody tells the user.
+  bool attendance_follows_season = true;
   double exterior_kW = 6.0;
   double zone_heat_share = 0.9;  ///< Of lights and plugs; the rest leaves with the exhaust.
 
@@ -135,6 +137,9 @@ struct Drawings {
   double pump_kW = 12.0;
   double chilled_water_loss = 0.03;
   double heating_loss = 0.08;
+  /// Heat that pipes lose and pick up whatever the load; absent: the drawings do not say.
+  std::optional<double> heating_standing_kW;
+  std::optional<double> chilled_water_standing_kW;
   double heating_efficiency = 0.97;  ///< Of converter, heat exchanger or boiler.
   double chiller_cop = 5.2;          ///< Nameplate at full load, towers included.
   double heat_pump_cop = 3.2;        ///< Nameplate at 8.3 degC outdoors.

@@ -109,17 +109,24 @@ void draw_loads(Truth& truth, Rng& rng) {
   truth.exterior_kW = draw_around(rng, drawn.exterior_kW, 0.10);
 }
 
+/// Around what the drawings say; where they say nothing, by the size of the plant.
+double draw_standing_kW(const std::optional<double>& drawn_kW, double size, const Triangular& usual,
+                        Rng& rng) {
+  if (drawn_kW) return draw_around(rng, *drawn_kW, 0.25);
+  return size * usual.draw(rng);
+}
+
 void draw_plant(Truth& truth, Rng& rng) {
   const Drawings& drawn = truth.drawings;
   truth.hot_water_m3_day = draw_around(rng, drawn.hot_water_m3_day, 0.20);
   truth.chilled_water_loss_share = Triangular{0.01, 0.02, 0.03}.draw(rng);
-  const double cooling = drawn.chilled_water_design_kW / 900.0;
-  truth.chilled_water_standing_kW = cooling * Triangular{2.0, 4.0, 7.0}.draw(rng);
+  truth.chilled_water_standing_kW = draw_standing_kW(
+      drawn.chilled_water_standing_kW, drawn.chilled_water_design_kW / 900.0, {2.0, 4.0, 7.0}, rng);
   const double efficiency = drawn.heating_efficiency / 0.97;
   truth.heating_efficiency =
       Triangular{0.95 * efficiency, drawn.heating_efficiency, 0.98 * efficiency}.draw(rng);
-  const double heating = drawn.heating_design_kW / 700.0;
-  truth.heating_standing_kW = heating * Triangular{4.0, 8.0, 13.0}.draw(rng);
+  truth.heating_standing_kW = draw_standing_kW(
+      drawn.heating_standing_kW, drawn.heating_design_kW / 700.0, {4.0, 8.0, 13.0}, rng);
   truth.pump_kW = draw_around(rng, drawn.pump_kW, 0.12);
   truth.chiller_cop_scale = draw_around(rng, 1.0, 0.10);
   truth.heat_pump_cop_scale = draw_around(rng, 1.0, 0.10);

@@ -60,6 +60,7 @@ EffectKind dst_misapplied() {
               "spring to autumn all meters are an hour off, in winter they are right.",
           .strength = {0.0, 1.0, 1.0, "hours"},
           .turns = "what the meter shows",
+          .all_or_nothing = true,
           .make = make_effect<DstMisapplied>};
 }
 

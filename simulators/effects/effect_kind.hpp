@@ -71,8 +71,9 @@ struct EffectKind {
   EffectNeeds needs = {};
   /// What it turns; two effects that turn the same thing contradict each other.
   std::string_view turns;
-  bool dated = false;         ///< Begins (or is confined) at a date: scenarios give `from`.
-  bool of_one_meter = false;  ///< Scenarios give `meter`.
+  bool dated = false;           ///< Begins (or is confined) at a date: scenarios give `from`.
+  bool of_one_meter = false;    ///< Scenarios give `meter`.
+  bool all_or_nothing = false;  ///< There or not: populations do not scale it.
   std::unique_ptr<HiddenEffect> (*make)(const EffectSettings&, const Drawings&);
 };
 

@@ -10,7 +10,7 @@ namespace {
 class MissingHolidays final : public HiddenEffect {
  public:
   MissingHolidays(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), calendar_(drawings.use) {}
+      : settings_(settings), calendar_(drawings.calendar) {}
 
   void plan(metering::Day day, Timetable& timetable) override {
     Rng& rng = settings_.rng;

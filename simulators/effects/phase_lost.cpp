@@ -45,6 +45,7 @@ EffectKind phase_lost() {
           .strength = {0.0, 1.0 / 3.0, 1.0 / 3.0, "share lost"},
           .turns = "what the meter shows",
           .dated = true,
+          .all_or_nothing = true,
           .make = make_effect<PhaseLost>};
 }
 

@@ -232,6 +232,8 @@ void size_services(Drawings& drawings) {
       0.3,
       rounded(0.0085 * (drawings.chilled_water_design_kW + 0.5 * drawings.heating_design_kW), 0.1));
   drawings.exterior_kW = rounded(0.0007 * drawings.floor_area_m2(), 0.1);
+  drawings.heating_standing_kW = rounded(0.008 * drawings.heating_design_kW, 0.1);
+  drawings.chilled_water_standing_kW = rounded(0.0005 * drawings.chilled_water_design_kW, 0.1);
   const double people = drawings.occupancy_person_m2 * drawings.floor_area_m2();
   drawings.hot_water_m3_day =
       std::max(0.1, rounded((drawings.use == Use::laboratory ? 0.015 : 0.004) * people, 0.1));
@@ -253,8 +255,9 @@ Drawings draw_up(const Brief& brief) {
   drawings.heavy = brief.heavy;
   drawings.cooling = brief.cooling;
   drawings.heating = brief.heating;
-  // A plant that runs on Saturdays unknown to its drawings would be a hidden effect.
+  // What runs, loses heat or keeps people away unknown to the drawings would be a hidden effect.
   drawings.saturday_operation = false;
+  drawings.attendance_follows_season = false;
   drawings.heating_efficiency = brief.heating == HeatingPlant::boiler ? 0.86 : 0.97;
   if (brief.use == Use::office) use_as_office(drawings);
   if (brief.use == Use::school) use_as_school(drawings);

@@ -40,6 +40,25 @@ std::string missing_for(const EffectNeeds& needs, const Drawings& drawings) {
   return "";
 }
 
+Result<void> check_dates(const HiddenChoice& choice, const Period& period) {
+  const EffectKind& kind = *choice.kind;
+  if (kind.dated && !choice.from) {
+    return refuse(fmt::format("effect {} begins at a date: give from = \"YYYY-MM-DD\"", kind.id));
+  }
+  if (choice.from && choice.to && *choice.to < *choice.from) {
+    return refuse(fmt::format("effect {}: to {} lies before from {}", kind.id,
+                              metering::to_string(*choice.to), metering::to_string(*choice.from)));
+  }
+  const int last_year = period.start_year + period.years - 1;
+  const bool after_all = choice.from && static_cast<int>(choice.from->year()) > last_year;
+  const bool before_all = choice.to && static_cast<int>(choice.to->year()) < period.start_year;
+  if (after_all || before_all) {
+    return refuse(fmt::format("effect {} lies outside the period {} to {}", kind.id,
+                              period.start_year, last_year));
+  }
+  return {};
+}
+
 Result<void> check_alone(const HiddenChoice& choice, const Drawings& drawings) {
   const EffectKind& kind = *choice.kind;
   if (!(choice.strength >= kind.strength.min && choice.strength <= kind.strength.max)) {
@@ -50,16 +69,12 @@ Result<void> check_alone(const HiddenChoice& choice, const Drawings& drawings) {
   if (const std::string missing = missing_for(kind.needs, drawings); !missing.empty()) {
     return refuse(fmt::format("effect {} needs {}", kind.id, missing));
   }
-  if (kind.dated && !choice.from) {
-    return refuse(fmt::format("effect {} begins at a date: give from = \"YYYY-MM-DD\"", kind.id));
-  }
-  if (choice.from && choice.to && *choice.to < *choice.from) {
-    return refuse(fmt::format("effect {}: to {} lies before from {}", kind.id,
-                              metering::to_string(*choice.to), metering::to_string(*choice.from)));
-  }
   if (kind.of_one_meter && !choice.meter) {
     return refuse(
         fmt::format("effect {} is in one meter: give meter = \"electricity\" or another", kind.id));
+  }
+  if (choice.meter && !kind.of_one_meter) {
+    return refuse(fmt::format("effect {} is not in one meter: leave meter out", kind.id));
   }
   if (choice.meter == Utility::heat && !has_heat_meter(drawings)) {
     return refuse(fmt::format("effect {}: this building has no heat meter", kind.id));
@@ -88,6 +103,7 @@ Result<void> check_effects(const Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.effects.size(); ++i) {
     const HiddenChoice& choice = scenario.effects[i];
     if (const auto alone = check_alone(choice, scenario.drawings); !alone) return alone;
+    if (const auto dated = check_dates(choice, scenario.period); !dated) return dated;
     for (std::size_t j = 0; j < i; ++j) {
       const HiddenChoice& earlier = scenario.effects[j];
       if (!contradict(choice, earlier)) continue;

@@ -44,7 +44,7 @@ using Names = std::set<std::string, std::less<>>;
 std::string did_you_mean(std::string_view text, const Names& names) {
   const std::vector<std::string_view> known(names.begin(), names.end());
   const std::string_view meant = nearest_name(text, known);
-  return meant.empty() ? "" : fmt::format("; did you mean {}?", meant);
+  return meant.empty() ? "" : fmt::format(" (did you mean {}?)", meant);
 }
 
 /// One table; remembers which keys were asked for, so that the rest are unknown.
@@ -151,10 +151,6 @@ constexpr std::array kHeatings{Word<HeatingPlant>{"district_steam", HeatingPlant
 constexpr std::array kCares{Word<MeterCare>{"perfect", MeterCare::perfect},
                             Word<MeterCare>{"usual", MeterCare::usual},
                             Word<MeterCare>{"gaps", MeterCare::gaps}};
-constexpr std::array kMeterNames{
-    Word<Utility>{"electricity", Utility::electricity},
-    Word<Utility>{"chilled_water", Utility::cooling}, Word<Utility>{"steam", Utility::heat},
-    Word<Utility>{"heating", Utility::heat}, Word<Utility>{"gas", Utility::heat}};
 constexpr std::array kSteps{Word<std::chrono::seconds>{"5m", std::chrono::seconds{300}},
                             Word<std::chrono::seconds>{"15m", std::chrono::seconds{900}}};
 constexpr std::array kDecoys{Word<Decoy>{"wind_of_another_year", Decoy::wind_of_another_year},
@@ -219,7 +215,15 @@ void read_period(Table& period, Scenario& scenario) {
   scenario.period = {static_cast<int>(start), static_cast<int>(years)};
 }
 
-HiddenChoice read_effect(Table& table, Complaint& complaint) {
+/// The meter must be there under the name it has in the readings.
+std::optional<Utility> meter_named(const std::string& name, const Drawings& drawings) {
+  for (const MeterPlate& plate : plates_of(drawings)) {
+    if (plate.id == name) return plate.utility;
+  }
+  return std::nullopt;
+}
+
+HiddenChoice read_effect(Table& table, const Drawings& drawings, Complaint& complaint) {
   HiddenChoice choice{};
   const std::string name = table.text("name");
   choice.kind = find_effect_kind(name);
@@ -237,10 +241,17 @@ HiddenChoice read_effect(Table& table, Complaint& complaint) {
   table.number("strength", -1e9, 1e9, choice.strength);
   choice.from = table.day("from");
   choice.to = table.day("to");
-  if (!table.text("meter").empty()) {
-    Utility utility = Utility::electricity;
-    table.word("meter", kMeterNames, utility);
-    choice.meter = utility;
+  if (const std::string meter = table.text("meter"); !meter.empty()) {
+    choice.meter = meter_named(meter, drawings);
+    if (!choice.meter) {
+      std::string there;
+      for (const MeterPlate& plate : plates_of(drawings)) {
+        there += (there.empty() ? "" : ", ") + std::string(plate.id);
+      }
+      complaint.about(
+          table.node(),
+          fmt::format("effect {}: this building has no meter {}; it has {}", name, meter, there));
+    }
   }
   return choice;
 }
@@ -304,8 +315,9 @@ class Reader {
   }
 
   void read_lists(Scenario& scenario) {
-    each_in("effect",
-            [&](Table& table) { scenario.effects.push_back(read_effect(table, complaint_)); });
+    each_in("effect", [&](Table& table) {
+      scenario.effects.push_back(read_effect(table, scenario.drawings, complaint_));
+    });
     each_in("decoy", [&](Table& table) {
       Decoy decoy = Decoy::neighbour_meter;
       table.word("name", kDecoys, decoy);
@@ -328,7 +340,7 @@ class Reader {
 
 Result<toml::table> parse(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
+  if (!stream || !std::filesystem::is_regular_file(path)) {
     return failure(ErrorCode::not_found,
                    fmt::format("cannot read the scenario {}; check its path", path.string()));
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "simulators/building/calendar.hpp"
 #include "simulators/scenario/scenario_files.hpp"
@@ -249,7 +250,9 @@ pump_design_kW = {}
       drawings.core_runs_always ? "laboratories run always" : "air handlers stop at night",
       storeys * (drawings.perimeter_supply_m3_s() + drawings.core_supply_m3_s()),
       storeys * least_m3_s, drawings.supply_C,
-      storeys * (drawings.perimeter_air.fan_kW + drawings.core_air.fan_kW), drawings.pump_kW);
+      std::round(10.0 * storeys * (drawings.perimeter_air.fan_kW + drawings.core_air.fan_kW)) /
+          10.0,
+      drawings.pump_kW);
   if (drawings.economiser_limit_C) {
     text += fmt::format("economiser_lockout_C = {}\n", *drawings.economiser_limit_C);
   }
@@ -263,8 +266,14 @@ std::string heating(const Drawings& drawings) {
         "the meter.\n",
         drawings.heat_pump_cop);
   }
-  return fmt::format("[building.heating]\nloss_fraction = {}\nefficiency = {}\n",
-                     drawings.heating_loss, drawings.heating_efficiency);
+  std::string text = fmt::format("[building.heating]\nloss_fraction = {}\nefficiency = {}\n",
+                                 drawings.heating_standing_kW ? 0.0 : drawings.heating_loss,
+                                 drawings.heating_efficiency);
+  if (drawings.heating_standing_kW) {
+    text += fmt::format("base_heat_kW = {}   # pipes and traps, all hours\n",
+                        *drawings.heating_standing_kW);
+  }
+  return text;
 }
 
 std::string services(const Drawings& drawings) {

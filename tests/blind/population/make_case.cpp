@@ -18,6 +18,7 @@ using Json = nlohmann::ordered_json;
 /// What an effect does to each meter, as shares of the meter's own sum.
 struct Shares {
   std::vector<double> signed_share;
+  std::vector<double> moved_share;
   double largest = 0.0;  ///< As `moved_share`, of the meter that it moves most.
 };
 
@@ -61,9 +62,19 @@ Shares shares_of(const std::vector<std::vector<double>>& footprint_kW, const Sim
       net_kW += footprint_kW[meter][slot];
     }
     shares.signed_share.push_back(whole_kW > 0.0 ? net_kW / whole_kW : 0.0);
-    shares.largest = std::max(shares.largest, moved_share(footprint_kW[meter], blocks, whole_kW));
+    shares.moved_share.push_back(moved_share(footprint_kW[meter], blocks, whole_kW));
+    shares.largest = std::max(shares.largest, shares.moved_share.back());
   }
   return shares;
+}
+
+/// A phase is lost or it is not: what counts is that it shows at least as much as asked.
+StrengthFound whole_effect(double target_share, double strength, const Visibility& visibility) {
+  const double reached = visibility(strength);
+  return {.strength = strength,
+          .reached = reached,
+          .attained = reached >= 0.95 * target_share,
+          .evaluations = 1};
 }
 
 /// Settles one effect of a case after the other.
@@ -90,26 +101,40 @@ class Settler {
       if (best->attained) break;
       settled_.refused.emplace_back(candidate.kind->id);
     }
-    if (!best) return;
+    // Less than half of what was asked would be another block's case.
+    if (!best || best->reached_share < 0.5 * wanted.target_share) {
+      missed_ = wanted.candidates.front().kind->id;
+      return;
+    }
     settled_.scenario.effects.push_back(best->choice);
     settled_.effects.push_back(std::move(*best));
   }
 
-  [[nodiscard]] SettledCase result() && { return std::move(settled_); }
+  /// @return not_enough_data where neither an effect nor a stand-in shows enough
+  [[nodiscard]] Result<SettledCase> result() && {
+    if (missed_.empty()) return std::move(settled_);
+    return failure(ErrorCode::not_enough_data,
+                   plan_.id + ": nothing like " + missed_ +
+                       " shows enough in this building; draw the population with another --seed");
+  }
 
  private:
   HiddenAtStrength search(const HiddenChoice& candidate, double target_share) {
     std::map<double, Shares> seen;
+    const auto visibility = [&](double strength) {
+      const Shares shares = try_out(candidate, strength);
+      return seen.emplace(strength, shares).first->second.largest;
+    };
     const StrengthFound found =
-        strength_for(target_share, candidate.strength, [&](double strength) {
-          const Shares shares = try_out(candidate, strength);
-          return seen.emplace(strength, shares).first->second.largest;
-        });
+        candidate.kind->all_or_nothing
+            ? whole_effect(target_share, candidate.kind->strength.typical, visibility)
+            : strength_for(target_share, candidate.strength, visibility);
     HiddenAtStrength result{.choice = candidate,
                             .target_share = target_share,
                             .reached_share = found.reached,
                             .attained = found.attained,
-                            .share_of_meter = seen.at(found.strength).signed_share};
+                            .share_of_meter = seen.at(found.strength).signed_share,
+                            .moved_share = seen.at(found.strength).moved_share};
     result.choice.strength = found.strength;
     return result;
   }
@@ -128,6 +153,7 @@ class Settler {
   const Simulated& twin_;
   std::vector<std::size_t> blocks_;
   SettledCase settled_;
+  std::string missed_;
 };
 
 Json date_of(const std::optional<metering::Day>& day) {
@@ -139,8 +165,10 @@ Json effects_json(const SettledCase& settled) {
   Json list = Json::array();
   for (const HiddenAtStrength& hidden : settled.effects) {
     Json shares = Json::object();
+    Json moved = Json::object();
     for (std::size_t meter = 0; meter < plates.size(); ++meter) {
       shares[std::string(plates[meter].id)] = hidden.share_of_meter[meter];
+      moved[std::string(plates[meter].id)] = hidden.moved_share[meter];
     }
     const EffectKind& kind = *hidden.choice.kind;
     list.push_back({{"effect", kind.id},
@@ -151,6 +179,7 @@ Json effects_json(const SettledCase& settled) {
                     {"from", date_of(hidden.choice.from)},
                     {"to", date_of(hidden.choice.to)},
                     {"share_of_meter", shares},
+                    {"moved_share", moved},
                     {"target_share", hidden.target_share},
                     {"reached_share", hidden.reached_share},
                     {"attained", hidden.attained}});

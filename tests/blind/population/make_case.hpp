@@ -15,6 +15,7 @@ struct HiddenAtStrength {
   double reached_share = 0.0;  ///< Of the meter it moves most: moves within parts of the day count.
   bool attained = false;
   std::vector<double> share_of_meter;  ///< Signed, in the order of `plates_of`.
+  std::vector<double> moved_share;     ///< By months and parts of the day; likewise.
 };
 
 struct SettledCase {
@@ -26,7 +27,7 @@ struct SettledCase {
 };
 
 /// Finds for each wanted effect the strength that shows as much as asked, or a stand-in that can.
-/// @return not_found if the system has no zone files.
+/// @return not_found if the system has no zone files; not_enough_data where nothing shows enough.
 [[nodiscard]] Result<SettledCase> settle(const CasePlan& plan);
 
 struct CaseFolders {

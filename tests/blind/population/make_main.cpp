@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <iostream>
 #include <mutex>
 
@@ -83,6 +84,20 @@ class Maker {
   std::string error_;
 };
 
+/// The folder belongs to one population and seed from its first case on.
+Result<void> claim(const Arguments& given) {
+  const std::filesystem::path file = given.out / "population.txt";
+  const std::string mine = fmt::format("{} with seed {}{}\n", given.population, given.seed,
+                                       given.twins ? ", twins kept" : "");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return system::write_file(file, mine);
+  const std::string theirs{std::istreambuf_iterator<char>(stream), {}};
+  if (theirs == mine) return {};
+  return failure(ErrorCode::invalid_value,
+                 fmt::format("{} holds {} and this is {}; choose another --out", given.out.string(),
+                             theirs.substr(0, theirs.find('\n')), mine.substr(0, mine.size() - 1)));
+}
+
 int make(const Arguments& given) {
   const auto kind = population_kind(given.population);
   if (!kind) return failed(kind.error().message, 2);
@@ -101,6 +116,7 @@ int make(const Arguments& given) {
   if (std::filesystem::exists(folders.answers / "answers.sha256")) {
     return failed(fmt::format("{} is sealed already; choose another --out", given.out.string()));
   }
+  if (const auto same = claim(given); !same) return failed(same.error().message);
   Maker maker(folders, range->second - range->first + 1);
   system::parallel_for(given.threads)(range->second - range->first + 1, [&](std::size_t i) {
     maker.make(plans[range->first - 1 + i]);
@@ -125,7 +141,9 @@ int main(int argc, char** argv) {
                "blind_make"};
   Arguments given;
   app.add_option("--population", given.population, "smoke, training or sealed")->required();
-  app.add_option("--seed", given.seed, "of the population")->required();
+  app.add_option("--seed", given.seed, "of the population")
+      ->required()
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--out", given.out, "folder; gets cases/ and answers/")->required();
   app.add_option("--cases", given.cases, "only these, such as 1-20; then nothing is sealed");
   app.add_flag("--twins", given.twins, "also each case without its effects, and its footprint");

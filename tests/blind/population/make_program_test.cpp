@@ -124,7 +124,7 @@ TEST_F(Smoke, SameSeedSameBytesEvenInPieces) {
   write_text(fs::path(out) / "cases" / "smoke-007" / "readings.csv", "torn");
   ASSERT_EQ(make(*folder_, one + " --cases 7").exit_code, 0);
   const auto pieces = files_below(out);
-  EXPECT_EQ(pieces.size(), 3u * (3 + 4 + 1));
+  EXPECT_EQ(pieces.size(), 3u * (3 + 4 + 1) + 1);  // and population.txt
   const auto all = files_below(whole());
   for (const auto& [path, text] : pieces) EXPECT_TRUE(all.at(path) == text) << path;
 }
@@ -138,6 +138,12 @@ TEST_F(Smoke, RefusesInOneSentence) {
   const Ran beyond = make(*folder_, "--population smoke --seed 1 --cases 5-13" + out);
   EXPECT_EQ(beyond.exit_code, 2);
   EXPECT_THAT(beyond.err, HasSubstr("1 to 12"));
+  const std::string pieces = (*folder_ / "begun").string();
+  ASSERT_EQ(make(*folder_, "--population smoke --seed 1 --cases 4 --out " + pieces).exit_code, 0);
+  const Ran other = make(*folder_, "--population smoke --seed 2 --out " + pieces);
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("holds smoke with seed 1 and this is smoke with seed 2"));
+  EXPECT_EQ(make(*folder_, "--population smoke --seed -1" + out).exit_code, 2);
   const Ran again = make(*folder_, "--population smoke --seed 2 --out " + whole().string());
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_THAT(again.err, HasSubstr("is sealed already"));

@@ -17,7 +17,7 @@ using std::chrono::sys_days;
 
 constexpr std::array kPlainShares{0.02, 0.03, 0.05};
 constexpr std::array kStrongShares{0.06, 0.09, 0.12};
-constexpr int kStandIns = 3;
+constexpr int kStandIns = 6;
 
 /// Streams of one population's seed. A case's own numbers come from its index.
 enum class Chance : std::uint64_t { order = 1, cases = 1'000 };

@@ -43,6 +43,7 @@ HiddenEffect read_effect(JsonFields& fields) {
   effect.from = day(fields, "from");
   effect.to = day(fields, "to");
   effect.share_of_meter = fields.numbers("share_of_meter");
+  if (fields.has("moved_share")) effect.moved_share = fields.numbers("moved_share");
   return effect;
 }
 
@@ -150,7 +151,9 @@ Result<AnswerKey> read_answers(const std::filesystem::path& folder) {
 std::string most_affected_meter(const Answer& answer) {
   std::map<std::string, double> total;
   for (const HiddenEffect& effect : answer.effects) {
-    for (const auto& [meter, share] : effect.share_of_meter) total[meter] += std::abs(share);
+    // An effect that takes and gives back within the day has no net share to judge it by.
+    const auto& shares = effect.moved_share.empty() ? effect.share_of_meter : effect.moved_share;
+    for (const auto& [meter, share] : shares) total[meter] += std::abs(share);
   }
   const auto most = std::ranges::max_element(
       total, {}, [](const auto& meter_and_share) { return meter_and_share.second; });

@@ -26,6 +26,8 @@ struct HiddenEffect {
   std::optional<std::string> from;  ///< First day, "2022-03-01"; absent: from the beginning.
   std::optional<std::string> to;    ///< Last day; absent: to the end.
   std::map<std::string, double> share_of_meter;  ///< Meter -> sum of the footprint / sum of meter.
+  /// Meter -> what the footprint moves, within the day too, / sum of meter; may be absent.
+  std::map<std::string, double> moved_share;
 };
 
 struct Answer {

@@ -45,6 +45,12 @@ TEST(Answers, MostAffectedMeterGoesBySize) {
   one.share_of_meter = {{"electricity", 0.06}, {"steam", -0.04}};
   HiddenEffect other = made_up::effect("b");
   other.share_of_meter = {{"steam", 0.04}};
+  HiddenEffect shifting;
+  shifting.share_of_meter = {{"electricity", 0.001}, {"steam", 0.0}};
+  shifting.moved_share = {{"electricity", 0.002}, {"steam", 0.05}};
+  Answer shifted;
+  shifted.effects = {shifting};
+  EXPECT_EQ(most_affected_meter(shifted), "steam");
   EXPECT_EQ(most_affected_meter(made_up::pair("p", one, other)), "steam");
   EXPECT_EQ(most_affected_meter(made_up::nothing_hidden("n")), "");
 }

@@ -97,8 +97,8 @@ TEST_F(ScenarioFile, RefusesWithOneSentence) {
   EXPECT_THAT(refusal("[building\n"), HasSubstr("scenario.toml:1: not TOML"));
   EXPECT_THAT(
       refusal("[building]\nstoreis = 3\n"),
-      HasSubstr("scenario.toml:2: unknown key storeis in [building]; did you mean storeys?"));
-  EXPECT_THAT(refusal("[bilding]\n"), HasSubstr("unknown table bilding; did you mean building?"));
+      HasSubstr("scenario.toml:2: unknown key storeis in [building] (did you mean storeys?)"));
+  EXPECT_THAT(refusal("[bilding]\n"), HasSubstr("unknown table bilding (did you mean building?)"));
   EXPECT_THAT(refusal("[building]\nstoreys = 0\n"),
               HasSubstr("storeys in [building] must be a whole number from 1 to 40"));
   EXPECT_THAT(refusal("[building]\nwidth_m = \"wide\"\n"),
@@ -128,6 +128,14 @@ TEST_F(ScenarioFile, RefusesEffectsThatCannotBe) {
       HasSubstr("needs an economiser"));
   EXPECT_THAT(refusal("[[effect]]\nname = \"scale_fault\"\nfrom = \"2021-05-01\"\n"),
               HasSubstr("is in one meter"));
+  EXPECT_THAT(
+      refusal("[[effect]]\nname = \"scale_fault\"\nfrom = \"2021-05-01\"\nmeter = \"gas\"\n"),
+      HasSubstr("has no meter gas; it has chilled_water, electricity, heating"));
+  EXPECT_THAT(refusal("[[effect]]\nname = \"after_hours\"\nmeter = \"electricity\"\n"),
+              HasSubstr("leave meter out"));
+  EXPECT_THAT(refusal("[[effect]]\nname = \"after_hours\"\nfrom = \"2030-01-01\"\n"),
+              HasSubstr("lies outside the period 2021 to 2023"));
+  EXPECT_THAT(read_scenario(folder_.path()).error().message, HasSubstr("check its path"));
   EXPECT_THAT(refusal("[[effect]]\nname = \"equipment_step\"\n"), HasSubstr("begins at a date"));
   EXPECT_THAT(
       refusal("[[effect]]\nname = \"vacancy\"\nfrom = \"2021-05-01\"\nto = \"2021-04-01\"\n"),
