@@ -12,7 +12,7 @@
 
 #include "command_line.hpp"
 #include "core/metering/civil_time.hpp"
-#include "simulators/feed/building_feed.hpp"
+#include "simulators/scenario/building_feed.hpp"
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -61,8 +61,8 @@ std::string joined(const std::vector<std::string>& lines) {
 class EndToEnd : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto written = simulators::write_building_feed(
-        {.out = folder_.path(), .period = {.start_year = 2021, .years = 3}, .seed = 7});
+    const auto written =
+        simulators::write_building_feed({.out = folder_.path(), .scenario = {}, .seed = 7});
     ASSERT_TRUE(written.has_value()) << written.error().message;
   }
 
