@@ -51,6 +51,10 @@ struct SetPoints {
   int occupied_from_hour = 7;
   int occupied_to_hour = 19;
   bool saturday_occupied = false;
+  // How far the plant's day departs from that timetable, whole site files being in whole hours.
+  // Only the hourly model can tell.
+  double start_early_h = 0.0;  ///< Negative: it starts later.
+  double stop_late_h = 0.0;    ///< Negative: it stops earlier.
 };
 
 /// Air handlers with VAV reheat as one system. Absent in a building without one.

@@ -24,37 +24,86 @@ std::vector<weather::Orientation> orientations_of(const Building& building) {
   return found;
 }
 
+constexpr double kAssumedHumidity_pct = 50.0;
+constexpr double kAssumedWind_m_s = 3.0;
+
 /// Name of the first variable the model needs and this hour lacks; empty when complete.
-std::string missing_variable(const weather::WeatherHour* hour) {
+std::string missing_variable(const weather::WeatherHour* hour, const Drivers& drivers) {
   if (hour == nullptr) return "any value";
   if (!std::isfinite(hour->dry_bulb_C)) return "dry_bulb_C";
-  if (!std::isfinite(hour->rel_humidity_pct)) return "rel_humidity_pct";
-  if (!std::isfinite(hour->wind_speed_m_s)) return "wind_speed_m_s";
+  if (drivers.has_humidity && !std::isfinite(hour->rel_humidity_pct)) return "rel_humidity_pct";
+  if (drivers.has_wind && !std::isfinite(hour->wind_speed_m_s)) return "wind_speed_m_s";
   if (!std::isfinite(hour->ghi_W_m2)) return "ghi_W_m2";
   return {};
 }
 
+bool is_recorded(const weather::WeatherSeries& weather, double weather::WeatherHour::*variable) {
+  return std::ranges::any_of(weather.hours, [variable](const weather::WeatherHour& hour) {
+    return std::isfinite(hour.*variable);
+  });
+}
+
 DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar& calendar,
                          const Holidays& holidays, const Building& building,
-                         const ElectricLoads& loads, const weather::WeatherHour& weather,
-                         double pressure_Pa) {
+                         const ElectricLoads& loads, const weather::Location& location,
+                         const weather::WeatherHour& weather, const Drivers& drivers) {
   const metering::LocalTime local = calendar.local_time(start);
   const DayType day = day_type(local.date, holidays);
   const int hour = local.minute_of_day / 60;
   const auto calendar_month = static_cast<unsigned>(local.date.month());
   const double factor = loads.month_factor[calendar_month - 1];
-  const double relative_humidity = std::clamp(weather.rel_humidity_pct / 100.0, 0.0, 1.0);
-  return {
-      .month = month,
-      .day = day,
-      .local_hour = hour,
-      .occupied = is_occupied(building.set_points, day, hour),
-      .dry_bulb_C = weather.dry_bulb_C,
-      .humidity_ratio = weather::humidity_ratio(weather.dry_bulb_C, relative_humidity, pressure_Pa),
-      .wind_m_s = std::max(weather.wind_speed_m_s, 0.0),
-      .occupied_fraction = building.occupied_fraction.at(day, hour),
-      .lights_W = 1e3 * factor * loads.lights_kW.at(day, hour),
-      .plugs_W = 1e3 * factor * loads.plugs_kW.at(day, hour)};
+  const double humidity_pct =
+      drivers.has_humidity ? weather.rel_humidity_pct : kAssumedHumidity_pct;
+  const double relative_humidity = std::clamp(humidity_pct / 100.0, 0.0, 1.0);
+  const std::chrono::sys_days date{local.date};
+  const std::chrono::sys_days first_of_year{local.date.year() / std::chrono::January / 1};
+  // The lesser offset of two opposite seasons is winter's, in either hemisphere.
+  const auto winter_offset = std::min(calendar.utc_offset(first_of_year),
+                                      calendar.utc_offset(first_of_year + std::chrono::days{182}));
+  return {.start = start,
+          .date = local.date,
+          .day_index = 0,
+          .weekday = std::chrono::weekday{date}.c_encoding(),
+          .day_of_year = static_cast<int>((date - first_of_year).count()) + 1,
+          .daylight_saving = calendar.utc_offset(start) > winter_offset,
+          .month = month,
+          .day = day,
+          .local_hour = hour,
+          .occupied = is_occupied(building.set_points, day, hour),
+          .dry_bulb_C = weather.dry_bulb_C,
+          .humidity_ratio =
+              weather::humidity_ratio(weather.dry_bulb_C, relative_humidity, drivers.pressure_Pa),
+          .wind_m_s = drivers.has_wind ? std::max(weather.wind_speed_m_s, 0.0) : kAssumedWind_m_s,
+          .wind_direction_deg = weather.wind_dir_deg,
+          .sine_of_sun_altitude = weather::sun_position(start + kHour / 2, location).cos_zenith,
+          .global_horizontal_W_m2 = std::max(weather.ghi_W_m2, 0.0),
+          .hours_to_start = 0.0,
+          .hours_since_stop = 0.0,
+          .hours_since_start = 0.0,
+          .hours_to_stop = 0.0,
+          .occupied_fraction = building.occupied_fraction.at(day, hour),
+          .lights_W = 1e3 * factor * loads.lights_kW.at(day, hour),
+          .plugs_W = 1e3 * factor * loads.plugs_kW.at(day, hour)};
+}
+
+/// Counts days, and the hours from and to the changes between day and night operation. Before the
+/// first change and after the last they count from the ends of the record.
+void add_distances(std::vector<DriverHour>& hours) {
+  if (hours.empty()) return;
+  const std::chrono::sys_days first{hours.front().date};
+  double in_state_h = 0.0;
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    DriverHour& hour = hours[i];
+    hour.day_index = static_cast<int>((std::chrono::sys_days{hour.date} - first).count());
+    in_state_h = i > 0 && hours[i - 1].occupied == hour.occupied ? in_state_h + 1.0 : 0.5;
+    (hour.occupied ? hour.hours_since_start : hour.hours_since_stop) = in_state_h;
+  }
+  for (std::size_t i = hours.size(); i-- > 0;) {
+    DriverHour& hour = hours[i];
+    const bool same = i + 1 < hours.size() && hours[i + 1].occupied == hour.occupied;
+    in_state_h = same ? in_state_h + 1.0 : 0.5;
+    (hour.occupied ? hour.hours_to_stop : hour.hours_to_start) = in_state_h;
+  }
 }
 
 /// Sun on each orientation in the middle of the hour; measured beam and diffuse where there are
@@ -91,11 +140,16 @@ Result<Drivers> make_drivers(const std::vector<metering::Month>& months,
                              const metering::LocalCalendar& calendar, const Holidays& holidays,
                              const Building& building, const ElectricLoads& loads,
                              const weather::Location& location,
-                             const weather::WeatherSeries& weather) {
+                             const weather::WeatherSeries& weather, MissingWeather missing) {
   Drivers drivers;
   drivers.months = months;
   drivers.orientations = orientations_of(building);
   drivers.pressure_Pa = weather::pressure_at_altitude_Pa(location.altitude_m);
+
+  if (missing == MissingWeather::assume) {
+    drivers.has_humidity = is_recorded(weather, &weather::WeatherHour::rel_humidity_pct);
+    drivers.has_wind = is_recorded(weather, &weather::WeatherHour::wind_speed_m_s);
+  }
 
   std::vector<Instant> starts;
   for (std::size_t month = 0; month < months.size(); ++month) {
@@ -103,7 +157,7 @@ Result<Drivers> make_drivers(const std::vector<metering::Month>& months,
     // Zones half an hour off share their first hour with the month before; it counts here.
     for (Instant t = std::chrono::ceil<std::chrono::hours>(span.begin); t < span.end; t += kHour) {
       const weather::WeatherHour* hour = weather.find(t);
-      if (const std::string lacking = missing_variable(hour); !lacking.empty()) {
+      if (const std::string lacking = missing_variable(hour, drivers); !lacking.empty()) {
         return failure(ErrorCode::not_enough_data, "the weather lacks " + lacking + " at " +
                                                        metering::to_string(t) +
                                                        ", in a month that the model needs (" +
@@ -111,10 +165,11 @@ Result<Drivers> make_drivers(const std::vector<metering::Month>& months,
                                                        "); give weather that covers the meters");
       }
       drivers.hours.push_back(describe_hour(static_cast<int>(month), t, calendar, holidays,
-                                            building, loads, *hour, drivers.pressure_Pa));
+                                            building, loads, location, *hour, drivers));
       starts.push_back(t);
     }
   }
+  add_distances(drivers.hours);
   drivers.irradiance_W_m2.resize(static_cast<Eigen::Index>(drivers.orientations.size()),
                                  static_cast<Eigen::Index>(starts.size()));
   for (std::size_t i = 0; i < starts.size(); ++i) {

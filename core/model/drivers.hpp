@@ -25,13 +25,26 @@ struct ElectricLoads {
 
 /// One hour, starting on the full UTC hour.
 struct DriverHour {
-  int month;  ///< Index into Drivers::months.
+  metering::Instant start;
+  metering::Day date;    ///< Local.
+  int day_index;         ///< Local days since the day of the first hour.
+  unsigned weekday;      ///< 0 Sunday … 6 Saturday, whether a holiday or not.
+  int day_of_year;       ///< 1…366
+  bool daylight_saving;  ///< The local clock is ahead of its own winter.
+  int month;             ///< Index into Drivers::months.
   DayType day;
   int local_hour;  ///< 0…23
   bool occupied;   ///< Set-points and fans at their daytime values.
   double dry_bulb_C;
   double humidity_ratio;  ///< kg/kg
   double wind_m_s;
+  double wind_direction_deg;    ///< From north, clockwise; NaN where not recorded.
+  double sine_of_sun_altitude;  ///< In the middle of the hour; negative at night.
+  double global_horizontal_W_m2;
+  double hours_to_start;     ///< Until set-points and fans next go to daytime values; 0 in them.
+  double hours_since_stop;   ///< Since they last left them; 0 in them.
+  double hours_since_start;  ///< The same inside a day of operation; 0 outside. All four are
+  double hours_to_stop;      ///< counted from the middle of the hour.
   double occupied_fraction;
   double lights_W;
   double plugs_W;
@@ -43,6 +56,14 @@ struct Drivers {
   std::vector<weather::Orientation> orientations;  ///< Distinct ones of the building's surfaces.
   Eigen::ArrayXXd irradiance_W_m2;                 ///< (orientations x hours)
   double pressure_Pa = 101325.0;
+  bool has_humidity = true;  ///< False: the record lacks it and 50 % was assumed.
+  bool has_wind = true;      ///< False: 3 m/s was assumed.
+};
+
+/// What to do where the whole weather record lacks humidity or wind.
+enum class MissingWeather {
+  refuse,  ///< The model needs both.
+  assume,  ///< Take 50 % and 3 m/s and say so in the drivers: nothing may be concluded from them.
 };
 
 /// @param months   Months to model, ascending; they need not be adjacent.
@@ -54,7 +75,8 @@ struct Drivers {
                                            const Holidays& holidays, const Building& building,
                                            const ElectricLoads& loads,
                                            const weather::Location& location,
-                                           const weather::WeatherSeries& weather);
+                                           const weather::WeatherSeries& weather,
+                                           MissingWeather missing = MissingWeather::refuse);
 
 /// Whether set-points and fans stand at their daytime values.
 [[nodiscard]] bool is_occupied(const SetPoints& set_points, DayType day, int local_hour);

@@ -114,6 +114,10 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
    [](const Building& b) { return b.hot_water.volume_m3_day; }, [](Building& b, double v) { b.hot_water.volume_m3_day = v; }},
   {"base_heat", "kW", "Heat drawn at all hours that serves no zone", "plant", kRelative, 0.0, 2.0,
    [](const Building& b) { return b.base_heat_kW; }, [](Building& b, double v) { b.base_heat_kW = v; }},
+  {"start_early", "h", "Plant starts before its timetable", "system operation", kAbsolute, -1.0, 2.5,
+   [](const Building& b) { return b.set_points.start_early_h; }, [](Building& b, double v) { b.set_points.start_early_h = v; }},
+  {"stop_late", "h", "Plant stops after its timetable", "system operation", kAbsolute, -1.5, 1.5,
+   [](const Building& b) { return b.set_points.stop_late_h; }, [](Building& b, double v) { b.set_points.stop_late_h = v; }},
   {"floor_area", "m2", "Floor area", "geometry", kRelative, 0.4, 2.5,
    [](const Building& b) { return b.floor_area_m2; }, set_floor_area},
 });

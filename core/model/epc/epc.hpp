@@ -19,7 +19,7 @@
 #include "core/model/building.hpp"
 #include "core/model/end_use.hpp"
 #include "core/model/epc/climate_classes.hpp"
-#include "core/model/epc/zones.hpp"
+#include "core/model/zones.hpp"
 
 namespace recald::model::epc {
 

@@ -15,7 +15,7 @@
 
 #include "core/model/building.hpp"
 
-namespace recald::model::epc {
+namespace recald::model {
 
 inline constexpr double kPerimeterDepth_m = 4.57;
 
@@ -51,4 +51,4 @@ struct LeakageFlow {
 void describe_zones(const Building& building, std::span<const weather::Orientation> orientations,
                     std::span<Zone> zones);
 
-}  // namespace recald::model::epc
+}  // namespace recald::model

@@ -1,11 +1,11 @@
-#include "core/model/epc/zones.hpp"
+#include "core/model/zones.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 
-namespace recald::model::epc {
+namespace recald::model {
 namespace {
 
 constexpr double kNonPerpendicular = 0.9;          // F_w, glazing seen at an angle
@@ -112,4 +112,4 @@ void describe_zones(const Building& building, std::span<const weather::Orientati
   }
 }
 
-}  // namespace recald::model::epc
+}  // namespace recald::model

@@ -1,4 +1,4 @@
-#include "core/model/epc/zones.hpp"
+#include "core/model/zones.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "tests/support/sample_building.hpp"
 
-namespace recald::model::epc {
+namespace recald::model {
 namespace {
 
 using testing::sample_building;
@@ -78,4 +78,4 @@ TEST(Zones, LeakageByHand) {
 }
 
 }  // namespace
-}  // namespace recald::model::epc
+}  // namespace recald::model
