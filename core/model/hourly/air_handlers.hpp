@@ -1,0 +1,24 @@
+/// Air handlers in one step: mixing, economiser, coils, steam, fans, pumps.
+#pragma once
+
+#include "core/model/building.hpp"
+#include "core/model/hourly/alteration.hpp"
+#include "core/model/hourly/zone_networks.hpp"
+
+namespace recald::model::hourly {
+
+/// Writes the loads of the air side, the flow and the running share into `loads`.
+///
+/// Handlers that run by schedule mix outdoor air; those on call at night recirculate and draw
+/// power in proportion to their flow.
+///
+/// @param heat_capacity_J_m3K  ρ c_p of air.
+/// @param running_share        Of all handlers, by schedule.
+/// @param zones                Of the whole building.
+/// @param latent_W             Moisture of the people in the building, as heat.
+/// @see EN 15241:2007, 6.3 and 6.4, for the balances.
+void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
+                      const ZoneTotals& zones, double latent_W, const StepOperation& operation,
+                      StepLoads& loads);
+
+}  // namespace recald::model::hourly

@@ -1,0 +1,94 @@
+/// What an effect that the drawings do not know changes in a run of the hourly model.
+///
+/// The model calls an alteration at four places and knows nothing else of it. At its neutral values
+/// an alteration changes no bit of the result.
+#pragma once
+
+#include <span>
+
+#include "core/model/building.hpp"
+#include "core/model/drivers.hpp"
+
+namespace recald::model::hourly {
+
+/// How the building is run in one step, as the drawings, schedules and weather have it; everything
+/// may be altered before the zones are solved.
+struct StepOperation {
+  // Weather that the building meets.
+  double dry_bulb_C;
+  double humidity_ratio;  ///< kg/kg
+  double wind_m_s;
+  double solar_share;  ///< Factor on the sun through and on all surfaces; 1.
+  // People and loads.
+  double people_share;  ///< Of full occupancy, 0…1.
+  double lights_W;
+  double plugs_W;
+  double exterior_W;  ///< Electricity that heats no zone.
+  // Controls. "Daytime" rooms are those that are not served round the clock.
+  double daytime_share;  ///< 0: daytime rooms at their night set-points with fans off, 1: at their
+                         ///< occupied ones with fans on; between: that share of the rooms.
+  double cooling_occupied_C;
+  double cooling_unoccupied_C;
+  double heating_occupied_C;
+  double heating_unoccupied_C;
+  // Air handlers.
+  double outdoor_air_m3_s;       ///< Least outdoor air with all handlers running.
+  double idle_outdoor_air_m3_s;  ///< Drawn in through handlers that stand still; meets zone; 0.
+  double supply_C;               ///< Supply air temperature.
+  double least_flow_m3_s;        ///< Boxes at minimum, all handlers running.
+  double economiser_lockout_C;   ///< -infinity: no economiser.
+  double economiser_share;       ///< Of the extra free-cooling flow that really comes; 1.
+  double constant_fan_share;     ///< Of the fans that do not follow the flow; 0.
+  double coil_humidity_ratio;    ///< Of air leaving a wet cooling coil, kg/kg.
+  double humidifier_kg_kg;       ///< Humidity ratio held by steam; 0: none.
+  double latent_share;           ///< Of the moisture on the coil that costs chilled water; 1.
+  // Envelope.
+  double infiltration_factor;  ///< On the leakage flow; 1.
+  double zone_gain_W;          ///< Extra sensible heat into the zones, shared by floor area; 0.
+  double ground_C;
+};
+
+/// What the step costs before losses and efficiencies, W, and what the plant does with it.
+struct StepLoads {
+  double lights_W;
+  double plugs_W;
+  double exterior_W;
+  double fans_W;
+  double pumps_W;
+  double sensible_cooling_W;
+  double latent_cooling_W;
+  double zone_heating_W;
+  double reheat_W;
+  double preheat_W;
+  double humidification_W;
+  double hot_water_W;
+  double base_heat_W;
+  // For alterations to read.
+  double running_share;           ///< Of all air handlers, 0…1.
+  double supply_m3_s;             ///< Of all handlers that run.
+  double mean_zone_C;             ///< By floor area.
+  double hot_water_litres_share;  ///< Draw of this hour over its daily mean, 0…; 1 where even.
+  // Plant; factors on the drawings' values.
+  double cooling_cost_factor;  ///< On chilled water, or on the chiller's electricity; 1.
+  double heating_cost_factor;  ///< On metered heat, or on the heat pump's electricity; 1.
+};
+
+/// One effect bound to values. Stateless between steps: a run may be repeated, and copies on other
+/// threads may run at once.
+class Alteration {
+ public:
+  virtual ~Alteration() = default;
+
+  /// Once, before the period: constructions and nameplates.
+  virtual void rebuild(Building&) const {}
+  /// Each step, before the zones are solved.
+  virtual void operate(const DriverHour&, StepOperation&) const {}
+  /// Each step, after zones and air handlers, before losses and efficiencies.
+  virtual void supply(const Building&, const DriverHour&, const StepOperation&, StepLoads&) const {}
+  /// At the end: one meter's hourly power as it is recorded. @param meter  Index among the model's
+  /// meters.
+  virtual void record(std::span<const DriverHour> /*hours*/, int /*meter*/,
+                      std::span<double> /*power_kW*/) const {}
+};
+
+}  // namespace recald::model::hourly

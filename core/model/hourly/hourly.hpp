@@ -1,0 +1,106 @@
+/// The hourly model: zones of five resistances and one capacity, air handlers and plant, step by
+/// step.
+///
+/// Each zone of `describe_zones` is a network after ISO 13790:2008 annex C; a building whose
+/// handlers run partly round the clock has each zone twice, served by day and served always. The
+/// air system follows EN 15241:2007 as in the EPC. Power is summed to meters at the end.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/model/building.hpp"
+#include "core/model/drivers.hpp"
+#include "core/model/end_use.hpp"
+#include "core/model/hourly/alteration.hpp"
+#include "core/model/hourly/plant.hpp"
+#include "core/model/hourly/zone_networks.hpp"
+
+namespace recald::model::hourly {
+
+struct HourlyOptions {
+  int steps_per_hour = 1;  ///< 1 or 4.
+};
+
+/// Evaluates buildings over one period. Holds scratch memory: one instance a thread.
+class Hourly {
+ public:
+  /// @pre options.steps_per_hour is 1 or 4
+  explicit Hourly(std::shared_ptr<const Drivers> drivers, const HourlyOptions& options = {});
+
+  /// Runs the whole period after a warm-up of its first 14 days; after a jump in time the days
+  /// behind the jump are run in likewise.
+  ///
+  /// @param alterations  Applied in order; empty: the building as described.
+  /// @param meters       (m) share of each end use that a meter counts.
+  /// @param power_kW     (steps x m) mean power of each step, overwritten. Does not allocate.
+  void run(const Building& building, std::span<const Alteration* const> alterations,
+           std::span<const MeterMap> meters, Eigen::Ref<Eigen::ArrayXXd> power_kW);
+
+  /// The same run as energies by end use.
+  /// @param months  (months of the drivers) overwritten.
+  void run_end_uses(const Building& building, std::span<const Alteration* const> alterations,
+                    std::span<EndUseEnergy> months);
+
+  [[nodiscard]] const Drivers& drivers() const { return *drivers_; }
+  [[nodiscard]] Eigen::Index step_count() const;
+
+ private:
+  /// What an hour of the drivers brings, in few bytes.
+  struct Hour {
+    double dry_bulb_C;
+    double humidity_ratio;
+    double wind_m_s;
+    double occupied_fraction;
+    double lights_W;
+    double plugs_W;
+    int day_of_year;
+    bool occupied;
+    bool sunlit;  ///< Any sun on any side.
+    bool begins;  ///< First hour, or first after a jump in time.
+  };
+  /// A part of the building: its share, and whether its rooms are served round the clock.
+  struct Part {
+    double share;
+    bool always;
+  };
+
+  void read_meters(std::span<const MeterMap> meters);
+  void prepare(const Building& building, std::span<const Alteration* const> alterations);
+  [[nodiscard]] StepOperation operation_of(std::size_t hour, int step) const;
+  [[nodiscard]] ZoneTotals solve_zones(std::size_t hour, const StepOperation& operation,
+                                       double served_share);
+  [[nodiscard]] StepLoads solve_step(std::size_t hour, int step,
+                                     std::span<const Alteration* const> alterations);
+  template <class Sink>
+  void run_hours(std::size_t from, std::size_t to, std::span<const Alteration* const> alterations,
+                 Sink sink);
+  template <class Sink>
+  void simulate(const Building& building, std::span<const Alteration* const> alterations,
+                Sink sink);
+
+  std::shared_ptr<const Drivers> drivers_;
+  HourlyOptions options_;
+  double heat_capacity_J_m3K_;  ///< ρ c_p of outdoor air at the site.
+  std::vector<Hour> hours_;
+  std::vector<double> irradiance_W_m2_;  ///< [hour * orientations + orientation]
+
+  // Of the run at hand.
+  Building building_;
+  ZoneNetworks zones_;
+  Plant plant_;
+  std::vector<EndUsePower_W> meters_kW_W_;  ///< (m) by EndUse: kW counted per W.
+  LeakageFlow leakage_{};
+  StepOperation standing_{};  ///< What does not change from step to step.
+  std::array<Part, 2> parts_{};
+  int part_count_ = 1;
+  double middle_C_ = 0.0;  ///< Between the occupied set-points, for infiltration.
+  double most_flow_m3_s_ = 0.0;
+  double hot_water_W_ = 0.0;  ///< Of the day at hand.
+  int hot_water_day_ = 0;     ///< Its day of the year.
+};
+
+}  // namespace recald::model::hourly

@@ -1,0 +1,336 @@
+#include "core/model/hourly/hourly.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/model/epc/epc.hpp"
+#include "tests/support/allocations.hpp"
+#include "tests/support/sample_building.hpp"
+
+namespace recald::model::hourly {
+namespace {
+
+using testing::sample_building;
+using testing::sample_drivers;
+
+using Alterations = std::span<const Alteration* const>;
+
+std::vector<MeterMap> meters() {
+  return {*default_meter_map(metering::Utility::electricity),
+          *default_meter_map(metering::Utility::chilled_water),
+          *default_meter_map(metering::Utility::steam)};
+}
+
+Eigen::ArrayXXd power_of(Hourly& hourly, const Building& building, Alterations alterations = {}) {
+  Eigen::ArrayXXd power_kW(hourly.step_count(), 3);
+  hourly.run(building, alterations, meters(), power_kW);
+  return power_kW;
+}
+
+std::vector<EndUseEnergy> end_uses_of(Hourly& hourly, const Building& building,
+                                      Alterations alterations = {}) {
+  std::vector<EndUseEnergy> months(hourly.drivers().months.size());
+  hourly.run_end_uses(building, alterations, months);
+  return months;
+}
+
+Hourly make_hourly(int months, int steps_per_hour = 1) {
+  return Hourly{std::make_shared<const Drivers>(sample_drivers(sample_building(), months)),
+                {.steps_per_hour = steps_per_hour}};
+}
+
+double heat_kWh(const EndUseEnergy& e) {
+  return e[EndUse::zone_heating] + e[EndUse::reheat] + e[EndUse::preheat];
+}
+
+/// An alteration of one hook, given as a function.
+struct Operating final : Alteration {
+  explicit Operating(std::function<void(const DriverHour&, StepOperation&)> change)
+      : change_(std::move(change)) {}
+  void operate(const DriverHour& hour, StepOperation& operation) const override {
+    change_(hour, operation);
+  }
+  std::function<void(const DriverHour&, StepOperation&)> change_;
+};
+
+Eigen::ArrayXXd with_operation(Hourly& hourly, const Building& building,
+                               std::function<void(const DriverHour&, StepOperation&)> change) {
+  const Operating operating{std::move(change)};
+  const Alteration* const list[] = {&operating};
+  return power_of(hourly, building, list);
+}
+
+/// Passes through all hooks and changes nothing that counts.
+struct Neutral final : Alteration {
+  void rebuild(Building& building) const override { building.heat_capacity_J_m2K *= 1.0; }
+  void operate(const DriverHour&, StepOperation& operation) const override {
+    operation.infiltration_factor *= 1.0;
+    operation.zone_gain_W += 0.0;
+  }
+  void supply(const Building&, const DriverHour&, const StepOperation&,
+              StepLoads& loads) const override {
+    loads.cooling_cost_factor *= 1.0;
+  }
+  void record(std::span<const DriverHour>, int, std::span<double> power_kW) const override {
+    for (double& power : power_kW) power *= 1.0;
+  }
+};
+
+TEST(Hourly, NeutralAlterationsChangeNoBit) {
+  for (const int steps : {1, 4}) {
+    Hourly hourly = make_hourly(3, steps);
+    const Neutral neutral;
+    const Alteration* const list[] = {&neutral, &neutral};
+    const Eigen::ArrayXXd plain = power_of(hourly, sample_building());
+    EXPECT_TRUE((plain == power_of(hourly, sample_building(), list)).all());
+    EXPECT_TRUE((plain == power_of(hourly, sample_building())).all()) << "a run leaves traces";
+  }
+}
+
+TEST(Hourly, AnAlterationWithADateLeavesThePastAlone) {
+  Hourly hourly = make_hourly(3);
+  const Building building = sample_building();
+  const int date = 50;
+  const Eigen::ArrayXXd plain = power_of(hourly, building);
+  const Eigen::ArrayXXd changed =
+      with_operation(hourly, building, [&](const DriverHour& hour, StepOperation& operation) {
+        if (hour.day_index >= date) operation.heating_unoccupied_C = 21.0;
+      });
+  const auto& hours = hourly.drivers().hours;
+  Eigen::Index first = 0;
+  while (hours[static_cast<std::size_t>(first)].day_index < date) ++first;
+  EXPECT_TRUE((plain.topRows(first) == changed.topRows(first)).all());
+  EXPECT_GT((changed - plain).bottomRows(plain.rows() - first).col(2).sum(), 100.0);
+}
+
+TEST(Hourly, EveryHookActs) {
+  struct All final : Alteration {
+    void rebuild(Building& building) const override { building.use.exterior_kW += 1.0; }
+    void operate(const DriverHour&, StepOperation& o) const override { o.exterior_W += 2e3; }
+    void supply(const Building&, const DriverHour&, const StepOperation&,
+                StepLoads& loads) const override {
+      loads.exterior_W += 4e3;
+    }
+    void record(std::span<const DriverHour>, int meter, std::span<double> power_kW) const override {
+      if (meter != 0) return;
+      for (double& power : power_kW) power += 8.0;
+    }
+  };
+  Hourly hourly = make_hourly(1);
+  const All all;
+  const Alteration* const list[] = {&all};
+  const Eigen::ArrayXXd change =
+      power_of(hourly, sample_building(), list) - power_of(hourly, sample_building());
+  EXPECT_NEAR(change.col(0).minCoeff(), 15.0, 1e-9);
+  EXPECT_NEAR(change.col(0).maxCoeff(), 15.0, 1e-9);
+  EXPECT_EQ(change.rightCols(2).abs().maxCoeff(), 0.0);
+}
+
+TEST(Hourly, AgreesWithTheEpcOverTwoYears) {
+  const Building building = sample_building();
+  const auto drivers = std::make_shared<const Drivers>(sample_drivers(building, 24));
+  Hourly hourly{drivers};
+  const auto months = end_uses_of(hourly, building);
+  epc::Epc epc{std::make_shared<const epc::ClimateClasses>(
+      epc::make_climate_classes(*drivers, epc::kClassesPerState))};
+  std::vector<EndUseEnergy> expected(24);
+  epc.evaluate(building, expected);
+  const auto mean = [](const std::vector<EndUseEnergy>& all, auto value) {
+    double sum = 0.0;
+    for (const EndUseEnergy& month : all) sum += value(month);
+    return sum / 24.0;
+  };
+  const auto compare = [&](const char* what, auto value, double tolerance) {
+    EXPECT_NEAR(mean(months, value) / mean(expected, value), 1.0, tolerance) << what;
+  };
+  for (const EndUse use : {EndUse::lighting, EndUse::plugs, EndUse::exterior, EndUse::hot_water}) {
+    compare(
+        kEndUseNames[static_cast<std::size_t>(use)].data(),
+        [use](const EndUseEnergy& e) { return e[use]; }, 1e-6);
+  }
+  for (const EndUse use : {EndUse::fans, EndUse::pumps, EndUse::sensible_cooling,
+                           EndUse::latent_cooling, EndUse::reheat, EndUse::preheat}) {
+    compare(
+        kEndUseNames[static_cast<std::size_t>(use)].data(),
+        [use](const EndUseEnergy& e) { return e[use]; }, 0.10);
+  }
+  compare("heat", heat_kWh, 0.10);
+}
+
+TEST(Hourly, PowerSumsToTheEndUses) {
+  Hourly hourly = make_hourly(2, 4);
+  const Eigen::ArrayXXd power_kW = power_of(hourly, sample_building());
+  const auto months = end_uses_of(hourly, sample_building());
+  const auto maps = meters();
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    const double expected = maps[m].sum_kWh(months[0]) + maps[m].sum_kWh(months[1]);
+    EXPECT_NEAR(power_kW.col(static_cast<Eigen::Index>(m)).sum() / 4.0, expected, 1e-6 * expected);
+  }
+}
+
+TEST(Hourly, QuarterHoursGiveTheSameDays) {
+  Hourly hourly = make_hourly(12);
+  Hourly quarterly = make_hourly(12, 4);
+  const Eigen::ArrayXXd coarse = power_of(hourly, sample_building());
+  const Eigen::ArrayXXd fine = power_of(quarterly, sample_building());
+  for (Eigen::Index m = 0; m < 3; ++m) {
+    const double mean_kWh = 24.0 * coarse.col(m).mean();
+    for (Eigen::Index hour = 0; hour + 24 <= coarse.rows(); hour += 24) {
+      const double day_kWh = coarse.col(m).segment(hour, 24).sum();
+      const double fine_kWh = fine.col(m).segment(4 * hour, 96).sum() / 4.0;
+      ASSERT_NEAR(fine_kWh, day_kWh, 0.02 * std::max(day_kWh, mean_kWh))
+          << "meter " << m << ", day " << hour / 24;
+    }
+  }
+}
+
+TEST(Hourly, InsulationNeverRaisesWinterHeat) {
+  Hourly hourly = make_hourly(1);
+  double before_kWh = std::numeric_limits<double>::infinity();
+  for (const double factor : {2.0, 1.5, 1.0, 0.7, 0.4, 0.1}) {
+    Building building = sample_building();
+    for (Surface& s : building.surfaces) s.u_W_m2K *= factor;
+    const double kWh = heat_kWh(end_uses_of(hourly, building)[0]);
+    EXPECT_LT(kWh, before_kWh) << factor;
+    before_kWh = kWh;
+  }
+}
+
+// Between the middles of two hours the dry bulb goes straight: quarters lie at -3/8, -1/8, 1/8,
+// 3/8.
+TEST(Hourly, QuarterHoursMeetWeatherBetweenTheHours) {
+  Hourly hourly = make_hourly(1, 4);
+  const auto& hours = hourly.drivers().hours;
+  std::vector<double> met_C;
+  with_operation(hourly, sample_building(), [&](const DriverHour& hour, StepOperation& operation) {
+    if (&hour == &hours[100]) met_C.push_back(operation.dry_bulb_C);
+  });
+  ASSERT_EQ(met_C.size(), 8u);  // in the warm-up and in the run
+  const double here_C = hours[100].dry_bulb_C;
+  const double before_C = hours[99].dry_bulb_C;
+  const double after_C = hours[101].dry_bulb_C;
+  EXPECT_NEAR(met_C[4], here_C + 0.375 * (before_C - here_C), 1e-12);
+  EXPECT_NEAR(met_C[5], here_C + 0.125 * (before_C - here_C), 1e-12);
+  EXPECT_NEAR(met_C[6], here_C + 0.125 * (after_C - here_C), 1e-12);
+  EXPECT_NEAR(met_C[7], here_C + 0.375 * (after_C - here_C), 1e-12);
+}
+
+TEST(Hourly, AJumpInTimeStartsAfresh) {
+  const Building building = sample_building();
+  const auto calendar = *metering::LocalCalendar::open("America/New_York");
+  const auto begin = std::chrono::sys_days{std::chrono::year{2020} / 12 / 31};
+  const auto weather = testing::sample_weather(begin, 24 * 735);
+  const auto year = testing::months_of_2021_22(12);
+  const auto hourly_of = [&](const std::vector<metering::Month>& months) {
+    return Hourly{std::make_shared<const Drivers>(
+                      *make_drivers(months, calendar, {}, building, testing::sample_loads(),
+                                    testing::sample_location(), weather)),
+                  {.steps_per_hour = 4}};
+  };
+  Hourly both = hourly_of({year[0], year[6]});
+  Hourly january = hourly_of({year[0]});
+  Hourly july = hourly_of({year[6]});
+  const Eigen::ArrayXXd first = power_of(january, building);
+  const Eigen::ArrayXXd second = power_of(july, building);
+  const Eigen::ArrayXXd all = power_of(both, building);
+  EXPECT_TRUE((all.topRows(first.rows()) == first).all());
+  EXPECT_TRUE((all.bottomRows(second.rows()) == second).all());
+}
+
+TEST(Hourly, BuildingsWithoutGainsOrAirStayFinite) {
+  Building building = sample_building();
+  building.use = {};
+  building.leakage_cm2_m2 = 0.0;
+  for (Surface& s : building.surfaces) s.shgc = s.solar_absorptance = 0.0;
+  Hourly hourly = make_hourly(2);
+  EXPECT_TRUE(power_of(hourly, building).isFinite().all());
+  building.air.reset();
+  EXPECT_TRUE(power_of(hourly, building).isFinite().all());
+  building.surfaces.clear();
+  EXPECT_TRUE(power_of(hourly, building).isFinite().all());
+}
+
+TEST(Hourly, PartlyServedRoomsLieBetweenAndBeginWithoutAJump) {
+  Hourly hourly = make_hourly(2);
+  for (const double always : {0.0, 0.4}) {
+    Building building = sample_building();
+    building.air->outdoor_air_unoccupied_fraction = always;
+    const auto night = [&](double share) {
+      return with_operation(hourly, building,
+                            [share](const DriverHour& hour, StepOperation& o) {
+                              if (!hour.occupied) o.daytime_share = share;
+                            })
+          .colwise()
+          .sum()
+          .eval();
+    };
+    const Eigen::ArrayXXd none = night(0.0);
+    const Eigen::ArrayXXd half = night(0.5);
+    const Eigen::ArrayXXd whole = night(1.0);
+    EXPECT_TRUE((none < half).all() && (half < whole).all()) << always;
+    EXPECT_LT(((night(1e-6) - none) / none).abs().maxCoeff(), 1e-4) << always;
+  }
+  // Served round the clock by its own description, or by the day that never ends.
+  Building always = sample_building();
+  always.air->outdoor_air_unoccupied_fraction = 1.0;
+  const Eigen::ArrayXXd endless =
+      with_operation(hourly, sample_building(),
+                     [](const DriverHour&, StepOperation& o) { o.daytime_share = 1.0; });
+  EXPECT_LT((power_of(hourly, always) - endless).abs().maxCoeff(), 1e-9);
+}
+
+TEST(Hourly, AnEconomiserSavesCoolingAndItsShareScalesTheSaving) {
+  Hourly hourly = make_hourly(6);
+  Building building = sample_building();
+  const double without_kWh = power_of(hourly, building).col(1).sum();
+  building.air->economiser_lockout_C = 18.0;
+  const double with_kWh = power_of(hourly, building).col(1).sum();
+  EXPECT_LT(with_kWh, 0.97 * without_kWh);
+  const double broken_kWh =
+      with_operation(hourly, building,
+                     [](const DriverHour&, StepOperation& o) { o.economiser_share = 0.0; })
+          .col(1)
+          .sum();
+  EXPECT_NEAR(broken_kWh, without_kWh, 1e-9 * without_kWh);
+}
+
+TEST(Hourly, AnOwnChillerPaysByElectricity) {
+  Hourly hourly = make_hourly(8);
+  Building building = sample_building();
+  const Eigen::ArrayXXd district = power_of(hourly, building);
+  building.chiller_cop = 4.0;
+  const Eigen::ArrayXXd own = power_of(hourly, building);
+  EXPECT_LT((own.col(0) - district.col(0) - district.col(1) / 4.0).abs().maxCoeff(), 1e-9);
+}
+
+TEST(Hourly, IdleHandlersThatLeakCostHeat) {
+  Hourly hourly = make_hourly(1);
+  Building building = sample_building();
+  const double tight_kWh = power_of(hourly, building).col(2).sum();
+  const double leaky_kWh = with_operation(hourly, building,
+                                          [](const DriverHour&, StepOperation& o) {
+                                            o.idle_outdoor_air_m3_s = 0.2 * o.outdoor_air_m3_s;
+                                          })
+                               .col(2)
+                               .sum();
+  EXPECT_GT(leaky_kWh, 1.02 * tight_kWh);
+}
+
+// Eigen's arrays in the model have fixed sizes, so operator new sees every allocation.
+TEST(Hourly, ASecondRunDoesNotAllocate) {
+  Hourly hourly = make_hourly(2);
+  const Building building = sample_building();
+  const auto maps = meters();
+  Eigen::ArrayXXd power_kW(hourly.step_count(), 3);
+  const Neutral neutral;
+  const Alteration* const list[] = {&neutral};
+  hourly.run(building, list, maps, power_kW);
+  const long before = testing::allocation_count();
+  hourly.run(building, list, maps, power_kW);
+  EXPECT_EQ(testing::allocation_count(), before);
+}
+
+}  // namespace
+}  // namespace recald::model::hourly
