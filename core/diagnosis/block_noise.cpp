@@ -1,0 +1,365 @@
+#include "core/diagnosis/block_noise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr double log_two_pi = 1.8378770664093454836;
+
+constexpr double pattern_share = 0.02;         // tau in units of the meter's mean
+constexpr double structure_prior_share = 0.1;  // sd of the half-normal prior of s, likewise
+constexpr double correlation_min_h = 12.0;
+constexpr double correlation_max_h = 480.0;
+constexpr double white_share_min = 1e-4;
+constexpr double white_share_max = 1.0;
+constexpr double structure_share_min = 1e-4;  // below it u is nothing; its log needs an end
+constexpr double structure_share_max = 1.0;
+
+/// log s, log T, log sigma
+using LogLevel = Eigen::Vector3d;
+
+struct Peak {
+  LogLevel at;
+  double value;
+};
+
+/// Nelder and Mead's simplex search for a maximum, with their coefficients 1, 2, 1/2, 1/2.
+/// @see Nelder, Mead (1965), Comput. J. 7(4).
+template <class Function>
+Peak climb(const Function& function, const LogLevel& start, double step) {
+  constexpr int rounds_max = 200;
+  constexpr double tolerance = 3e-3;  // nats between best and worst corner: far below what matters
+  std::array<Peak, 4> corners;
+  for (int i = 0; i < 4; ++i) {
+    LogLevel at = start;
+    if (i > 0) at[i - 1] += step;
+    corners[static_cast<std::size_t>(i)] = {at, function(at)};
+  }
+  const auto higher = [](const Peak& a, const Peak& b) { return a.value > b.value; };
+  for (int round = 0; round < rounds_max; ++round) {
+    std::sort(corners.begin(), corners.end(), higher);
+    Peak& worst = corners.back();
+    if (corners.front().value - worst.value < tolerance) break;
+    const LogLevel centre = (corners[0].at + corners[1].at + corners[2].at) / 3.0;
+    const auto probe = [&](double reach) {
+      const LogLevel at = centre + reach * (worst.at - centre);
+      return Peak{at, function(at)};
+    };
+    const Peak reflected = probe(-1.0);
+    if (higher(reflected, corners.front())) {
+      const Peak expanded = probe(-2.0);
+      worst = higher(expanded, reflected) ? expanded : reflected;
+    } else if (higher(reflected, corners[2])) {
+      worst = reflected;
+    } else {
+      const Peak contracted = probe(higher(reflected, worst) ? -0.5 : 0.5);
+      if (higher(contracted, worst) && !higher(reflected, contracted)) {
+        worst = contracted;
+        continue;
+      }
+      for (std::size_t i = 1; i < 4; ++i) {
+        corners[i].at = 0.5 * (corners[i].at + corners[0].at);
+        corners[i].value = function(corners[i].at);
+      }
+    }
+  }
+  return *std::min_element(corners.begin(), corners.end(), higher);
+}
+
+/// The nearest point of the prior's support.
+LogLevel inside_support(const LogLevel& at, double mean) {
+  const LogLevel low =
+      LogLevel(structure_share_min * mean, correlation_min_h, white_share_min * mean).array().log();
+  const LogLevel high =
+      LogLevel(structure_share_max * mean, correlation_max_h, white_share_max * mean).array().log();
+  return at.cwiseMax(low).cwiseMin(high);
+}
+
+NoiseLevel level_at(const LogLevel& at, double mean) {
+  return {.structure_sd = std::exp(at[0]),
+          .correlation_h = std::exp(at[1]),
+          .white_sd = std::exp(at[2]),
+          .pattern_sd = pattern_share * mean};
+}
+
+/// Which points stand out from the prediction of the filter, patterns removed.
+std::vector<bool> standing_out(const GateInput& input, double limit_sd) {
+  const BlockDesign ungated{input.design.times_h, input.design.patterns, {}};
+  const BlockNoise noise(ungated, input.level);
+  const Eigen::VectorXd rest =
+      input.residual - ungated.patterns * noise.pattern_mean(input.residual);
+  const double stationary = std::pow(input.level.structure_sd, 2);
+  const double white = std::pow(input.level.white_sd, 2);
+
+  std::vector<bool> out(static_cast<std::size_t>(rest.size()), false);
+  double mean = 0.0;
+  double variance = stationary;
+  for (Eigen::Index i = 0; i < rest.size(); ++i) {
+    const double error = rest[i] - mean;
+    const bool stands_out = std::abs(error) > limit_sd * std::sqrt(variance + white);
+    out[static_cast<std::size_t>(i)] = stands_out;
+    const double gain = variance / (variance + white * (stands_out ? gated_variance_factor : 1.0));
+    if (i + 1 == rest.size()) break;
+    const double step_h = ungated.times_h[i + 1] - ungated.times_h[i];
+    const double correlation = std::exp(-step_h / input.level.correlation_h);
+    mean = correlation * (mean + gain * error);
+    variance = correlation * correlation * (1.0 - gain) * variance +
+               stationary * (1.0 - correlation * correlation);
+  }
+  return out;
+}
+
+/// Whether a point of `out`, other than the one at `self`, lies within `reach_h` of `time_h`.
+bool any_near(const Eigen::VectorXd& times_h, const std::vector<bool>& out, double time_h,
+              double reach_h, Eigen::Index self) {
+  const double* begin = times_h.data();
+  const double* end = begin + times_h.size();
+  for (const double* t = std::lower_bound(begin, end, time_h - reach_h);
+       t != end && *t <= time_h + reach_h; ++t) {
+    const auto i = t - begin;
+    if (i != self && out[static_cast<std::size_t>(i)]) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+BlockNoise::BlockNoise(const BlockDesign& design, const NoiseLevel& level)
+    : level_(level), patterns_((level.pattern_sd * design.patterns).sparseView()) {
+  const Eigen::Index n = design.times_h.size();
+  assert(n >= 1 && design.patterns.rows() == n);
+  assert(design.gated.empty() || static_cast<Eigen::Index>(design.gated.size()) == n);
+  assert(level.structure_sd >= 0.0 && level.correlation_h > 0.0);
+  assert(level.white_sd > 0.0 && level.pattern_sd >= 0.0);
+
+  white_variance_ = Eigen::VectorXd::Constant(n, level.white_sd * level.white_sd);
+  for (std::size_t i = 0; i < design.gated.size(); ++i) {
+    if (design.gated[i]) white_variance_[static_cast<Eigen::Index>(i)] *= gated_variance_factor;
+  }
+  factor_filter(design);
+  factor_patterns();
+}
+
+void BlockNoise::factor_filter(const BlockDesign& design) {
+  const Eigen::Index n = design.times_h.size();
+  correlation_ = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
+    const double step_h = design.times_h[i + 1] - design.times_h[i];
+    assert(step_h > 0.0);
+    correlation_[i] = std::exp(-step_h / level_.correlation_h);
+  }
+  weight_.resize(n);
+  keep_.resize(n);
+  take_.resize(n);
+  const double stationary = level_.structure_sd * level_.structure_sd;
+  double variance = stationary;  // of u_i given the readings before i
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double error_variance = variance + white_variance_[i];
+    const double gain = variance / error_variance;
+    const double rho = correlation_[i];
+    weight_[i] = 1.0 / std::sqrt(error_variance);
+    keep_[i] = rho * (1.0 - gain);
+    take_[i] = rho * gain;
+    log_determinant_ += std::log(error_variance);
+    variance = rho * rho * (1.0 - gain) * variance + stationary * (1.0 - rho * rho);
+  }
+}
+
+void BlockNoise::factor_patterns() {
+  // A few columns at a time stay in the cache; all of them at once take twice as long.
+  constexpr Eigen::Index columns_at_once = 8;
+  const Eigen::Index p = patterns_.cols();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(p, p);
+  for (Eigen::Index j = 0; j < p; j += columns_at_once) {
+    const Eigen::Index count = std::min(columns_at_once, p - j);
+    const Eigen::MatrixXd some = patterns_.middleCols(j, count);
+    matrix.middleCols(j, count) += patterns_.transpose() * whiten_transposed(whiten(some));
+  }
+  // I plus a positive semi-definite matrix: it has a factor whatever the data.
+  pattern_factor_.compute(matrix);
+  log_determinant_ += 2.0 * pattern_factor_.matrixLLT().diagonal().array().log().sum();
+}
+
+Eigen::MatrixXd BlockNoise::whiten(const Eigen::MatrixXd& columns) const {
+  assert(columns.rows() == points());
+  Eigen::MatrixXd whitened(columns.rows(), columns.cols());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    double prediction = 0.0;
+    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+      whitened(i, j) = (columns(i, j) - prediction) * weight_[i];
+      prediction = keep_[i] * prediction + take_[i] * columns(i, j);
+    }
+  }
+  return whitened;
+}
+
+// `whiten` read backwards: `pull` is the derivative with respect to the next prediction.
+Eigen::MatrixXd BlockNoise::whiten_transposed(const Eigen::MatrixXd& columns) const {
+  Eigen::MatrixXd product(columns.rows(), columns.cols());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    double pull = 0.0;
+    for (Eigen::Index i = columns.rows() - 1; i >= 0; --i) {
+      const double direct = columns(i, j) * weight_[i];
+      product(i, j) = direct + take_[i] * pull;
+      pull = keep_[i] * pull - direct;
+    }
+  }
+  return product;
+}
+
+Eigen::MatrixXd BlockNoise::gram(const Eigen::MatrixXd& columns) const {
+  const Eigen::MatrixXd whitened = whiten(columns);
+  const Eigen::MatrixXd in_patterns = pattern_factor_.matrixL().solve(
+      Eigen::MatrixXd(patterns_.transpose() * whiten_transposed(whitened)));
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  products.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose());
+  products.selfadjointView<Eigen::Lower>().rankUpdate(in_patterns.transpose(), -1.0);
+  return products.selfadjointView<Eigen::Lower>();
+}
+
+Eigen::MatrixXd BlockNoise::solve(const Eigen::MatrixXd& columns) const {
+  const Eigen::MatrixXd weighted = whiten_transposed(whiten(columns));
+  const Eigen::MatrixXd pattern =
+      pattern_factor_.solve(Eigen::MatrixXd(patterns_.transpose() * weighted));
+  return weighted - whiten_transposed(whiten(patterns_ * pattern));
+}
+
+Eigen::VectorXd BlockNoise::pattern_mean(const Eigen::VectorXd& residual) const {
+  const Eigen::VectorXd weighted = whiten_transposed(whiten(residual));
+  return level_.pattern_sd *
+         pattern_factor_.solve(Eigen::VectorXd(patterns_.transpose() * weighted));
+}
+
+double BlockNoise::marginal_log_density(const Eigen::VectorXd& residual) const {
+  return -0.5 *
+         (static_cast<double>(points()) * log_two_pi + log_determinant_ + gram(residual)(0, 0));
+}
+
+Eigen::VectorXd BlockNoise::draw(Rng& rng) const {
+  const auto standard_normals = [&rng](Eigen::Index size) {
+    return Eigen::VectorXd::NullaryExpr(size, [&rng](Eigen::Index) { return rng.normal(); });
+  };
+  const Eigen::VectorXd pattern = standard_normals(patterns_.cols());
+  Eigen::VectorXd values = patterns_ * pattern;
+  double structure = level_.structure_sd * rng.normal();
+  for (Eigen::Index i = 0; i < points(); ++i) {
+    values[i] += structure + std::sqrt(white_variance_[i]) * rng.normal();
+    const double rho = correlation_[i];
+    structure = rho * structure + level_.structure_sd * std::sqrt(1.0 - rho * rho) * rng.normal();
+  }
+  return values;
+}
+
+Eigen::VectorXd BlockNoise::inverse_diagonal() const {
+  // Squared norms of the columns of W, last one first: what a reading leaves in the errors after
+  // it.
+  Eigen::VectorXd diagonal(points());
+  double later = 0.0;
+  for (Eigen::Index i = points() - 1; i >= 0; --i) {
+    const double own = weight_[i] * weight_[i];
+    diagonal[i] = own + take_[i] * take_[i] * later;
+    later = own + keep_[i] * keep_[i] * later;
+  }
+  const Eigen::MatrixXd weighted = whiten_transposed(whiten(Eigen::MatrixXd(patterns_)));
+  const Eigen::MatrixXd in_patterns =
+      pattern_factor_.matrixL().solve(Eigen::MatrixXd(weighted.transpose()));
+  return diagonal - in_patterns.colwise().squaredNorm().transpose();
+}
+
+// e | r, parameters has mean E Sigma^-1 r and covariance E - E Sigma^-1 E, and so has the structure
+// r - e but for its mean. The parameters then move both: e by E Sigma^-1 J, the rest by J minus
+// that.
+ResidualShares BlockNoise::residual_shares(const Eigen::VectorXd& residual,
+                                           const Eigen::MatrixXd& jacobian,
+                                           const Eigen::MatrixXd& covariance) const {
+  assert(jacobian.rows() == points() && jacobian.cols() == covariance.rows());
+  const auto white = white_variance_.asDiagonal();
+  const Eigen::VectorXd white_mean = white * solve(residual);
+  const Eigen::MatrixXd white_moves = white * solve(jacobian);
+  const Eigen::MatrixXd structure_moves = jacobian - white_moves;
+  const double variance =
+      (white_variance_.array() - white_variance_.array().square() * inverse_diagonal().array())
+          .sum();
+  // trace(X V X') for the rows of X
+  const auto spread = [&covariance](const Eigen::MatrixXd& moves) {
+    return ((moves * covariance).array() * moves.array()).sum();
+  };
+  return {.structural = (residual - white_mean).squaredNorm() + variance + spread(structure_moves),
+          .white = white_mean.squaredNorm() + variance + spread(white_moves)};
+}
+
+Result<LevelFit> fit_levels(const Eigen::VectorXd& residual, const BlockDesign& design,
+                            double mean) {
+  constexpr Eigen::Index points_min = 10;
+  assert(mean > 0.0 && residual.size() == design.times_h.size());
+  if (residual.size() < points_min) {
+    return failure(ErrorCode::not_enough_data,
+                   "the noise of a meter needs at least 10 blocks with readings; it has " +
+                       std::to_string(residual.size()));
+  }
+  if (!residual.allFinite()) {
+    return failure(ErrorCode::not_finite, "a residual of a meter is not a finite number");
+  }
+  int evaluations = 0;
+  const auto log_density = [&](const LogLevel& at) {
+    const LogLevel inside = inside_support(at, mean);
+    const NoiseLevel level = level_at(inside, mean);
+    ++evaluations;
+    const double standardised = level.structure_sd / (structure_prior_share * mean);
+    // Outside the support a slope leads back, where a wall would flatten the simplex.
+    return BlockNoise(design, level).marginal_log_density(residual) -
+           0.5 * standardised * standardised - (at - inside).squaredNorm();
+  };
+  const double root_mean_square = residual.norm() / std::sqrt(static_cast<double>(residual.size()));
+  const double sd = std::max(root_mean_square, 1e-3 * mean);
+  // Mostly slow structure, or mostly noise: the two kinds of maximum this density can have.
+  const LogLevel slow = LogLevel(0.8 * sd, 120.0, 0.4 * sd).array().log();
+  const LogLevel noisy = LogLevel(0.4 * sd, 24.0, 0.8 * sd).array().log();
+  constexpr double step = 0.7;
+  const Peak first = climb(log_density, slow, step);
+  const Peak second = climb(log_density, noisy, step);
+  const Peak& best = first.value >= second.value ? first : second;
+  return LevelFit{level_at(inside_support(best.at, mean), mean), best.value, evaluations};
+}
+
+std::vector<std::vector<bool>> choose_gates(std::span<const GateInput> meters,
+                                            const GateOptions& options) {
+  constexpr double same_time_h = 1e-6;
+  std::vector<std::vector<bool>> out;
+  for (const GateInput& meter : meters) out.push_back(standing_out(meter, options.limit_sd));
+  const auto has_company = [&](std::size_t meter, Eigen::Index i) {
+    const double time_h = meters[meter].design.times_h[i];
+    for (std::size_t other = 0; other < meters.size(); ++other) {
+      const bool own = other == meter;
+      if (any_near(meters[other].design.times_h, out[other], time_h,
+                   own ? options.neighbourhood_h : same_time_h, own ? i : -1)) {
+        return true;
+      }
+    }
+    return false;
+  };
+  std::vector<std::vector<bool>> gated;
+  for (std::size_t meter = 0; meter < meters.size(); ++meter) {
+    const auto points = static_cast<Eigen::Index>(out[meter].size());
+    std::vector<Eigen::Index> alone;
+    for (Eigen::Index i = 0; i < points; ++i) {
+      if (out[meter][static_cast<std::size_t>(i)] && !has_company(meter, i)) alone.push_back(i);
+    }
+    const Eigen::VectorXd& residual = meters[meter].residual;
+    std::sort(alone.begin(), alone.end(), [&residual](Eigen::Index a, Eigen::Index b) {
+      return std::abs(residual[a]) > std::abs(residual[b]);
+    });
+    const auto most = static_cast<std::size_t>(options.share_max * static_cast<double>(points));
+    alone.resize(std::min(alone.size(), most));
+    std::vector<bool>& flags = gated.emplace_back(out[meter].size(), false);
+    for (const Eigen::Index i : alone) flags[static_cast<std::size_t>(i)] = true;
+  }
+  return gated;
+}
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,235 @@
+#include "core/diagnosis/posterior_algebra.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/calibration/log_sum.hpp"
+#include "core/statistics/quantile.hpp"
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr double log_two_pi = 1.8378770664093454836;
+
+/// Of the largest d^2: a column below this is invisible but for rounding.
+constexpr double invisible = 1e-12;
+
+using Factor = Eigen::LLT<Eigen::MatrixXd>;
+
+double log_determinant(const Factor& factor) {
+  return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+}
+
+/// Factor of J' P J + Lambda; its log determinant is finite.
+Result<Factor> posterior_factor(const GramSystem& system, const Eigen::MatrixXd& prior_precision) {
+  const Eigen::Index q = prior_precision.rows();
+  assert(prior_precision.cols() == q && system.gram.rows() > q);
+  Factor factor(system.gram.block(1, 1, q, q) + prior_precision);
+  // Eigen lets a NaN through its factorisation.
+  if (factor.info() != Eigen::Success || !std::isfinite(log_determinant(factor))) {
+    return failure(ErrorCode::not_positive_definite,
+                   "the posterior precision of " + std::to_string(q) +
+                       " parameters has no factor; a sensitivity is not finite or a prior is "
+                       "without bounds");
+  }
+  return factor;
+}
+
+/// Inverse of d, with 0 for invisible columns.
+Eigen::VectorXd visible_scale(const GramSystem& system) {
+  const Eigen::VectorXd d = detectability(system);
+  const double least = d.size() > 0 ? std::sqrt(invisible) * d.maxCoeff() : 0.0;
+  return d.unaryExpr([least](double value) { return value > least ? 1.0 / value : 0.0; });
+}
+
+/// log erfc(x).
+double log_erfc(double x) {
+  if (x < 20.0) return std::log(std::erfc(x));
+  // Abramowitz, Stegun (1964), 7.1.23; the first term left out is below 2e-13 from x = 20 on.
+  const double y = 0.5 / (x * x);
+  const double series = y * (-1.0 + y * (3.0 + y * (-15.0 + y * (105.0 - y * 945.0))));
+  return -x * x - std::log(x * std::sqrt(std::numbers::pi)) + std::log1p(series);
+}
+
+/// log of the mean over x in (0, c) of exp(x z - x^2 / 2).
+double log_mean_likelihood(double c, double z) {
+  if (c * (1.0 + std::abs(z)) < 1e-3) {
+    // The difference below would lose its digits; the series is off by its fourth order, < 1e-12.
+    return c * z / 2.0 + c * c * (z * z / 24.0 - 1.0 / 6.0) - c * c * c * z / 24.0;
+  }
+  // The integral is sqrt(2 pi) exp(z^2 / 2) times the normal mass between -z and c - z. Seen from
+  // the tail that holds both ends, neither is lost against 1.
+  double near = -z;
+  double far = c - z;
+  if (near + far < 0.0) {
+    near = z - c;
+    far = z;
+  }
+  const double log_near = log_erfc(near / std::numbers::sqrt2);
+  const double log_far = log_erfc(far / std::numbers::sqrt2);
+  const double log_mass = log_near + std::log(-std::expm1(log_far - log_near)) - std::numbers::ln2;
+  return 0.5 * (log_two_pi + z * z) + log_mass - std::log(c);
+}
+
+}  // namespace
+
+void GramSystem::add(const BlockNoise& noise, const Eigen::MatrixXd& columns) {
+  assert(points == 0 || gram.rows() == columns.cols());
+  if (points == 0) gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  gram += noise.gram(columns);
+  log_determinant += noise.log_determinant();
+  points += noise.points();
+}
+
+Result<GramSystem> marginalise(const GramSystem& system, const Eigen::MatrixXd& prior_precision) {
+  const Eigen::Index q = prior_precision.rows();
+  if (q == 0) return system;
+  const Factor prior(prior_precision);
+  const double log_prior = log_determinant(prior);
+  if (prior.info() != Eigen::Success || !std::isfinite(log_prior)) {
+    return failure(ErrorCode::not_positive_definite,
+                   "the prior precision of the parameters is not positive definite");
+  }
+  const auto factor = posterior_factor(system, prior_precision);
+  if (!factor) return tl::unexpected(factor.error());
+
+  std::vector<Eigen::Index> kept{0};
+  for (Eigen::Index j = q + 1; j < system.gram.rows(); ++j) kept.push_back(j);
+  const Eigen::MatrixXd explained =
+      factor->matrixL().solve(Eigen::MatrixXd(system.gram.middleRows(1, q)(Eigen::all, kept)));
+  GramSystem rest;
+  rest.gram = system.gram(kept, kept) - explained.transpose() * explained;
+  rest.log_determinant = system.log_determinant + log_determinant(*factor) - log_prior;
+  rest.points = system.points;
+  return rest;
+}
+
+Result<GaussianPosterior> posterior(const GramSystem& system,
+                                    const Eigen::MatrixXd& prior_precision) {
+  const Eigen::Index q = prior_precision.rows();
+  if (q == 0) return GaussianPosterior{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+  const auto factor = posterior_factor(system, prior_precision);
+  if (!factor) return tl::unexpected(factor.error());
+  return GaussianPosterior{factor->solve(Eigen::VectorXd(system.gram.col(0).segment(1, q))),
+                           factor->solve(Eigen::MatrixXd::Identity(q, q))};
+}
+
+GramSystem select(const GramSystem& system, std::span<const Eigen::Index> columns) {
+  std::vector<Eigen::Index> kept{0};
+  kept.insert(kept.end(), columns.begin(), columns.end());
+  return {system.gram(kept, kept), system.log_determinant, system.points};
+}
+
+double log_evidence(const GramSystem& system) {
+  return -0.5 * (static_cast<double>(system.points) * log_two_pi + system.log_determinant +
+                 system.gram(0, 0));
+}
+
+Eigen::VectorXd detectability(const GramSystem& system) {
+  return system.gram.diagonal().tail(system.gram.rows() - 1).cwiseMax(0.0).cwiseSqrt();
+}
+
+Eigen::VectorXd score(const GramSystem& system) {
+  return visible_scale(system).cwiseProduct(system.gram.col(0).tail(system.gram.rows() - 1));
+}
+
+Eigen::MatrixXd confusability(const GramSystem& system) {
+  const Eigen::Index k = system.gram.rows() - 1;
+  const Eigen::VectorXd scale = visible_scale(system);
+  return scale.asDiagonal() * system.gram.bottomRightCorner(k, k) * scale.asDiagonal();
+}
+
+Eigen::VectorXd absorbed_share(const GramSystem& before, const GramSystem& after) {
+  const Eigen::Index k = after.gram.rows() - 1;
+  const Eigen::ArrayXd left = after.gram.diagonal().tail(k).array();
+  return 1.0 - left / before.gram.diagonal().tail(k).array();
+}
+
+double log_normal_cdf(double x) {
+  if (x > 0.0) return std::log1p(-0.5 * std::erfc(x / std::numbers::sqrt2));
+  return log_erfc(-x / std::numbers::sqrt2) - std::numbers::ln2;
+}
+
+double log_bayes_factor(double detectability, double score, const AmountPrior& prior) {
+  assert(detectability >= 0.0 && prior.scale > 0.0);
+  const double reach = prior.scale * detectability;  // tau d, or b d
+  if (reach == 0.0) return 0.0;
+  if (prior.kind == AmountPriorKind::uniform) return log_mean_likelihood(reach, score);
+  const double spread = std::hypot(1.0, reach);
+  const double standardised = score * reach / spread;  // posterior mean over posterior sd
+  const double normal = -std::log(spread) + 0.5 * standardised * standardised;
+  if (prior.kind == AmountPriorKind::normal) return normal;
+  return normal + std::numbers::ln2 + log_normal_cdf(standardised);
+}
+
+double combine_nodes(const Eigen::VectorXd& log_evidences, const Eigen::VectorXd& log_weights) {
+  return calibration::log_sum(log_evidences + log_weights);
+}
+
+Eigen::VectorXd node_weights(const Eigen::VectorXd& log_evidences,
+                             const Eigen::VectorXd& log_weights) {
+  const Eigen::ArrayXd logs = log_evidences + log_weights;
+  return (logs - calibration::log_sum(logs)).exp();
+}
+
+Eigen::MatrixXd draw_scores(const Eigen::MatrixXd& correlation, int draws, Rng& rng) {
+  // Bins that add up to others make the matrix singular: pivoting puts what is left of rank last.
+  const Eigen::LDLT<Eigen::MatrixXd> factor(correlation);
+  Eigen::MatrixXd root = factor.matrixL();
+  const Eigen::VectorXd pivots = factor.vectorD();
+  const double least = invisible * (pivots.size() > 0 ? pivots.maxCoeff() : 0.0);
+  for (Eigen::Index j = 0; j < root.cols(); ++j) {
+    if (pivots[j] > least) {
+      root.col(j) *= std::sqrt(pivots[j]);
+    } else {
+      root.col(j).setZero();
+    }
+  }
+  root = factor.transpositionsP().transpose() * root;
+  return root *
+         Eigen::MatrixXd::NullaryExpr(correlation.rows(), draws,
+                                      [&rng](Eigen::Index, Eigen::Index) { return rng.normal(); });
+}
+
+Eigen::VectorXd null_maxima(const Eigen::MatrixXd& correlation, int draws, Rng& rng) {
+  Eigen::VectorXd maxima =
+      draw_scores(correlation, draws, rng).cwiseAbs().colwise().maxCoeff().transpose();
+  std::sort(maxima.begin(), maxima.end());
+  return maxima;
+}
+
+double exceedance(const Eigen::VectorXd& maxima, double statistic) {
+  const auto at_least =
+      std::distance(std::lower_bound(maxima.begin(), maxima.end(), statistic), maxima.end());
+  return (1.0 + static_cast<double>(at_least)) / (1.0 + static_cast<double>(maxima.size()));
+}
+
+double normal_p_value(double score) { return std::erfc(std::abs(score) / std::numbers::sqrt2); }
+
+double null_threshold(std::span<const CandidateScale> candidates,
+                      const Eigen::MatrixXd& confusability, double probability, int draws,
+                      Rng& rng) {
+  assert(!candidates.empty() && draws > 0);
+  assert(confusability.rows() == static_cast<Eigen::Index>(candidates.size()));
+  const Eigen::MatrixXd scores = draw_scores(confusability, draws, rng);
+  Eigen::VectorXd best(draws);
+  for (Eigen::Index draw = 0; draw < draws; ++draw) {
+    double largest = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      largest = std::max(largest, log_bayes_factor(candidates[k].detectability,
+                                                   scores(static_cast<Eigen::Index>(k), draw),
+                                                   candidates[k].prior));
+    }
+    best[draw] = largest;
+  }
+  std::sort(best.begin(), best.end());
+  return quantile_of_sorted(best, probability);
+}
+
+}  // namespace recald::diagnosis
