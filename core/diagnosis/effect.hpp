@@ -1,0 +1,101 @@
+/// One entry of the catalogue: a physical effect that a building may have and its model lack.
+///
+/// An entry is data and one small function. Adding one is adding a file to `effects/`: the file
+/// `effects/<id>.cpp` defines `Effect recald::diagnosis::effects::<id>()`, and the build finds it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/metering/reading.hpp"
+#include "core/model/building.hpp"
+#include "core/model/drivers.hpp"
+#include "core/model/hourly/alteration.hpp"
+#include "core/model/parameter.hpp"
+
+namespace recald::diagnosis {
+
+enum class EffectClass { schedule, outdoor_air, air_system, envelope, plant, electrical, meter };
+[[nodiscard]] std::string_view to_string(EffectClass effect_class);
+
+/// What is known of the site when an effect's priors are written down.
+struct SiteFacts {
+  const model::Building& building;
+  const model::Drivers& drivers;
+  std::vector<metering::Utility> utilities;  ///< (m) of the model's meters.
+  std::vector<double> mean_kW;               ///< (m) measured mean power of each.
+  /// Of the meter that carries this utility, or 0 where none does. Gas and steam count as heating.
+  [[nodiscard]] double mean_of_kW(metering::Utility utility) const;
+};
+
+struct EffectParameter {
+  std::string name;  ///< snake_case
+  std::string unit;
+  Prior prior;     ///< With physical sign and bounds.
+  double neutral;  ///< Here the model is its parent, bit by bit. Shape parameters have none: NaN.
+  /// Values at which the first look tries a shape (threshold, hour, date); empty: an amount, which
+  /// the first look takes as linear around a typical value.
+  std::vector<double> scan = {};
+};
+
+/// What an effect needs before it may be a candidate.
+struct EffectNeeds {
+  bool air_system = false;
+  bool humidity = false;
+  bool wind = false;
+  bool own_chiller = false;
+  bool heat_pump = false;
+  bool economiser = false;
+  bool night_set_back = false;  ///< Unoccupied set-points differ from occupied ones.
+};
+
+/// How an effect may stand in time.
+enum class Dating {
+  always,      ///< A property of the building.
+  may_begin,   ///< Either always, or since a date that is then a parameter.
+  must_begin,  ///< Since a date.
+  window,      ///< From one date to another.
+};
+
+/// A rival and what would part the two.
+struct Confusable {
+  std::string_view effect;
+  std::string_view separated_by;  ///< The measurement, as a building operator would order it.
+};
+
+struct Effect {
+  std::string_view id;
+  std::string_view title;    ///< "Night set-back missing"
+  std::string_view meaning;  ///< For the people in the building, one or two sentences.
+  std::string_view physics;  ///< The equation as text, with units.
+  EffectClass effect_class;
+  Dating dating = Dating::always;
+  /// Changes what one meter records, not the building: there is one candidate a meter of these
+  /// utilities (empty: every meter), and `bind` is told which.
+  bool of_one_meter = false;
+  std::vector<metering::Utility> meter_utilities = {};
+  EffectNeeds needs = {};
+  std::vector<Confusable> confusable = {};
+
+  /// At most 3; the dates that `dating` asks for come on top and are not the entry's business.
+  std::vector<EffectParameter> (*parameters)(const SiteFacts&);
+  /// @param values  In order of `parameters`, in the support of their priors.
+  /// @param meter   Index among the model's meters; -1 unless `of_one_meter`.
+  std::unique_ptr<model::hourly::Alteration> (*bind)(const SiteFacts&,
+                                                     std::span<const double> values, int meter);
+};
+
+/// All entries, ordered by id.
+[[nodiscard]] std::span<const Effect> catalogue();
+/// @return nullptr where no entry has this id.
+[[nodiscard]] const Effect* find_effect(std::string_view id);
+
+/// Calls `inner` only in hours that start in [from_day, to_day), counted as `DriverHour::day_index`
+/// with the hour as fraction; `rebuild` is never called, so a dated effect must not use it.
+[[nodiscard]] std::unique_ptr<model::hourly::Alteration> within_dates(
+    std::unique_ptr<model::hourly::Alteration> inner, double from_day, double to_day);
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,59 @@
+/// The plant stops later than its timetable says.
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/half_normal.hpp"
+#include "core/diagnosis/effects/support/plant_hours.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+/// Counts from the last stop, so a late stop may reach past midnight, and Friday's into Saturday.
+class AfterHours final : public model::hourly::Alteration {
+ public:
+  explicit AfterHours(double late_h) : late_h_(late_h) {}
+
+  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
+    run_at_least(covered_share(late_h_, hour.hours_since_stop), op);
+  }
+
+ private:
+  double late_h_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "late_stop", .unit = "h", .prior = half_normal(3.0), .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<AfterHours>(values[0]);
+}
+
+}  // namespace
+
+Effect after_hours();
+
+Effect after_hours() {
+  return {
+      .id = "after_hours",
+      .title = "After-hours operation",
+      .meaning =
+          "On working days fans, heating and cooling run on after the timetable's end, for "
+          "instance because of an override that nobody takes back.",
+      .physics = "t_off [h] = t_off,drawn + Δh on days with plant operation; Δh [h] ≥ 0",
+      .effect_class = EffectClass::schedule,
+      .dating = Dating::may_begin,
+      .confusable =
+          {{"dst_misapplied",
+            "The stop edge in 15-minute values: a clock error comes and goes with the change of "
+            "the clocks and moves the morning too."},
+           {"clock_offset",
+            "The start edge: a wrong clock moves start and stop alike, and the sun-locked loads."},
+           {"exterior_lighting",
+            "The edge against sunset over the year, and whether chilled water follows it."},
+           {"night_setback_missing", "Power at 03:00, long after any late stop."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

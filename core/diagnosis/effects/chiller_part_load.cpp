@@ -1,0 +1,93 @@
+/// The building's own chiller is worse at part load, or in warm weather, than one COP says.
+#include <algorithm>
+
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/weather/psychrometrics.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect chiller_part_load();
+
+namespace {
+
+using model::hourly::StepLoads;
+using model::hourly::StepOperation;
+
+constexpr double kLatentAllowance = 1.3;  // of a sensible design load, usual in offices
+constexpr double kDesign_W_m2 = 100.0;    // where no air system tells the design load
+constexpr double kLeastLoad = 0.1;        // below, the chiller cycles at this load
+constexpr double kReferenceCondenser_C = 30.0;
+constexpr double kTowerApproach_K = 5.0;
+constexpr double kLeastCondenser_C = 20.0;
+
+double design_cooling_W(const SiteFacts& facts) {
+  const model::Building& building = facts.building;
+  if (!building.air) return kDesign_W_m2 * building.floor_area_m2;
+  const double drop_K = building.set_points.cooling_occupied_C - building.air->supply_temperature_C;
+  return kLatentAllowance * weather::air_heat_capacity_J_m3K(facts.drivers.pressure_Pa) *
+         building.air->supply_flow_design_m3_s * std::max(drop_K, 5.0);
+}
+
+/// The entry's quadratic curve with its two separable habits left: a part of the power that does
+/// not follow the load, and dearer cooling where the condenser is warm. Its overall gain is the
+/// nominal COP, a calibration parameter.
+class ChillerPartLoad final : public model::hourly::Alteration {
+ public:
+  ChillerPartLoad(double idle_share, double per_K, double design_W)
+      : idle_share_(idle_share), per_K_(per_K), design_W_(design_W) {}
+
+  void supply(const model::Building&, const model::DriverHour&, const StepOperation& operation,
+              StepLoads& loads) const override {
+    const double load_W = loads.sensible_cooling_W + loads.latent_cooling_W;
+    const double ratio = std::clamp(load_W / design_W_, kLeastLoad, 1.0);
+    // Outdoor air stands for the tower's water, which follows it from some 15 C up.
+    const double condenser_C = std::max(operation.dry_bulb_C + kTowerApproach_K, kLeastCondenser_C);
+    loads.cooling_cost_factor *= 1.0 + idle_share_ * (1.0 / ratio - 1.0);
+    loads.cooling_cost_factor *= 1.0 + per_K_ * (condenser_C - kReferenceCondenser_C);
+  }
+
+ private:
+  double idle_share_;
+  double per_K_;
+  double design_W_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "idle_power_share",
+           .unit = "-",
+           .prior = half_normal_below(0.15, 0.6),
+           .neutral = 0.0},
+          {.name = "condenser_slope",
+           .unit = "1/K",
+           .prior = half_normal_below(0.02, 0.06),
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<ChillerPartLoad>(values[0], values[1], design_cooling_W(facts));
+}
+
+}  // namespace
+
+Effect chiller_part_load() {
+  return {
+      .id = "chiller_part_load",
+      .title = "Chiller poor at part load",
+      .meaning =
+          "The chiller uses more electricity per cooling when it is lightly loaded or "
+          "its condenser is warm: check staging, minimum load and the tower.",
+      .physics =
+          "power = cooling/COP x (1 + p (1/r - 1)) x (1 + c (T_cw - 30 C)); r load over "
+          "design load, at least 0.1; T_cw = max(T_out + 5 K, 20 C); p in -, c in 1/K",
+      .effect_class = EffectClass::plant,
+      .needs = {.own_chiller = true},
+      .confusable = {{"fouling",
+                      "Chiller power at one load and tower temperature, this year and last."},
+                     {"constant_flow_pumps", "Pump power by itself, on a mild working day."},
+                     {"demand_limit", "Chiller power against its load on the hottest afternoons."}},
+      .parameters = parameters,
+      .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,123 @@
+/// Pumps run at full speed whether anybody needs water or not.
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/half_normal.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+/// Which calendar months have their plant enabled.
+using Months = std::array<bool, 12>;
+
+std::size_t calendar_month(const model::DriverHour& hour) {
+  return static_cast<unsigned>(hour.date.month()) - 1;
+}
+
+/// Months warmer than the middle between the warmest and the coldest month of the drivers; none
+/// that the drivers lack.
+Months warm_months(const model::Drivers& drivers) {
+  std::array<double, 12> mean_C{};
+  std::array<int, 12> hours{};
+  for (const model::DriverHour& hour : drivers.hours) {
+    mean_C[calendar_month(hour)] += hour.dry_bulb_C;
+    ++hours[calendar_month(hour)];
+  }
+  double coldest_C = std::numeric_limits<double>::infinity();
+  double warmest_C = -coldest_C;
+  for (std::size_t m = 0; m < 12; ++m) {
+    if (hours[m] == 0) continue;
+    mean_C[m] /= hours[m];
+    coldest_C = std::min(coldest_C, mean_C[m]);
+    warmest_C = std::max(warmest_C, mean_C[m]);
+  }
+  Months warm{};
+  for (std::size_t m = 0; m < 12; ++m) {
+    warm[m] = hours[m] > 0 && mean_C[m] > 0.5 * (coldest_C + warmest_C);
+  }
+  return warm;
+}
+
+/// @param season  1: all year, 2: warm months (chilled water), 3: the others (hot water).
+Months enabled_months(const model::Drivers& drivers, double season) {
+  Months enabled;
+  enabled.fill(true);
+  if (season < 1.5) return enabled;
+  enabled = warm_months(drivers);
+  if (season >= 2.5) std::ranges::transform(enabled, enabled.begin(), std::logical_not{});
+  return enabled;
+}
+
+/// Heat that the pumps leave in the water is a few per cent of their power and left out.
+class ConstantFlowPumps final : public model::hourly::Alteration {
+ public:
+  ConstantFlowPumps(const Months& enabled, double extra_kW)
+      : enabled_(enabled), extra_kW_(extra_kW) {}
+
+  void supply(const model::Building&, const model::DriverHour& hour,
+              const model::hourly::StepOperation&, model::hourly::StepLoads& loads) const override {
+    if (enabled_[calendar_month(hour)]) loads.pumps_W += 1000.0 * extra_kW_;
+  }
+
+ private:
+  Months enabled_;
+  double extra_kW_;
+};
+
+/// Mean of the electricity meter; 10 W/m² where there is none.
+double reference_kW(const SiteFacts& facts) {
+  const double electricity_kW = facts.mean_of_kW(metering::Utility::electricity);
+  return electricity_kW > 0.0 ? electricity_kW : 0.01 * facts.building.floor_area_m2;
+}
+
+std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  return {{.name = "extra_power",
+           .unit = "kW",
+           .prior = half_normal(0.05 * reference_kW(facts)),
+           .neutral = 0.0},
+          {.name = "season",
+           .unit = "1: all year, 2: warm months, 3: cold months",
+           .prior = UniformPrior{0.5, 3.5},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {1.0, 2.0, 3.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<ConstantFlowPumps>(enabled_months(facts.drivers, values[1]), values[0]);
+}
+
+}  // namespace
+
+Effect constant_flow_pumps();
+
+Effect constant_flow_pumps() {
+  return {
+      .id = "constant_flow_pumps",
+      .title = "Pumps at constant flow",
+      .meaning =
+          "Pumps of chilled or hot water run day and night at full speed through a season "
+          "or all year, also when no heat or cold is needed.",
+      .physics =
+          "P_pumps [kW] += P_p·plant(t); plant: 1 in all, the warm or the cold months, else "
+          "0; P_p [kW] ≥ 0",
+      .effect_class = EffectClass::air_system,
+      .confusable =
+          {{"server_room",
+            "Chilled water of winter nights: servers need it, pumps leave it unchanged."},
+           {"round_the_clock_zone",
+            "Whether chilled water and heat rise with the night electricity: with pumps they do "
+            "not."},
+           {"constant_speed_fans",
+            "Hours with the fans off: pumps run on; a clamp meter on the pump board decides."},
+           {"equipment_step",
+            "The dates of plant enable in the control system's log against those of the steps."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

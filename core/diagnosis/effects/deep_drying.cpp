@@ -1,0 +1,66 @@
+/// The coil dries the air deeper than drawn.
+#include <algorithm>
+
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/half_normal.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+constexpr double kDriest_kg_kg = 0.003;  // Near that of saturated air on freezing coils.
+
+/// The catalogue's entry 19 is a latent load that the model lacks. This model has one
+/// (latent_share 1), so what can lack is depth: w_s lies lower than that of air at 95 % and supply
+/// temperature, because the coil is colder than the air that leaves it.
+class DeepDrying final : public model::hourly::Alteration {
+ public:
+  explicit DeepDrying(double deeper_kg_kg) : deeper_kg_kg_(deeper_kg_kg) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    op.coil_humidity_ratio -=
+        std::min(deeper_kg_kg_, std::max(op.coil_humidity_ratio - kDriest_kg_kg, 0.0));
+  }
+
+ private:
+  double deeper_kg_kg_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "deeper_drying", .unit = "kg/kg", .prior = half_normal(0.0015), .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<DeepDrying>(values[0]);
+}
+
+}  // namespace
+
+Effect deep_drying();
+
+Effect deep_drying() {
+  return {
+      .id = "deep_drying",
+      .title = "Dehumidification deeper than drawn",
+      .meaning =
+          "On humid days the cooling coils take more moisture out of the air than the drawings "
+          "assume, and the chilled water pays for it.",
+      .physics =
+          "Q_latent [W] = ρ V_oa h_fg·max(w_o − (w_s − x), 0) while the coil cools, V_oa [m³/s], "
+          "h_fg [J/kg], w [kg/kg]; x [kg/kg] ≥ 0",
+      .effect_class = EffectClass::air_system,
+      .needs = {.air_system = true, .humidity = true},
+      .confusable =
+          {{"economiser_changeover",
+            "Humidity at fixed outdoor temperature above 26 °C, where no economiser is open."},
+           {"scale_fault", "Dry days at equal temperature: a wrong scale is wrong on them too."},
+           {"outdoor_air_amount", "Heat in winter: outdoor air costs heat, drying does not."},
+           {"fouling",
+            "Dry hot days: fouling costs there as well; a humidity sensor behind the coil "
+            "decides."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,76 @@
+/// Outdoor air follows the people.
+#include <algorithm>
+
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+/// Rooms that are served round the clock beside others are laboratories, whose hoods do not count
+/// people: only the share of the running handlers that serves daytime rooms is throttled.
+class DemandVentilation final : public model::hourly::Alteration {
+ public:
+  DemandVentilation(double demand_share, double always_share)
+      : demand_share_(demand_share), always_share_(always_share) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    const double by_day = (1.0 - always_share_) * op.daytime_share;
+    const double running = always_share_ + by_day;
+    if (running <= 0.0) return;
+    const double absence = 1.0 - std::clamp(op.people_share, 0.0, 1.0);
+    op.outdoor_air_m3_s *= 1.0 - demand_share_ * absence * (by_day / running);
+  }
+
+ private:
+  double demand_share_;
+  double always_share_;
+};
+
+/// All handlers together if every one runs round the clock: then they serve ordinary rooms.
+double always_share(const model::Building& building) {
+  const double share = building.air ? building.air->outdoor_air_unoccupied_fraction : 0.0;
+  return share < 1.0 ? share : 0.0;
+}
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "demand_share",
+           .unit = "share of the outdoor air",
+           .prior = UniformPrior{0.0, 1.0},
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<DemandVentilation>(values[0], always_share(facts.building));
+}
+
+}  // namespace
+
+Effect demand_ventilation();
+
+Effect demand_ventilation() {
+  return {
+      .id = "demand_ventilation",
+      .title = "Demand-controlled ventilation",
+      .meaning =
+          "The amount of outdoor air follows the number of people, through CO₂ sensors for "
+          "instance, where the model has a constant amount whenever the fans run.",
+      .physics =
+          "V_oa [m³/s] = V_oa,drawn·((1−b) + b·occ), occ people present [–] 0…1, b [–] 0…1, in "
+          "handlers of daytime rooms",
+      .effect_class = EffectClass::outdoor_air,
+      .confusable =
+          {{"outdoor_air_amount",
+            "CO₂ of the return air over a day: level with demand control, rising with people "
+            "without."},
+           {"hybrid_work",
+            "Air flow of a nearly empty weekday: electricity falls with people in both cases, "
+            "outdoor air only with demand control."},
+           {"semester_calendar",
+            "Heat in a winter break: without people it rises, with less outdoor air it falls."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,65 @@
+/// The plant starts earlier than its timetable says, the more so in the cold.
+#include <algorithm>
+
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/half_normal.hpp"
+#include "core/diagnosis/effects/support/plant_hours.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+class EarlyStart final : public model::hourly::Alteration {
+ public:
+  EarlyStart(double fixed_h, double cold_h_K) : fixed_h_(fixed_h), cold_h_K_(cold_h_K) {}
+
+  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
+    const double cold_K = std::max(op.heating_occupied_C - hour.dry_bulb_C, 0.0);
+    run_at_least(covered_share(fixed_h_ + cold_h_K_ * cold_K, hour.hours_to_start), op);
+  }
+
+ private:
+  double fixed_h_;
+  double cold_h_K_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "lead", .unit = "h", .prior = half_normal(2.0), .neutral = 0.0},
+          {.name = "lead_per_cold", .unit = "h/K", .prior = half_normal(0.1), .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<EarlyStart>(values[0], values[1]);
+}
+
+}  // namespace
+
+Effect early_start();
+
+Effect early_start() {
+  return {
+      .id = "early_start",
+      .title = "Early or optimum start",
+      .meaning =
+          "Fans, heating and cooling start well before the timetable says, and on cold "
+          "mornings still earlier, so that rooms are comfortable when people come.",
+      .physics =
+          "t_on [h] = t_on,drawn − (Δh_0 + b·max(θ_heat,occ − θ_e, 0)); Δh_0 [h] ≥ 0, "
+          "b [h/K] ≥ 0, θ_e outdoor air [°C] of the hour",
+      .effect_class = EffectClass::schedule,
+      .confusable =
+          {{"thermal_mass",
+            "Fan power before the timetable's start: mass changes heat alone, an early start shows "
+            "in electricity too."},
+           {"dst_misapplied",
+            "Whether the evening stop moved by the same hour, and only in summer."},
+           {"clock_offset", "The evening stop: an early start leaves it where it was."},
+           {"night_setback_missing",
+            "The start spike and its growth with cold; no trace on weekends that are followed by "
+            "no start."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

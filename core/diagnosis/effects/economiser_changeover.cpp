@@ -1,0 +1,62 @@
+/// Free cooling ends at another outdoor temperature than drawn.
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+class EconomiserChangeover final : public model::hourly::Alteration {
+ public:
+  explicit EconomiserChangeover(double shift_K) : shift_K_(shift_K) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    op.economiser_lockout_C += shift_K_;
+  }
+
+ private:
+  double shift_K_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "shift",
+           .unit = "K",
+           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 3.0, .min = -10.0, .max = 10.0},
+           .neutral = 0.0,
+           .scan = {-4.0, -2.0, 2.0, 4.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<EconomiserChangeover>(values[0]);
+}
+
+}  // namespace
+
+Effect economiser_changeover();
+
+Effect economiser_changeover() {
+  return {
+      .id = "economiser_changeover",
+      .title = "Economiser change-over wrong",
+      .meaning =
+          "The dampers go back to their least position at the wrong outdoor temperature: either "
+          "free cooling is cut off too early, or warm and humid air is let in.",
+      .physics = "θ_lockout [°C] = θ_lockout,drawn + x; x [K]",
+      .effect_class = EffectClass::outdoor_air,
+      .dating = Dating::may_begin,
+      .needs = {.air_system = true, .economiser = true},
+      .confusable =
+          {{"economiser_failed",
+            "Chilled water well below the change-over, at 8 to 14 °C: near zero unless the "
+            "economiser failed."},
+           {"deep_drying",
+            "Equal outdoor temperatures of different humidity above 26 °C, where no economiser is "
+            "open."},
+           {"solar_gain_change", "Sunny against cloudy hours at equal outdoor temperature."},
+           {"supply_reset_missing",
+            "Whether heat rises with chilled water; the damper position at 16 to 26 °C decides."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

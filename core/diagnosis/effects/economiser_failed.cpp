@@ -1,0 +1,63 @@
+/// Free cooling does not come.
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+class EconomiserFailed final : public model::hourly::Alteration {
+ public:
+  explicit EconomiserFailed(double failed_share) : failed_share_(failed_share) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    op.economiser_share *= 1.0 - failed_share_;
+  }
+
+ private:
+  double failed_share_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "failed_share",
+           .unit = "share of the free-cooling flow",
+           .prior = UniformPrior{0.0, 1.0},
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<EconomiserFailed>(values[0]);
+}
+
+}  // namespace
+
+Effect economiser_failed();
+
+Effect economiser_failed() {
+  return {
+      .id = "economiser_failed",
+      .title = "Economiser failed or absent",
+      .meaning =
+          "On mild days the building is cooled with chilled water although cool outdoor air could "
+          "do it for nothing: the dampers do not open beyond their least position.",
+      .physics = "free-cooling flow [m³/s] ×(1−f); f [–] 0…1, 1: no free cooling",
+      .effect_class = EffectClass::outdoor_air,
+      .dating = Dating::may_begin,
+      .needs = {.air_system = true, .economiser = true},
+      .confusable = {{"supply_reset_missing",
+                      "Heat on the same days: a failed economiser costs chilled water alone, too "
+                      "cold supply air costs reheat too."},
+                     {"economiser_changeover",
+                      "The outdoor temperature at which chilled water begins: a wrong change-over "
+                      "moves it by some kelvin, a failure lifts all hours below it."},
+                     {"solar_gain_change",
+                      "Compare cloudy with sunny mild days; or watch the damper's position on a "
+                      "dry 12 °C morning."},
+                     {"simultaneous_heating_cooling",
+                      "Chilled water at 12 °C with the economiser opened by hand: it falls to near "
+                      "zero if the economiser was the cause."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,97 @@
+/// Lamps outdoors that follow the sun.
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect exterior_lighting();
+
+namespace {
+
+using model::hourly::StepOperation;
+
+constexpr double kSwitchingSine = -0.0349;  // sun 2 degrees below the horizon
+// The sine of the sun's altitude moves so much in the hour about sunset at middle latitudes.
+constexpr double kSinePerHour = 0.2;
+
+using SharesByHour = std::array<double, 24>;
+
+/// Part of the hour with the sun below the switching altitude, 0…1.
+double dark_share(const model::DriverHour& hour) {
+  return std::clamp(0.5 - (hour.sine_of_sun_altitude - kSwitchingSine) / kSinePerHour, 0.0, 1.0);
+}
+
+SharesByHour mean_dark_shares(const model::Drivers& drivers) {
+  SharesByHour sums{};
+  SharesByHour counts{};
+  for (const model::DriverHour& hour : drivers.hours) {
+    const auto i = static_cast<std::size_t>(hour.local_hour);
+    sums[i] += dark_share(hour);
+    counts[i] += 1.0;
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
+  return sums;
+}
+
+/// A plug profile from the electricity meter may hold the lamps' mean of each hour already, as heat
+/// in the rooms; that share of it is taken out.
+class ExteriorLighting final : public model::hourly::Alteration {
+ public:
+  ExteriorLighting(double power_kW, double share_in_plugs, const SharesByHour& mean_dark_shares)
+      : power_W_(1e3 * power_kW),
+        share_in_plugs_(share_in_plugs),
+        mean_dark_shares_(mean_dark_shares) {}
+
+  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
+    const double usual_share = mean_dark_shares_[static_cast<std::size_t>(hour.local_hour)];
+    operation.exterior_W += power_W_ * dark_share(hour);
+    operation.plugs_W = std::max(operation.plugs_W - share_in_plugs_ * power_W_ * usual_share, 0.0);
+  }
+
+ private:
+  double power_W_;
+  double share_in_plugs_;
+  SharesByHour mean_dark_shares_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.05);
+  return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
+          {.name = "share_in_plugs",
+           .unit = "-",
+           .prior = UniformPrior{.min = 0.0, .max = 1.0},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {0.0, 1.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<ExteriorLighting>(values[0], values[1], mean_dark_shares(facts.drivers));
+}
+
+}  // namespace
+
+Effect exterior_lighting() {
+  return {.id = "exterior_lighting",
+          .title = "Lamps outdoors follow the sun",
+          .meaning =
+              "Street, facade or car-park lamps burn from dusk to dawn on this meter; they "
+              "warm no room, and their hours move with the seasons.",
+          .physics =
+              "exterior + P while the sun is below -2 degrees, plug profile - m P x mean "
+              "dark share of the hour; P in kW, m in -",
+          .effect_class = EffectClass::electrical,
+          .dating = Dating::may_begin,
+          .confusable =
+              {{"after_hours",
+                "The 15-minute edge in the evening: does it move with sunset over the weeks?"},
+               {"weekend_operation", "Chilled water at the same hours: lamps outdoors need none."},
+               {"dst_misapplied", "Other meters: lamps move electricity alone."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

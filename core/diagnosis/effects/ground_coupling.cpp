@@ -1,0 +1,153 @@
+/// Basement walls and slab lose heat to a ground that lags the seasons.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect ground_coupling();
+
+namespace {
+
+using model::hourly::StepOperation;
+
+constexpr double kPerDay = 2.0 * std::numbers::pi / 365.0;  // rad
+constexpr double kLongEnough_hours = 300.0 * 24.0;          // to tell mean and swing apart
+
+/// The yearly wave of the outdoor air: mean - swing cos(2 pi (day - coldest) / 365).
+struct YearlyWave {
+  double mean_C;
+  double swing_K;
+  double coldest_day;
+};
+
+/// Least squares over the record; a record too short to show the wave gets a usual one.
+YearlyWave wave_of(const SiteFacts& facts) {
+  const auto& hours = facts.drivers.hours;
+  if (static_cast<double>(hours.size()) < kLongEnough_hours) {
+    return {.mean_C = facts.building.ground_temperature_C, .swing_K = 10.0, .coldest_day = 20.0};
+  }
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const model::DriverHour& hour : hours) {
+    const double angle = kPerDay * hour.day_of_year;
+    const Eigen::Vector3d row{1.0, std::cos(angle), std::sin(angle)};
+    normal += row * row.transpose();
+    right += row * hour.dry_bulb_C;
+  }
+  const Eigen::Vector3d fit = normal.ldlt().solve(right);
+  return {.mean_C = fit[0],
+          .swing_K = std::hypot(fit[1], fit[2]),
+          .coldest_day = std::atan2(-fit[2], -fit[1]) / kPerDay};
+}
+
+double ground_W_K(const model::Building& building) {
+  double total_W_K = 0.0;
+  for (const model::Surface& surface : building.surfaces) {
+    if (surface.kind == model::SurfaceKind::ground) total_W_K += surface.area_m2 * surface.u_W_m2K;
+  }
+  return total_W_K;
+}
+
+double footprint_m2(const model::Building& building) {
+  return building.floor_area_m2 / std::max(building.storeys, 1);
+}
+
+/// Widens the model's own path to the ground, so that the exchange follows the rooms. That path
+/// then leads to the mean of both ground temperatures, weighted by their conductances.
+class GroundCoupling final : public model::hourly::Alteration {
+ public:
+  GroundCoupling(const SiteFacts& facts, double conductance_W_K, double lag_days)
+      : conductance_W_K_(conductance_W_K),
+        drawn_W_K_(ground_W_K(facts.building)),
+        wave_(wave_of(facts)),
+        lag_days_(lag_days) {}
+
+  void rebuild(model::Building& building) const override {
+    if (drawn_W_K_ == 0.0) {
+      if (conductance_W_K_ > 0.0) add_slab(building);
+      return;
+    }
+    for (model::Surface& surface : building.surfaces) {
+      if (surface.kind == model::SurfaceKind::ground) {
+        surface.u_W_m2K *= 1.0 + conductance_W_K_ / drawn_W_K_;
+      }
+    }
+  }
+
+  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
+    if (conductance_W_K_ == 0.0) return;  // without any path to the ground 0/0 would follow
+    const double weight = conductance_W_K_ / (drawn_W_K_ + conductance_W_K_);
+    operation.ground_C += weight * (ground_C(hour.day_of_year) - operation.ground_C);
+  }
+
+ private:
+  /// In a half-infinite solid a wave that lags by an angle is damped by exp(-angle): the entry's
+  /// free amplitude follows from its lag.
+  double ground_C(int day_of_year) const {
+    const double damped_K = wave_.swing_K * std::exp(-kPerDay * lag_days_);
+    return wave_.mean_C -
+           damped_K * std::cos(kPerDay * (day_of_year - wave_.coldest_day - lag_days_));
+  }
+
+  void add_slab(model::Building& building) const {
+    const double area_m2 = footprint_m2(building);
+    building.surfaces.push_back({.name = "slab",
+                                 .kind = model::SurfaceKind::ground,
+                                 .area_m2 = area_m2,
+                                 .u_W_m2K = conductance_W_K_ / area_m2,
+                                 .orientation = {}});
+  }
+
+  double conductance_W_K_;
+  double drawn_W_K_;
+  YearlyWave wave_;
+  double lag_days_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  // 0.3 W/(m2 K): a basement without insulation.
+  return {{.name = "ground_conductance",
+           .unit = "W/K",
+           .prior = half_normal(0.3 * footprint_m2(facts.building)),
+           .neutral = 0.0},
+          {.name = "ground_lag",
+           .unit = "d",
+           .prior = TruncatedNormalPrior{.location = 40.0, .sd = 20.0, .min = 0.0, .max = 120.0},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {20.0, 40.0, 70.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<GroundCoupling>(facts, values[0], values[1]);
+}
+
+}  // namespace
+
+Effect ground_coupling() {
+  return {.id = "ground_coupling",
+          .title = "Heat lost to the ground",
+          .meaning =
+              "Basement walls or the slab lose heat to the soil, which stays cold long "
+              "after spring has come outdoors.",
+          .physics =
+              "Q = H_g (T_in - T_g), T_g = mean - A exp(-2 pi lag/365) cos(2 pi (day - "
+              "coldest - lag)/365); H_g in W/K, lag in days, A swing of the outdoor air, K",
+          .effect_class = EffectClass::envelope,
+          .confusable =
+              {{"damper_stuck_open",
+                "Heating in a warm April week: the ground still draws it, the damper does not."},
+               {"seasonal_hot_water",
+                "Hot-water sub-meter, or steam on a summer weekend without draw."},
+               {"stack_infiltration",
+                "Heating in spring against autumn at the same outdoor temperature."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

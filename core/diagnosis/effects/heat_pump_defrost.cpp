@@ -1,0 +1,75 @@
+/// A heat pump that thaws its outdoor coil heats with less.
+#include <algorithm>
+#include <cmath>
+
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/weather/psychrometrics.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect heat_pump_defrost();
+
+namespace {
+
+using model::hourly::StepLoads;
+using model::hourly::StepOperation;
+
+// Coils frost most near 1 C: colder air holds less water, warmer air does not freeze on them.
+constexpr double kWorst_C = 1.0;
+constexpr double kTwiceVariance_K2 = 18.0;  // 3 K wide
+// No frost in air drier than this, all of it from 90 % on.
+constexpr double kDry = 0.5;
+constexpr double kDryToMoist = 0.4;
+
+class HeatPumpDefrost final : public model::hourly::Alteration {
+ public:
+  HeatPumpDefrost(double depth, double pressure_Pa) : depth_(depth), pressure_Pa_(pressure_Pa) {}
+
+  void supply(const model::Building&, const model::DriverHour&, const StepOperation& operation,
+              StepLoads& loads) const override {
+    const double from_worst_K = operation.dry_bulb_C - kWorst_C;
+    const double frost = std::exp(-from_worst_K * from_worst_K / kTwiceVariance_K2);
+    const double saturated = weather::humidity_ratio(operation.dry_bulb_C, 1.0, pressure_Pa_);
+    const double moist =
+        std::clamp((operation.humidity_ratio / saturated - kDry) / kDryToMoist, 0.0, 1.0);
+    loads.heating_cost_factor /= 1.0 - depth_ * frost * moist;
+  }
+
+ private:
+  double depth_;
+  double pressure_Pa_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "cop_loss", .unit = "-", .prior = half_normal_below(0.15, 0.6), .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<HeatPumpDefrost>(values[0], facts.drivers.pressure_Pa);
+}
+
+}  // namespace
+
+Effect heat_pump_defrost() {
+  return {.id = "heat_pump_defrost",
+          .title = "Heat pump loses to frost",
+          .meaning =
+              "Around freezing in damp weather the heat pump keeps thawing its outdoor coil "
+              "and uses more electricity for the same heat.",
+          .physics =
+              "COP x (1 - d exp(-(T_out - 1 C)^2 / 18 K2) m); m = (RH - 0.5)/0.4 within "
+              "0...1, d in -",
+          .effect_class = EffectClass::plant,
+          .needs = {.humidity = true, .heat_pump = true},
+          .confusable =
+              {{"humidifier",
+                "Electricity at 1 C in damp against dry weather: frost wants damp, humidifiers dry "
+                "air."},
+               {"stack_infiltration",
+                "Electricity at -10 C: frost cost is gone there, draught is at its worst."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,75 @@
+/// Steam moistens dry outdoor air.
+#include <algorithm>
+#include <limits>
+
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+/// The model pays for what the humidifier holds above outdoor air, so a share of the air handlers
+/// that has one is held that much lower. Drawn humidifiers count: the larger of the two is paid.
+class Humidifier final : public model::hourly::Alteration {
+ public:
+  Humidifier(double served_share, double held_kg_kg)
+      : served_share_(served_share), held_kg_kg_(held_kg_kg) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    const double lack_kg_kg = served_share_ * std::max(held_kg_kg_ - op.humidity_ratio, 0.0);
+    if (lack_kg_kg <= 0.0) return;
+    op.humidifier_kg_kg = std::max(op.humidifier_kg_kg, op.humidity_ratio + lack_kg_kg);
+  }
+
+ private:
+  double served_share_;
+  double held_kg_kg_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {
+      {.name = "served_share",
+       .unit = "share of the outdoor air",
+       .prior = UniformPrior{0.0, 1.0},
+       .neutral = 0.0},
+      {.name = "held_humidity_ratio",
+       .unit = "kg/kg",
+       .prior = TruncatedNormalPrior{.location = 0.006, .sd = 0.001, .min = 0.002, .max = 0.010},
+       .neutral = std::numeric_limits<double>::quiet_NaN(),
+       .scan = {0.005, 0.006, 0.007}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<Humidifier>(values[0], values[1]);
+}
+
+}  // namespace
+
+Effect humidifier();
+
+Effect humidifier() {
+  return {
+      .id = "humidifier",
+      .title = "Humidification on demand",
+      .meaning =
+          "On dry, mostly cold days steam is blown into the air to keep the rooms from drying out; "
+          "the drawings know less of it or nothing.",
+      .physics =
+          "Q [W] = f·ρ V_oa h_fg·max(w_set − w_o, 0), V_oa [m³/s], h_fg [J/kg], w [kg/kg]; f [–] "
+          "0…1",
+      .effect_class = EffectClass::air_system,
+      .needs = {.air_system = true, .humidity = true},
+      .confusable =
+          {{"supply_reset_missing",
+            "Chilled water on the same days: humidification leaves it alone."},
+           {"seasonal_hot_water",
+            "Days of equal temperature but different dryness: hot water does not see humidity."},
+           {"outdoor_air_amount",
+            "Cold humid days: outdoor air costs heat on them too, humidification does not."},
+           {"stack_infiltration", "Nights with the fans off: no humidifier works then."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,173 @@
+/// The building is shut on public holidays that its calendar does not have.
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/date_table.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+using metering::Day;
+
+/// A holiday on a weekend is kept on the nearest weekday.
+Day observed(std::chrono::sys_days day) {
+  const std::chrono::weekday weekday{day};
+  if (weekday == std::chrono::Saturday) return day - std::chrono::days{1};
+  if (weekday == std::chrono::Sunday) return day + std::chrono::days{1};
+  return day;
+}
+
+void mark_year_end(std::chrono::year year, DateTable& table) {
+  table.mark(year / 12 / 24, year / 12 / 26);
+  table.mark(year / 12 / 31);
+}
+
+/// Days on which most offices in the United States are shut.
+DateTable north_american_holidays() {
+  using namespace std::chrono;  // NOLINT: calendar literals
+  DateTable table;
+  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
+    const year year{y};
+    const sys_days thanksgiving = sys_days{year / November / Thursday[4]};
+    table.mark(observed(year / January / 1));
+    table.mark(sys_days{year / January / Monday[3]});
+    table.mark(sys_days{year / May / Monday[last]});
+    table.mark(observed(year / July / 4));
+    table.mark(sys_days{year / September / Monday[1]});
+    table.mark(thanksgiving, thanksgiving + days{1});
+    table.mark(observed(year / December / 25));
+    mark_year_end(year, table);
+  }
+  return table;
+}
+
+/// Days common to most countries of Western and Central Europe; not moved from weekends.
+DateTable european_holidays() {
+  using namespace std::chrono;  // NOLINT: calendar literals
+  DateTable table;
+  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
+    const year year{y};
+    const sys_days easter = easter_sunday(year);
+    table.mark(year / January / 1);
+    table.mark(easter - days{2});   // Good Friday
+    table.mark(easter + days{1});   // Easter Monday
+    table.mark(easter + days{39});  // Ascension
+    table.mark(easter + days{50});  // Whit Monday
+    table.mark(year / May / 1);
+    mark_year_end(year, table);
+  }
+  return table;
+}
+
+const DateTable& holidays_of(double calendar) {
+  static const DateTable north_american = north_american_holidays();
+  static const DateTable european = european_holidays();
+  return calendar < 1.5 ? north_american : european;
+}
+
+/// The building's own Sundays, by calendar month and local hour: what a holiday looks like.
+class Sundays {
+ public:
+  struct Loads {
+    double people_share = std::numeric_limits<double>::quiet_NaN();
+    double lights_W = 0.0;
+    double plugs_W = 0.0;
+  };
+
+  explicit Sundays(const model::Drivers& drivers) {
+    for (const model::DriverHour& hour : drivers.hours) {
+      if (hour.day != model::DayType::sunday_or_holiday) continue;
+      loads_[month(hour)][local_hour(hour)] = {hour.occupied_fraction, hour.lights_W, hour.plugs_W};
+    }
+  }
+
+  /// Nothing where the drivers have no Sunday in this calendar month.
+  [[nodiscard]] std::optional<Loads> at(const model::DriverHour& hour) const {
+    const Loads& loads = loads_[month(hour)][local_hour(hour)];
+    return std::isnan(loads.people_share) ? std::nullopt : std::optional(loads);
+  }
+
+ private:
+  static std::size_t month(const model::DriverHour& hour) {
+    return static_cast<unsigned>(hour.date.month()) - 1;
+  }
+  static std::size_t local_hour(const model::DriverHour& hour) {
+    return static_cast<std::size_t>(hour.local_hour);
+  }
+  std::array<std::array<Loads, 24>, 12> loads_;
+};
+
+/// Lights and plugs go to the meter's own Sunday values, not to a guessed share of the workday's:
+/// holidays look like Sundays in real meters.
+class MissingHolidays final : public model::hourly::Alteration {
+ public:
+  MissingHolidays(const model::Drivers& drivers, double shut_share, double calendar)
+      : sundays_(drivers), holidays_(&holidays_of(calendar)), shut_share_(shut_share) {}
+
+  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
+    if (hour.day != model::DayType::workday || !holidays_->contains(hour.date)) return;
+    op.daytime_share *= 1.0 - shut_share_;
+    if (const auto sunday = sundays_.at(hour)) {
+      op.people_share += shut_share_ * (sunday->people_share - op.people_share);
+      op.lights_W += shut_share_ * (sunday->lights_W - op.lights_W);
+      op.plugs_W += shut_share_ * (sunday->plugs_W - op.plugs_W);
+    }
+  }
+
+ private:
+  Sundays sundays_;
+  const DateTable* holidays_;  // Of static storage.
+  double shut_share_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "shut_share",
+           .unit = "share of the building",
+           .prior = UniformPrior{0.0, 1.0},
+           .neutral = 0.0},
+          {.name = "calendar",
+           .unit = "1: North America, 2: Europe",
+           .prior = UniformPrior{0.5, 2.5},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {1.0, 2.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<MissingHolidays>(facts.drivers, values[0], values[1]);
+}
+
+}  // namespace
+
+Effect missing_holidays();
+
+Effect missing_holidays() {
+  return {
+      .id = "missing_holidays",
+      .title = "Public holidays missing from the calendar",
+      .meaning =
+          "On public holidays the building is shut or half empty, but the model's calendar "
+          "has them as workdays. Add these dates to the site's holidays.",
+      .physics =
+          "on public holidays that the calendar has as workdays: on ×(1−a); people [–], "
+          "lights [W] and plugs [W] move by a towards their Sunday values; a [–] 0…1",
+      .effect_class = EffectClass::schedule,
+      .confusable =
+          {{"stuck_meter",
+            "The profile of the day: a stuck meter is flat or zero, an empty building has a weak "
+            "Sunday shape on all meters."},
+           {"vacancy",
+            "The dates: holidays are single days that return at the same rule next year."},
+           {"semester_calendar", "Length: term breaks last weeks, holidays one day or two."},
+           {"weekend_operation",
+            "Ordinary Saturdays and Sundays: missing holidays leave them clean."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

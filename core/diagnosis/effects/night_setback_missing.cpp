@@ -1,0 +1,67 @@
+/// Set-points are not relaxed when the rooms are empty.
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+class NightSetBackMissing final : public model::hourly::Alteration {
+ public:
+  explicit NightSetBackMissing(double missing_share) : missing_share_(missing_share) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    op.heating_unoccupied_C += missing_share_ * (op.heating_occupied_C - op.heating_unoccupied_C);
+    op.cooling_unoccupied_C += missing_share_ * (op.cooling_occupied_C - op.cooling_unoccupied_C);
+  }
+
+ private:
+  double missing_share_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "missing_share",
+           .unit = "share of the set-back",
+           .prior = UniformPrior{0.0, 1.0},
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<NightSetBackMissing>(values[0]);
+}
+
+}  // namespace
+
+Effect night_setback_missing();
+
+Effect night_setback_missing() {
+  return {
+      .id = "night_setback_missing",
+      .title = "Night set-back missing",
+      .meaning =
+          "Rooms are heated and cooled at night and on weekends nearly as by day: the "
+          "thermostats do not relax when everybody has left.",
+      .physics =
+          "θ_unocc [°C] = θ_unocc,drawn + f·(θ_occ − θ_unocc,drawn), for heating and "
+          "cooling; f [–] 0…1, 0: set-back as drawn, 1: none",
+      .effect_class = EffectClass::schedule,
+      .dating = Dating::may_begin,
+      .needs = {.night_set_back = true},
+      .confusable =
+          {{"damper_stuck_open",
+            "Compare cold calm nights: an open damper also follows the humidity and leaves the "
+            "morning warm-up spike in place; a room temperature logger over one night decides."},
+           {"thermal_mass",
+            "Room temperature over a weekend: a heavy building sinks slowly but sinks; without "
+            "set-back it stays level."},
+           {"stack_infiltration",
+            "Look for the warm-up spike on Monday dawn: leaks keep it, a missing set-back has "
+            "none."},
+           {"after_hours",
+            "Fan power at 02:00: later hours stop at some time of the evening, a missing set-back "
+            "lasts until morning and all weekend."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,58 @@
+/// More or less least outdoor air than drawn.
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+class OutdoorAirAmount final : public model::hourly::Alteration {
+ public:
+  explicit OutdoorAirAmount(double change) : change_(change) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    op.outdoor_air_m3_s *= 1.0 + change_;
+  }
+
+ private:
+  double change_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "change",
+           .unit = "share of the drawn outdoor air",
+           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.4, .min = -0.9, .max = 1.5},
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<OutdoorAirAmount>(values[0]);
+}
+
+}  // namespace
+
+Effect outdoor_air_amount();
+
+Effect outdoor_air_amount() {
+  return {
+      .id = "outdoor_air_amount",
+      .title = "Least outdoor air too high or too low",
+      .meaning =
+          "While the fans run they bring in more, or less, outdoor air than the drawings say, so "
+          "that more or less air has to be heated, cooled and dried.",
+      .physics = "V_oa [m³/s] = V_oa,drawn·(1+a); a [–] −0.9…1.5",
+      .effect_class = EffectClass::outdoor_air,
+      .dating = Dating::may_begin,
+      .confusable =
+          {{"demand_ventilation",
+            "CO₂ of the return air on full and on empty days: a wrong amount is wrong on both."},
+           {"damper_stuck_open", "Hours with fans off: the amount matters only while they run."},
+           {"economiser_failed",
+            "Weather between 8 and 18 °C against hot and cold weather: the least amount matters in "
+            "the latter."},
+           {"deep_drying", "Heat in winter: outdoor air costs heat too, drying does not."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

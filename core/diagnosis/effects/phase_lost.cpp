@@ -1,0 +1,63 @@
+/// An electricity meter that misses a phase, or counts one backwards.
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect phase_lost();
+
+namespace {
+
+class PhaseLost final : public model::hourly::Alteration {
+ public:
+  PhaseLost(double lost_share, int meter) : lost_share_(lost_share), meter_(meter) {}
+
+  void record(std::span<const model::DriverHour>, int meter,
+              std::span<double> power_kW) const override {
+    if (meter != meter_) return;
+    for (double& value_kW : power_kW) value_kW *= 1.0 - lost_share_;
+  }
+
+ private:
+  double lost_share_;
+  int meter_;
+};
+
+/// One factor 1 - a serves both faults of three even phases, which the sum cannot tell apart:
+/// a = 1/3 one phase lost; 2/3 two lost, or one transformer reversed (1 - 2/3 = 1 - 2 x 1/3);
+/// 1 all lost. Phases are rarely even, so values between are open to the fit.
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "lost_share",
+           .unit = "-",
+           .prior = UniformPrior{.min = 0.0, .max = 1.0},
+           .neutral = 0.0,
+           .scan = {1.0 / 3.0, 2.0 / 3.0, 1.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int meter) {
+  return std::make_unique<PhaseLost>(values[0], meter);
+}
+
+}  // namespace
+
+Effect phase_lost() {
+  return {.id = "phase_lost",
+          .title = "Meter lost or reversed a phase",
+          .meaning =
+              "From one day on the meter misses a third or two thirds of the electricity: a "
+              "blown fuse of a voltage tap, or a current transformer mounted backwards.",
+          .physics =
+              "y x (1 - a) from the date; y recorded power in kW, a = 1/3 one phase lost, "
+              "2/3 one reversed or two lost",
+          .effect_class = EffectClass::meter,
+          .dating = Dating::must_begin,
+          .of_one_meter = true,
+          .meter_utilities = {metering::Utility::electricity},
+          .confusable = {{"equipment_step",
+                          "Chilled water and heat after the date: a lost phase moves neither."},
+                         {"scale_fault", "Currents of the three phases, with a clamp meter."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

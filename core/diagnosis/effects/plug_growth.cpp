@@ -1,0 +1,60 @@
+/// People bring more devices every year, or fewer.
+#include "core/diagnosis/effects/support/elapsed_days.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect plug_growth();
+
+namespace {
+
+using model::hourly::StepOperation;
+
+/// Turns about the middle of the record: the plug profile is a mean over it, and growth from its
+/// first day would also raise that mean.
+class PlugGrowth final : public model::hourly::Alteration {
+ public:
+  PlugGrowth(double per_year, double middle_day) : per_year_(per_year), middle_day_(middle_day) {}
+
+  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
+    const double years = (elapsed_days(hour) - middle_day_) / kDaysPerYear;
+    operation.plugs_W *= 1.0 + per_year_ * years;
+  }
+
+ private:
+  double per_year_;
+  double middle_day_;
+};
+
+/// Ends of the prior keep plugs positive over records of up to six years.
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "growth",
+           .unit = "1/a",
+           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.05, .min = -0.3, .max = 0.3},
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<PlugGrowth>(values[0], 0.5 * spanned_days(facts.drivers));
+}
+
+}  // namespace
+
+Effect plug_growth() {
+  return {.id = "plug_growth",
+          .title = "Plug loads drift over the years",
+          .meaning =
+              "Devices on the sockets become more (or fewer) year by year, at all hours, "
+              "and with them the heat they give off.",
+          .physics =
+              "plugs x (1 + g (t - t_mid)); t in years, t_mid middle of the record, g in "
+              "1/year",
+          .effect_class = EffectClass::electrical,
+          .confusable = {{"equipment_step",
+                          "Daily electricity at night over the year: a line grows, a step stands."},
+                         {"fouling", "Electricity on winter weekends: plugs drift there too."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

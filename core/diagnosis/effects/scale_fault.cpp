@@ -1,0 +1,59 @@
+/// A meter that counts too much or too little of everything.
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect scale_fault();
+
+namespace {
+
+class ScaleFault final : public model::hourly::Alteration {
+ public:
+  ScaleFault(double factor, int meter) : factor_(factor), meter_(meter) {}
+
+  void record(std::span<const model::DriverHour>, int meter,
+              std::span<double> power_kW) const override {
+    if (meter != meter_) return;
+    for (double& value_kW : power_kW) value_kW *= factor_;
+  }
+
+ private:
+  double factor_;
+  int meter_;
+};
+
+/// Tenfold slips and wrong units are found as the data come in; this is what remains.
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "scale",
+           .unit = "-",
+           .prior = LogNormalPrior{.median = 1.0, .log_sd = 0.1, .min = 0.3, .max = 3.0},
+           .neutral = 1.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int meter) {
+  return std::make_unique<ScaleFault>(values[0], meter);
+}
+
+}  // namespace
+
+Effect scale_fault() {
+  return {.id = "scale_fault",
+          .title = "Meter's scale is wrong",
+          .meaning =
+              "The meter shows the same share too much or too little at every hour: a wrong "
+              "pulse value, transformer ratio or flow constant.",
+          .physics = "y x k; y recorded power in kW, k in -",
+          .effect_class = EffectClass::meter,
+          .dating = Dating::may_begin,
+          .of_one_meter = true,
+          .confusable =
+              {{"fouling", "The register against a second meter, in summer and in autumn."},
+               {"night_setback_missing",
+                "Ratio of metered to expected by day and by night: a scale is the same in both."},
+               {"phase_lost", "Currents of the three phases."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

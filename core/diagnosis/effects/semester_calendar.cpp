@@ -1,0 +1,126 @@
+/// Fewer people in term breaks.
+#include <chrono>
+#include <limits>
+
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/date_table.hpp"
+#include "core/diagnosis/effects/support/presence.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+/// The break over New Year is marked in both of its years.
+void mark_winter(std::chrono::year year, unsigned from_december, unsigned to_january,
+                 DateTable& table) {
+  table.mark(year / 1 / 1, year / 1 / to_january);
+  table.mark(year / 12 / from_december, year / 12 / 31);
+}
+
+/// Schools: mid-June to mid-August, two weeks at New Year, one week in spring.
+DateTable school_breaks() {
+  using namespace std::chrono;  // NOLINT: calendar literals
+  DateTable table;
+  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
+    const year year{y};
+    const sys_days spring = sys_days{year / April / Monday[1]};
+    mark_winter(year, 20, 3, table);
+    table.mark(spring, spring + days{4});
+    table.mark(year / 6 / 15, year / 8 / 15);
+  }
+  return table;
+}
+
+/// American colleges: mid-May to late August, four weeks at New Year, one week in March.
+DateTable college_breaks() {
+  using namespace std::chrono;  // NOLINT: calendar literals
+  DateTable table;
+  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
+    const year year{y};
+    const sys_days spring = sys_days{year / March / Monday[2]};
+    mark_winter(year, 15, 10, table);
+    table.mark(spring, spring + days{4});
+    table.mark(year / 5 / 12, year / 8 / 20);
+  }
+  return table;
+}
+
+/// Continental universities: February to March, mid-July to September, two weeks at New Year.
+DateTable university_breaks() {
+  DateTable table;
+  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
+    const std::chrono::year year{y};
+    mark_winter(year, 22, 6, table);
+    table.mark(year / 2 / 15, year / 3 / 31);
+    table.mark(year / 7 / 15, year / 9 / 30);
+  }
+  return table;
+}
+
+const DateTable& breaks_of(double calendar) {
+  static const DateTable school = school_breaks();
+  static const DateTable college = college_breaks();
+  static const DateTable university = university_breaks();
+  if (calendar < 1.5) return school;
+  return calendar < 2.5 ? college : university;
+}
+
+class SemesterCalendar final : public model::hourly::Alteration {
+ public:
+  SemesterCalendar(const model::Drivers& drivers, double absent_share, double calendar)
+      : standby_(drivers), breaks_(&breaks_of(calendar)), absent_share_(absent_share) {}
+
+  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
+    if (breaks_->contains(hour.date)) change_presence(-absent_share_, standby_, hour, op);
+  }
+
+ private:
+  StandbyLoads standby_;
+  const DateTable* breaks_;  // Of static storage.
+  double absent_share_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "absent_share",
+           .unit = "share of the people",
+           .prior = UniformPrior{0.0, 0.7},
+           .neutral = 0.0},
+          {.name = "calendar",
+           .unit = "1: school, 2: college, 3: university",
+           .prior = UniformPrior{0.5, 3.5},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {1.0, 2.0, 3.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<SemesterCalendar>(facts.drivers, values[0], values[1]);
+}
+
+}  // namespace
+
+Effect semester_calendar();
+
+Effect semester_calendar() {
+  return {
+      .id = "semester_calendar",
+      .title = "Term breaks",
+      .meaning =
+          "In school or university breaks fewer people are in: lights and machines draw "
+          "less, less heat has to be removed, and in winter more has to be supplied.",
+      .physics =
+          "in term breaks: people [–] ×(1−a), lights and plugs above their least of the "
+          "month [W] ×(1−0.8a); a [–] 0…0.7",
+      .effect_class = EffectClass::schedule,
+      .confusable =
+          {{"vacancy", "Whether it returns next year at the same term dates."},
+           {"missing_holidays", "Length: single days or whole weeks."},
+           {"hybrid_work", "Whether the weeks of term differ between their weekdays."},
+           {"solar_gain_change",
+            "Electricity: shading leaves it as it was, missing people do not; the academic "
+            "calendar decides."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

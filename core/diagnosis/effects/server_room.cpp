@@ -1,0 +1,87 @@
+/// Computers that run and are cooled day and night.
+#include <algorithm>
+#include <limits>
+
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect server_room();
+
+namespace {
+
+using model::hourly::StepLoads;
+using model::hourly::StepOperation;
+
+/// Its cooled heat bypasses the rooms and the air handlers. The plug profile comes from the
+/// electricity meter, so part of the load may stand in it already, as heat in the rooms: that part
+/// is taken out of them here and put back as electricity behind the zones.
+class ServerRoom final : public model::hourly::Alteration {
+ public:
+  ServerRoom(double power_kW, double cooled_share, double share_in_plugs)
+      : power_W_(1e3 * power_kW), cooled_share_(cooled_share), share_in_plugs_(share_in_plugs) {}
+
+  void operate(const model::DriverHour&, StepOperation& operation) const override {
+    operation.plugs_W = std::max(operation.plugs_W - share_in_plugs_ * power_W_, 0.0);
+    operation.zone_gain_W += (1.0 - cooled_share_) * power_W_;
+  }
+
+  void supply(const model::Building&, const model::DriverHour&, const StepOperation&,
+              StepLoads& loads) const override {
+    loads.plugs_W += power_W_;
+    loads.sensible_cooling_W += cooled_share_ * power_W_;
+  }
+
+ private:
+  double power_W_;
+  double cooled_share_;
+  double share_in_plugs_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.20);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const UniformPrior any_share{.min = 0.0, .max = 1.0};
+  return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
+          {.name = "cooled_share",
+           .unit = "-",
+           .prior = any_share,
+           .neutral = none,
+           .scan = {0.0, 0.5, 1.0}},
+          {.name = "share_in_plugs",
+           .unit = "-",
+           .prior = any_share,
+           .neutral = none,
+           .scan = {0.0, 1.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<ServerRoom>(values[0], values[1], values[2]);
+}
+
+}  // namespace
+
+Effect server_room() {
+  return {
+      .id = "server_room",
+      .title = "Server room nobody listed",
+      .meaning =
+          "Somewhere computers run day and night; they use electricity and chilled "
+          "water also on winter nights, when nothing else needs cooling.",
+      .physics =
+          "electricity + P, chilled water + c P, heat into rooms + (1 - c) P, plug "
+          "profile - m P; P in kW at all hours, c and m in -",
+      .effect_class = EffectClass::electrical,
+      .dating = Dating::may_begin,
+      .confusable = {{"round_the_clock_zone",
+                      "Steam on cold nights: a ventilated zone draws it, a server room saves it."},
+                     {"constant_flow_pumps",
+                      "Chilled water on winter nights: servers need it, pumps do not. Sub-meter."},
+                     {"equipment_step",
+                      "Clamp meter on the room's feeder, and winter-night cooling."}},
+      .parameters = parameters,
+      .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,77 @@
+/// Heating and cooling work against each other.
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/half_normal.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+class SimultaneousHeatingCooling final : public model::hourly::Alteration {
+ public:
+  explicit SimultaneousHeatingCooling(double wasted_kW) : wasted_kW_(wasted_kW) {}
+
+  void supply(const model::Building&, const model::DriverHour&, const model::hourly::StepOperation&,
+              model::hourly::StepLoads& loads) const override {
+    const double wasted_W = 1000.0 * wasted_kW_ * loads.running_share;
+    loads.sensible_cooling_W += wasted_W;
+    loads.reheat_W += wasted_W;
+  }
+
+ private:
+  double wasted_kW_;
+};
+
+/// Mean of chilled water; where an own chiller hides it, that of heat; else 10 W/m².
+double reference_kW(const SiteFacts& facts) {
+  const double cooling_kW = facts.mean_of_kW(metering::Utility::chilled_water);
+  if (cooling_kW > 0.0) return cooling_kW;
+  const double heating_kW = facts.mean_of_kW(metering::Utility::heating);
+  return heating_kW > 0.0 ? heating_kW : 0.01 * facts.building.floor_area_m2;
+}
+
+std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  return {{.name = "wasted_heat",
+           .unit = "kW",
+           .prior = half_normal(0.1 * reference_kW(facts)),
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<SimultaneousHeatingCooling>(values[0]);
+}
+
+}  // namespace
+
+Effect simultaneous_heating_cooling();
+
+Effect simultaneous_heating_cooling() {
+  return {
+      .id = "simultaneous_heating_cooling",
+      .title = "Simultaneous heating and cooling",
+      .meaning =
+          "While the fans run, air is cooled and heated again by the same amount, for instance "
+          "through a leaking valve or zones that fight each other. Nobody notices, as the rooms "
+          "stay comfortable.",
+      .physics =
+          "Q_cool [kW] += q·on, Q_heat [kW] += q·on; on: share of the air handlers that runs [–]; "
+          "q [kW] ≥ 0",
+      .effect_class = EffectClass::air_system,
+      .dating = Dating::may_begin,
+      .needs = {.air_system = true},
+      .confusable =
+          {{"supply_reset_missing",
+            "Plot chilled water against outdoor temperature: leaking valves do not depend on it, a "
+            "missing reset ends at a knee."},
+           {"economiser_failed",
+            "Heat in mild weather: it rises together with chilled water only here."},
+           {"steam_trap_leak",
+            "Nights with fans off, and chilled water: losses of the pipes have no echo there."},
+           {"scale_fault",
+            "Whether an error of one meter alone explains it; shut the reheat valves for an hour "
+            "and see both meters fall."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,75 @@
+/// More or less sun comes in than windows, blinds and neighbours on the drawings let.
+#include <algorithm>
+#include <limits>
+
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect solar_gain_change();
+
+namespace {
+
+using model::hourly::StepOperation;
+
+// Blinds go down room by room: over this much sun below the threshold the change comes in.
+constexpr double kComingIn_W_m2 = 100.0;
+
+class SolarGainChange final : public model::hourly::Alteration {
+ public:
+  SolarGainChange(double reduction, double above_W_m2)
+      : reduction_(reduction), above_W_m2_(above_W_m2) {}
+
+  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
+    const double excess_W_m2 = hour.global_horizontal_W_m2 - above_W_m2_;
+    const double share = std::clamp(1.0 + excess_W_m2 / kComingIn_W_m2, 0.0, 1.0);
+    operation.solar_share *= 1.0 - reduction_ * share;
+  }
+
+ private:
+  double reduction_;
+  double above_W_m2_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "solar_reduction",
+           .unit = "-",
+           .prior = UniformPrior{.min = -0.5, .max = 0.5},
+           .neutral = 0.0},
+          {.name = "solar_threshold",
+           .unit = "W/m2",
+           .prior = UniformPrior{.min = 0.0, .max = 600.0},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {0.0, 250.0, 500.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<SolarGainChange>(values[0], values[1]);
+}
+
+}  // namespace
+
+Effect solar_gain_change() {
+  return {
+      .id = "solar_gain_change",
+      .title = "Sun through the windows differs",
+      .meaning =
+          "Blinds, films, trees or new neighbours let in less sun than the drawings "
+          "say, or more where shading is broken or never used.",
+      .physics =
+          "solar gain x (1 - a) in hours with more than I0 on the horizontal, coming in "
+          "over the 100 W/m2 below; a in -, I0 in W/m2",
+      .effect_class = EffectClass::envelope,
+      .dating = Dating::may_begin,
+      .confusable = {{"scale_fault",
+                      "Chilled water at night: a wrong scale shows there too, the sun does not."},
+                     {"weekend_operation",
+                      "Sunny against cloudy weekends at the same temperature."},
+                     {"economiser_failed",
+                      "Mixed-air temperature at 15 C outdoors on an overcast working day."}},
+      .parameters = parameters,
+      .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

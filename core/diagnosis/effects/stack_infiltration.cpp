@@ -1,0 +1,74 @@
+/// Warm air rises out of shafts and stairs and draws cold air in below.
+#include <algorithm>
+#include <cmath>
+
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect stack_infiltration();
+
+namespace {
+
+using model::hourly::StepOperation;
+
+// 10 m high and 10 K apart. The factor is given there, since per square root of a metre and a
+// kelvin its size would tell nobody anything.
+constexpr double kReference_mK = 100.0;
+
+class StackInfiltration final : public model::hourly::Alteration {
+ public:
+  StackInfiltration(double factor, double height_m) : factor_(factor), height_m_(height_m) {}
+
+  void operate(const model::DriverHour&, StepOperation& operation) const override {
+    const double draught = std::sqrt(height_m_ * difference_K(operation) / kReference_mK);
+    operation.infiltration_factor *= 1.0 + factor_ * draught;
+  }
+
+ private:
+  /// Between outdoors and the nearer set-point in force; none within the dead band.
+  static double difference_K(const StepOperation& op) {
+    const double heating_C =
+        std::lerp(op.heating_unoccupied_C, op.heating_occupied_C, op.daytime_share);
+    const double cooling_C =
+        std::lerp(op.cooling_unoccupied_C, op.cooling_occupied_C, op.daytime_share);
+    return std::max({heating_C - op.dry_bulb_C, op.dry_bulb_C - cooling_C, 0.0});
+  }
+
+  double factor_;
+  double height_m_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "stack_factor", .unit = "-", .prior = half_normal(0.5), .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  const double height_m = facts.building.storeys * facts.building.storey_height_m;
+  return std::make_unique<StackInfiltration>(values[0], height_m);
+}
+
+}  // namespace
+
+Effect stack_infiltration() {
+  return {.id = "stack_infiltration",
+          .title = "Draught through shafts and stairs",
+          .meaning =
+              "In cold weather the building works like a chimney: air leaves at the top of "
+              "shafts and stairs and cold air comes in at the doors below.",
+          .physics =
+              "infiltration x (1 + k sqrt(h dT / (10 m x 10 K))); h building height in m, "
+              "dT between indoors and outdoors in K, k in -",
+          .effect_class = EffectClass::envelope,
+          .confusable =
+              {{"damper_stuck_open",
+                "Outdoor damper position, and heating on nights with the fans locked off."},
+               {"night_setback_missing",
+                "Room temperature at 3 o'clock: with a set-back it falls, whatever the draught."},
+               {"wind_infiltration", "Heating on calm, very cold nights against windy ones."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

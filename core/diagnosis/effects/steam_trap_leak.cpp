@@ -1,0 +1,57 @@
+/// Steam that is paid for and warms nobody.
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect steam_trap_leak();
+
+namespace {
+
+using model::hourly::StepLoads;
+using model::hourly::StepOperation;
+
+class SteamTrapLeak final : public model::hourly::Alteration {
+ public:
+  explicit SteamTrapLeak(double loss_kW) : loss_kW_(loss_kW) {}
+
+  void supply(const model::Building&, const model::DriverHour&, const StepOperation&,
+              StepLoads& loads) const override {
+    loads.base_heat_W += 1e3 * loss_kW_;
+  }
+
+ private:
+  double loss_kW_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  const double sd_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.15);
+  return {{.name = "heat_loss", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<SteamTrapLeak>(values[0]);
+}
+
+}  // namespace
+
+Effect steam_trap_leak() {
+  return {.id = "steam_trap_leak",
+          .title = "Steam or heat leaks in the pipes",
+          .meaning =
+              "Heat is drawn day and night, also in summer, and serves no room: traps stuck "
+              "open, bare pipes or a leaking valve.",
+          .physics = "heat meter + L at all hours; L in kW as metered",
+          .effect_class = EffectClass::plant,
+          .dating = Dating::may_begin,
+          .confusable =
+              {{"seasonal_hot_water",
+                "Close the hot-water loop's valve for a summer night and read the heat meter."},
+               {"simultaneous_heating_cooling",
+                "Chilled water of the same nights: reheat raises both, a leak the heat alone."},
+               {"scale_fault", "Ratio of metered to expected heat in January against July."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

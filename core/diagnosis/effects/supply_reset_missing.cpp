@@ -1,0 +1,76 @@
+/// Supply air is colder in mild weather than it need be.
+#include <algorithm>
+#include <limits>
+
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/half_normal.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+constexpr double kDeepestReset_K = 5.0;  // Usual span of reset controls: 13…18 °C.
+
+/// The catalogue adds r·on·(θ_r − θ_e)₊ to chilled water and heat as output. Here the supply air is
+/// made colder and the model does the rest: extra reheat is limited at least flow, free cooling
+/// does not charge chilled water, and fans move less air. ρ c V_min times this slope is the
+/// catalogue's r.
+class SupplyResetMissing final : public model::hourly::Alteration {
+ public:
+  SupplyResetMissing(double reset_K_K, double balance_C)
+      : reset_K_K_(reset_K_K), balance_C_(balance_C) {}
+
+  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
+    const double cold_K = std::max(balance_C_ - op.dry_bulb_C, 0.0);
+    op.supply_C -= std::min(reset_K_K_ * cold_K, kDeepestReset_K);
+  }
+
+ private:
+  double reset_K_K_;
+  double balance_C_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "reset_slope", .unit = "K/K", .prior = half_normal(0.25), .neutral = 0.0},
+          {.name = "balance_temperature",
+           .unit = "degC",
+           .prior = TruncatedNormalPrior{.location = 18.0, .sd = 3.0, .min = 8.0, .max = 28.0},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {14.0, 18.0, 22.0}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<SupplyResetMissing>(values[0], values[1]);
+}
+
+}  // namespace
+
+Effect supply_reset_missing();
+
+Effect supply_reset_missing() {
+  return {
+      .id = "supply_reset_missing",
+      .title = "Supply-air temperature reset missing",
+      .meaning =
+          "In mild and cold weather the air handlers go on delivering air as cold as in summer; "
+          "the rooms then have to warm it up again with reheat.",
+      .physics =
+          "θ_supply [°C] = θ_supply,model − min(k·max(θ_r − θ_e, 0), 5 K); extra cooling and "
+          "reheat ≈ ρ c V_min·Δθ_supply [W]; k [K/K] ≥ 0, θ_r [°C]",
+      .effect_class = EffectClass::air_system,
+      .needs = {.air_system = true},
+      .confusable = {{"simultaneous_heating_cooling",
+                      "Plot chilled water and heat against outdoor temperature: a missing reset "
+                      "ends at a knee, leaking valves do not."},
+                     {"humidifier",
+                      "Dry against humid days at equal outdoor temperature, and chilled water, "
+                      "which humidification leaves alone."},
+                     {"economiser_failed",
+                      "Heat on the same mild days: only the missing reset raises it. A supply-air "
+                      "sensor over a week decides."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,17 @@
+/// The usual prior of an amount that can only add.
+#pragma once
+
+#include <limits>
+
+#include "core/model/prior.hpp"
+
+namespace recald::diagnosis::effects {
+
+/// Density falls from 0 on; `sd` is that of the normal before it is cut at 0, in the amount's unit.
+/// @pre sd > 0
+[[nodiscard]] inline Prior half_normal(double sd) {
+  return TruncatedNormalPrior{
+      .location = 0.0, .sd = sd, .min = 0.0, .max = std::numeric_limits<double>::infinity()};
+}
+
+}  // namespace recald::diagnosis::effects

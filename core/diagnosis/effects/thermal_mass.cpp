@@ -1,0 +1,54 @@
+/// The building stores more or less heat than its class of construction.
+#include "core/diagnosis/effect.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect thermal_mass();
+
+namespace {
+
+class ThermalMass final : public model::hourly::Alteration {
+ public:
+  explicit ThermalMass(double factor) : factor_(factor) {}
+
+  void rebuild(model::Building& building) const override {
+    building.heat_capacity_J_m2K *= factor_;
+  }
+
+ private:
+  double factor_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "mass_factor",
+           .unit = "-",
+           .prior = LogNormalPrior{.median = 1.0, .log_sd = 0.5, .min = 0.2, .max = 5.0},
+           .neutral = 1.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<ThermalMass>(values[0]);
+}
+
+}  // namespace
+
+Effect thermal_mass() {
+  return {
+      .id = "thermal_mass",
+      .title = "Heavier or lighter than drawn",
+      .meaning =
+          "The building warms and cools more slowly (or faster) than its construction "
+          "suggests: nothing is broken, but start times should follow it.",
+      .physics = "heat capacity C_m x m; C_m in J/(m2 K) of floor area, m in -",
+      .effect_class = EffectClass::envelope,
+      .confusable = {{"early_start",
+                      "Fan status at dawn: an early start shows in it, slow walls do not."},
+                     {"night_setback_missing",
+                      "Room temperature after a clear night: mass lets it sink slowly, a missing "
+                      "set-back holds it level."}},
+      .parameters = parameters,
+      .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects

@@ -1,0 +1,64 @@
+/// One long absence of people.
+#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/presence.hpp"
+
+namespace recald::diagnosis::effects {
+namespace {
+
+/// The plant runs on by its timetable, as it mostly did in 2020; the window is added from outside.
+class Vacancy final : public model::hourly::Alteration {
+ public:
+  Vacancy(const model::Drivers& drivers, double absent_share)
+      : standby_(drivers), absent_share_(absent_share) {}
+
+  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
+    change_presence(-absent_share_, standby_, hour, op);
+  }
+
+ private:
+  StandbyLoads standby_;
+  double absent_share_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "absent_share",
+           .unit = "share of the people",
+           .prior = UniformPrior{0.0, 1.0},
+           .neutral = 0.0}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<Vacancy>(facts.drivers, values[0]);
+}
+
+}  // namespace
+
+Effect vacancy();
+
+Effect vacancy() {
+  return {
+      .id = "vacancy",
+      .title = "Vacancy",
+      .meaning =
+          "For some weeks or months much of the building stood empty, while the plant ran "
+          "on.",
+      .physics =
+          "from t_1 to t_2: people [–] ×(1−a), lights and plugs above their least of the "
+          "month [W] ×(1−0.8a); a [–] 0…1",
+      .effect_class = EffectClass::schedule,
+      .dating = Dating::window,
+      .confusable =
+          {{"equipment_step",
+            "Nights: equipment that is gone is gone at night too, missing people change working "
+            "hours only; and people come back."},
+           {"semester_calendar", "The second year: term breaks return at the same dates."},
+           {"phase_lost",
+            "Chilled water: a lost phase of the electricity meter has no echo there."},
+           {"missing_holidays", "Length: single days or many weeks."}},
+      .parameters = parameters,
+      .bind = bind,
+  };
+}
+
+}  // namespace recald::diagnosis::effects

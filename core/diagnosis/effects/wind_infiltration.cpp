@@ -1,0 +1,62 @@
+/// Wind presses air through the envelope, more than the drawings' leakage area lets in.
+#include <cmath>
+#include <limits>
+
+#include "core/diagnosis/effects/support/meter_priors.hpp"
+
+namespace recald::diagnosis::effects {
+
+Effect wind_infiltration();
+
+namespace {
+
+using model::hourly::StepOperation;
+
+class WindInfiltration final : public model::hourly::Alteration {
+ public:
+  WindInfiltration(double factor, double exponent) : factor_(factor), exponent_(exponent) {}
+
+  void operate(const model::DriverHour&, StepOperation& operation) const override {
+    operation.infiltration_factor *= 1.0 + factor_ * std::pow(operation.wind_m_s, exponent_);
+  }
+
+ private:
+  double factor_;
+  double exponent_;
+};
+
+std::vector<EffectParameter> parameters(const SiteFacts&) {
+  return {{.name = "wind_factor", .unit = "1/(m/s)^n", .prior = half_normal(0.2), .neutral = 0.0},
+          {.name = "wind_exponent",
+           .unit = "-",
+           .prior = UniformPrior{.min = 0.8, .max = 1.6},
+           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .scan = {1.0, 1.33}}};
+}
+
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
+                                                int) {
+  return std::make_unique<WindInfiltration>(values[0], values[1]);
+}
+
+}  // namespace
+
+Effect wind_infiltration() {
+  return {.id = "wind_infiltration",
+          .title = "Wind blows through the envelope",
+          .meaning =
+              "On windy days much more outdoor air leaks in than the drawings suggest: "
+              "look for open louvres, worn door seals and broken window gaskets.",
+          .physics = "infiltration x (1 + k v^n); v wind speed in m/s, k in 1/(m/s)^n, n in -",
+          .effect_class = EffectClass::envelope,
+          .needs = {.wind = true},
+          .confusable =
+              {{"stack_infiltration",
+                "Heating on calm, very cold nights: stack draught stays, wind draught is gone."},
+               {"damper_stuck_open",
+                "Outdoor damper position with fans off, on a calm and on a windy night."}},
+          .parameters = parameters,
+          .bind = bind};
+}
+
+}  // namespace recald::diagnosis::effects
