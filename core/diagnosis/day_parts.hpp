@@ -1,0 +1,75 @@
+/// Power averaged over six four-hour parts of each local day: the grain at which effects are told
+/// apart.
+///
+/// Monthly figures cannot name effects and single hours are not worth their cost; four hours show
+/// nights, mornings, working hours and evenings.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "core/metering/civil_time.hpp"
+#include "core/model/drivers.hpp"
+
+namespace recald::diagnosis {
+
+inline constexpr int kPartsPerDay = 6;
+inline constexpr int kPartsPerWeek = 7 * kPartsPerDay;
+inline constexpr int kHoursPerPart = 24 / kPartsPerDay;
+
+/// What a block may be used for. Buffers between the others keep the answer from leaking across.
+enum class Role { fit, select, show, buffer };
+
+struct DayPart {
+  metering::Day date;
+  int part;          ///< 0…5: 00–04 h … 20–24 h local.
+  int day_index;     ///< As `DriverHour::day_index`.
+  int part_of_week;  ///< 0…41 from Sunday 00 h; holidays stand where their date stands.
+  int first_hour;    ///< Index into Drivers::hours.
+  int hours;         ///< 3, 4 or 5.
+  int month;         ///< Index into Drivers::months.
+  model::DayType day;
+  double time_h;      ///< Middle, hours since the first hour of the period.
+  double dry_bulb_C;  ///< Means over the part.
+  double humidity_ratio;
+  double wind_m_s;
+  double global_horizontal_W_m2;
+};
+
+/// The parts of a period, in order of time.
+struct DayParts {
+  std::vector<DayPart> parts;
+  /// Means of hourly columns over the parts. @param hourly  (hours x m) @return (parts x m)
+  [[nodiscard]] Eigen::ArrayXXd average(const Eigen::Ref<const Eigen::ArrayXXd>& hourly) const;
+  void average_into(const Eigen::Ref<const Eigen::ArrayXXd>& hourly, Eigen::ArrayXXd& means) const;
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(parts.size()); }
+};
+
+[[nodiscard]] DayParts make_day_parts(const model::Drivers& drivers);
+
+/// Means of measured hours over the parts; NaN where less than three quarters of a part's hours
+/// were measured: a filled hour carries no information.
+/// @param hourly_kW  (hours x m) NaN where not measured.
+[[nodiscard]] Eigen::ArrayXXd measured_parts(const DayParts& day_parts,
+                                             const Eigen::Ref<const Eigen::ArrayXXd>& hourly_kW);
+
+struct SplitOptions {
+  double show_share = 0.2;
+  double select_share = 0.2;
+  int buffer_days = 7;
+  int last_months_to_show = 3;
+};
+
+/// Whole months for fitting, for choosing and for showing at the end: the last three months are
+/// shown, and at least one winter and one summer month where the period has them.
+/// @return one role a month, before buffers. Fewer than 6 months: all fit.
+[[nodiscard]] std::vector<Role> split_months(const std::vector<metering::Month>& months,
+                                             const SplitOptions& options);
+
+/// One role a part: its month's, or buffer within `buffer_days` of a month with another role.
+/// Buffers are taken from the fitted side, so that what is shown stays whole.
+[[nodiscard]] std::vector<Role> part_roles(const DayParts& day_parts,
+                                           const std::vector<Role>& month_roles, int buffer_days);
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,46 @@
+/// A first look at every candidate: how visible it is here, and how far the residuals speak for it.
+///
+/// Linear: one run of the model for each shape that is tried, no refit beyond what integrating the
+/// base parameters out does. Decides who is worth a fit, what cannot be told apart and what cannot
+/// be seen at all.
+/// @see discrepancy.md, 3.2, stage A.
+#pragma once
+
+#include <vector>
+
+#include "core/diagnosis/joint_fit.hpp"
+#include "core/random/rng.hpp"
+
+namespace recald::diagnosis {
+
+/// A candidate with one choice of shapes and days.
+struct Look {
+  std::size_t candidate;       ///< Index into the list.
+  std::vector<double> values;  ///< Of all its parameters; amounts at a typical value.
+  double detectability = 0.0;  ///< d of the typical amount.
+  double score = 0.0;          ///< z
+  AmountPrior prior;           ///< Of the factor on the typical amount.
+  double log_bayes_factor = 0.0;
+};
+
+struct CandidateLook {
+  Look best;                ///< The shape that the residuals like best.
+  double log_bayes_factor;  ///< Averaged over the shapes tried.
+  double most_detectable;   ///< Largest d over the shapes.
+  bool visible;             ///< d of at least 3 somewhere: may be named at this site.
+};
+
+struct FirstLook {
+  std::vector<CandidateLook> candidates;  ///< In order of the list.
+  Eigen::MatrixXd confusability;          ///< kappa of the best shapes.
+  double null_threshold;                  ///< c_99 of the largest log Bayes factor without effect.
+};
+
+inline constexpr double kLeastDetectability = 3.0;
+
+/// @param none  The base model at its mode.
+[[nodiscard]] Result<FirstLook> look_at(Predictor& predictor, const FitContext& context,
+                                        const JointFit& none,
+                                        const std::vector<Candidate>& candidates, Rng& rng);
+
+}  // namespace recald::diagnosis

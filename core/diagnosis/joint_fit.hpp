@@ -1,0 +1,79 @@
+/// Base parameters and one candidate effect fitted together, from their original priors.
+///
+/// Everything is a standard normal score: value = prior.at_score(u), so the prior of all scores is
+/// N(0, I) and no value ever leaves its prior. Gauss-Newton finds the mode; the evidence is
+/// Laplace's, at every node of the noise grid with the model linearised at that mode.
+/// @see discrepancy.md, 3.2, stage B (i).
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "core/diagnosis/observations.hpp"
+#include "core/diagnosis/posterior_algebra.hpp"
+#include "core/diagnosis/site_problem.hpp"
+#include "core/result.hpp"
+
+namespace recald::diagnosis {
+
+struct FitOptions {
+  int iterations_max = 8;
+  double small_gain = 0.05;  ///< Stop when an iteration gains less log posterior density.
+};
+
+/// A model linearised at its mode.
+struct JointFit {
+  Eigen::VectorXd scores;        ///< (q + r) at the mode, theta first.
+  std::vector<double> theta;     ///< (q)
+  std::vector<double> eta;       ///< (r)
+  Eigen::VectorXd residual;      ///< (n) measured - modelled, on the scale.
+  Eigen::MatrixXd jacobian;      ///< (n x (q + r)) of the modelled with respect to the scores.
+  Eigen::ArrayXXd parts_kW;      ///< (parts x m) of the whole period at the mode.
+  double log_evidence = 0.0;     ///< Over the grid.
+  Eigen::VectorXd node_weights;  ///< (nodes) posterior.
+  Eigen::Index best_node = 0;
+  GaussianPosterior posterior;  ///< Of the scores at the best node.
+  int iterations = 0;
+  bool converged = false;
+
+  /// r + J u: the residual column of the linear model whose prior is N(0, I) at score 0.
+  [[nodiscard]] Eigen::VectorXd linear_residual() const { return residual + jacobian * scores; }
+};
+
+/// What a fit is made on. References live as long as the call.
+struct FitContext {
+  const SiteProblem& site;
+  const Observations& observations;
+  const std::vector<NoiseNode>& grid;
+  std::size_t reference_node;  ///< Gauss-Newton goes by this one.
+};
+
+/// @param candidate  effect == nullptr: the base model alone.
+/// @param start      (q + r) scores.
+/// @return the fit, converged or not; not_finite where the model leaves the numbers.
+[[nodiscard]] Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
+                                           const Candidate& candidate, const Eigen::VectorXd& start,
+                                           const FitOptions& options = {});
+
+/// The evidence of an existing linearisation under another noise: no run of the model.
+struct GridEvidence {
+  double log_evidence;
+  Eigen::VectorXd node_weights;
+  Eigen::Index best_node;
+};
+[[nodiscard]] Result<GridEvidence> evidence_over(const std::vector<NoiseNode>& grid,
+                                                 const Observations& observations,
+                                                 const Eigen::VectorXd& linear_residual,
+                                                 const Eigen::MatrixXd& jacobian);
+
+/// The values that scores stand for. @param priors  (r) in order.
+[[nodiscard]] std::vector<double> values_at(std::span<const Prior> priors,
+                                            const Eigen::Ref<const Eigen::VectorXd>& scores);
+[[nodiscard]] std::vector<Prior> priors_of(const SiteProblem& site);
+[[nodiscard]] std::vector<Prior> priors_of(const Candidate& candidate);
+
+/// Score of a value, kept within +-limit.
+[[nodiscard]] double score_of(const Prior& prior, double value, double limit = 3.0);
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,301 @@
+#include "core/diagnosis/naming.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr double kConfusable = 0.7;
+// Scores beyond this lie in the outer 2.5 % of a prior: where its truncation is felt.
+constexpr double kScoreAtEnd = 1.96;
+
+double class_weight(EffectClass effect_class) {
+  switch (effect_class) {
+    case EffectClass::schedule:
+    case EffectClass::outdoor_air:
+    case EffectClass::meter:
+      return 3.0;
+    case EffectClass::air_system:
+    case EffectClass::electrical:
+      return 2.0;
+    case EffectClass::envelope:
+    case EffectClass::plant:
+      return 1.0;
+  }
+  return 1.0;
+}
+
+/// One name: an effect, at one meter if it is a meter's.
+using Name = std::pair<std::string, int>;
+Name name_of(const Candidate& candidate) {
+  return {std::string{candidate.effect->id}, candidate.meter};
+}
+
+/// Prior probability of each candidate: classes by weight, within a class all effects alike, an
+/// effect's meters and datings sharing its part.
+std::vector<double> log_priors(const std::vector<Candidate>& candidates, const NamingRules& rules) {
+  std::map<EffectClass, std::set<std::string_view>> effects;
+  std::map<std::string_view, int> variants;
+  for (const Candidate& c : candidates) {
+    effects[c.effect->effect_class].insert(c.effect->id);
+    ++variants[c.effect->id];
+  }
+  double total = 0.0;
+  for (const auto& [effect_class, ids] : effects) total += class_weight(effect_class);
+  std::vector<double> priors;
+  for (const Candidate& c : candidates) {
+    const double of_class = (1.0 - rules.prior_none - rules.prior_unknown) *
+                            class_weight(c.effect->effect_class) / total;
+    const double of_effect =
+        of_class / static_cast<double>(effects.at(c.effect->effect_class).size());
+    priors.push_back(std::log(of_effect / variants.at(c.effect->id)));
+  }
+  return priors;
+}
+
+std::vector<std::size_t> survivors_of(const FirstLook& look,
+                                      const std::vector<Candidate>& candidates,
+                                      const NamingRules& rules) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (look.candidates[i].visible) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, std::greater{},
+                           [&](std::size_t i) { return look.candidates[i].log_bayes_factor; });
+  std::vector<std::size_t> kept;
+  if (order.empty()) return kept;
+  const std::size_t best = order.front();
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const std::size_t i = order[rank];
+    const bool near = look.candidates[i].log_bayes_factor >
+                      look.candidates[best].log_bayes_factor - rules.survivor_gap;
+    const bool alike =
+        std::abs(look.confusability(static_cast<Eigen::Index>(i),
+                                    static_cast<Eigen::Index>(best))) > kConfusable &&
+        look.candidates[i].log_bayes_factor > 0.0;
+    if (rank < rules.survivors_min || near || alike) kept.push_back(i);
+  }
+  return kept;
+}
+
+/// Log score of each held month: marginal, no month knows its neighbours' residuals.
+std::vector<double> monthly_scores(const SiteProblem& site, const Observations& held,
+                                   std::span<const NoiseLevel> levels,
+                                   const Eigen::ArrayXXd& parts_kW) {
+  const Eigen::VectorXd residual = held.measured - held.stack(parts_kW);
+  std::map<int, double> scores;
+  for (std::size_t g = 0; g < held.meters.size(); ++g) {
+    const MeterRows& meter = held.meters[g];
+    std::size_t begin = 0;
+    while (begin < meter.rows.size()) {
+      const auto month_at = [&](std::size_t i) {
+        return site.day_parts.parts[static_cast<std::size_t>(meter.rows[i])].month;
+      };
+      std::size_t end = begin;
+      while (end < meter.rows.size() && month_at(end) == month_at(begin)) ++end;
+      const auto first = static_cast<Eigen::Index>(begin);
+      const auto n = static_cast<Eigen::Index>(end - begin);
+      const BlockDesign month{
+          meter.design.times_h.segment(first, n), meter.design.patterns.middleRows(first, n), {}};
+      scores[month_at(begin)] += BlockNoise{month, levels[g]}.marginal_log_density(
+          residual.segment(meter.offset + first, n));
+      begin = end;
+    }
+  }
+  std::vector<double> list;
+  for (const auto& [month, score] : scores) list.push_back(score);
+  return list;
+}
+
+struct Gain {
+  double sum;
+  double se;
+};
+Gain gain_over(const std::vector<double>& with, const std::vector<double>& without) {
+  const double n = static_cast<double>(with.size());
+  if (with.size() < 2) return {0.0, 0.0};
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    const double difference = with[i] - without[i];
+    sum += difference;
+    squares += difference * difference;
+  }
+  const double variance = std::max(squares - sum * sum / n, 0.0) / (n - 1.0);
+  return {sum, std::sqrt(n * variance)};
+}
+
+Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const Look& look) {
+  const auto q = none.scores.size();
+  Eigen::VectorXd start(q + static_cast<Eigen::Index>(candidate.parameters.size()));
+  start.head(q) = none.scores;
+  for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+    start[q + static_cast<Eigen::Index>(j)] =
+        score_of(candidate.parameters[j].prior, look.values[j]);
+  }
+  return start;
+}
+
+bool is_at_truncation(const Candidate& candidate, const JointFit& fit) {
+  const auto q = fit.scores.size() - static_cast<Eigen::Index>(candidate.parameters.size());
+  for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+    const Prior& prior = candidate.parameters[j].prior;
+    const double score = fit.scores[q + static_cast<Eigen::Index>(j)];
+    // Shares end where nature ends them; only cut normals and log-normals can be cut too early.
+    const bool natural = std::holds_alternative<UniformPrior>(prior.distribution());
+    if (!natural && std::isfinite(prior.max()) && score > kScoreAtEnd) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string_view to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::named:
+      return "named";
+    case Outcome::confusable:
+      return "confusable";
+    case Outcome::unknown:
+      return "unknown";
+    case Outcome::none:
+      break;
+  }
+  return "none";
+}
+
+namespace {
+
+/// Probabilities of all names, none and unknown, at the rules' temperature.
+std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& explanations,
+                                              const std::vector<Candidate>& candidates,
+                                              double unknown_gain, const NamingRules& rules) {
+  const std::vector<double> priors = log_priors(candidates, rules);
+  std::vector<NameProbability> list{
+      {"none", -1, std::log(rules.prior_none), {}},
+      {"unknown", -1, std::log(rules.prior_unknown) + unknown_gain / rules.temperature, {}}};
+  for (std::size_t i = 0; i < explanations.size(); ++i) {
+    const Explanation& e = explanations[i];
+    const Name name = name_of(candidates[e.candidate]);
+    const double weight = priors[e.candidate] + e.evidence_gain / rules.temperature;
+    const auto found = std::ranges::find_if(list, [&](const NameProbability& p) {
+      return p.effect == name.first && p.meter == name.second;
+    });
+    if (found == list.end()) {
+      list.push_back({name.first, name.second, weight, i});
+    } else {
+      const double top = std::max(found->probability, weight);
+      found->probability =
+          top + std::log(std::exp(found->probability - top) + std::exp(weight - top));
+    }
+  }
+  double top = list.front().probability;
+  for (const NameProbability& p : list) top = std::max(top, p.probability);
+  double sum = 0.0;
+  for (NameProbability& p : list) sum += p.probability = std::exp(p.probability - top);
+  for (NameProbability& p : list) p.probability /= sum;
+  std::ranges::stable_sort(list, std::greater{}, &NameProbability::probability);
+  return list;
+}
+
+/// What keeps an explanation from being named; empty where nothing does.
+std::string objection(const Explanation& e, const Naming& naming, const NamingRules& rules) {
+  const double least = std::max(rules.least_evidence, naming.null_threshold);
+  if (e.evidence_gain < least) return "the evidence for it is weaker than chance could make it";
+  if (e.first_look < least) return "the residuals alone do not speak for it";
+  if (e.selected_se > 0.0 && e.selected_gain < 2.0 * e.selected_se) {
+    return "it does not predict the months that were held for choosing better";
+  }
+  if (e.at_truncation) return "its size runs against the end of what was thought possible";
+  if (naming.unknown_selected_gain > 0.0 && e.explained_share < rules.least_explained) {
+    return "it explains too little of what there is to explain";
+  }
+  return {};
+}
+
+void decide(Naming& naming, const NamingRules& rules) {
+  const NameProbability& first = naming.probabilities.front();
+  if (first.explanation && first.probability >= rules.least_probability) {
+    const std::string against = objection(naming.explanations[*first.explanation], naming, rules);
+    if (against.empty()) {
+      naming.outcome = Outcome::named;
+      naming.named = first.explanation;
+      naming.why = "one effect explains the gap better than all others together";
+      return;
+    }
+    naming.why = first.effect + " fits best, but " + against;
+    const bool much_unexplained = naming.unknown_selected_gain > 0.0 &&
+                                  naming.unknown_gain > rules.least_evidence * rules.temperature;
+    naming.outcome = much_unexplained ? Outcome::unknown : Outcome::none;
+    return;
+  }
+  double share = 0.0;
+  std::vector<std::string> set;
+  bool supported = true;
+  for (const NameProbability& p : naming.probabilities) {
+    if (!p.explanation || p.probability < rules.confusable_share) continue;
+    share += p.probability;
+    set.push_back(p.effect);
+    supported = supported && objection(naming.explanations[*p.explanation], naming, rules).empty();
+  }
+  if (set.size() >= 2 && share >= rules.least_probability && supported) {
+    naming.outcome = Outcome::confusable;
+    naming.confusable = std::move(set);
+    naming.why = "several effects explain the gap equally well";
+    return;
+  }
+  if (first.effect == "unknown" && first.probability >= rules.unknown_probability) {
+    naming.outcome = Outcome::unknown;
+    naming.why = "there is a gap, and no effect of the catalogue explains it";
+    return;
+  }
+  naming.outcome = Outcome::none;
+  naming.why = "no effect is supported strongly enough";
+}
+
+}  // namespace
+
+Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const JointFit& none,
+                           const std::vector<Candidate>& candidates, const FirstLook& look,
+                           const NamingRules& rules) {
+  Naming naming;
+  naming.null_threshold = look.null_threshold;
+  const SiteProblem& site = data.fit.site;
+  const std::vector<double> base_scores =
+      monthly_scores(site, data.select, data.levels, none.parts_kW);
+
+  const auto unknown =
+      evidence_over(data.unknown_grid, data.unknown_fit, none.linear_residual(), none.jacobian);
+  if (!unknown) return tl::unexpected(unknown.error());
+  naming.unknown_gain = unknown->log_evidence - none.log_evidence;
+
+  for (const std::size_t i : survivors_of(look, candidates, rules)) {
+    const Candidate& candidate = candidates[i];
+    auto fit = fit_jointly(predictor, data.fit, candidate,
+                           start_at(none, candidate, look.candidates[i].best));
+    if (!fit) return tl::unexpected(fit.error());
+    const Gain gain =
+        gain_over(monthly_scores(site, data.select, data.levels, fit->parts_kW), base_scores);
+    naming.explanations.push_back({.candidate = i,
+                                   .fit = std::move(*fit),
+                                   .evidence_gain = 0.0,
+                                   .selected_gain = gain.sum,
+                                   .selected_se = gain.se,
+                                   .explained_share = 1.0,
+                                   .first_look = look.candidates[i].log_bayes_factor,
+                                   .at_truncation = false});
+    Explanation& e = naming.explanations.back();
+    e.evidence_gain = e.fit.log_evidence - none.log_evidence;
+    e.at_truncation = is_at_truncation(candidate, e.fit);
+  }
+  std::ranges::stable_sort(naming.explanations, std::greater{}, &Explanation::evidence_gain);
+  naming.probabilities =
+      probabilities_of(naming.explanations, candidates, naming.unknown_gain, rules);
+  decide(naming, rules);
+  return naming;
+}
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,76 @@
+/// Which effect, how sure, or honestly none of them.
+/// @see discrepancy.md, 3.2, stages B and C and the decision.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnosis/first_look.hpp"
+#include "core/executor.hpp"
+
+namespace recald::diagnosis {
+
+enum class Outcome { named, confusable, unknown, none };
+[[nodiscard]] std::string_view to_string(Outcome outcome);
+
+/// What was fixed on the training population and is published with every result.
+struct NamingRules {
+  double temperature = 20.0;  ///< T >= 1: evidences are divided by it, models being wrong.
+  double least_probability = 0.8;
+  double least_evidence = 5.0;    ///< L_k - L_none, nats, or the null threshold if larger.
+  double least_explained = 0.5;   ///< X: share of what the unknown model explains on chosen months.
+  double confusable_share = 0.1;  ///< Probability of each member of a confusable set.
+  double unknown_probability = 0.5;
+  std::size_t survivors_min = 8;
+  double survivor_gap = 2.0;  ///< Nats of the first look below the best.
+  double prior_none = 0.5;
+  double prior_unknown = 0.1;
+};
+
+/// A rival explanation after its fit.
+struct Explanation {
+  std::size_t candidate;  ///< Index into the list.
+  JointFit fit;
+  double evidence_gain;    ///< L_k - L_none, nats.
+  double selected_gain;    ///< Log score on the months to choose by, above none's.
+  double selected_se;      ///< Of that, by month.
+  double explained_share;  ///< X
+  double first_look;       ///< Log Bayes factor of the first look.
+  bool at_truncation;      ///< A posterior piled at an end that is no physical end.
+};
+
+struct NameProbability {
+  std::string effect;  ///< Id, or "none", "unknown".
+  int meter = -1;
+  double probability;
+  std::optional<std::size_t> explanation;  ///< The best one of this name.
+};
+
+struct Naming {
+  Outcome outcome = Outcome::none;
+  std::vector<NameProbability> probabilities;  ///< Descending.
+  std::vector<Explanation> explanations;       ///< Descending in evidence.
+  std::optional<std::size_t> named;            ///< Index into explanations.
+  std::vector<std::string> confusable;         ///< Ids of the set.
+  double unknown_gain = 0.0;                   ///< L_U - L_none
+  double unknown_selected_gain = 0.0;
+  double null_threshold = 0.0;
+  std::string why;  ///< Why this outcome, one sentence.
+};
+
+/// Data that a naming is judged by: fitted months, and months to choose by.
+struct NamingData {
+  FitContext fit;                   ///< Months to fit.
+  const Observations& unknown_fit;  ///< The same rows under generous patterns.
+  const std::vector<NoiseNode>& unknown_grid;
+  const Observations& select;          ///< Months to choose by; may be empty.
+  std::span<const NoiseLevel> levels;  ///< Of the fitted noise.
+};
+
+[[nodiscard]] Result<Naming> name_effect(Predictor& predictor, const NamingData& data,
+                                         const JointFit& none,
+                                         const std::vector<Candidate>& candidates,
+                                         const FirstLook& look, const NamingRules& rules);
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,219 @@
+#include "core/diagnosis/observations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr int kTemperatureSplines = 8;
+constexpr int kDriverSplines = 6;
+constexpr double kDaysPerDateSpline = 45.0;
+// The electricity meter's hourly pattern was read off the meter itself: its level in each part of
+// the week says nothing about the model.
+constexpr double kElectricityPatternFactor = 15.0;
+
+/// Linear B-splines (hats) on equally populated knots: local, sparse and never negative.
+struct Hats {
+  std::vector<double> knots;
+
+  static Hats at_quantiles(std::vector<double> values, int count) {
+    std::ranges::sort(values);
+    Hats hats;
+    for (int k = 0; k < count; ++k) {
+      const auto index = static_cast<std::size_t>(std::lround(
+          static_cast<double>(k) / (count - 1) * static_cast<double>(values.size() - 1)));
+      if (hats.knots.empty() || values[index] > hats.knots.back() + 1e-9) {
+        hats.knots.push_back(values[index]);
+      }
+    }
+    return hats;
+  }
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(knots.size()); }
+
+  void fill(double x, Eigen::Ref<Eigen::RowVectorXd> row) const {
+    const auto upper = std::ranges::upper_bound(knots, x);
+    if (upper == knots.begin()) {
+      row[0] = 1.0;
+      return;
+    }
+    if (upper == knots.end()) {
+      row[count() - 1] = 1.0;
+      return;
+    }
+    const auto i = static_cast<Eigen::Index>(upper - knots.begin()) - 1;
+    const double share = (x - knots[static_cast<std::size_t>(i)]) / (*upper - *(upper - 1));
+    row[i] = 1.0 - share;
+    row[i + 1] = share;
+  }
+};
+
+using PartValue = double (*)(const DayPart&);
+
+struct SplineOver {
+  PartValue value;
+  Hats hats;
+};
+
+SplineOver spline_over(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
+                       PartValue value, int count) {
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const Eigen::Index row : rows) {
+    values.push_back(value(site.day_parts.parts[static_cast<std::size_t>(row)]));
+  }
+  return {value, Hats::at_quantiles(std::move(values), count)};
+}
+
+std::vector<SplineOver> splines_of(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
+                                   Patterns patterns) {
+  std::vector<SplineOver> splines;
+  splines.push_back(spline_over(
+      site, rows, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatureSplines));
+  if (patterns == Patterns::modest) return splines;
+  const auto add = [&](PartValue value, int count) {
+    splines.push_back(spline_over(site, rows, value, count));
+  };
+  const auto& parts = site.day_parts.parts;
+  const double days = parts.back().day_index - parts.front().day_index + 1.0;
+  add([](const DayPart& p) { return static_cast<double>(p.day_index); },
+      std::max(3, static_cast<int>(days / kDaysPerDateSpline)));
+  if (site.drivers->has_humidity) {
+    add([](const DayPart& p) { return p.humidity_ratio; }, kDriverSplines);
+  }
+  if (site.drivers->has_wind) add([](const DayPart& p) { return p.wind_m_s; }, kDriverSplines);
+  add([](const DayPart& p) { return p.global_horizontal_W_m2; }, kDriverSplines);
+  return splines;
+}
+
+BlockDesign design_of(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
+                      bool electricity, Patterns patterns) {
+  const std::vector<SplineOver> splines = splines_of(site, rows, patterns);
+  Eigen::Index columns = kPartsPerWeek;
+  for (const SplineOver& s : splines) columns += s.hats.count();
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  BlockDesign design{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, columns), {}};
+  Eigen::RowVectorXd hats;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const DayPart& part =
+        site.day_parts.parts[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])];
+    design.times_h[i] = part.time_h;
+    design.patterns(i, part.part_of_week) = electricity ? kElectricityPatternFactor : 1.0;
+    Eigen::Index first = kPartsPerWeek;
+    for (const SplineOver& s : splines) {
+      hats.setZero(s.hats.count());
+      s.hats.fill(s.value(part), hats);
+      design.patterns.row(i).segment(first, s.hats.count()) = hats;
+      first += s.hats.count();
+    }
+  }
+  return design;
+}
+
+}  // namespace
+
+double on_scale(double power_kW, double mean_kW, ResidualScale scale) {
+  if (scale == ResidualScale::linear) return power_kW;
+  return 2.0 * std::sqrt(1.1 * mean_kW * (std::max(power_kW, 0.0) + 0.1 * mean_kW));
+}
+
+Eigen::VectorXd Observations::stack(const Eigen::ArrayXXd& parts_kW) const {
+  Eigen::VectorXd stacked(count());
+  for (std::size_t g = 0; g < meters.size(); ++g) {
+    const MeterRows& meter = meters[g];
+    for (std::size_t i = 0; i < meter.rows.size(); ++i) {
+      stacked[meter.offset + static_cast<Eigen::Index>(i)] = on_scale(
+          parts_kW(meter.rows[i], static_cast<Eigen::Index>(g)), meter.mean_kW, meter.scale);
+    }
+  }
+  return stacked;
+}
+
+Observations observe(const SiteProblem& site, const std::vector<bool>& part_flags,
+                     std::span<const ResidualScale> scales, Patterns patterns) {
+  Observations result;
+  const SiteFacts facts = site.facts();
+  Eigen::Index offset = 0;
+  for (std::size_t g = 0; g < site.meters.size(); ++g) {
+    MeterRows meter;
+    meter.offset = offset;
+    meter.mean_kW = facts.mean_kW[g];
+    meter.scale = scales[g];
+    for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {
+      if (part_flags[static_cast<std::size_t>(i)] &&
+          std::isfinite(site.measured_parts_kW(i, static_cast<Eigen::Index>(g)))) {
+        meter.rows.push_back(i);
+      }
+    }
+    if (!meter.rows.empty()) {
+      meter.design = design_of(site, meter.rows,
+                               site.meters[g].utility == metering::Utility::electricity, patterns);
+    }
+    offset += static_cast<Eigen::Index>(meter.rows.size());
+    result.meters.push_back(std::move(meter));
+  }
+  result.measured.resize(offset);
+  result.measured = result.stack(site.measured_parts_kW);
+  return result;
+}
+
+std::vector<bool> parts_of(const SiteProblem& site, std::initializer_list<Role> roles) {
+  std::vector<bool> flags;
+  flags.reserve(site.roles.size());
+  for (const Role role : site.roles) {
+    flags.push_back(std::ranges::find(roles, role) != roles.end());
+  }
+  return flags;
+}
+
+GramSystem NoiseNode::gram(const Observations& observations,
+                           const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  GramSystem system;
+  std::size_t next = 0;
+  for (const MeterRows& meter : observations.meters) {
+    if (meter.rows.empty()) continue;
+    system.add(meters[next++],
+               columns.middleRows(meter.offset, static_cast<Eigen::Index>(meter.rows.size())));
+  }
+  return system;
+}
+
+double NoiseNode::log_density(const Observations& observations,
+                              const Eigen::VectorXd& residual) const {
+  return log_evidence(gram(observations, residual));
+}
+
+std::vector<NoiseNode> noise_grid(const Observations& observations,
+                                  std::span<const NoiseLevel> levels, bool whole) {
+  constexpr std::array<double, 3> kStructure{0.6, 1.0, 1.7};
+  constexpr std::array<double, 3> kCorrelation{0.4, 1.0, 2.5};
+  constexpr std::array<double, 3> kWhite{0.8, 1.0, 1.25};
+  constexpr std::array<double, 3> kMiddle{1.0, 1.0, 1.0};
+  const std::size_t n = whole ? 3 : 1;
+  const auto& structure = whole ? kStructure : kMiddle;
+  const auto& correlation = whole ? kCorrelation : kMiddle;
+  const auto& white = whole ? kWhite : kMiddle;
+  std::vector<NoiseNode> grid;
+  const double log_weight = -std::log(static_cast<double>(n * n * n));
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = 0; b < n; ++b) {
+      for (std::size_t c = 0; c < n; ++c) {
+        NoiseNode node{{}, log_weight};
+        for (std::size_t g = 0; g < observations.meters.size(); ++g) {
+          if (observations.meters[g].rows.empty()) continue;
+          NoiseLevel level = levels[g];
+          level.structure_sd *= structure[a];
+          level.correlation_h *= correlation[b];
+          level.white_sd *= white[c];
+          node.meters.emplace_back(observations.meters[g].design, level);
+        }
+        grid.push_back(std::move(node));
+      }
+    }
+  }
+  return grid;
+}
+
+}  // namespace recald::diagnosis

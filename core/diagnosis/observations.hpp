@@ -1,0 +1,71 @@
+/// What the meters said in the parts of some roles, stacked meter by meter, and its noise.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "core/diagnosis/block_noise.hpp"
+#include "core/diagnosis/posterior_algebra.hpp"
+#include "core/diagnosis/site_problem.hpp"
+
+namespace recald::diagnosis {
+
+/// The scale on which a meter's residuals have the same spread at all levels.
+enum class ResidualScale { linear, square_root };
+
+/// y on the scale, in kW at the meter's mean: the derivative there is 1.
+/// square_root: 2 sqrt(m (y + m/10)) with the mean m; y below 0 counts as 0.
+[[nodiscard]] double on_scale(double power_kW, double mean_kW, ResidualScale scale);
+
+struct MeterRows {
+  std::vector<Eigen::Index> rows;  ///< Parts that were measured and have a wanted role.
+  BlockDesign design;              ///< Part of week and a spline in outdoor temperature.
+  Eigen::Index offset = 0;         ///< Of the meter in stacked vectors.
+  double mean_kW = 0.0;
+  ResidualScale scale = ResidualScale::linear;
+};
+
+struct Observations {
+  std::vector<MeterRows> meters;
+  Eigen::VectorXd measured;  ///< (n) on the scale, stacked.
+
+  [[nodiscard]] Eigen::Index count() const { return measured.size(); }
+  /// Picks the rows of a run. @param parts_kW  (parts x m)
+  [[nodiscard]] Eigen::VectorXd stack(const Eigen::ArrayXXd& parts_kW) const;
+};
+
+/// How generous the anonymous terms are.
+enum class Patterns {
+  modest,    ///< In every model: part of week, outdoor temperature.
+  generous,  ///< The unknown model: also date, humidity, wind and sun.
+};
+
+/// @param scales  (m)
+/// @param part_flags  (parts) which to take.
+[[nodiscard]] Observations observe(const SiteProblem& site, const std::vector<bool>& part_flags,
+                                   std::span<const ResidualScale> scales, Patterns patterns);
+
+/// Flags of the parts whose role is one of `roles`.
+[[nodiscard]] std::vector<bool> parts_of(const SiteProblem& site,
+                                         std::initializer_list<Role> roles);
+
+/// The covariance at one node of the grid over its hyper-parameters.
+struct NoiseNode {
+  std::vector<BlockNoise> meters;
+  double log_weight;  ///< Prior.
+
+  /// Gram of stacked columns, summed over meters.
+  [[nodiscard]] GramSystem gram(const Observations& observations,
+                                const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+  /// log N(r; 0, Sigma)
+  [[nodiscard]] double log_density(const Observations& observations,
+                                   const Eigen::VectorXd& residual) const;
+};
+
+/// Common factors on structure_sd, correlation_h and white_sd: 3 x 3 x 3 nodes around the fitted
+/// levels, or only the one in the middle. @see discrepancy.md, 3.0
+[[nodiscard]] std::vector<NoiseNode> noise_grid(const Observations& observations,
+                                                std::span<const NoiseLevel> levels, bool whole);
+
+}  // namespace recald::diagnosis

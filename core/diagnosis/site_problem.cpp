@@ -1,0 +1,180 @@
+#include "core/diagnosis/site_problem.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace recald::diagnosis {
+namespace {
+
+using metering::Utility;
+
+// A first or last day so near an end of the record shows nothing of what was before or after.
+constexpr double kLeastDaysAtEnds = 21.0;
+constexpr double kDaysBetweenLooks = 14.0;
+
+bool has(const SiteProblem& site, Utility utility) {
+  return std::ranges::any_of(site.meters,
+                             [utility](const MeterData& m) { return m.utility == utility; });
+}
+
+bool has_night_set_back(const model::SetPoints& set) {
+  return set.heating_unoccupied_C < set.heating_occupied_C ||
+         set.cooling_unoccupied_C > set.cooling_occupied_C;
+}
+
+/// Empty where the effect may be judged; else what is missing, in words.
+std::string lacking(const Effect& effect, const SiteProblem& site) {
+  const EffectNeeds& needs = effect.needs;
+  const model::Building& b = site.nominal;
+  if (needs.air_system && !b.air) return "the site file describes no air handlers";
+  if (needs.humidity && !site.drivers->has_humidity) return "the weather has no humidity";
+  if (needs.wind && !site.drivers->has_wind) return "the weather has no wind";
+  if (needs.own_chiller && !b.chiller_cop) return "the site has no chiller of its own";
+  if (needs.heat_pump) return "the site file describes no heat pump";
+  if (needs.economiser && !(b.air && b.air->economiser_lockout_C)) {
+    return "the site file describes no economiser";
+  }
+  if (needs.night_set_back && !has_night_set_back(b.set_points)) {
+    return "the site file describes no night set-back";
+  }
+  if (!effect.meter_utilities.empty() &&
+      std::ranges::none_of(effect.meter_utilities,
+                           [&](Utility utility) { return has(site, utility); })) {
+    return "no meter of this kind is modelled";
+  }
+  return {};
+}
+
+EffectParameter day_parameter(const char* name, double first_day, double last_day) {
+  EffectParameter day{name, "day", UniformPrior{first_day, last_day},
+                      std::numeric_limits<double>::quiet_NaN()};
+  for (double d = first_day + 0.5 * kDaysBetweenLooks; d < last_day; d += kDaysBetweenLooks) {
+    day.scan.push_back(d);
+  }
+  return day;
+}
+
+Candidate make_candidate(const Effect& effect, const SiteFacts& facts, int meter, Dating dating,
+                         double days) {
+  Candidate candidate{.effect = &effect,
+                      .meter = meter,
+                      .begins = dating != Dating::always,
+                      .ends = dating == Dating::window,
+                      .parameters = effect.parameters(facts)};
+  if (candidate.begins) {
+    candidate.parameters.push_back(
+        day_parameter("first_day", kLeastDaysAtEnds, days - kLeastDaysAtEnds));
+  }
+  if (candidate.ends) {
+    candidate.parameters.push_back(day_parameter("last_day", kLeastDaysAtEnds, days));
+  }
+  return candidate;
+}
+
+void add_candidates(const Effect& effect, const SiteFacts& facts, int meter, double days,
+                    std::vector<Candidate>& candidates) {
+  using enum Dating;
+  const auto add = [&](Dating dating) {
+    candidates.push_back(make_candidate(effect, facts, meter, dating, days));
+  };
+  if (effect.dating == may_begin) {
+    add(always);
+    add(must_begin);
+  } else {
+    add(effect.dating);
+  }
+}
+
+}  // namespace
+
+SiteFacts SiteProblem::facts() const {
+  SiteFacts facts{.building = nominal, .drivers = *drivers, .utilities = {}, .mean_kW = {}};
+  for (std::size_t g = 0; g < meters.size(); ++g) {
+    facts.utilities.push_back(meters[g].utility);
+    double sum = 0.0;
+    int n = 0;
+    for (Eigen::Index i = 0; i < measured_parts_kW.rows(); ++i) {
+      const double value = measured_parts_kW(i, static_cast<Eigen::Index>(g));
+      if (!std::isfinite(value)) continue;
+      sum += value;
+      ++n;
+    }
+    facts.mean_kW.push_back(n > 0 ? sum / n : 0.0);
+  }
+  return facts;
+}
+
+std::string Candidate::key(const SiteProblem& site) const {
+  if (effect == nullptr) return "none";
+  std::string text{effect->id};
+  if (meter >= 0) text += ":" + site.meters[static_cast<std::size_t>(meter)].id;
+  if (begins && effect->dating == Dating::may_begin) text += "@";
+  return text;
+}
+
+CandidateList list_candidates(const SiteProblem& site) {
+  CandidateList list;
+  const SiteFacts facts = site.facts();
+  const double days = site.drivers->hours.back().day_index + 1.0;
+  for (const Effect& effect : catalogue()) {
+    if (const std::string why = lacking(effect, site); !why.empty()) {
+      list.not_identifiable.push_back({std::string{effect.id}, why});
+      continue;
+    }
+    if (!effect.of_one_meter) {
+      add_candidates(effect, facts, -1, days, list.candidates);
+      continue;
+    }
+    for (std::size_t g = 0; g < site.meters.size(); ++g) {
+      const bool applies = effect.meter_utilities.empty() ||
+                           std::ranges::find(effect.meter_utilities, site.meters[g].utility) !=
+                               effect.meter_utilities.end();
+      if (applies) add_candidates(effect, facts, static_cast<int>(g), days, list.candidates);
+    }
+  }
+  return list;
+}
+
+std::unique_ptr<model::hourly::Alteration> alteration_of(const Candidate& candidate,
+                                                         const SiteFacts& facts,
+                                                         std::span<const double> values) {
+  const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
+  auto alteration =
+      candidate.effect->bind(facts, values.first(values.size() - days), candidate.meter);
+  if (days == 0) return alteration;
+  const double from = values[values.size() - days];
+  const double to = candidate.ends ? values.back() : std::numeric_limits<double>::infinity();
+  return within_dates(std::move(alteration), from, to);
+}
+
+Predictor::Predictor(const SiteProblem& site,
+                     std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted)
+    : site_(&site),
+      accepted_(std::move(accepted)),
+      building_(site.nominal),
+      hourly_(site.drivers),
+      hours_kW_(static_cast<Eigen::Index>(site.drivers->hours.size()),
+                static_cast<Eigen::Index>(site.meters.size())),
+      parts_kW_(site.day_parts.count(), hours_kW_.cols()) {
+  for (const MeterData& meter : site.meters) maps_.push_back(meter.end_uses);
+}
+
+const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
+                                           const model::hourly::Alteration* extra) {
+  building_ = site_->nominal;  // same sizes, nothing is allocated
+  for (std::size_t j = 0; j < theta.size(); ++j) {
+    site_->definitions[j]->set(building_, theta[j]);
+  }
+  model::settle(building_);
+  active_.clear();
+  for (const auto& alteration : accepted_) active_.push_back(alteration.get());
+  if (extra != nullptr) active_.push_back(extra);
+  hourly_.run(building_, active_, maps_, hours_kW_);
+  site_->day_parts.average_into(hours_kW_, parts_kW_);
+  ++runs_;
+  return parts_kW_;
+}
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,97 @@
+/// Everything a diagnosis knows of a site: its drawings, what is uncertain about them, what drove
+/// it and what its meters said.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/diagnosis/day_parts.hpp"
+#include "core/diagnosis/effect.hpp"
+#include "core/model/end_use.hpp"
+#include "core/model/hourly/hourly.hpp"
+#include "core/model/parameter_library.hpp"
+
+namespace recald::diagnosis {
+
+struct MeterData {
+  std::string id;
+  metering::Utility utility;
+  model::MeterMap end_uses;
+};
+
+struct SiteProblem {
+  model::Building nominal;
+  std::vector<const model::ParameterDefinition*> definitions;  ///< (q)
+  std::vector<Parameter> parameters;                           ///< (q) with their original priors.
+  std::shared_ptr<const model::Drivers> drivers;
+  std::vector<MeterData> meters;  ///< (m)
+  Eigen::ArrayXXd measured_kW;    ///< (hours x m) NaN where not measured.
+  DayParts day_parts;
+  Eigen::ArrayXXd measured_parts_kW;  ///< (parts x m) NaN where too little was measured.
+  std::vector<Role> month_roles;      ///< (months)
+  std::vector<Role> roles;            ///< (parts)
+
+  [[nodiscard]] SiteFacts facts() const;
+};
+
+/// One way in which the site may differ from its model.
+struct Candidate {
+  const Effect* effect = nullptr;           ///< Null: none.
+  int meter = -1;                           ///< Which, of an effect of one meter.
+  bool begins = false;                      ///< Has a first day, as a further parameter.
+  bool ends = false;                        ///< Has a last day, too.
+  std::vector<EffectParameter> parameters;  ///< The effect's own, then its days.
+
+  /// "steam_trap_leak", "scale_fault:steam", "equipment_step@": unique among a site's candidates.
+  [[nodiscard]] std::string key(const SiteProblem& site) const;
+};
+
+/// An effect that cannot be judged at this site, and why.
+struct NotIdentifiable {
+  std::string effect;
+  std::string why;  ///< In words.
+};
+
+struct CandidateList {
+  std::vector<Candidate> candidates;
+  std::vector<NotIdentifiable> not_identifiable;
+};
+
+/// Every entry of the catalogue that this site's meters, plant and weather could show.
+[[nodiscard]] CandidateList list_candidates(const SiteProblem& site);
+
+/// The candidate's effect at these values, within its days.
+[[nodiscard]] std::unique_ptr<model::hourly::Alteration> alteration_of(
+    const Candidate& candidate, const SiteFacts& facts, std::span<const double> values);
+
+/// Runs the hourly model for a site and reduces it to day parts. One instance a thread.
+class Predictor {
+ public:
+  /// @param accepted  Effects of the model's present version: applied first, in every run.
+  Predictor(const SiteProblem& site,
+            std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted = {});
+
+  /// @param theta  (q) in the parameters' units.
+  /// @param extra  Applied after the accepted ones; may be null.
+  /// @return (parts x m) kW, valid until the next call.
+  const Eigen::ArrayXXd& parts_kW(std::span<const double> theta,
+                                  const model::hourly::Alteration* extra = nullptr);
+  /// Of the last call: (hours x m) kW.
+  [[nodiscard]] const Eigen::ArrayXXd& hours_kW() const { return hours_kW_; }
+  [[nodiscard]] int runs() const { return runs_; }
+
+ private:
+  const SiteProblem* site_;
+  std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted_;
+  std::vector<const model::hourly::Alteration*> active_;
+  std::vector<model::MeterMap> maps_;
+  model::Building building_;
+  model::hourly::Hourly hourly_;
+  Eigen::ArrayXXd hours_kW_;
+  Eigen::ArrayXXd parts_kW_;
+  int runs_ = 0;
+};
+
+}  // namespace recald::diagnosis

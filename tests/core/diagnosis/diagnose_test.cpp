@@ -1,0 +1,115 @@
+#include "core/diagnosis/diagnose.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/sample_building.hpp"
+
+namespace recald::diagnosis {
+namespace {
+
+using metering::Utility;
+
+/// The sample building as its own meters, with what `hidden` adds and noise. The calibrated model
+/// generated its own data: these tests prove the machinery, never that it names real effects.
+SiteProblem site_with(const Effect* hidden, const std::vector<double>& values) {
+  SiteProblem site;
+  site.nominal = testing::sample_building();
+  for (const char* name : {"outdoor_airflow", "cooling_setpoint", "leakage_area"}) {
+    site.definitions.push_back(*model::find_parameter(name));
+    site.parameters.push_back(*model::make_parameter(*site.definitions.back(), site.nominal));
+  }
+  site.drivers = std::make_shared<const model::Drivers>(testing::sample_drivers(site.nominal, 24));
+  for (const auto& [id, utility] :
+       {std::pair{"electricity", Utility::electricity},
+        std::pair{"chilled_water", Utility::chilled_water}, std::pair{"steam", Utility::steam}}) {
+    site.meters.push_back({id, utility, *model::default_meter_map(utility)});
+  }
+  site.day_parts = make_day_parts(*site.drivers);
+  site.measured_parts_kW = Eigen::ArrayXXd::Ones(site.day_parts.count(), 3);
+  site.month_roles = split_months(site.drivers->months, {});
+  site.roles = part_roles(site.day_parts, site.month_roles, 7);
+
+  Predictor predictor{site};
+  std::vector<double> theta;
+  for (const Parameter& p : site.parameters) theta.push_back(p.prior.quantile(0.4));
+  site.measured_parts_kW = predictor.parts_kW(theta);
+  if (hidden != nullptr) {
+    const auto alteration = hidden->bind(site.facts(), values, -1);
+    site.measured_parts_kW = predictor.parts_kW(theta, alteration.get());
+  }
+  Rng rng{7};
+  for (Eigen::Index g = 0; g < 3; ++g) {
+    const double mean = site.measured_parts_kW.col(g).mean();
+    double slow = 0.0;
+    for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {
+      slow = 0.95 * slow + 0.01 * mean * rng.normal();
+      site.measured_parts_kW(i, g) += slow + 0.02 * mean * rng.normal();
+    }
+  }
+  site.measured_kW = predictor.hours_kW();
+  return site;
+}
+
+/// Here the model is the building, so evidence may be taken at its word.
+DiagnoseOptions exact_model() {
+  DiagnoseOptions options;
+  options.rules.temperature = 1.0;
+  return options;
+}
+
+TEST(Diagnose, NamesNothingWhereNothingIsHidden) {
+  const SiteProblem site = site_with(nullptr, {});
+  const auto diagnosis = diagnose(site, exact_model());
+  ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
+  EXPECT_EQ(diagnosis->outcome, Outcome::none);
+  EXPECT_TRUE(diagnosis->added.empty());
+  EXPECT_GT(diagnosis->candidates.size(), 30u);
+}
+
+TEST(Diagnose, NamesAHiddenEffectAndShowsThatTheGapShrank) {
+  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {4.0});
+  const auto diagnosis = diagnose(site, exact_model());
+  ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
+  const Naming& naming = diagnosis->passes.front().naming;
+  ASSERT_EQ(diagnosis->outcome, Outcome::named)
+      << naming.why << "; first " << naming.probabilities.front().effect << ", gains "
+      << naming.explanations.front().evidence_gain << " and "
+      << naming.explanations.front().selected_gain << " +- "
+      << naming.explanations.front().selected_se;
+  ASSERT_EQ(diagnosis->added.size(), 1u);
+  EXPECT_EQ(diagnosis->added[0].candidate.effect->id, "steam_trap_leak");
+  EXPECT_NEAR(diagnosis->added[0].eta[0], 4.0, 3.0 * diagnosis->added[0].eta_sd[0]);
+  ASSERT_TRUE(diagnosis->gap.has_value());
+  EXPECT_TRUE(diagnosis->gap->confirmed);
+  EXPECT_LT(diagnosis->gap->after[2].cvrmse_daily, diagnosis->gap->before[2].cvrmse_daily);
+}
+
+TEST(Diagnose, SameInputsGiveTheSameResult) {
+  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {4.0});
+  const auto first = diagnose(site, exact_model());
+  const auto second = diagnose(site, exact_model());
+  ASSERT_TRUE(first.has_value());
+  ASSERT_TRUE(second.has_value());
+  ASSERT_EQ(first->added.size(), 1u);
+  ASSERT_EQ(second->added.size(), 1u);
+  EXPECT_EQ(first->added[0].draws, second->added[0].draws);
+  EXPECT_EQ(first->passes[0].naming.null_threshold, second->passes[0].naming.null_threshold);
+}
+
+TEST(Diagnose, StopsWhenAsked) {
+  const auto stopped =
+      diagnose(site_with(nullptr, {}), {}, [](const char*, double share) { return share < 0.1; });
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
+}
+
+TEST(Diagnose, AMeterWithHardlyAnyReadingsIsExplained) {
+  SiteProblem site = site_with(nullptr, {});
+  site.measured_parts_kW.col(1).bottomRows(site.day_parts.count() - 50) = std::nan("");
+  const auto refused = diagnose(site, {});
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::not_enough_data);
+}
+
+}  // namespace
+}  // namespace recald::diagnosis
