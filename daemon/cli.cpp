@@ -80,7 +80,7 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
       command.add_option("--doe", arguments.design.folder, "Design folder instead of a site");
   site->excludes(doe);
   command.add_option("--model", arguments.model, "Model to calibrate")
-      ->check(CLI::IsMember({"epc", "metamodel"}));
+      ->check(CLI::IsMember({"epc", "hourly", "metamodel"}));
   add_design(command, arguments.design);
   add_form(command, arguments.design);
   command.add_option("--metamodel", arguments.metamodel,
@@ -108,6 +108,8 @@ void add_screen(CLI::App& command, ScreenArguments& arguments) {
 
 void add_doe(CLI::App& command, DoeArguments& arguments) {
   add_site(command, arguments);
+  command.add_option("--model", arguments.model, "Model to run instead of the site file's")
+      ->check(CLI::IsMember({"epc", "hourly"}));
   command.add_option("--runs", arguments.runs, "Runs of the Latin hypercube")
       ->check(CLI::Range(20, 100'000))
       ->capture_default_str();
@@ -151,6 +153,8 @@ struct Arguments {
   ScreenArguments screen;
   MetamodelArguments metamodel;
   DoeArguments doe;
+  DiagnoseArguments diagnose;
+  ModelArguments model;
 };
 
 struct Verb {
@@ -220,6 +224,33 @@ void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs)
       {metamodel, [&](const Console& console) { return run_metamodel(given.metamodel, console); }});
 }
 
+void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* diagnose =
+      app.add_subcommand("diagnose", "Find the physical effect that the model lacks");
+  add_site(*diagnose, given.diagnose);
+  diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.json");
+  diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
+      ->capture_default_str();
+  diagnose->add_flag("--apply", given.diagnose.apply, "Put what is named in force");
+  verbs.push_back(
+      {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
+
+  CLI::App* model = app.add_subcommand("model", "Versions of the site's model");
+  model->require_subcommand(1);
+  const auto add = [&](const char* name, const char* help, auto run) {
+    CLI::App* command = model->add_subcommand(name, help);
+    add_site(*command, given.model);
+    verbs.push_back(
+        {command, [&given, run](const Console& console) { return run(given.model, console); }});
+    return command;
+  };
+  add("list", "All versions, the one in force marked", run_model_list);
+  add("show", "One version and what it was accepted on", run_model_show)
+      ->add_option("version", given.model.version, "Version; without it the one in force");
+  add("revert", "Go back to an earlier version", run_model_revert)
+      ->add_option("version", given.model.version, "Version; without it the parent");
+}
+
 }  // namespace
 
 int run_cli(int argc, const char* const* argv, const Console& console) {
@@ -231,6 +262,7 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   add_site_verbs(app, given, verbs);
   add_calibration_verbs(app, given, verbs);
   add_design_verbs(app, given, verbs);
+  add_model_verbs(app, given, verbs);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

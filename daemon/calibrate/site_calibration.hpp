@@ -51,6 +51,9 @@ struct CalibrateOptions {
                                                      const CalibrateOptions& options,
                                                      const calibration::RunContext& context);
 
+/// What each modelled meter counts, in order of the model's outputs. @pre the site has a model
+[[nodiscard]] Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site);
+
 /// The electricity profile alone. @pre the site has a building and a period
 [[nodiscard]] Result<profile::ElectricityProfile> profile_site(
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,

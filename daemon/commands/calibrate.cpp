@@ -36,7 +36,7 @@ tl::expected<Finished, int> finish_calibration(const CalibrateArguments& argumen
   if (!calibration) return tl::unexpected(calibration.error());
   calibration->design_runs = arguments.design_runs;
   const CalibrateOptions options{std::move(*calibration), arguments.prior_sensitivity};
-  auto modelled = open_modelled_site(arguments.site, console);
+  auto modelled = open_modelled_site(arguments.site, console, arguments.model);
   if (!modelled) return tl::unexpected(modelled.error());
   auto& [site, recording, weather, facts] = *modelled;
 

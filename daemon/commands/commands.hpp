@@ -48,7 +48,7 @@ struct SamplingArguments {
 /// A site, or a design of experiments in its place.
 struct CalibrateArguments : SiteArguments, SamplingArguments {
   std::filesystem::path out;  ///< Folder; for `report` the page itself.
-  std::string model;          ///< "epc", "metamodel", or empty: what goes with site or design.
+  std::string model;          ///< "epc", "hourly", "metamodel", or empty: as site or design say.
   int design_runs = 200;      ///< Of a site.
   DesignArguments design;     ///< `folder` empty: a site.
   std::filesystem::path metamodel;     ///< Given regression, or empty.
@@ -69,9 +69,20 @@ struct MetamodelArguments : ScreenArguments {
 
 struct DoeArguments : SiteArguments {
   std::filesystem::path out;
+  std::string model;  ///< "epc", "hourly", or empty: as the site file says.
   int runs = 200;
   std::uint64_t seed = 1;
   unsigned threads = 0;
+};
+
+struct DiagnoseArguments : SiteArguments {
+  std::filesystem::path out;
+  std::uint64_t seed = 1;
+  bool apply = false;  ///< Put what was named in force.
+};
+
+struct ModelArguments : SiteArguments {
+  std::string version;  ///< Or its first digits; empty: the one in force, for revert its parent.
 };
 
 int run_check(const SiteArguments& arguments, const Console& console);
@@ -87,5 +98,13 @@ int run_screen(const ScreenArguments& arguments, const Console& console);
 int run_metamodel(const MetamodelArguments& arguments, const Console& console);
 /// Runs the site's model over a Latin hypercube into a design folder, or goes on with one.
 int run_doe(const DoeArguments& arguments, const Console& console);
+/// Locates, names and shows what the model lacks; with `apply` the model gets it.
+int run_diagnose(const DiagnoseArguments& arguments, const Console& console);
+/// The versions of the site's model, the one in force marked.
+int run_model_list(const ModelArguments& arguments, const Console& console);
+/// One version in full: its effects, what they were accepted on, what they change.
+int run_model_show(const ModelArguments& arguments, const Console& console);
+/// Puts the parent of the version in force, or the given version, in force again.
+int run_model_revert(const ModelArguments& arguments, const Console& console);
 
 }  // namespace recald::daemon

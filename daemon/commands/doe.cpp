@@ -39,7 +39,7 @@ std::string design_words(const DoeArguments& arguments, const doe::DesignPlan& p
 }  // namespace
 
 int run_doe(const DoeArguments& arguments, const Console& console) {
-  auto modelled = open_modelled_site(arguments.site, console);
+  auto modelled = open_modelled_site(arguments.site, console, arguments.model);
   if (!modelled) return modelled.error();
   const auto& [site, recording, weather, facts] = *modelled;
   const auto prepared = prepare_site(site.config, site.calendar, recording, weather);

@@ -62,11 +62,13 @@ Result<void> require_model(const SiteConfig& site) {
 }
 
 tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
-                                                   const Console& console) {
+                                                   const Console& console,
+                                                   const std::string& model) {
   auto site = open_site(file);
   if (!site) return tl::unexpected(console.fail(site.error()));
   const auto fail = [&](const Error& error) { return tl::unexpected(console.fail(error)); };
   if (auto modelled = require_model(site->config); !modelled) return fail(modelled.error());
+  if (!model.empty()) site->config.model->kind = model;
   auto facts = facts_of(site->config);
   if (!facts) return fail(facts.error());
   VirtualClock clock{metering::Instant{}};

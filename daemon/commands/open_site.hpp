@@ -37,8 +37,10 @@ struct ModelledSite {
 };
 
 /// Reads and replays everything; what the data show goes to err in words.
+/// @param model  Kind of model in the place of the site file's; empty: that one.
 /// @return the site, or the exit code after saying what is wrong.
 [[nodiscard]] tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
-                                                                 const Console& console);
+                                                                 const Console& console,
+                                                                 const std::string& model = "");
 
 }  // namespace recald::daemon

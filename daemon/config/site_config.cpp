@@ -244,7 +244,7 @@ ParameterConfig read_parameter(TomlReader& table) {
 
 ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
   ModelConfig config;
-  config.kind = table.word("kind", {"epc"}).value_or("epc");
+  config.kind = table.word("kind", {"epc", "hourly"}).value_or("epc");
   const auto outputs = table.texts("outputs");
   config.outputs = outputs.value_or(std::vector<std::string>{});
   if (!table.has("outputs")) {

@@ -51,7 +51,7 @@ struct ParameterConfig {
 };
 
 struct ModelConfig {
-  std::string kind;                       ///< "epc"
+  std::string kind;                       ///< "epc" or "hourly"
   std::vector<std::string> outputs;       ///< Ids of meters.
   std::map<std::string, double> weights;  ///< By meter; absent: 1.
   std::vector<ParameterConfig> parameters;

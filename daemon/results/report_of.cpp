@@ -95,6 +95,8 @@ report::MonthRole role_of(MonthRole role) {
   return report::MonthRole::unused;
 }
 
+bool is_peak(const OutputCalibration& output) { return output.unit == "kW"; }
+
 report::OutputMonth month_of(const Recording& recording, const SiteCalibration& result,
                              const OutputCalibration& output, std::size_t i) {
   const MeterRecord& record = recording.meters[output.meter];
@@ -238,7 +240,7 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
   for (const OutputCalibration& output : result.outputs) {
     const auto& after = output.assessment.after.calibration;
     // Electricity that its own profile reproduces is no evidence for the model.
-    if (!after || !output.calibrated) continue;
+    if (!after || !output.calibrated || is_peak(output)) continue;
     const auto verdict = assessment::guideline14_verdict(*after);
     data.verdicts.push_back(
         {label_of(recording.meters[output.meter].meter.id), verdict.pass, verdict.why});
@@ -254,7 +256,10 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
                         passing, judged, converged ? "" : ", but the sampler has not converged"));
   for (const OutputCalibration& output : result.outputs) {
     const auto& a = output.assessment;
-    if (!a.before.calibration || !a.prior_mean.calibration || !a.after.calibration) continue;
+    if (is_peak(output) || !a.before.calibration || !a.prior_mean.calibration ||
+        !a.after.calibration) {
+      continue;
+    }
     std::string line = fmt::format(
         "{}: CV(RMSE) {} before calibration, {} at the prior mean, {} after",
         label_of(recording.meters[output.meter].meter.id), percent(a.before.calibration->cvrmse),
@@ -278,7 +283,10 @@ void add_not_known(const SiteCalibration& result, report::ReportData& data) {
   data.not_known.emplace_back(
       "A parameter that fits is not a parameter that was measured: another combination of values, "
       "or an effect that the model lacks, may explain the same months.");
-  data.not_known.emplace_back("Peak demand is measured only. The monthly model has no peaks.");
+  data.not_known.emplace_back(
+      result.model == "hourly"
+          ? "Peak demand is shown as measured; how the model tells it stands in calibration.json."
+          : "Peak demand is measured only. The monthly model has no peaks.");
   data.not_known.emplace_back(
       "The discrepancy between model and building is known in size, not in cause, and is not "
       "carried into other operating conditions.");
@@ -304,6 +312,7 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
   }
   data.findings = findings_of(recording, calendar);
   for (const OutputCalibration& output : result.outputs) {
+    if (is_peak(output)) continue;  // the page shows peaks as measured, beside each other
     data.outputs.push_back(output_of(recording, result, output));
   }
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {

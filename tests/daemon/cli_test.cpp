@@ -83,7 +83,7 @@ TEST_F(Cli, WrongUsageIsTwo) {
       {"replay", site(), "extra"},
       {"replay", site(), "--form", "2021-01-01"},
       {"replay", site(), "--from"},
-      {"calibrate", site(), "--model", "hourly"},
+      {"calibrate", site(), "--model", "daily"},
       {"calibrate", site(), "--sampler", "guess"},
       {"calibrate", site(), "--hyper-prior", "none"},
       {"calibrate", site(), "--draws", "many"},
