@@ -25,7 +25,7 @@ void use_as_office(Drawings& drawings) {
   drawings.core_runs_always = false;
   drawings.core_min_share = 0.30;
   drawings.perimeter_min_share = 0.30;
-  drawings.occupied_from_h = 6.5;
+  drawings.occupied_from_h = 7.0;
   drawings.occupied_to_h = 19.0;
   drawings.night_cooling_C = 29.0;
   drawings.presence_workday = {0,    0,    0,    0,    0,    0.01, 0.05, 0.22,
@@ -46,8 +46,8 @@ void use_as_school(Drawings& drawings) {
   drawings.core_runs_always = false;
   drawings.core_min_share = 0.40;
   drawings.perimeter_min_share = 0.40;
-  drawings.occupied_from_h = 6.5;
-  drawings.occupied_to_h = 16.5;
+  drawings.occupied_from_h = 7.0;
+  drawings.occupied_to_h = 17.0;
   drawings.presence_workday = {0,    0,    0,    0,    0,    0,    0.12, 0.57,
                                0.79, 0.80, 0.80, 0.79, 0.63, 0.72, 0.72, 0.30,
                                0.08, 0.03, 0.02, 0.02, 0.01, 0,    0,    0};
