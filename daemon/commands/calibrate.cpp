@@ -6,6 +6,7 @@
 #include "adapters/report/report.hpp"
 #include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
+#include "daemon/calibrate/active_effects.hpp"
 #include "daemon/calibrate/site_calibration.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
@@ -51,6 +52,14 @@ tl::expected<Finished, int> finish_calibration(const CalibrateArguments& argumen
   auto calibrated =
       calibrate_site(site.config, site.calendar, recording, weather, options, context);
   if (!calibrated) return tl::unexpected(console.fail(calibrated.error()));
+  const auto effects = active_effects(site.config);
+  if (!effects) return tl::unexpected(console.fail(effects.error()));
+  if (!effects->empty()) {
+    calibrated->warnings.push_back(
+        fmt::format("The model version in force has {} effect{} (first: {}) that this calibration "
+                    "does not carry: it is of the drawings.",
+                    effects->size(), effects->size() == 1 ? "" : "s", effects->front().title));
+  }
   RunFacts complete = with_sampling(std::move(facts), arguments, calibrated->calibration);
   complete.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return Finished{std::move(site), std::move(recording), std::move(*calibrated),
