@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnosis/gap.hpp"
 #include "core/diagnosis/locate.hpp"
 #include "core/diagnosis/naming.hpp"
 #include "core/result.hpp"
@@ -20,23 +21,6 @@ struct DiagnoseOptions {
   std::uint64_t seed = 1;
 };
 
-/// How well a model tells one meter's shown months. Shares of the mean measured.
-struct MeterGap {
-  double nmbe_sim_minus_meas;  ///< Of the day parts' energy.
-  double cvrmse_daily;
-  double cvrmse_monthly;
-  double log_score;          ///< Mean log density a month.
-  double discrepancy_share;  ///< V: what the structure takes of what is left, fitted months.
-};
-
-struct GapChange {
-  std::vector<MeterGap> before;          ///< (m)
-  std::vector<MeterGap> after;           ///< (m)
-  std::vector<double> log_score_change;  ///< (m) after - before, summed over the shown months.
-  std::vector<double> log_score_se;      ///< (m)
-  bool confirmed = false;  ///< Better by more than two standard errors, and no meter worse by two.
-};
-
 /// One effect that was added, as it stood when it was.
 struct Addition {
   Candidate candidate;
@@ -46,6 +30,7 @@ struct Addition {
   double probability;
   double evidence_gain;
   std::vector<double> monthly_kWh;  ///< (m) with the effect minus without, mean month.
+  Eigen::ArrayXXd effect_kW;        ///< (parts x m) with the effect minus without.
 };
 
 /// One turn of the wheel.
@@ -53,6 +38,8 @@ struct Pass {
   std::vector<Finding> located;
   FirstLook look;
   Naming naming;
+  Eigen::ArrayXXd modelled_kW;  ///< (parts x m) the model at the start of the pass.
+  std::vector<MeterGap> gaps;   ///< (m) its gap on the shown months.
 };
 
 struct Diagnosis {
@@ -60,7 +47,10 @@ struct Diagnosis {
   std::vector<Candidate> candidates;
   std::vector<NotIdentifiable> not_identifiable;
   std::vector<Pass> passes;  ///< The first one is of the drawings.
+  std::string why;           ///< Why this outcome, one sentence.
   std::vector<Addition> added;
+  Eigen::ArrayXXd modelled_kW;     ///< (parts x m) the final model.
+  std::vector<MeterGap> gaps;      ///< (m) its gap on the shown months.
   std::optional<GapChange> gap;    ///< Of the hourly model; absent where no month was held.
   bool not_confirmed = false;      ///< Effects were named, and the shown months did not agree.
   std::vector<MeterGap> base_fit;  ///< (m) the base model on the fitted months.

@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "core/diagnosis/held_scores.hpp"
+
 namespace recald::diagnosis {
 namespace {
 
@@ -79,53 +81,6 @@ std::vector<std::size_t> survivors_of(const FirstLook& look,
     if (rank < rules.survivors_min || near || alike) kept.push_back(i);
   }
   return kept;
-}
-
-/// Log score of each held month: marginal, no month knows its neighbours' residuals.
-std::vector<double> monthly_scores(const SiteProblem& site, const Observations& held,
-                                   std::span<const NoiseLevel> levels,
-                                   const Eigen::ArrayXXd& parts_kW) {
-  const Eigen::VectorXd residual = held.measured - held.stack(parts_kW);
-  std::map<int, double> scores;
-  for (std::size_t g = 0; g < held.meters.size(); ++g) {
-    const MeterRows& meter = held.meters[g];
-    std::size_t begin = 0;
-    while (begin < meter.rows.size()) {
-      const auto month_at = [&](std::size_t i) {
-        return site.day_parts.parts[static_cast<std::size_t>(meter.rows[i])].month;
-      };
-      std::size_t end = begin;
-      while (end < meter.rows.size() && month_at(end) == month_at(begin)) ++end;
-      const auto first = static_cast<Eigen::Index>(begin);
-      const auto n = static_cast<Eigen::Index>(end - begin);
-      const BlockDesign month{
-          meter.design.times_h.segment(first, n), meter.design.patterns.middleRows(first, n), {}};
-      scores[month_at(begin)] += BlockNoise{month, levels[g]}.marginal_log_density(
-          residual.segment(meter.offset + first, n));
-      begin = end;
-    }
-  }
-  std::vector<double> list;
-  for (const auto& [month, score] : scores) list.push_back(score);
-  return list;
-}
-
-struct Gain {
-  double sum;
-  double se;
-};
-Gain gain_over(const std::vector<double>& with, const std::vector<double>& without) {
-  const double n = static_cast<double>(with.size());
-  if (with.size() < 2) return {0.0, 0.0};
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < with.size(); ++i) {
-    const double difference = with[i] - without[i];
-    sum += difference;
-    squares += difference * difference;
-  }
-  const double variance = std::max(squares - sum * sum / n, 0.0) / (n - 1.0);
-  return {sum, std::sqrt(n * variance)};
 }
 
 Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const Look& look) {
@@ -264,8 +219,7 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   Naming naming;
   naming.null_threshold = look.null_threshold;
   const SiteProblem& site = data.fit.site;
-  const std::vector<double> base_scores =
-      monthly_scores(site, data.select, data.levels, none.parts_kW);
+  const MonthScores base_scores = held_scores(site, data.select, data.levels, none.parts_kW);
 
   const auto unknown =
       evidence_over(data.unknown_grid, data.unknown_fit, none.linear_residual(), none.jacobian);
@@ -277,8 +231,8 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     auto fit = fit_jointly(predictor, data.fit, candidate,
                            start_at(none, candidate, look.candidates[i].best));
     if (!fit) return tl::unexpected(fit.error());
-    const Gain gain =
-        gain_over(monthly_scores(site, data.select, data.levels, fit->parts_kW), base_scores);
+    const ScoreGain gain =
+        gain_over(held_scores(site, data.select, data.levels, fit->parts_kW), base_scores);
     naming.explanations.push_back({.candidate = i,
                                    .fit = std::move(*fit),
                                    .evidence_gain = 0.0,

@@ -104,8 +104,8 @@ Json gaps_json(const SiteProblem& site, const std::vector<diagnosis::MeterGap>& 
 Json gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
   Json change = Json::object();
   for (std::size_t g = 0; g < gap.log_score_change.size(); ++g) {
-    change[site.meters[g].id] = {{"sum", number(gap.log_score_change[g])},
-                                 {"se", number(gap.log_score_se[g])}};
+    change[site.meters[g].id] = {{"sum", number(gap.log_score_change[g].sum)},
+                                 {"se", number(gap.log_score_change[g].se)}};
   }
   return {{"hourly",
            {{"before", gaps_json(site, gap.before)},

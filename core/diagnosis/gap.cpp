@@ -1,0 +1,82 @@
+#include "core/diagnosis/gap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace recald::diagnosis {
+namespace {
+
+/// Root mean square error over groups of parts (days, months), of the mean of the groups.
+double cvrmse_by(const SiteProblem& site, const MeterRows& rows, Eigen::Index g,
+                 const Eigen::ArrayXXd& parts_kW, int (*group)(const DayPart&)) {
+  std::map<int, std::pair<double, double>> sums;
+  for (const Eigen::Index row : rows.rows) {
+    const DayPart& part = site.day_parts.parts[static_cast<std::size_t>(row)];
+    auto& [measured, modelled] = sums[group(part)];
+    measured += part.hours * site.measured_parts_kW(row, g);
+    modelled += part.hours * parts_kW(row, g);
+  }
+  double squares = 0.0;
+  double total = 0.0;
+  for (const auto& [key, pair] : sums) {
+    squares += (pair.first - pair.second) * (pair.first - pair.second);
+    total += pair.first;
+  }
+  const auto n = static_cast<double>(sums.size());
+  return n > 1.0 && total > 0.0 ? std::sqrt(squares / (n - 1.0)) / (total / n) : 0.0;
+}
+
+}  // namespace
+
+std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
+                              const Observations& held) {
+  const JointFit& fit = ground.none;
+  std::vector<MeterGap> gaps;
+  const MonthScores scores = held_scores(site, held, ground.levels, fit.parts_kW);
+  const NoiseNode& node = ground.grid[static_cast<std::size_t>(fit.best_node)];
+  for (std::size_t g = 0; g < held.meters.size(); ++g) {
+    const MeterRows& rows = held.meters[g];
+    const auto column = static_cast<Eigen::Index>(g);
+    double measured = 0.0;
+    double difference = 0.0;
+    for (const Eigen::Index row : rows.rows) {
+      const DayPart& part = site.day_parts.parts[static_cast<std::size_t>(row)];
+      measured += part.hours * site.measured_parts_kW(row, column);
+      difference += part.hours * (fit.parts_kW(row, column) - site.measured_parts_kW(row, column));
+    }
+    double log_score = 0.0;
+    for (const auto& [month, score] : scores[g]) log_score += score;
+    const MeterRows& fitted = ground.fit.meters[g];
+    const auto n = static_cast<Eigen::Index>(fitted.rows.size());
+    const ResidualShares shares = node.meters[g].residual_shares(
+        fit.residual.segment(fitted.offset, n), fit.jacobian.middleRows(fitted.offset, n),
+        fit.posterior.covariance);
+    gaps.push_back(
+        {.nmbe_sim_minus_meas = measured > 0.0 ? difference / measured : 0.0,
+         .cvrmse_daily = cvrmse_by(site, rows, column, fit.parts_kW,
+                                   [](const DayPart& p) { return p.day_index; }),
+         .cvrmse_monthly =
+             cvrmse_by(site, rows, column, fit.parts_kW, [](const DayPart& p) { return p.month; }),
+         .log_score = scores[g].empty() ? 0.0 : log_score / static_cast<double>(scores[g].size()),
+         .discrepancy_share = shares.structural / (shares.structural + shares.white)});
+  }
+  return gaps;
+}
+
+GapChange change_of(const SiteProblem& site, const Ground& before, const Ground& after) {
+  const MonthScores old_scores =
+      held_scores(site, before.show, before.levels, before.none.parts_kW);
+  const MonthScores new_scores = held_scores(site, before.show, before.levels, after.none.parts_kW);
+  GapChange change{.before = gaps_of(site, before, before.show),
+                   .after = gaps_of(site, after, before.show),
+                   .log_score_change = gain_by_meter(new_scores, old_scores)};
+  const bool worse = std::ranges::any_of(change.log_score_change, [](const ScoreGain& meter) {
+    return meter.sum < -2.0 * meter.se - 1.0;
+  });
+  const ScoreGain all = gain_over(new_scores, old_scores);
+  change.confirmed = all.sum > 2.0 * all.se && !worse;
+  return change;
+}
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,36 @@
+/// How far a model is from the meters on months that chose nothing, and whether that shrank.
+/// @see discrepancy.md, 3.4
+#pragma once
+
+#include <vector>
+
+#include "core/diagnosis/ground.hpp"
+#include "core/diagnosis/held_scores.hpp"
+
+namespace recald::diagnosis {
+
+/// How well a model tells one meter's months. Shares of the mean measured.
+struct MeterGap {
+  double nmbe_sim_minus_meas;  ///< Of the day parts' energy.
+  double cvrmse_daily;
+  double cvrmse_monthly;
+  double log_score;          ///< Mean log density a month.
+  double discrepancy_share;  ///< V: what the structure takes of what is left, fitted months.
+};
+
+struct GapChange {
+  std::vector<MeterGap> before;             ///< (m)
+  std::vector<MeterGap> after;              ///< (m)
+  std::vector<ScoreGain> log_score_change;  ///< (m) after - before, summed over the shown months.
+  bool confirmed = false;  ///< Better by more than two standard errors, and no meter worse by two.
+};
+
+/// @param held  The months to judge by.
+[[nodiscard]] std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
+                                            const Observations& held);
+
+/// Judged by the noise of the model before: a change of noise is no better model.
+[[nodiscard]] GapChange change_of(const SiteProblem& site, const Ground& before,
+                                  const Ground& after);
+
+}  // namespace recald::diagnosis

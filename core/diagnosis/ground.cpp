@@ -1,0 +1,123 @@
+#include "core/diagnosis/ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr Eigen::Index kLeastParts = 100;
+// Spread of residuals in the upper half of the levels over that in the lower half, beyond which a
+// meter is judged on the square-root scale.
+constexpr double kSpreadRatio = 1.6;
+
+/// Root mean square of the residuals at the upper half of the modelled levels over the lower half.
+double spread_ratio(const Observations& observations, std::size_t meter,
+                    const Eigen::VectorXd& residual, const Eigen::VectorXd& modelled) {
+  const MeterRows& rows = observations.meters[meter];
+  const auto n = static_cast<Eigen::Index>(rows.rows.size());
+  std::vector<std::pair<double, double>> by_level;
+  for (Eigen::Index i = rows.offset; i < rows.offset + n; ++i) {
+    by_level.emplace_back(modelled[i], residual[i] * residual[i]);
+  }
+  std::ranges::sort(by_level);
+  double low = 0.0;
+  double high = 0.0;
+  for (std::size_t i = 0; i < by_level.size(); ++i) {
+    (2 * i < by_level.size() ? low : high) += by_level[i].second;
+  }
+  return std::sqrt(high / std::max(low, 1e-12));
+}
+
+Result<std::vector<NoiseLevel>> levels_of(const Observations& observations,
+                                          const Eigen::VectorXd& residual) {
+  std::vector<NoiseLevel> levels;
+  for (const MeterRows& meter : observations.meters) {
+    const auto n = static_cast<Eigen::Index>(meter.rows.size());
+    auto fitted =
+        fit_levels(residual.segment(meter.offset, n), meter.design, std::max(meter.mean_kW, 1e-6));
+    if (!fitted) return tl::unexpected(fitted.error());
+    levels.push_back(fitted->level);
+  }
+  return levels;
+}
+
+/// First levels before any residual is known: what the priors expect.
+std::vector<NoiseLevel> first_levels(const Observations& observations) {
+  std::vector<NoiseLevel> levels;
+  for (const MeterRows& meter : observations.meters) {
+    const double mean = std::max(meter.mean_kW, 1e-6);
+    levels.push_back({.structure_sd = 0.1 * mean,
+                      .correlation_h = 48.0,
+                      .white_sd = 0.1 * mean,
+                      .pattern_sd = 0.02 * mean});
+  }
+  return levels;
+}
+
+void set_gates(Observations& observations, const Eigen::VectorXd& residual,
+               std::span<const NoiseLevel> levels) {
+  std::vector<Eigen::VectorXd> residuals;
+  for (const MeterRows& meter : observations.meters) {
+    residuals.push_back(
+        residual.segment(meter.offset, static_cast<Eigen::Index>(meter.rows.size())));
+  }
+  std::vector<GateInput> inputs;
+  for (std::size_t g = 0; g < observations.meters.size(); ++g) {
+    inputs.push_back({observations.meters[g].design, residuals[g], levels[g]});
+  }
+  const auto gates = choose_gates(inputs);
+  for (std::size_t g = 0; g < gates.size(); ++g) observations.meters[g].design.gated = gates[g];
+}
+
+}  // namespace
+
+Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
+  Ground ground;
+  std::vector<ResidualScale> scales(site.meters.size(), ResidualScale::linear);
+  const auto fit_parts = parts_of(site, {Role::fit});
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(site.parameters.size()));
+  for (int round = 0; round < 3; ++round) {
+    ground.fit = observe(site, fit_parts, scales, Patterns::modest);
+    for (const MeterRows& meter : ground.fit.meters) {
+      if (static_cast<Eigen::Index>(meter.rows.size()) < kLeastParts) {
+        return failure(ErrorCode::not_enough_data,
+                       "a meter has fewer than 100 measured four-hour parts in the months to fit; "
+                       "leave it out of the model's outputs or give more readings");
+      }
+    }
+    if (round == 0) {
+      ground.levels = first_levels(ground.fit);
+    } else {
+      const Eigen::VectorXd left = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
+      auto levels = levels_of(ground.fit, left);
+      if (!levels) return tl::unexpected(levels.error());
+      ground.levels = std::move(*levels);
+      set_gates(ground.fit, left, ground.levels);
+    }
+    ground.grid = noise_grid(ground.fit, ground.levels, round == 2);
+    auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start);
+    if (!none) return tl::unexpected(none.error());
+    ground.none = std::move(*none);
+    start = ground.none.scores;
+    if (round > 0) continue;
+    const Eigen::VectorXd modelled = ground.fit.stack(ground.none.parts_kW);
+    for (std::size_t g = 0; g < scales.size(); ++g) {
+      if (spread_ratio(ground.fit, g, ground.none.residual, modelled) > kSpreadRatio) {
+        scales[g] = ResidualScale::square_root;
+      }
+    }
+  }
+  ground.unknown = observe(site, fit_parts, scales, Patterns::generous);
+  for (std::size_t g = 0; g < ground.unknown.meters.size(); ++g) {
+    ground.unknown.meters[g].design.gated = ground.fit.meters[g].design.gated;
+  }
+  std::vector<NoiseLevel> generous = ground.levels;
+  for (NoiseLevel& level : generous) level.pattern_sd *= 5.0;
+  ground.unknown_grid = noise_grid(ground.unknown, generous, true);
+  ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
+  ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
+  return ground;
+}
+
+}  // namespace recald::diagnosis

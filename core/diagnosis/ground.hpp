@@ -1,0 +1,37 @@
+/// The base model fitted to the meters, and the noise that is left: what every question starts
+/// from.
+#pragma once
+
+#include <vector>
+
+#include "core/diagnosis/joint_fit.hpp"
+#include "core/diagnosis/observations.hpp"
+#include "core/diagnosis/site_problem.hpp"
+#include "core/result.hpp"
+
+namespace recald::diagnosis {
+
+/// Observations by role, noise and base fit of one version of the model.
+struct Ground {
+  Observations fit;                ///< Months to fit.
+  Observations unknown;            ///< The same rows under generous patterns.
+  Observations select;             ///< Months to choose by; may be empty.
+  Observations show;               ///< Months that are kept back; may be empty.
+  std::vector<NoiseLevel> levels;  ///< (m) as fitted to what the base model leaves.
+  std::vector<NoiseNode> grid;
+  std::vector<NoiseNode> unknown_grid;
+  JointFit none;  ///< Base parameters alone, at their mode.
+
+  [[nodiscard]] FitContext context(const SiteProblem& site) const {
+    return {site, fit, grid, grid.size() / 2};
+  }
+};
+
+/// Finds scales, noise and mode by turns: the first fit finds the scales, the second the noise, the
+/// third stands.
+/// @param predictor  With the effects that the model has already.
+/// @return the ground; not_enough_data where a meter has fewer than 100 measured parts to fit; or
+///         not_finite, not_positive_definite from the fits.
+[[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site);
+
+}  // namespace recald::diagnosis

@@ -1,0 +1,68 @@
+#include "core/diagnosis/held_scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace recald::diagnosis {
+namespace {
+
+ScoreGain sum_of(const std::vector<double>& differences) {
+  const auto n = static_cast<double>(differences.size());
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double d : differences) {
+    sum += d;
+    squares += d * d;
+  }
+  if (differences.size() < 2) return {sum, 0.0};
+  const double variance = std::max(squares - sum * sum / n, 0.0) / (n - 1.0);
+  return {sum, std::sqrt(n * variance)};
+}
+
+}  // namespace
+
+MonthScores held_scores(const SiteProblem& site, const Observations& held,
+                        std::span<const NoiseLevel> levels, const Eigen::ArrayXXd& parts_kW) {
+  MonthScores scores(held.meters.size());
+  const Eigen::VectorXd residual = held.measured - held.stack(parts_kW);
+  for (std::size_t g = 0; g < held.meters.size(); ++g) {
+    const MeterRows& meter = held.meters[g];
+    const auto month_at = [&](std::size_t i) {
+      return site.day_parts.parts[static_cast<std::size_t>(meter.rows[i])].month;
+    };
+    for (std::size_t begin = 0, end = 0; begin < meter.rows.size(); begin = end) {
+      while (end < meter.rows.size() && month_at(end) == month_at(begin)) ++end;
+      const auto first = static_cast<Eigen::Index>(begin);
+      const auto n = static_cast<Eigen::Index>(end - begin);
+      const BlockDesign month{
+          meter.design.times_h.segment(first, n), meter.design.patterns.middleRows(first, n), {}};
+      scores[g][month_at(begin)] = BlockNoise{month, levels[g]}.marginal_log_density(
+          residual.segment(meter.offset + first, n));
+    }
+  }
+  return scores;
+}
+
+std::vector<ScoreGain> gain_by_meter(const MonthScores& with, const MonthScores& without) {
+  std::vector<ScoreGain> gains;
+  for (std::size_t g = 0; g < with.size(); ++g) {
+    std::vector<double> differences;
+    for (const auto& [month, score] : without[g]) {
+      differences.push_back(with[g].at(month) - score);
+    }
+    gains.push_back(sum_of(differences));
+  }
+  return gains;
+}
+
+ScoreGain gain_over(const MonthScores& with, const MonthScores& without) {
+  std::map<int, double> months;
+  for (std::size_t g = 0; g < with.size(); ++g) {
+    for (const auto& [month, score] : without[g]) months[month] += with[g].at(month) - score;
+  }
+  std::vector<double> differences;
+  for (const auto& [month, difference] : months) differences.push_back(difference);
+  return sum_of(differences);
+}
+
+}  // namespace recald::diagnosis
