@@ -40,6 +40,9 @@ struct Use {
   double plugs_W_m2 = 0.0;       ///< Installed; likewise.
   double exterior_kW = 0.0;      ///< Electricity that heats no zone.
   double zone_heat_share = 0.9;  ///< Of lights and plugs.
+  // Where gains arise; only the hourly model can tell.
+  double closet_share = 0.0;   ///< Of the plugs' heat: in closets that are never left warm.
+  double gains_to_core = 0.0;  ///< Of the perimeter's even share of gains: arises in the core.
 };
 
 /// Indoor temperatures that the controls hold, °C. Occupied hours: workdays from…to.
@@ -53,22 +56,25 @@ struct SetPoints {
   bool saturday_occupied = false;
   // How far the plant's day departs from that timetable, whole site files being in whole hours.
   // Only the hourly model can tell.
-  double start_early_h = 0.0;  ///< Negative: it starts later.
-  double stop_late_h = 0.0;    ///< Negative: it stops earlier.
+  double start_early_h = 0.0;   ///< Negative: it starts later.
+  double stop_late_h = 0.0;     ///< Negative: it stops earlier.
+  double warm_up_h = 0.0;       ///< In which the heating set-point climbs after the start.
+  double closed_start_h = 0.0;  ///< After the start with outdoor-air dampers shut.
 };
 
 /// Air handlers with VAV reheat as one system. Absent in a building without one.
 struct AirSystem {
-  double outdoor_air_m3_s = 0.0;                 ///< Total of all air handlers while occupied.
+  double outdoor_air_m3_s = 0.0;  ///< Total of all air handlers while occupied.
   /// Share of the air handlers that runs round the clock (laboratories); 0: fans off when
   /// unoccupied. The rooms they serve keep their daytime set-points.
   double outdoor_air_unoccupied_fraction = 0.0;
   double supply_flow_design_m3_s = 0.0;
   double supply_flow_min_m3_s = 0.0;  ///< Boxes closed to their minimum, occupied.
   double supply_temperature_C = 13.0;
-  double fan_design_kW = 0.0;                  ///< Supply and return fans at design flow.
-  double pump_design_kW = 0.0;                 ///< Chilled and hot water pumps at design flow.
-  double heat_recovery = 0.0;                  ///< Sensible effectiveness, 0…1.
+  double supply_reset_K = 0.0;  ///< Warmer supply air on cold days, below 5 °C by as much.
+  double fan_design_kW = 0.0;   ///< Supply and return fans at design flow.
+  double pump_design_kW = 0.0;  ///< Chilled and hot water pumps at design flow.
+  double heat_recovery = 0.0;   ///< Sensible effectiveness, 0…1.
   std::optional<double> economiser_lockout_C;  ///< Above it only minimum outdoor air; absent: none.
   std::optional<double> humidification_kg_kg;  ///< Humidity ratio held by steam; absent: none.
 };

@@ -12,11 +12,12 @@ using weather::kAirHeatCapacity_J_kgK;
 using weather::kVaporisationHeat_J_kg;
 
 /// Outdoor air's share of the supply. Below the lock-out an economiser opens as far as the supply
-/// temperature asks for.
-double outdoor_air_share(const StepOperation& operation, double least_share, double return_C) {
+/// temperature asks for, which the fan's heat is still to reach.
+double outdoor_air_share(const StepOperation& operation, double least_share, double return_C,
+                         double fan_rise_K) {
   const double outdoor_C = operation.dry_bulb_C;
   if (outdoor_C >= operation.economiser_lockout_C || outdoor_C >= return_C) return least_share;
-  const double wanted = (return_C - operation.supply_C) / (return_C - outdoor_C);
+  const double wanted = (return_C - (operation.supply_C - fan_rise_K)) / (return_C - outdoor_C);
   const double extra = std::clamp(wanted, least_share, 1.0) - least_share;
   return least_share + operation.economiser_share * extra;
 }
@@ -47,17 +48,18 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
 
   const double supply_m3_s = zones.scheduled_W_K / heat_capacity_J_m3K;
   const double return_C = zones.scheduled_return_W / zones.scheduled_W_K;
-  const double outdoor_share = outdoor_air_share(
-      operation, std::min(operation.outdoor_air_m3_s * running_share / supply_m3_s, 1.0), return_C);
-  const double incoming_C =
-      operation.dry_bulb_C + air.heat_recovery * (return_C - operation.dry_bulb_C);
-  const double mixed_C = return_C + outdoor_share * (incoming_C - return_C);
-
   const double flow_ratio = supply_m3_s / (running_share * air.supply_flow_design_m3_s);
   const double variable = epc::fan_power_share(flow_ratio);
   const double constant = operation.constant_fan_share;
   const double fan_W =
       1000.0 * air.fan_design_kW * running_share * (variable + constant * (1.0 - variable));
+  const double outdoor_share = outdoor_air_share(
+      operation, std::min(operation.outdoor_air_m3_s * running_share / supply_m3_s, 1.0), return_C,
+      fan_W / zones.scheduled_W_K);
+  const double incoming_C =
+      operation.dry_bulb_C + air.heat_recovery * (return_C - operation.dry_bulb_C);
+  const double mixed_C = return_C + outdoor_share * (incoming_C - return_C);
+
   loads.fans_W += fan_W;
   loads.pumps_W += 1000.0 * air.pump_design_kW * running_share * variable;
   loads.supply_m3_s += supply_m3_s;

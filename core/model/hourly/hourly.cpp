@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/model/dark_hours.hpp"
 #include "core/model/hourly/air_handlers.hpp"
 #include "core/weather/psychrometrics.hpp"
 
@@ -13,6 +14,11 @@ namespace {
 
 constexpr std::size_t kWarmUp_h = 14 * 24;
 constexpr double kCoilRelativeHumidity = 0.95;  // of air that leaves a wet coil
+// A reset of supply air begins at the one outdoor temperature and is whole so much below it.
+constexpr double kResetFrom_C = 18.0;
+constexpr double kResetOver_K = 13.0;
+constexpr double kLeastLift_K = 1.0;  // between supply air and a closet
+constexpr double kLongRunning_h = 100.0;
 
 /// Set-points of rooms that stand for this share of them at daytime values.
 double between(double share, double daytime, double night) {
@@ -25,15 +31,23 @@ double covered(double reach_h, double distance_h) {
   return std::clamp(reach_h - (distance_h - 0.5), 0.0, 1.0);
 }
 
-/// Share of the hour in which the plant runs by day: its timetable, begun early and ended late.
-double daytime_share(const SetPoints& set, const DriverHour& hour) {
-  if (!hour.occupied) {
-    return std::max(covered(set.start_early_h, hour.hours_to_start),
-                    covered(set.stop_late_h, hour.hours_since_stop));
+double weekly_mean(const HourlySchedule& schedule) {
+  constexpr std::array<double, kDayTypes> kDaysPerWeek{5.0, 1.0, 1.0};
+  double sum = 0.0;
+  for (std::size_t day = 0; day < kDayTypes; ++day) {
+    for (int hour = 0; hour < 24; ++hour) {
+      sum += kDaysPerWeek[day] * schedule.at(static_cast<DayType>(day), hour);
+    }
   }
-  return std::max(1.0 - covered(-set.start_early_h, hour.hours_since_start) -
-                      covered(-set.stop_late_h, hour.hours_to_stop),
-                  0.0);
+  return sum / (7.0 * 24.0);
+}
+
+/// Share of the running part of an hour, its middle `since_start_h` after the start, that lies in
+/// the first `closed_h` hours.
+double closed_share(double closed_h, double since_start_h) {
+  const double from_h = std::max(since_start_h - 0.5, 0.0);
+  const double running_h = since_start_h + 0.5 - from_h;
+  return running_h > 0.0 ? std::clamp((closed_h - from_h) / running_h, 0.0, 1.0) : 0.0;
 }
 
 }  // namespace
@@ -55,6 +69,11 @@ Hourly::Hourly(std::shared_ptr<const Drivers> drivers, const HourlyOptions& opti
                       .occupied_fraction = h.occupied_fraction,
                       .lights_W = h.lights_W,
                       .plugs_W = h.plugs_W,
+                      .dark_share = static_cast<float>(dark_share(h)),
+                      .hours_to_start = static_cast<float>(h.hours_to_start),
+                      .hours_since_stop = static_cast<float>(h.hours_since_stop),
+                      .hours_since_start = static_cast<float>(h.hours_since_start),
+                      .hours_to_stop = static_cast<float>(h.hours_to_stop),
                       .day_of_year = h.day_of_year,
                       .occupied = h.occupied,
                       .sunlit = (sun != 0.0).any(),
@@ -79,11 +98,11 @@ void Hourly::prepare(const Building& building, std::span<const Alteration* const
   zones_.describe(b, drivers_->orientations, 3600.0 / options_.steps_per_hour, part_count_);
   plant_ = Plant{b};
   leakage_ = leakage_flow(b.storeys);
+  mean_people_share_ = weekly_mean(b.occupied_fraction);
   middle_C_ = 0.5 * (set.cooling_occupied_C + set.heating_occupied_C);
   hot_water_day_ = 0;
 
   standing_ = {.solar_share = 1.0,
-               .exterior_W = 1000.0 * b.use.exterior_kW,
                .cooling_occupied_C = set.cooling_occupied_C,
                .cooling_unoccupied_C = set.cooling_unoccupied_C,
                .heating_occupied_C = set.heating_occupied_C,
@@ -107,6 +126,39 @@ void Hourly::prepare(const Building& building, std::span<const Alteration* const
   if (air.humidification_kg_kg) standing_.humidifier_kg_kg = *air.humidification_kg_kg;
 }
 
+/// The plant's day: its timetable, begun early and ended late, with rooms that warm up at first and
+/// supply air that is warmer on cold days.
+void Hourly::follow_timetable(const Hour& hour, StepOperation& operation) const {
+  const SetPoints& set = building_.set_points;
+  double since_start_h;
+  if (hour.occupied) {
+    operation.daytime_share = std::max(1.0 - covered(-set.start_early_h, hour.hours_since_start) -
+                                           covered(-set.stop_late_h, hour.hours_to_stop),
+                                       0.0);
+    since_start_h = hour.hours_since_start + set.start_early_h;
+  } else {
+    operation.daytime_share = std::max(covered(set.start_early_h, hour.hours_to_start),
+                                       covered(set.stop_late_h, hour.hours_since_stop));
+    since_start_h = hour.hours_to_start < hour.hours_since_stop
+                        ? set.start_early_h - hour.hours_to_start
+                        : kLongRunning_h;
+  }
+  if (set.warm_up_h > 0.0 && since_start_h < set.warm_up_h) {
+    const double climbed = std::max(since_start_h, 0.0) / set.warm_up_h;
+    operation.heating_occupied_C =
+        between(climbed, set.heating_occupied_C, set.heating_unoccupied_C);
+  }
+  if (since_start_h < set.closed_start_h + 0.5 && operation.daytime_share > 0.0) {
+    const double open = 1.0 - closed_share(set.closed_start_h, since_start_h);
+    operation.outdoor_air_m3_s *= open;
+    operation.economiser_share *= open;
+  }
+  if (building_.air && operation.dry_bulb_C < kResetFrom_C) {
+    operation.supply_C += building_.air->supply_reset_K *
+                          std::min((kResetFrom_C - operation.dry_bulb_C) / kResetOver_K, 1.0);
+  }
+}
+
 StepOperation Hourly::operation_of(std::size_t hour, int step) const {
   const Hour& h = hours_[hour];
   StepOperation operation = standing_;
@@ -116,7 +168,8 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
   operation.people_share = h.occupied_fraction;
   operation.lights_W = h.lights_W;
   operation.plugs_W = h.plugs_W;
-  operation.daytime_share = daytime_share(building_.set_points, drivers_->hours[hour]);
+  operation.exterior_W = 1000.0 * building_.use.exterior_kW * h.dark_share;
+  follow_timetable(h, operation);
   if (options_.steps_per_hour == 1) return operation;
 
   // Weather between the middles of hours; at the ends of a stretch the last value stands.
@@ -135,17 +188,19 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
 ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
                                double served_share) {
   const Use& use = building_.use;
+  const double closets = building_.air ? use.closet_share : 0.0;
   const std::size_t sides = drivers_->orientations.size();
   const double people_W = building_.floor_area_m2 * use.occupancy_person_m2 *
                           use.sensible_W_person * operation.people_share;
-  zones_.expose(
-      {.dry_bulb_C = operation.dry_bulb_C,
-       .ground_C = operation.ground_C,
-       .internal_W = people_W + use.zone_heat_share * (operation.lights_W + operation.plugs_W) +
-                     operation.zone_gain_W,
-       .solar_share = operation.solar_share,
-       .irradiance_W_m2 =
-           std::span{irradiance_W_m2_}.subspan(hour * sides, hours_[hour].sunlit ? sides : 0)});
+  zones_.expose({.dry_bulb_C = operation.dry_bulb_C,
+                 .ground_C = operation.ground_C,
+                 .internal_W = people_W +
+                               use.zone_heat_share *
+                                   (operation.lights_W + (1.0 - closets) * operation.plugs_W) +
+                               operation.zone_gain_W,
+                 .solar_share = operation.solar_share,
+                 .irradiance_W_m2 = std::span{irradiance_W_m2_}.subspan(
+                     hour * sides, hours_[hour].sunlit ? sides : 0)});
 
   const double wind2_m2_s2 = operation.wind_m_s * operation.wind_m_s;
   const double leakage_W_K_cm2 =
@@ -175,7 +230,22 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
     totals.add(part.share,
                building_.air ? zones_.serve_with_boxes(p, service) : zones_.serve(p, service));
   }
+  if (closets > 0.0)
+    serve_closets(closets * use.zone_heat_share * operation.plugs_W, operation, totals);
   return totals;
+}
+
+/// Closets get the supply air that holds them at the daytime set-point, at night on call.
+void Hourly::serve_closets(double heat_W, const StepOperation& operation,
+                           ZoneTotals& totals) const {
+  const double flow_W_K =
+      heat_W / std::max(operation.cooling_occupied_C - operation.supply_C, kLeastLift_K);
+  const double always = parts_[0].always ? parts_[0].share : 0.0;
+  const double served = always + (1.0 - always) * std::clamp(operation.daytime_share, 0.0, 1.0);
+  totals.scheduled_W_K += served * flow_W_K;
+  totals.scheduled_return_W += served * flow_W_K * operation.cooling_occupied_C;
+  totals.on_call_W_K += (1.0 - served) * flow_W_K;
+  totals.on_call_return_W += (1.0 - served) * flow_W_K * operation.cooling_occupied_C;
 }
 
 StepLoads Hourly::solve_step(std::size_t hour, int step,
@@ -191,15 +261,18 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
     hot_water_W_ = hot_water_W(building_.hot_water, hot_water_day_);
   }
 
+  // Taps run when people are there.
+  const double draw_share =
+      mean_people_share_ > 0.0 ? operation.people_share / mean_people_share_ : 1.0;
   StepLoads loads{.lights_W = operation.lights_W,
                   .plugs_W = operation.plugs_W,
                   .exterior_W = operation.exterior_W,
                   .sensible_cooling_W = zones.cooling_W,
                   .zone_heating_W = zones.zone_heating_W,
-                  .hot_water_W = hot_water_W_,
+                  .hot_water_W = draw_share * hot_water_W_,
                   .base_heat_W = 1000.0 * building_.base_heat_kW,
                   .mean_zone_C = zones.mean_air_C,
-                  .hot_water_litres_share = 1.0,
+                  .hot_water_litres_share = draw_share,
                   .cooling_cost_factor = 1.0,
                   .heating_cost_factor = 1.0};
   if (building_.air) {

@@ -1,7 +1,8 @@
 /// The hourly model: zones of five resistances and one capacity, air handlers and plant, step by
 /// step.
 ///
-/// Each zone of `describe_zones` is a network after ISO 13790:2008 annex C; a building whose
+/// Each zone of `describe_zones`, its core cut below the top storey, is a network after ISO
+/// 13790:2008 annex C; a building whose
 /// handlers run partly round the clock has each zone twice, served by day and served always. The
 /// air system follows EN 15241:2007 as in the EPC. Power is summed to meters at the end.
 #pragma once
@@ -57,6 +58,11 @@ class Hourly {
     double occupied_fraction;
     double lights_W;
     double plugs_W;
+    float dark_share;
+    float hours_to_start;  ///< These four as in the drivers.
+    float hours_since_stop;
+    float hours_since_start;
+    float hours_to_stop;
     int day_of_year;
     bool occupied;
     bool sunlit;  ///< Any sun on any side.
@@ -71,8 +77,10 @@ class Hourly {
   void read_meters(std::span<const MeterMap> meters);
   void prepare(const Building& building, std::span<const Alteration* const> alterations);
   [[nodiscard]] StepOperation operation_of(std::size_t hour, int step) const;
+  void follow_timetable(const Hour& hour, StepOperation& operation) const;
   [[nodiscard]] ZoneTotals solve_zones(std::size_t hour, const StepOperation& operation,
                                        double served_share);
+  void serve_closets(double heat_W, const StepOperation& operation, ZoneTotals& totals) const;
   [[nodiscard]] StepLoads solve_step(std::size_t hour, int step,
                                      std::span<const Alteration* const> alterations);
   template <class Sink>
@@ -97,7 +105,8 @@ class Hourly {
   StepOperation standing_{};  ///< What does not change from step to step.
   std::array<Part, 2> parts_{};
   int part_count_ = 1;
-  double middle_C_ = 0.0;  ///< Between the occupied set-points, for infiltration.
+  double mean_people_share_ = 0.0;  ///< Of full occupancy, over a week.
+  double middle_C_ = 0.0;           ///< Between the occupied set-points, for infiltration.
   double most_flow_m3_s_ = 0.0;
   double hot_water_W_ = 0.0;  ///< Of the day at hand.
   int hot_water_day_ = 0;     ///< Its day of the year.

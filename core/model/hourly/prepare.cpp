@@ -38,7 +38,9 @@ class HourlyMeans {
 
 HourlyMeans plant_electricity(const Building& building, Drivers drivers) {
   MeterMap plant;
-  for (const EndUse use : {EndUse::fans, EndUse::pumps, EndUse::chiller}) plant[use] = 1.0;
+  for (const EndUse use : {EndUse::fans, EndUse::pumps, EndUse::chiller, EndUse::exterior}) {
+    plant[use] = 1.0;
+  }
   const auto shared = std::make_shared<const Drivers>(std::move(drivers));
   Hourly hourly{shared};
   Eigen::ArrayXXd power_kW(hourly.step_count(), 1);
@@ -82,7 +84,8 @@ void add_to(HourlySchedule& schedule, const HourlySchedule& other) {
 Result<profile::ElectricityProfile> fit_profile_without_plant(
     std::span<const profile::HourlyLoad> loads, const Building& building, const epc::Place& place,
     const std::vector<metering::Month>& months) {
-  const profile::KnownLoads known{.exterior_kW = building.use.exterior_kW,
+  // Lamps outdoors follow the sun, not the clock: they go with the plant.
+  const profile::KnownLoads known{.exterior_kW = 0.0,
                                   .fans_and_pumps_kW = {},
                                   .lighting_W_m2 = building.use.lighting_W_m2,
                                   .plugs_W_m2 = building.use.plugs_W_m2};
@@ -90,7 +93,7 @@ Result<profile::ElectricityProfile> fit_profile_without_plant(
   std::vector<profile::HourlyLoad> rest(loads.begin(), loads.end());
   for (int round = 0; profile && round < kRounds; ++round) {
     auto drivers = make_drivers(months, place.calendar, place.holidays, building, profile->loads,
-                                place.location, place.weather);
+                                place.location, place.weather, MissingWeather::assume);
     if (!drivers) return tl::unexpected(drivers.error());
     const HourlyMeans plant = plant_electricity(building, std::move(*drivers));
     for (std::size_t i = 0; i < rest.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace recald::model::hourly {
 namespace {
@@ -21,6 +22,20 @@ double mass_surface_per_floor(double capacity_J_m2K) {
   const double very_heavy = heat_capacity_J_m2K(MassClass::very_heavy);
   return 2.5 + 0.5 * std::clamp((capacity_J_m2K - medium) / (heavy - medium), 0.0, 1.0) +
          0.5 * std::clamp((capacity_J_m2K - heavy) / (very_heavy - heavy), 0.0, 1.0);
+}
+
+/// Takes the storeys below the top one out of the core, as a zone of their own: rooms without an
+/// outer surface keep their heat all night and are cooled in winter, under a roof they are not.
+/// @param zones  The last but one is the core, the last is overwritten.
+void cut_core(int storeys, std::span<Zone> zones) {
+  Zone& top = zones[zones.size() - 2];
+  Zone& inner = zones.back();
+  const double top_share = 1.0 / storeys;
+  inner.floor_share = (1.0 - top_share) * top.floor_share;
+  top.floor_share *= top_share;
+  inner.ground_W_K = std::exchange(top.ground_W_K, 0.0);
+  inner.transmission_W_K = inner.sky_loss_W = inner.leakage_cm2 = 0.0;
+  std::ranges::fill(inner.solar_aperture_m2, 0.0);
 }
 
 }  // namespace
@@ -88,17 +103,21 @@ void ZoneNetworks::set_coefficients(const ZoneConductances& c, double step_s, in
 void ZoneNetworks::describe(const Building& building,
                             std::span<const weather::Orientation> orientations, double step_s,
                             int parts) {
-  const std::size_t n = zone_count(building, orientations);
+  const std::size_t described = zone_count(building, orientations);
+  const bool cut = described > 1 && building.storeys > 1;
+  const std::size_t n = described + (cut ? 1 : 0);
   zones_.resize(n);
   glazing_.resize(n);
   for (Zone& zone : zones_) zone.solar_aperture_m2.resize(orientations.size());
   for (Zone& zone : glazing_) zone.solar_aperture_m2.resize(orientations.size());
-  describe_zones(building, orientations, zones_);
+  describe_zones(building, orientations, std::span{zones_}.first(described));
+  if (cut) cut_core(building.storeys, zones_);
   windows_only_ = building;
   for (Surface& surface : windows_only_.surfaces) {
     if (surface.kind != SurfaceKind::window) surface.u_W_m2K = 0.0;
   }
-  describe_zones(windows_only_, orientations, glazing_);
+  describe_zones(windows_only_, orientations, std::span{glazing_}.first(described));
+  if (cut) cut_core(building.storeys, glazing_);
 
   const std::size_t count = (n + 1) / 2;
   pairs_.resize(count);
@@ -114,6 +133,7 @@ void ZoneNetworks::describe(const Building& building,
     Pair& pair = pairs_[z / 2];
     pair.counts[place] = real ? 1.0 : 0.0;
     pair.floor_share[place] = real ? zones_[like].floor_share : 0.0;
+    pair.gain_share[place] = real ? gain_share(building, like, described - 1) : 0.0;
     pair.leakage_cm2[place] = zones_[like].leakage_cm2;
     pair.sky_loss_W[place] = zones_[like].sky_loss_W;
     set_coefficients(zone_conductances(building, zones_[like], glazing_[like].transmission_W_K),
@@ -122,6 +142,17 @@ void ZoneNetworks::describe(const Building& building,
       aperture_m2_[z / 2 * orientations.size() + k][place] = zones_[like].solar_aperture_m2[k];
     }
   }
+}
+
+double ZoneNetworks::gain_share(const Building& building, std::size_t zone,
+                                std::size_t first_core) const {
+  const double even = zones_[zone].floor_share;
+  if (first_core == 0) return even;
+  double core_share = 0.0;
+  for (std::size_t z = first_core; z < zones_.size(); ++z) core_share += zones_[z].floor_share;
+  const double moved = building.use.gains_to_core;
+  return zone < first_core ? (1.0 - moved) * even
+                           : even * (1.0 + moved * (1.0 - core_share) / core_share);
 }
 
 void ZoneNetworks::reset(double mass_C) { std::ranges::fill(mass_C_, ZonePair::Constant(mass_C)); }
@@ -140,7 +171,7 @@ void ZoneNetworks::expose(const ZoneSurroundings& s) {
     for (std::size_t k = 0; k < sides; ++k) {
       solar_W += aperture_m2_[i * sides + k] * (s.solar_share * s.irradiance_W_m2[k]);
     }
-    const ZonePair internal_W = z.floor_share * s.internal_W;
+    const ZonePair internal_W = z.gain_share * s.internal_W;
     to_air_W_[i] = z.air_from_outdoor * s.dry_bulb_C + z.air_from_ground * s.ground_C +
                    z.air_from_solar * solar_W + z.air_from_internal * internal_W;
     to_mass_K_[i] = z.mass_from_outdoor * s.dry_bulb_C + z.mass_from_ground * s.ground_C +

@@ -118,6 +118,7 @@ class ZoneNetworks {
   struct Pair {
     ZonePair counts;  ///< 1, or 0 for the empty place beside an odd last zone.
     ZonePair floor_share;
+    ZonePair gain_share;  ///< Of internal gains.
     ZonePair leakage_cm2;
     ZonePair sky_loss_W;
     ZonePair air_W_K;  ///< Y
@@ -125,6 +126,10 @@ class ZoneNetworks {
     ZonePair mass_from_mass, mass_from_outdoor, mass_from_ground, mass_from_solar,
         mass_from_internal, mass_from_air;
   };
+  /// Share of a zone in the building's internal gains. @param first_core  Index; façades come
+  /// first.
+  [[nodiscard]] double gain_share(const Building& building, std::size_t zone,
+                                  std::size_t first_core) const;
   static void set_coefficients(const ZoneConductances& c, double step_s, int place, Pair& pair);
 
   std::vector<Zone> zones_;
