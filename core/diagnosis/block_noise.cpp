@@ -11,7 +11,6 @@ namespace {
 
 constexpr double log_two_pi = 1.8378770664093454836;
 
-constexpr double pattern_share = 0.02;         // tau in units of the meter's mean
 constexpr double structure_prior_share = 0.1;  // sd of the half-normal prior of s, likewise
 constexpr double correlation_min_h = 12.0;
 constexpr double correlation_max_h = 480.0;
@@ -33,7 +32,7 @@ struct Peak {
 template <class Function>
 Peak climb(const Function& function, const LogLevel& start, double step) {
   constexpr int rounds_max = 200;
-  constexpr double tolerance = 3e-3;  // nats between best and worst corner: far below what matters
+  constexpr double tolerance = 0.2;  // nats between best and worst corner: below what matters
   std::array<Peak, 4> corners;
   for (int i = 0; i < 4; ++i) {
     LogLevel at = start;
@@ -80,11 +79,11 @@ LogLevel inside_support(const LogLevel& at, double mean) {
   return at.cwiseMax(low).cwiseMin(high);
 }
 
-NoiseLevel level_at(const LogLevel& at, double mean) {
+NoiseLevel level_at(const LogLevel& at, double pattern_sd) {
   return {.structure_sd = std::exp(at[0]),
           .correlation_h = std::exp(at[1]),
           .white_sd = std::exp(at[2]),
-          .pattern_sd = pattern_share * mean};
+          .pattern_sd = pattern_sd};
 }
 
 /// Which points stand out from the prediction of the filter, patterns removed.
@@ -293,8 +292,8 @@ ResidualShares BlockNoise::residual_shares(const Eigen::VectorXd& residual,
           .white = white_mean.squaredNorm() + variance + spread(white_moves)};
 }
 
-Result<LevelFit> fit_levels(const Eigen::VectorXd& residual, const BlockDesign& design,
-                            double mean) {
+Result<LevelFit> fit_levels(const Eigen::VectorXd& residual, const BlockDesign& design, double mean,
+                            double pattern_share, const std::optional<NoiseLevel>& start) {
   constexpr Eigen::Index points_min = 10;
   assert(mean > 0.0 && residual.size() == design.times_h.size());
   if (residual.size() < points_min) {
@@ -308,7 +307,7 @@ Result<LevelFit> fit_levels(const Eigen::VectorXd& residual, const BlockDesign& 
   int evaluations = 0;
   const auto log_density = [&](const LogLevel& at) {
     const LogLevel inside = inside_support(at, mean);
-    const NoiseLevel level = level_at(inside, mean);
+    const NoiseLevel level = level_at(inside, pattern_share * mean);
     ++evaluations;
     const double standardised = level.structure_sd / (structure_prior_share * mean);
     // Outside the support a slope leads back, where a wall would flatten the simplex.
@@ -321,10 +320,19 @@ Result<LevelFit> fit_levels(const Eigen::VectorXd& residual, const BlockDesign& 
   const LogLevel slow = LogLevel(0.8 * sd, 120.0, 0.4 * sd).array().log();
   const LogLevel noisy = LogLevel(0.4 * sd, 24.0, 0.8 * sd).array().log();
   constexpr double step = 0.7;
-  const Peak first = climb(log_density, slow, step);
-  const Peak second = climb(log_density, noisy, step);
-  const Peak& best = first.value >= second.value ? first : second;
-  return LevelFit{level_at(inside_support(best.at, mean), mean), best.value, evaluations};
+  constexpr double small_step = 0.3;
+  Peak best;
+  if (start) {
+    const LogLevel near =
+        LogLevel(start->structure_sd, start->correlation_h, start->white_sd).array().log();
+    best = climb(log_density, near, small_step);
+  } else {
+    const Peak first = climb(log_density, slow, step);
+    const Peak second = climb(log_density, noisy, step);
+    best = first.value >= second.value ? first : second;
+  }
+  const LogLevel inside = inside_support(best.at, mean);
+  return LevelFit{level_at(inside, pattern_share * mean), log_density(inside), evaluations};
 }
 
 std::vector<std::vector<bool>> choose_gates(std::span<const GateInput> meters,

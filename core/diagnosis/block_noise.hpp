@@ -14,6 +14,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -120,17 +121,21 @@ struct LevelFit {
   int evaluations;     ///< Covariances factored.
 };
 
-/// Finds (s, T, sigma) of highest posterior density, tau being 2 % of the mean.
+/// Finds (s, T, sigma) of highest posterior density, tau being given.
 ///
 /// Priors: s half-normal with sd 10 % of the mean, T log-uniform on 12 to 480 h, sigma log-uniform
 /// on 0.01 to 100 % of the mean. Nelder-Mead on the logs of the three, from two starts.
 /// @param residual  (n) kW.
 /// @param mean      Mean of the meter, kW, > 0.
+/// @param pattern_share  tau in units of that mean.
+/// @param start     A level known to be near; absent: from two starts, slow and noisy.
 /// @return the maximum, or
 ///         not_enough_data  fewer than 10 points;
 ///         not_finite       a NaN or infinity in the residual.
 [[nodiscard]] Result<LevelFit> fit_levels(const Eigen::VectorXd& residual,
-                                          const BlockDesign& design, double mean);
+                                          const BlockDesign& design, double mean,
+                                          double pattern_share = 0.02,
+                                          const std::optional<NoiseLevel>& start = {});
 
 /// One meter's data for `choose_gates`.
 struct GateInput {

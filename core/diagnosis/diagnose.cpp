@@ -50,6 +50,7 @@ Addition addition_of(Predictor& predictor, const SiteProblem& site,
                     .draws = draw_effect(candidates[e.candidate], e.fit, rng),
                     .probability = naming.probabilities.front().probability,
                     .evidence_gain = e.evidence_gain,
+                    .null_scale = e.null_scale,
                     .monthly_kWh = {},
                     .effect_kW = e.fit.parts_kW - predictor.parts_kW(e.fit.theta)};
   addition.monthly_kWh = monthly_impact_kWh(site, addition.effect_kW);
@@ -138,7 +139,9 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   result.why = verdict.why;
   if (!result.added.empty() && first->show.count() > 0) {
     if (!go_on("showing", 0.95)) return tl::unexpected(cancelled());
-    result.gap = change_of(site, *first, now);
+    double scale = 1.0;
+    for (const Addition& addition : result.added) scale = std::max(scale, addition.null_scale);
+    result.gap = change_of(site, *first, now, scale);
     result.not_confirmed = !result.gap->confirmed;
     if (result.not_confirmed) {
       result.outcome = Outcome::unknown;

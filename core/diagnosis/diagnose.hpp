@@ -29,6 +29,7 @@ struct Addition {
   std::vector<std::vector<double>> draws;  ///< (draws x r) of the posterior.
   double probability;
   double evidence_gain;
+  double null_scale;
   std::vector<double> monthly_kWh;  ///< (m) with the effect minus without, mean month.
   Eigen::ArrayXXd effect_kW;        ///< (parts x m) with the effect minus without.
 };

@@ -33,8 +33,9 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
                               const Observations& held) {
   const JointFit& fit = ground.none;
   std::vector<MeterGap> gaps;
-  const MonthScores scores = held_scores(site, held, ground.levels, fit.parts_kW);
   const NoiseNode& node = ground.grid[static_cast<std::size_t>(fit.best_node)];
+  const MonthScores scores =
+      HeldJudge{site, ground.fit, node, held, ground.levels}.scores(fit.parts_kW);
   for (std::size_t g = 0; g < held.meters.size(); ++g) {
     const MeterRows& rows = held.meters[g];
     const auto column = static_cast<Eigen::Index>(g);
@@ -43,7 +44,8 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
     for (const Eigen::Index row : rows.rows) {
       const DayPart& part = site.day_parts.parts[static_cast<std::size_t>(row)];
       measured += part.hours * site.measured_parts_kW(row, column);
-      difference += part.hours * (fit.parts_kW(row, column) - site.measured_parts_kW(row, column));
+      difference +=
+          part.hours * (ground.plain_kW(row, column) - site.measured_parts_kW(row, column));
     }
     double log_score = 0.0;
     for (const auto& [month, score] : scores[g]) log_score += score;
@@ -54,20 +56,23 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
         fit.posterior.covariance);
     gaps.push_back(
         {.nmbe_sim_minus_meas = measured > 0.0 ? difference / measured : 0.0,
-         .cvrmse_daily = cvrmse_by(site, rows, column, fit.parts_kW,
+         .cvrmse_daily = cvrmse_by(site, rows, column, ground.plain_kW,
                                    [](const DayPart& p) { return p.day_index; }),
-         .cvrmse_monthly =
-             cvrmse_by(site, rows, column, fit.parts_kW, [](const DayPart& p) { return p.month; }),
+         .cvrmse_monthly = cvrmse_by(site, rows, column, ground.plain_kW,
+                                     [](const DayPart& p) { return p.month; }),
          .log_score = scores[g].empty() ? 0.0 : log_score / static_cast<double>(scores[g].size()),
          .discrepancy_share = shares.structural / (shares.structural + shares.white)});
   }
   return gaps;
 }
 
-GapChange change_of(const SiteProblem& site, const Ground& before, const Ground& after) {
-  const MonthScores old_scores =
-      held_scores(site, before.show, before.levels, before.none.parts_kW);
-  const MonthScores new_scores = held_scores(site, before.show, before.levels, after.none.parts_kW);
+GapChange change_of(const SiteProblem& site, const Ground& before, const Ground& after,
+                    double null_scale) {
+  const HeldJudge judge{site, before.fit,
+                        before.grid[static_cast<std::size_t>(before.none.best_node)], before.show,
+                        before.levels};
+  const MonthScores old_scores = judge.scores(before.none.parts_kW);
+  const MonthScores new_scores = judge.scores(after.none.parts_kW);
   GapChange change{.before = gaps_of(site, before, before.show),
                    .after = gaps_of(site, after, before.show),
                    .log_score_change = gain_by_meter(new_scores, old_scores)};
@@ -75,7 +80,7 @@ GapChange change_of(const SiteProblem& site, const Ground& before, const Ground&
     return meter.sum < -2.0 * meter.se - 1.0;
   });
   const ScoreGain all = gain_over(new_scores, old_scores);
-  change.confirmed = all.sum > 2.0 * all.se && !worse;
+  change.confirmed = all.sum > kLeastConfirmation * null_scale && !worse;
   return change;
 }
 

@@ -22,15 +22,21 @@ struct GapChange {
   std::vector<MeterGap> before;             ///< (m)
   std::vector<MeterGap> after;              ///< (m)
   std::vector<ScoreGain> log_score_change;  ///< (m) after - before, summed over the shown months.
-  bool confirmed = false;  ///< Better by more than two standard errors, and no meter worse by two.
+  /// Better by `kLeastConfirmation` in units of the effects' null scale, and no meter worse by two
+  /// standard errors.
+  bool confirmed = false;
 };
+
+/// Three to one: what months that chose nothing must say for an effect.
+inline constexpr double kLeastConfirmation = 1.1;
 
 /// @param held  The months to judge by.
 [[nodiscard]] std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
                                             const Observations& held);
 
 /// Judged by the noise of the model before: a change of noise is no better model.
+/// @param null_scale  Of the effects that were added, the largest.
 [[nodiscard]] GapChange change_of(const SiteProblem& site, const Ground& before,
-                                  const Ground& after);
+                                  const Ground& after, double null_scale);
 
 }  // namespace recald::diagnosis

@@ -1,7 +1,9 @@
 #include "core/diagnosis/ground.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace recald::diagnosis {
 namespace {
@@ -10,6 +12,11 @@ constexpr Eigen::Index kLeastParts = 100;
 // Spread of residuals in the upper half of the levels over that in the lower half, beyond which a
 // meter is judged on the square-root scale.
 constexpr double kSpreadRatio = 1.6;
+constexpr double kGenerous = 1.5;     // patterns of the unknown model, over those of all others
+constexpr int kFirstIterations = 25;  // from the middle of the priors
+constexpr int kIterations = 8;
+// What the anonymous patterns may be, in units of a meter's mean; the likeliest is taken.
+constexpr std::array kPatternShares{0.02, 0.06, 0.15};
 
 /// Root mean square of the residuals at the upper half of the modelled levels over the lower half.
 double spread_ratio(const Observations& observations, std::size_t meter,
@@ -29,28 +36,53 @@ double spread_ratio(const Observations& observations, std::size_t meter,
   return std::sqrt(high / std::max(low, 1e-12));
 }
 
-Result<std::vector<NoiseLevel>> levels_of(const Observations& observations,
-                                          const Eigen::VectorXd& residual) {
-  std::vector<NoiseLevel> levels;
-  for (const MeterRows& meter : observations.meters) {
-    const auto n = static_cast<Eigen::Index>(meter.rows.size());
-    auto fitted =
-        fit_levels(residual.segment(meter.offset, n), meter.design, std::max(meter.mean_kW, 1e-6));
+/// The likeliest noise of one meter, its patterns' size among those known.
+Result<NoiseLevel> level_of(const MeterRows& meter, const Eigen::VectorXd& residual) {
+  std::optional<LevelFit> best;
+  for (const double share : kPatternShares) {
+    auto fitted = fit_levels(residual, meter.design, std::max(meter.mean_kW, 1e-6), share,
+                             best ? std::optional{best->level} : std::nullopt);
     if (!fitted) return tl::unexpected(fitted.error());
-    levels.push_back(fitted->level);
+    if (!best || fitted->log_density > best->log_density) best = *fitted;
+  }
+  return best->level;
+}
+
+/// The same once more near a level, the patterns' size as there.
+Result<NoiseLevel> refined(const MeterRows& meter, const Eigen::VectorXd& residual,
+                           const NoiseLevel& near) {
+  const double mean = std::max(meter.mean_kW, 1e-6);
+  auto fitted = fit_levels(residual, meter.design, mean, near.pattern_sd / mean, near);
+  if (!fitted) return tl::unexpected(fitted.error());
+  return fitted->level;
+}
+
+/// @param before  Levels of the round before; empty in the first.
+Result<std::vector<NoiseLevel>> levels_of(const Observations& observations,
+                                          const Eigen::VectorXd& residual,
+                                          const std::vector<NoiseLevel>& before) {
+  std::vector<NoiseLevel> levels;
+  for (std::size_t g = 0; g < observations.meters.size(); ++g) {
+    const MeterRows& meter = observations.meters[g];
+    const Eigen::VectorXd own =
+        residual.segment(meter.offset, static_cast<Eigen::Index>(meter.rows.size()));
+    auto level = before.empty() ? level_of(meter, own) : refined(meter, own, before[g]);
+    if (!level) return tl::unexpected(level.error());
+    levels.push_back(*level);
   }
   return levels;
 }
 
-/// First levels before any residual is known: what the priors expect.
+/// First levels before any residual is known. Nearly white: with much slow structure a poor start
+/// would pass for the meters' own ways.
 std::vector<NoiseLevel> first_levels(const Observations& observations) {
   std::vector<NoiseLevel> levels;
   for (const MeterRows& meter : observations.meters) {
     const double mean = std::max(meter.mean_kW, 1e-6);
-    levels.push_back({.structure_sd = 0.1 * mean,
+    levels.push_back({.structure_sd = 0.02 * mean,
                       .correlation_h = 48.0,
                       .white_sd = 0.1 * mean,
-                      .pattern_sd = 0.02 * mean});
+                      .pattern_sd = 0.005 * mean});
   }
   return levels;
 }
@@ -90,17 +122,20 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
       ground.levels = first_levels(ground.fit);
     } else {
       const Eigen::VectorXd left = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
-      auto levels = levels_of(ground.fit, left);
+      auto levels =
+          levels_of(ground.fit, left, round == 1 ? std::vector<NoiseLevel>{} : ground.levels);
       if (!levels) return tl::unexpected(levels.error());
       ground.levels = std::move(*levels);
       set_gates(ground.fit, left, ground.levels);
     }
     ground.grid = noise_grid(ground.fit, ground.levels, round == 2);
-    auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start);
+    auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
+                            {.iterations_max = round == 0 ? kFirstIterations : kIterations});
     if (!none) return tl::unexpected(none.error());
     ground.none = std::move(*none);
     start = ground.none.scores;
     if (round > 0) continue;
+    ground.plain_kW = ground.none.parts_kW;
     const Eigen::VectorXd modelled = ground.fit.stack(ground.none.parts_kW);
     for (std::size_t g = 0; g < scales.size(); ++g) {
       if (spread_ratio(ground.fit, g, ground.none.residual, modelled) > kSpreadRatio) {
@@ -113,7 +148,7 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
     ground.unknown.meters[g].design.gated = ground.fit.meters[g].design.gated;
   }
   std::vector<NoiseLevel> generous = ground.levels;
-  for (NoiseLevel& level : generous) level.pattern_sd *= 5.0;
+  for (NoiseLevel& level : generous) level.pattern_sd *= kGenerous;
   ground.unknown_grid = noise_grid(ground.unknown, generous, true);
   ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
   ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);

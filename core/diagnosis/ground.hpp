@@ -21,6 +21,9 @@ struct Ground {
   std::vector<NoiseNode> grid;
   std::vector<NoiseNode> unknown_grid;
   JointFit none;  ///< Base parameters alone, at their mode.
+  /// (parts x m) kW: the base model alone, fitted by nearly white noise. What the anonymous terms
+  /// may take up in `none` is the model's own gap here.
+  Eigen::ArrayXXd plain_kW;
 
   [[nodiscard]] FitContext context(const SiteProblem& site) const {
     return {site, fit, grid, grid.size() / 2};

@@ -6,6 +6,9 @@
 namespace recald::diagnosis {
 namespace {
 
+// Of the sd of a pattern after two years have taught it: about a third.
+constexpr double kPatternsLeftOpen = 0.3;
+
 ScoreGain sum_of(const std::vector<double>& differences) {
   const auto n = static_cast<double>(differences.size());
   double sum = 0.0;
@@ -21,12 +24,21 @@ ScoreGain sum_of(const std::vector<double>& differences) {
 
 }  // namespace
 
-MonthScores held_scores(const SiteProblem& site, const Observations& held,
-                        std::span<const NoiseLevel> levels, const Eigen::ArrayXXd& parts_kW) {
+MonthScores HeldJudge::scores(const Eigen::ArrayXXd& parts_kW) const {
   MonthScores scores(held.meters.size());
+  const Eigen::VectorXd fitted = fit.measured - fit.stack(parts_kW);
   const Eigen::VectorXd residual = held.measured - held.stack(parts_kW);
+  std::size_t fitted_meters = 0;
   for (std::size_t g = 0; g < held.meters.size(); ++g) {
+    const MeterRows& teacher = fit.meters[g];
     const MeterRows& meter = held.meters[g];
+    if (teacher.rows.empty()) continue;
+    const BlockNoise& noise = node.meters[fitted_meters++];
+    if (meter.rows.empty()) continue;
+    const Eigen::VectorXd patterns = noise.pattern_mean(
+        fitted.segment(teacher.offset, static_cast<Eigen::Index>(teacher.rows.size())));
+    NoiseLevel level = levels[g];
+    level.pattern_sd *= kPatternsLeftOpen;
     const auto month_at = [&](std::size_t i) {
       return site.day_parts.parts[static_cast<std::size_t>(meter.rows[i])].month;
     };
@@ -36,8 +48,8 @@ MonthScores held_scores(const SiteProblem& site, const Observations& held,
       const auto n = static_cast<Eigen::Index>(end - begin);
       const BlockDesign month{
           meter.design.times_h.segment(first, n), meter.design.patterns.middleRows(first, n), {}};
-      scores[g][month_at(begin)] = BlockNoise{month, levels[g]}.marginal_log_density(
-          residual.segment(meter.offset + first, n));
+      scores[g][month_at(begin)] = BlockNoise{month, level}.marginal_log_density(
+          residual.segment(meter.offset + first, n) - month.patterns * patterns);
     }
   }
   return scores;

@@ -9,15 +9,23 @@
 
 namespace recald::diagnosis {
 
-/// Log density of each held month by its index, meter by meter (m). Marginal: no month knows its
-/// neighbours' residuals, or the answer would leak across the split.
+/// Log density of each held month by its index, meter by meter (m). No month knows its neighbours'
+/// slow structure, or the answer would leak across the split.
 using MonthScores = std::vector<std::map<int, double>>;
 
-/// @param levels    (m) noise that judges.
-/// @param parts_kW  (parts x m) of the model.
-[[nodiscard]] MonthScores held_scores(const SiteProblem& site, const Observations& held,
-                                      std::span<const NoiseLevel> levels,
-                                      const Eigen::ArrayXXd& parts_kW);
+/// What the model errs by in every week and weather alike is no news in a held month: each model
+/// brings the recurring patterns that it needs on the fitted months, and only what they leave open
+/// counts as noise.
+struct HeldJudge {
+  const SiteProblem& site;
+  const Observations& fit;             ///< Months that teach the patterns.
+  const NoiseNode& node;               ///< Their noise.
+  const Observations& held;            ///< Months that are scored.
+  std::span<const NoiseLevel> levels;  ///< (m) noise of a held month.
+
+  /// @param parts_kW  (parts x m) of the model.
+  [[nodiscard]] MonthScores scores(const Eigen::ArrayXXd& parts_kW) const;
+};
 
 /// A sum over months and its standard error, the months taken as independent.
 struct ScoreGain {

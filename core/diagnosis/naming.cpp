@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/diagnosis/held_scores.hpp"
+#include "core/diagnosis/null_scale.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -58,22 +59,29 @@ std::vector<double> log_priors(const std::vector<Candidate>& candidates, const N
   return priors;
 }
 
+double scale_of(const Candidate& candidate, const NamingRules& rules) {
+  return rules.errs_as_learnt ? null_scale(candidate.effect->id) : 1.0;
+}
+
+/// Who is worth a fit: the best by evidence in units of its null scale, and whoever is like the
+/// best one.
 std::vector<std::size_t> survivors_of(const FirstLook& look,
                                       const std::vector<Candidate>& candidates,
                                       const NamingRules& rules) {
+  const auto evidence = [&](std::size_t i) {
+    return look.candidates[i].log_bayes_factor / scale_of(candidates[i], rules);
+  };
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (look.candidates[i].visible) order.push_back(i);
   }
-  std::ranges::stable_sort(order, std::greater{},
-                           [&](std::size_t i) { return look.candidates[i].log_bayes_factor; });
+  std::ranges::stable_sort(order, std::greater{}, evidence);
   std::vector<std::size_t> kept;
   if (order.empty()) return kept;
   const std::size_t best = order.front();
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     const std::size_t i = order[rank];
-    const bool near = look.candidates[i].log_bayes_factor >
-                      look.candidates[best].log_bayes_factor - rules.survivor_gap;
+    const bool near = evidence(i) > evidence(best) - rules.survivor_gap;
     const bool alike =
         std::abs(look.confusability(static_cast<Eigen::Index>(i),
                                     static_cast<Eigen::Index>(best))) > kConfusable &&
@@ -125,17 +133,21 @@ std::string_view to_string(Outcome outcome) {
 namespace {
 
 /// Probabilities of all names, none and unknown, at the rules' temperature.
+///
+/// An effect's evidence counts in units of what the same effect shows where nothing is hidden: as
+/// if every model had, along with its other errors, one of this effect's own shape.
 std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& explanations,
                                               const std::vector<Candidate>& candidates,
                                               double unknown_gain, const NamingRules& rules) {
   const std::vector<double> priors = log_priors(candidates, rules);
   std::vector<NameProbability> list{
       {"none", -1, std::log(rules.prior_none), {}},
-      {"unknown", -1, std::log(rules.prior_unknown) + unknown_gain / rules.temperature, {}}};
+      {"unknown", -1, std::log(rules.prior_unknown) + unknown_gain / rules.unknown_scale, {}}};
   for (std::size_t i = 0; i < explanations.size(); ++i) {
     const Explanation& e = explanations[i];
     const Name name = name_of(candidates[e.candidate]);
-    const double weight = priors[e.candidate] + e.evidence_gain / rules.temperature;
+    const double weight =
+        priors[e.candidate] + e.evidence_gain / (e.null_scale * rules.temperature);
     const auto found = std::ranges::find_if(list, [&](const NameProbability& p) {
       return p.effect == name.first && p.meter == name.second;
     });
@@ -159,32 +171,29 @@ std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& ex
 /// What keeps an explanation from being named; empty where nothing does.
 std::string objection(const Explanation& e, const Naming& naming, const NamingRules& rules) {
   const double least = std::max(rules.least_evidence, naming.null_threshold);
-  if (e.evidence_gain < least) return "the evidence for it is weaker than chance could make it";
-  if (e.first_look < least) return "the residuals alone do not speak for it";
-  if (e.selected_se > 0.0 && e.selected_gain < 2.0 * e.selected_se) {
-    return "it does not predict the months that were held for choosing better";
+  if (e.evidence_gain / e.null_scale < least) {
+    return "its evidence is no stronger than where nothing is hidden";
+  }
+  if (e.first_look < naming.null_threshold) return "the residuals alone do not speak for it";
+  if (e.selected_gain < -rules.most_against * e.null_scale) {
+    return "the months that were held for choosing speak against it";
   }
   if (e.at_truncation) return "its size runs against the end of what was thought possible";
-  if (naming.unknown_selected_gain > 0.0 && e.explained_share < rules.least_explained) {
-    return "it explains too little of what there is to explain";
-  }
   return {};
 }
 
 void decide(Naming& naming, const NamingRules& rules) {
   const NameProbability& first = naming.probabilities.front();
   if (first.explanation && first.probability >= rules.least_probability) {
-    const std::string against = objection(naming.explanations[*first.explanation], naming, rules);
+    const std::string& against = naming.explanations[*first.explanation].objection;
     if (against.empty()) {
       naming.outcome = Outcome::named;
       naming.named = first.explanation;
       naming.why = "one effect explains the gap better than all others together";
       return;
     }
-    naming.why = first.effect + " fits best, but " + against;
-    const bool much_unexplained = naming.unknown_selected_gain > 0.0 &&
-                                  naming.unknown_gain > rules.least_evidence * rules.temperature;
-    naming.outcome = much_unexplained ? Outcome::unknown : Outcome::none;
+    naming.why = std::string{find_effect(first.effect)->title} + " fits best, but " + against;
+    naming.outcome = Outcome::none;
     return;
   }
   double share = 0.0;
@@ -194,7 +203,7 @@ void decide(Naming& naming, const NamingRules& rules) {
     if (!p.explanation || p.probability < rules.confusable_share) continue;
     share += p.probability;
     set.push_back(p.effect);
-    supported = supported && objection(naming.explanations[*p.explanation], naming, rules).empty();
+    supported = supported && naming.explanations[*p.explanation].objection.empty();
   }
   if (set.size() >= 2 && share >= rules.least_probability && supported) {
     naming.outcome = Outcome::confusable;
@@ -219,7 +228,10 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   Naming naming;
   naming.null_threshold = look.null_threshold;
   const SiteProblem& site = data.fit.site;
-  const MonthScores base_scores = held_scores(site, data.select, data.levels, none.parts_kW);
+  const HeldJudge judge{site, data.fit.observations,
+                        data.fit.grid[static_cast<std::size_t>(none.best_node)], data.select,
+                        data.levels};
+  const MonthScores base_scores = judge.scores(none.parts_kW);
 
   const auto unknown =
       evidence_over(data.unknown_grid, data.unknown_fit, none.linear_residual(), none.jacobian);
@@ -231,21 +243,23 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     auto fit = fit_jointly(predictor, data.fit, candidate,
                            start_at(none, candidate, look.candidates[i].best));
     if (!fit) return tl::unexpected(fit.error());
-    const ScoreGain gain =
-        gain_over(held_scores(site, data.select, data.levels, fit->parts_kW), base_scores);
+    const ScoreGain gain = gain_over(judge.scores(fit->parts_kW), base_scores);
     naming.explanations.push_back({.candidate = i,
                                    .fit = std::move(*fit),
                                    .evidence_gain = 0.0,
                                    .selected_gain = gain.sum,
                                    .selected_se = gain.se,
-                                   .explained_share = 1.0,
+                                   .null_scale = scale_of(candidate, rules),
                                    .first_look = look.candidates[i].log_bayes_factor,
-                                   .at_truncation = false});
+                                   .at_truncation = false,
+                                   .objection = {}});
     Explanation& e = naming.explanations.back();
     e.evidence_gain = e.fit.log_evidence - none.log_evidence;
     e.at_truncation = is_at_truncation(candidate, e.fit);
+    e.objection = objection(e, naming, rules);
   }
-  std::ranges::stable_sort(naming.explanations, std::greater{}, &Explanation::evidence_gain);
+  std::ranges::stable_sort(naming.explanations, std::greater{},
+                           [](const Explanation& e) { return e.evidence_gain / e.null_scale; });
   naming.probabilities =
       probabilities_of(naming.explanations, candidates, naming.unknown_gain, rules);
   decide(naming, rules);

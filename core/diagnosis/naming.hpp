@@ -16,10 +16,12 @@ enum class Outcome { named, confusable, unknown, none };
 
 /// What was fixed on the training population and is published with every result.
 struct NamingRules {
-  double temperature = 20.0;  ///< T >= 1: evidences are divided by it, models being wrong.
+  double temperature = 1.0;  ///< T >= 1: evidences, in units of their null scales, divided by it.
+  double unknown_scale = 20.0;  ///< The unknown model's evidence is divided by it.
+  bool errs_as_learnt = true;   ///< False: the model is exact and every null scale 1 (tests).
   double least_probability = 0.8;
-  double least_evidence = 5.0;    ///< L_k - L_none, nats, or the null threshold if larger.
-  double least_explained = 0.5;   ///< X: share of what the unknown model explains on chosen months.
+  double most_against = 1.0;      ///< Nats in units of the null scale, on the months to choose by.
+  double least_evidence = 5.0;    ///< (L_k - L_none) / null scale, or the null threshold if larger.
   double confusable_share = 0.1;  ///< Probability of each member of a confusable set.
   double unknown_probability = 0.5;
   std::size_t survivors_min = 8;
@@ -32,12 +34,13 @@ struct NamingRules {
 struct Explanation {
   std::size_t candidate;  ///< Index into the list.
   JointFit fit;
-  double evidence_gain;    ///< L_k - L_none, nats.
-  double selected_gain;    ///< Log score on the months to choose by, above none's.
-  double selected_se;      ///< Of that, by month.
-  double explained_share;  ///< X
-  double first_look;       ///< Log Bayes factor of the first look.
-  bool at_truncation;      ///< A posterior piled at an end that is no physical end.
+  double evidence_gain;   ///< L_k - L_none, nats.
+  double selected_gain;   ///< Log score on the months to choose by, above none's.
+  double selected_se;     ///< Of that, by month.
+  double null_scale;      ///< By which such gains are inflated where nothing is hidden.
+  double first_look;      ///< Log Bayes factor of the first look.
+  bool at_truncation;     ///< A posterior piled at an end that is no physical end.
+  std::string objection;  ///< What keeps it from being named, in words; empty: nothing.
 };
 
 struct NameProbability {
@@ -50,11 +53,10 @@ struct NameProbability {
 struct Naming {
   Outcome outcome = Outcome::none;
   std::vector<NameProbability> probabilities;  ///< Descending.
-  std::vector<Explanation> explanations;       ///< Descending in evidence.
+  std::vector<Explanation> explanations;       ///< Descending in evidence by null scale.
   std::optional<std::size_t> named;            ///< Index into explanations.
   std::vector<std::string> confusable;         ///< Ids of the set.
   double unknown_gain = 0.0;                   ///< L_U - L_none
-  double unknown_selected_gain = 0.0;
   double null_threshold = 0.0;
   std::string why;  ///< Why this outcome, one sentence.
 };

@@ -9,7 +9,9 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr int kTemperatureSplines = 8;
+constexpr int kTemperatureSplinesByPart = 5;
 constexpr int kDriverSplines = 6;
+constexpr int kSeasonSplines = 10;
 constexpr double kDaysPerDateSpline = 45.0;
 // The electricity meter's hourly pattern was read off the meter itself: its level in each part of
 // the week says nothing about the model.
@@ -52,46 +54,56 @@ struct Hats {
 
 using PartValue = double (*)(const DayPart&);
 
+/// Day of the year; the hats' two ends meet at New Year without knowing of each other.
+double season_days(metering::Day date) {
+  const std::chrono::sys_days new_year{date.year() / 1 / 1};
+  return static_cast<double>((std::chrono::sys_days{date} - new_year).count());
+}
+
 struct SplineOver {
   PartValue value;
   Hats hats;
 };
 
-SplineOver spline_over(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
-                       PartValue value, int count) {
+/// Knots of the whole period, whatever months are observed: what one set of months teaches can be
+/// said of another.
+SplineOver spline_over(const SiteProblem& site, PartValue value, int count) {
   std::vector<double> values;
-  values.reserve(rows.size());
-  for (const Eigen::Index row : rows) {
-    values.push_back(value(site.day_parts.parts[static_cast<std::size_t>(row)]));
-  }
+  values.reserve(site.day_parts.parts.size());
+  for (const DayPart& part : site.day_parts.parts) values.push_back(value(part));
   return {value, Hats::at_quantiles(std::move(values), count)};
 }
 
-std::vector<SplineOver> splines_of(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
-                                   Patterns patterns) {
+std::vector<SplineOver> splines_of(const SiteProblem& site, Patterns patterns) {
   std::vector<SplineOver> splines;
   splines.push_back(spline_over(
-      site, rows, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatureSplines));
-  if (patterns == Patterns::modest) return splines;
+      site, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatureSplines));
   const auto add = [&](PartValue value, int count) {
-    splines.push_back(spline_over(site, rows, value, count));
+    splines.push_back(spline_over(site, value, count));
   };
-  const auto& parts = site.day_parts.parts;
-  const double days = parts.back().day_index - parts.front().day_index + 1.0;
-  add([](const DayPart& p) { return static_cast<double>(p.day_index); },
-      std::max(3, static_cast<int>(days / kDaysPerDateSpline)));
+  add([](const DayPart& p) { return season_days(p.date); }, kSeasonSplines);
+  add([](const DayPart& p) { return p.global_horizontal_W_m2; }, kDriverSplines);
   if (site.drivers->has_humidity) {
     add([](const DayPart& p) { return p.humidity_ratio; }, kDriverSplines);
   }
   if (site.drivers->has_wind) add([](const DayPart& p) { return p.wind_m_s; }, kDriverSplines);
-  add([](const DayPart& p) { return p.global_horizontal_W_m2; }, kDriverSplines);
+  if (patterns == Patterns::modest) return splines;
+  const auto& parts = site.day_parts.parts;
+  const double days = parts.back().day_index - parts.front().day_index + 1.0;
+  add([](const DayPart& p) { return static_cast<double>(p.day_index); },
+      std::max(3, static_cast<int>(days / kDaysPerDateSpline)));
   return splines;
 }
 
 BlockDesign design_of(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
                       bool electricity, Patterns patterns) {
-  const std::vector<SplineOver> splines = splines_of(site, rows, patterns);
-  Eigen::Index columns = kPartsPerWeek;
+  const std::vector<SplineOver> splines = splines_of(site, patterns);
+  // A spline in outdoor temperature for each part of the day, workdays and others apart: where a
+  // simpler building model errs, it errs by hour and weather.
+  const SplineOver by_part = spline_over(
+      site, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatureSplinesByPart);
+  const Eigen::Index per_part = by_part.hats.count();
+  Eigen::Index columns = kPartsPerWeek + 2 * kPartsPerDay * per_part;
   for (const SplineOver& s : splines) columns += s.hats.count();
   const auto n = static_cast<Eigen::Index>(rows.size());
   BlockDesign design{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, columns), {}};
@@ -101,7 +113,12 @@ BlockDesign design_of(const SiteProblem& site, const std::vector<Eigen::Index>& 
         site.day_parts.parts[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])];
     design.times_h[i] = part.time_h;
     design.patterns(i, part.part_of_week) = electricity ? kElectricityPatternFactor : 1.0;
-    Eigen::Index first = kPartsPerWeek;
+    const bool workday = part.day == model::DayType::workday;
+    hats.setZero(per_part);
+    by_part.hats.fill(by_part.value(part), hats);
+    design.patterns.row(i).segment(
+        kPartsPerWeek + (part.part + (workday ? 0 : kPartsPerDay)) * per_part, per_part) = hats;
+    Eigen::Index first = kPartsPerWeek + 2 * kPartsPerDay * per_part;
     for (const SplineOver& s : splines) {
       hats.setZero(s.hats.count());
       s.hats.fill(s.value(part), hats);

@@ -37,8 +37,9 @@ struct Observations {
 
 /// How generous the anonymous terms are.
 enum class Patterns {
-  modest,    ///< In every model: part of week, outdoor temperature.
-  generous,  ///< The unknown model: also date, humidity, wind and sun.
+  modest,    ///< In every model: part of week, season, weather, outdoor temperature by part of the
+             ///< day.
+  generous,  ///< The unknown model: larger, and date as well.
 };
 
 /// @param scales  (m)

@@ -1,9 +1,10 @@
-/// Lamps outdoors that follow the sun.
+/// Lamps outdoors that the drawings do not know.
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/model/dark_hours.hpp"
 
 namespace recald::diagnosis::effects {
 
@@ -13,23 +14,14 @@ namespace {
 
 using model::hourly::StepOperation;
 
-constexpr double kSwitchingSine = -0.0349;  // sun 2 degrees below the horizon
-// The sine of the sun's altitude moves so much in the hour about sunset at middle latitudes.
-constexpr double kSinePerHour = 0.2;
-
 using SharesByHour = std::array<double, 24>;
-
-/// Part of the hour with the sun below the switching altitude, 0…1.
-double dark_share(const model::DriverHour& hour) {
-  return std::clamp(0.5 - (hour.sine_of_sun_altitude - kSwitchingSine) / kSinePerHour, 0.0, 1.0);
-}
 
 SharesByHour mean_dark_shares(const model::Drivers& drivers) {
   SharesByHour sums{};
   SharesByHour counts{};
   for (const model::DriverHour& hour : drivers.hours) {
     const auto i = static_cast<std::size_t>(hour.local_hour);
-    sums[i] += dark_share(hour);
+    sums[i] += model::dark_share(hour);
     counts[i] += 1.0;
   }
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
@@ -47,7 +39,7 @@ class ExteriorLighting final : public model::hourly::Alteration {
 
   void operate(const model::DriverHour& hour, StepOperation& operation) const override {
     const double usual_share = mean_dark_shares_[static_cast<std::size_t>(hour.local_hour)];
-    operation.exterior_W += power_W_ * dark_share(hour);
+    operation.exterior_W += power_W_ * model::dark_share(hour);
     operation.plugs_W = std::max(operation.plugs_W - share_in_plugs_ * power_W_ * usual_share, 0.0);
   }
 

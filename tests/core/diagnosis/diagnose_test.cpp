@@ -11,14 +11,15 @@ using metering::Utility;
 
 /// The sample building as its own meters, with what `hidden` adds and noise. The calibrated model
 /// generated its own data: these tests prove the machinery, never that it names real effects.
-SiteProblem site_with(const Effect* hidden, const std::vector<double>& values) {
+SiteProblem site_with(const Effect* hidden, const std::vector<double>& values, int months = 24) {
   SiteProblem site;
   site.nominal = testing::sample_building();
   for (const char* name : {"outdoor_airflow", "cooling_setpoint", "leakage_area"}) {
     site.definitions.push_back(*model::find_parameter(name));
     site.parameters.push_back(*model::make_parameter(*site.definitions.back(), site.nominal));
   }
-  site.drivers = std::make_shared<const model::Drivers>(testing::sample_drivers(site.nominal, 24));
+  site.drivers =
+      std::make_shared<const model::Drivers>(testing::sample_drivers(site.nominal, months));
   for (const auto& [id, utility] :
        {std::pair{"electricity", Utility::electricity},
         std::pair{"chilled_water", Utility::chilled_water}, std::pair{"steam", Utility::steam}}) {
@@ -54,6 +55,7 @@ SiteProblem site_with(const Effect* hidden, const std::vector<double>& values) {
 DiagnoseOptions exact_model() {
   DiagnoseOptions options;
   options.rules.temperature = 1.0;
+  options.rules.errs_as_learnt = false;
   return options;
 }
 
@@ -67,7 +69,7 @@ TEST(Diagnose, NamesNothingWhereNothingIsHidden) {
 }
 
 TEST(Diagnose, NamesAHiddenEffectAndShowsThatTheGapShrank) {
-  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {4.0});
+  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {8.0});
   const auto diagnosis = diagnose(site, exact_model());
   ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
   const Naming& naming = diagnosis->passes.front().naming;
@@ -78,20 +80,20 @@ TEST(Diagnose, NamesAHiddenEffectAndShowsThatTheGapShrank) {
       << naming.explanations.front().selected_se;
   ASSERT_EQ(diagnosis->added.size(), 1u);
   EXPECT_EQ(diagnosis->added[0].candidate.effect->id, "steam_trap_leak");
-  EXPECT_NEAR(diagnosis->added[0].eta[0], 4.0, 3.0 * diagnosis->added[0].eta_sd[0]);
+  EXPECT_NEAR(diagnosis->added[0].eta[0], 8.0, 3.0 * diagnosis->added[0].eta_sd[0]);
   ASSERT_TRUE(diagnosis->gap.has_value());
   EXPECT_TRUE(diagnosis->gap->confirmed);
   EXPECT_LT(diagnosis->gap->after[2].cvrmse_daily, diagnosis->gap->before[2].cvrmse_daily);
 }
 
 TEST(Diagnose, SameInputsGiveTheSameResult) {
-  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {4.0});
+  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {12.0}, 18);
   const auto first = diagnose(site, exact_model());
   const auto second = diagnose(site, exact_model());
   ASSERT_TRUE(first.has_value());
   ASSERT_TRUE(second.has_value());
-  ASSERT_EQ(first->added.size(), 1u);
-  ASSERT_EQ(second->added.size(), 1u);
+  ASSERT_GE(first->added.size(), 1u);
+  ASSERT_EQ(first->added.size(), second->added.size());
   EXPECT_EQ(first->added[0].draws, second->added[0].draws);
   EXPECT_EQ(first->passes[0].naming.null_threshold, second->passes[0].naming.null_threshold);
 }

@@ -376,26 +376,27 @@ struct Direction {
 std::vector<Direction> directions() {
   using enum Sign;
   using namespace effects;  // NOLINT: twenty entries
-  return {{night_setback_missing(), {0.5}, {0.0}, {any, rises, rises}},
-          {weekend_operation(), {0.5, 0.5}, {0.0, 0.0}, {rises, rises, any}},
-          {missing_holidays(), {0.5, 1.0}, {0.0, 1.0}, {falls, falls, any}},
-          {after_hours(), {2.0}, {0.0}, {rises, rises, rises}},
-          {early_start(), {1.5, 0.05}, {0.0, 0.0}, {rises, rises, rises}},
-          {round_the_clock_zone(), {0.3}, {0.0}, {rises, rises, rises}},
-          {semester_calendar(), {0.4, 2.0}, {0.0, 2.0}, {falls, falls, rises}},
-          {vacancy(), {0.5}, {0.0}, {falls, falls, rises}},
-          {hybrid_work(), {0.15, 0.05}, {0.0, 0.0}, {any, any, any}},
-          {damper_stuck_open(), {0.3}, {0.0}, {any, any, rises}},
-          {outdoor_air_amount(), {0.4}, {0.0}, {any, rises, rises}},
-          {economiser_failed(), {1.0}, {0.0}, {same, rises, same}},
-          {economiser_changeover(), {-4.0}, {0.0}, {same, rises, same}},
-          {demand_ventilation(), {0.8}, {0.0}, {any, falls, falls}},
-          {simultaneous_heating_cooling(), {20.0}, {0.0}, {same, rises, rises}},
-          {supply_reset_missing(), {0.25, 18.0}, {0.0, 18.0}, {any, rises, rises}},
-          {constant_speed_fans(), {0.5}, {0.0}, {rises, rises, any}},
-          {constant_flow_pumps(), {5.0, 1.0}, {0.0, 1.0}, {rises, same, same}},
-          {deep_drying(), {0.0015}, {0.0}, {same, rises, same}},
-          {humidifier(), {0.5, 0.006}, {0.0, 0.006}, {same, same, rises}}};
+  return {
+      {night_setback_missing(), {0.5}, {0.0}, {any, rises, rises}},
+      {weekend_operation(), {0.5, 0.5}, {0.0, 0.0}, {rises, rises, any}},
+      {missing_holidays(), {0.5, 1.0}, {0.0, 1.0}, {falls, falls, any}},
+      {after_hours(), {2.0}, {0.0}, {rises, rises, rises}},
+      {early_start(), {1.5, 0.05}, {0.0, 0.0}, {rises, rises, rises}},
+      {round_the_clock_zone(), {0.3}, {0.0}, {rises, rises, rises}},
+      {semester_calendar(), {0.4, 2.0}, {0.0, 2.0}, {falls, falls, any}} /* less warm water, too */,
+      {vacancy(), {0.5}, {0.0}, {falls, falls, any}},
+      {hybrid_work(), {0.15, 0.05}, {0.0, 0.0}, {any, any, any}},
+      {damper_stuck_open(), {0.3}, {0.0}, {any, any, rises}},
+      {outdoor_air_amount(), {0.4}, {0.0}, {any, rises, rises}},
+      {economiser_failed(), {1.0}, {0.0}, {same, rises, same}},
+      {economiser_changeover(), {-4.0}, {0.0}, {same, rises, same}},
+      {demand_ventilation(), {0.8}, {0.0}, {any, falls, falls}},
+      {simultaneous_heating_cooling(), {20.0}, {0.0}, {same, rises, rises}},
+      {supply_reset_missing(), {0.25, 18.0}, {0.0, 18.0}, {any, rises, rises}},
+      {constant_speed_fans(), {0.5}, {0.0}, {rises, rises, any}},
+      {constant_flow_pumps(), {5.0, 1.0}, {0.0, 1.0}, {rises, same, same}},
+      {deep_drying(), {0.0015}, {0.0}, {same, rises, same}},
+      {humidifier(), {0.5, 0.006}, {0.0, 0.006}, {same, same, rises}}};
 }
 
 TEST(EffectsOfOperation, MovesTheMetersAsTheCatalogueSays) {
