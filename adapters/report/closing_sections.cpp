@@ -30,8 +30,8 @@ void write_not_known_section(Html& html, const ReportData& data) {
   html.markup("</ul>\n</section>\n");
 }
 
-void write_provenance_section(Html& html, const ReportData& data) {
-  const Provenance& from = data.provenance;
+void write_provenance(Html& html, const Provenance& from, const std::string& time_zone,
+                      const std::string& generated_at) {
   open_section(html, "provenance", "How to repeat these numbers");
   html.element(
       "p", "The same readings, model, settings and seed give the same numbers, to the last digit.");
@@ -43,6 +43,7 @@ void write_provenance_section(Html& html, const ReportData& data) {
   entry("recald", from.recald_version);
   entry("Data revision", from.data_revision);
   entry("Model", from.model_version);
+  entry("Catalogue of effects", from.catalogue);
   entry("Sampler", from.sampler);
   entry("Prior of the model discrepancy", from.hyper_prior_profile);
   entry("Chains", plain(from.chains));
@@ -50,12 +51,16 @@ void write_provenance_section(Html& html, const ReportData& data) {
   entry("Of these dropped", from.burn_in ? count_text(*from.burn_in) : "");
   entry("Seed", plain(from.seed));
   entry("Computing time", from.wall_s ? fmt::format("{:.1f} s", *from.wall_s) : "");
-  entry("Time zone", data.site.time_zone);
+  entry("Time zone", time_zone);
   entry("Time zone rules", from.time_zone_data);
-  entry("Report made", data.generated_at);
+  entry("Report made", generated_at);
   html.markup("</dl>\n");
   write_licences(html);
   html.markup("</section>\n");
+}
+
+void write_provenance_section(Html& html, const ReportData& data) {
+  write_provenance(html, data.provenance, data.site.time_zone, data.generated_at);
 }
 
 }  // namespace recald::report

@@ -1,38 +1,20 @@
 #include "adapters/report/figure_data.hpp"
 
-#include <charconv>
-#include <cmath>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "adapters/report/format.hpp"
 #include "adapters/report/histogram.hpp"
+#include "adapters/report/script_json.hpp"
 
 namespace recald::report {
 namespace {
 
 using nlohmann::json;
 
-/// The number with so many significant digits, or null. Keeps the page small: the shortest text
-/// of a rounded double is short.
-json number(double value, int significant_digits = 6) {
-  if (!std::isfinite(value)) return nullptr;
-  char buffer[32];
-  const auto written = std::to_chars(buffer, buffer + sizeof buffer, value,
-                                     std::chars_format::scientific, significant_digits - 1);
-  double rounded = 0.0;
-  std::from_chars(buffer, written.ptr, rounded);
-  return rounded;
-}
-
+json number(double value) { return json_number(value); }
 json number(std::optional<double> value) { return value ? number(*value) : json(nullptr); }
-
-template <class Range>
-json numbers(const Range& values) {
-  json array = json::array();
-  for (const double value : values) array.push_back(number(value));
-  return array;
-}
 
 const char* role_text(MonthRole role) {
   switch (role) {
@@ -50,7 +32,7 @@ const char* role_text(MonthRole role) {
 json curve(const Prior& prior) {
   json corners = json::array();
   const auto corner = [&](double value, double density) {
-    corners.push_back(numbers(std::array{value, density}));
+    corners.push_back(json_numbers(std::array{value, density}));
   };
   if (const auto* triangle = std::get_if<TriangularPrior>(&prior.distribution())) {
     corner(triangle->min, 0.0);
@@ -77,7 +59,7 @@ json parameter_json(const ParameterResult& parameter) {
           {"prior", curve(parameter.prior)},
           {"binStart", number(histogram.start)},
           {"binWidth", number(histogram.width)},
-          {"density", numbers(histogram.density())},
+          {"density", json_numbers(histogram.density())},
           {"mean", number(parameter.mean)},
           {"q05", number(parameter.q05)},
           {"q95", number(parameter.q95)}};
@@ -85,8 +67,8 @@ json parameter_json(const ParameterResult& parameter) {
 
 json box_json(const std::optional<ModelBox>& box) {
   if (!box) return nullptr;
-  return numbers(std::array{box->low_whisker_kWh, box->q25_kWh, box->q50_kWh, box->q75_kWh,
-                            box->high_whisker_kWh});
+  return json_numbers(std::array{box->low_whisker_kWh, box->q25_kWh, box->q50_kWh, box->q75_kWh,
+                                 box->high_whisker_kWh});
 }
 
 json month_json(const OutputMonth& month) {
@@ -94,7 +76,7 @@ json month_json(const OutputMonth& month) {
           {"role", role_text(month.role)},
           {"measured", number(month.measured_kWh)},
           {"usable", month.measured_usable},
-          {"filled", number(month.filled_share, 4)},
+          {"filled", json_number(month.filled_share, 4)},
           {"different", month.flagged_different},
           {"box", box_json(month.box)}};
 }
@@ -130,11 +112,11 @@ json peak_json(const PeakSeries& series) {
 json day_type_json(const DayTypeProfile& day_type) {
   json parts = json::array();
   for (const ProfilePart& part : day_type.parts) {
-    parts.push_back({{"label", part.label}, {"kW", numbers(part.mean_kW)}});
+    parts.push_back({{"label", part.label}, {"kW", json_numbers(part.mean_kW)}});
   }
   return {{"label", day_type.label},
           {"parts", parts},
-          {"measured", numbers(day_type.measured_mean_kW)}};
+          {"measured", json_numbers(day_type.measured_mean_kW)}};
 }
 
 /// One letter an hour: o(k), p(artly filled), m(issing), s(uspect).
@@ -154,7 +136,7 @@ char status_letter(HourStatus status) {
 
 json load_json(const LoadGrid& load) {
   json values = json::array();
-  for (const float value : load.mean_kW) values.push_back(number(value, 4));
+  for (const float value : load.mean_kW) values.push_back(json_number(value, 4));
   std::string letters;
   for (const HourStatus status : load.status) letters += status_letter(status);
   return {{"label", load.meter},
@@ -178,18 +160,7 @@ std::string figure_json(const ReportData& data) {
                      {"peaks", array_of(data.peaks, peak_json)},
                      {"dayTypes", array_of(data.profile.day_types, day_type_json)},
                      {"loads", array_of(data.loads, load_json)}};
-  // Bytes that are not UTF-8 (a name from an old file) become U+FFFD instead of an exception.
-  const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";  // "<" occurs in JSON only inside strings.
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
+  return script_safe_text(root);
 }
 
 }  // namespace recald::report

@@ -54,6 +54,12 @@ std::string percent_text(double share, int decimals) {
   return fmt::format("{}{:.{}f}\u00a0%", sign_text(share), std::abs(share) * 100.0, decimals);
 }
 
+std::string probability_text(double probability) {
+  if (probability > 0.999) return "over 99.9\u00a0%";
+  if (probability < 0.001) return "under 0.1\u00a0%";
+  return percent_text(probability);
+}
+
 std::string signed_percent_text(double share) {
   if (!std::isfinite(share)) return kDash;
   return fmt::format("{}{}", share > 0.0 ? "+" : "", percent_text(share));
@@ -76,6 +82,17 @@ std::string month_key(metering::Month month) {
 std::string day_key(metering::Day day) {
   return fmt::format("{:04}-{:02}-{:02}", int{day.year()}, unsigned{day.month()},
                      unsigned{day.day()});
+}
+
+std::string part_of_day_text(int part) {
+  return fmt::format("{:02}–{:02} h", 4 * part, 4 * part + 4);
+}
+
+std::string part_of_week_text(int part) {
+  static constexpr std::array<const char*, 7> kDays{"Sun", "Mon", "Tue", "Wed",
+                                                    "Thu", "Fri", "Sat"};
+  return fmt::format("{} {}", kDays.at(static_cast<std::size_t>(part / 6)),
+                     part_of_day_text(part % 6));
 }
 
 std::string contraction_sentence(double contraction) {

@@ -20,6 +20,10 @@ namespace recald::report {
 /// A share in percent: 0.1534 → "15.3 %", with a no-break space.
 [[nodiscard]] std::string percent_text(double share, int decimals = 1);
 
+/// A probability: 0.1534 → "15.3 %"; the ends, which no data reach, are "over 99.9 %" and
+/// "under 0.1 %".
+[[nodiscard]] std::string probability_text(double probability);
+
 /// A signed share in percent, with a true minus sign: −0.021 → "−2.1 %", 0.02 → "+2.0 %".
 [[nodiscard]] std::string signed_percent_text(double share);
 
@@ -27,6 +31,10 @@ namespace recald::report {
 [[nodiscard]] std::string month_key(metering::Month month);   ///< "2021-03"
 [[nodiscard]] std::string day_key(metering::Day day);         ///< "2021-03-09"
 [[nodiscard]] std::string month_name(unsigned month);         ///< 1 → "Jan"
+
+/// Four hours of the week, 0 being Sunday 00–04 h: 8 → "Mon 08–12 h". @pre 0 <= part < 42
+[[nodiscard]] std::string part_of_week_text(int part);
+[[nodiscard]] std::string part_of_day_text(int part);  ///< 2 → "08–12 h". @pre 0 <= part < 6
 
 /// What the contraction of a parameter means, as a sentence.
 [[nodiscard]] std::string contraction_sentence(double contraction);

@@ -75,7 +75,7 @@ struct Figure {
   std::string title;
   std::string description;     ///< What the figure shows, for those who do not see it.
   std::string caption;         ///< How to read it.
-  std::string_view size = "";  ///< "", "small" or "tall".
+  std::string_view size = "";  ///< "", "small", "tall", "map" or "small pair".
 };
 
 /// The figure with its data as a table below it; the table is there without JavaScript too.

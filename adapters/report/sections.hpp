@@ -10,6 +10,9 @@ namespace recald::report {
 /// The answer first: headlines, Guideline 14 by output, what to heed.
 void write_verdict_section(Html& html, const ReportData& data);
 
+/// What to heed, the gravest first; nothing where there is nothing.
+void write_notices(Html& html, const std::vector<Notice>& notices);
+
 /// Are the data good? Coverage by month and meter, and what the readings showed.
 void write_data_section(Html& html, const ReportData& data);
 
@@ -29,6 +32,8 @@ void write_load_section(Html& html, const ReportData& data);
 void write_not_known_section(Html& html, const ReportData& data);
 
 /// What is needed to repeat the numbers, and the licences of what draws them.
+void write_provenance(Html& html, const Provenance& from, const std::string& time_zone,
+                      const std::string& generated_at);
 void write_provenance_section(Html& html, const ReportData& data);
 
 }  // namespace recald::report

@@ -53,13 +53,15 @@ void write_verdicts(Html& html, const ReportData& data) {
   html.markup("</ul>\n");
 }
 
-void write_notices(Html& html, const ReportData& data) {
-  if (data.notices.empty()) return;
+}  // namespace
+
+void write_notices(Html& html, const std::vector<Notice>& notices) {
+  if (notices.empty()) return;
   html.element("h3", "What to keep in mind").markup("<ul class=\"notices\">\n");
   // The gravest first; within one severity the caller's order.
   for (const Severity severity : {Severity::failure, Severity::warning, Severity::info}) {
     const Mark mark = severity_mark(severity);
-    for (const Notice& notice : data.notices) {
+    for (const Notice& notice : notices) {
       if (notice.severity != severity) continue;
       html.markup(fmt::format("<li class=\"{}\">", mark.css_class))
           .element("span", mark.word, "badge")
@@ -70,14 +72,12 @@ void write_notices(Html& html, const ReportData& data) {
   html.markup("</ul>\n");
 }
 
-}  // namespace
-
 void write_verdict_section(Html& html, const ReportData& data) {
   if (data.headlines.empty() && data.verdicts.empty() && data.notices.empty()) return;
   open_section(html, "verdict", "In short");
   write_headlines(html, data);
   write_verdicts(html, data);
-  write_notices(html, data);
+  write_notices(html, data.notices);
   html.markup("</section>\n");
 }
 

@@ -1,7 +1,12 @@
 // The parts of Apache ECharts that the figures use, and how a figure is put on the page.
 import { init, use } from "echarts/core";
 import { BarChart, BoxplotChart, CustomChart, LineChart, ScatterChart } from "echarts/charts";
-import { AriaComponent, GridComponent, TooltipComponent } from "echarts/components";
+import {
+  AriaComponent,
+  GraphicComponent,
+  GridComponent,
+  TooltipComponent,
+} from "echarts/components";
 import { SVGRenderer } from "echarts/renderers";
 
 use([
@@ -9,6 +14,7 @@ use([
   BarChart,
   BoxplotChart,
   CustomChart,
+  GraphicComponent,
   GridComponent,
   LineChart,
   ScatterChart,

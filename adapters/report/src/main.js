@@ -2,6 +2,7 @@
 //
 // The page is complete without this script: words and tables are HTML. When all is drawn, the root
 // element says so: data-ready, data-charts (drawn) and data-errors (figures that failed).
+import { drawCandidates } from "./candidates_figure.js";
 import { drawCvrmse } from "./cvrmse_figure.js";
 import { addDownloads } from "./csv.js";
 import { drawLoad } from "./load_figure.js";
@@ -9,14 +10,22 @@ import { drawMonths } from "./months_figure.js";
 import { drawParameter } from "./parameter_figure.js";
 import { drawPeaks } from "./peaks_figure.js";
 import { drawProfile, writeProfileKey } from "./profile_figure.js";
+import { drawTemperatureMap, drawWeekMap } from "./residual_map_figure.js";
+import { drawSignature } from "./signature_figure.js";
+import { drawSteps, writeStepKey } from "./steps_figure.js";
 
 const drawings = {
+  candidates: drawCandidates,
   cvrmse: drawCvrmse,
   load: drawLoad,
   months: drawMonths,
   parameter: drawParameter,
   peaks: drawPeaks,
   profile: drawProfile,
+  signature: drawSignature,
+  steps: drawSteps,
+  temperaturemap: drawTemperatureMap,
+  weekmap: drawWeekMap,
 };
 
 const root = document.documentElement;
@@ -73,6 +82,7 @@ root.classList.add("script");
 for (const details of document.querySelectorAll("figure details.data")) details.open = false;
 addDownloads(data);
 writeProfileKey(data);
+writeStepKey(data);
 showChosenLoad();
 document.getElementById("load-choice")?.addEventListener("change", showChosenLoad);
 window.addEventListener("beforeprint", preparePrint);

@@ -24,6 +24,60 @@ export const loadColours = [
   "#0c2c84",
 ];
 
+// Less than the model, none, more than it (ColorBrewer's blue and orange ends): light in the middle.
+export const residualColours = ["#08519c", "#6baed6", "#f5f5f2", "#fd8d3c", "#a63603"];
+export const chooseMark = "#55606e";
+
+/** Colour of a share of the full scale, −1 to 1; beyond that it stays full. */
+export function residualColour(share) {
+  const at = ((Math.min(Math.max(share, -1), 1) + 1) / 2) * (residualColours.length - 1);
+  const below = Math.min(Math.floor(at), residualColours.length - 2);
+  const channels = [1, 3, 5].map((k) => {
+    const [low, high] = [below, below + 1].map((i) =>
+      parseInt(residualColours[i].slice(k, k + 2), 16),
+    );
+    return Math.round(low + (high - low) * (at - below));
+  });
+  return `rgb(${channels.join(",")})`;
+}
+
+// Effects are full bars; what is no effect is pale or striped, so that it is not taken for one.
+export const candidateLooks = {
+  effect: { color: "#0b5f95" },
+  none: { color: "#e6eaee", borderColor: mutedInk, borderWidth: 1.2 },
+  unknown: {
+    color: "#e6eaee",
+    borderColor: mutedInk,
+    borderWidth: 1.2,
+    decal: {
+      symbol: "rect",
+      dashArrayX: [1, 0],
+      dashArrayY: [2, 4],
+      rotation: Math.PI / 4,
+      color: "rgba(85,96,110,.8)",
+    },
+  },
+};
+
+// Meters as lines: colour, shape and dash together. `sign` is the shape in the key.
+const meterLooks = [
+  { color: "#0b5f95", symbol: "circle", type: "solid", sign: "●" },
+  { color: "#b34700", symbol: "diamond", type: [7, 3], sign: "◆" },
+  { color: "#0b6446", symbol: "triangle", type: [2, 3], sign: "▲" },
+  { color: "#7a3e8e", symbol: "rect", type: [8, 3, 2, 3], sign: "■" },
+];
+
+export function meterLook(index) {
+  const { color, symbol, type, sign } = meterLooks[index % meterLooks.length];
+  return {
+    symbol,
+    sign,
+    symbolSize: 9,
+    itemStyle: { color },
+    lineStyle: { color, type, width: 2 },
+  };
+}
+
 export const star =
   "path://M12 .6l3.3 7.4 8.1.8-6.1 5.3 1.8 7.9L12 17.9l-7.1 4.1 1.8-7.9L.6 8.8l8.1-.8z";
 

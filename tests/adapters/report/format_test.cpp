@@ -44,6 +44,19 @@ TEST(PercentText, NamesSignsWhereAsked) {
   EXPECT_EQ(signed_percent_text(0.0), "0.0\u00a0%");
 }
 
+TEST(ProbabilityText, NeverClaimsCertainty) {
+  EXPECT_EQ(probability_text(0.1534), "15.3\u00a0%");
+  EXPECT_EQ(probability_text(1.0), "over 99.9\u00a0%");
+  EXPECT_EQ(probability_text(0.0), "under 0.1\u00a0%");
+  EXPECT_EQ(probability_text(std::nan("")), "–");
+}
+
+TEST(CalendarText, NamesPartsOfTheWeek) {
+  EXPECT_EQ(part_of_week_text(0), "Sun 00–04 h");
+  EXPECT_EQ(part_of_week_text(8), "Mon 08–12 h");
+  EXPECT_EQ(part_of_week_text(41), "Sat 20–24 h");
+}
+
 TEST(CalendarText, NamesMonthsAndDays) {
   EXPECT_EQ(month_text(metering::Month{year{2021}, month{3}}), "Mar 2021");
   EXPECT_EQ(month_key(metering::Month{year{2021}, month{3}}), "2021-03");

@@ -100,8 +100,8 @@ OutputResult output_result(const MeterShape& meter, Rng& rng) {
 }
 
 /// Draws around `mean`, kept inside the prior, and the summary that belongs to them.
-ParameterResult parameter_result(std::string name, std::string label, std::string unit,
-                                 Prior prior, double mean, double sd, Rng& rng) {
+ParameterResult parameter_result(std::string name, std::string label, std::string unit, Prior prior,
+                                 double mean, double sd, Rng& rng) {
   ParameterResult result{.name = std::move(name),
                          .label = std::move(label),
                          .unit = std::move(unit),

@@ -1,20 +1,42 @@
 // Writes a sample report to the file named on the command line, for the browser test.
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <string>
 
+#include "adapters/report/diagnosis_page.hpp"
 #include "adapters/report/report.hpp"
+#include "tests/adapters/report/sample_diagnosis.hpp"
 #include "tests/adapters/report/sample_report.hpp"
 
+namespace {
+
+using Page = std::string (*)();
+
+const std::map<std::string, Page>& pages() {
+  using namespace recald::report;
+  static const std::map<std::string, Page> kPages = {
+      {"full", [] { return render_report(sample_report()); }},
+      {"readings-only", [] { return render_report(readings_only_report()); }},
+      {"diagnosis", [] { return render_diagnosis(sample_diagnosis()); }},
+      {"unconfirmed", [] { return render_diagnosis(unconfirmed_diagnosis()); }},
+      {"empty-handed", [] { return render_diagnosis(empty_handed_diagnosis()); }},
+  };
+  return kPages;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  const std::string which = argc == 3 ? argv[1] : "";
-  if (which != "full" && which != "readings-only") {
-    std::cerr << "usage: write_sample_report full|readings-only FILE.html\n";
+  const auto page = pages().find(argc == 3 ? argv[1] : "");
+  if (page == pages().end()) {
+    std::cerr << "usage: write_sample_report PAGE FILE.html, PAGE one of:";
+    for (const auto& [name, write] : pages()) std::cerr << ' ' << name;
+    std::cerr << '\n';
     return 2;
   }
   std::ofstream file(argv[2], std::ios::binary);
-  file << recald::report::render_report(which == "full" ? recald::report::sample_report()
-                                                        : recald::report::readings_only_report());
+  file << page->second();
   file.close();
   if (!file) {
     std::cerr << argv[2] << " cannot be written\n";

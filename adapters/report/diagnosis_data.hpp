@@ -1,0 +1,148 @@
+/// All that a diagnosis page shows, as plain values and finished sentences.
+///
+/// Whatever is absent (an empty vector, a NaN) is left out or shown as a dash, so a diagnosis that
+/// added nothing, kept no month back or lost a meter gets a page too.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/report/report_data.hpp"
+#include "core/diagnosis/gap.hpp"
+#include "core/diagnosis/residual_map.hpp"
+
+namespace recald::report {
+
+enum class DiagnosisVerdict {
+  named,
+  not_confirmed,  ///< Named, then taken back because the months kept back did not agree.
+  confusable,
+  unknown,
+  none,
+};
+
+/// What an effect does to one meter in a mean month.
+struct MeterImpact {
+  std::string meter;
+  double kWh_month;  ///< With the effect minus without.
+};
+
+/// A parameter of an effect with its posterior; a date is text, everything else a number.
+struct EffectParameterRow {
+  std::string name;
+  std::string mode;  ///< As it shall be read, with its unit.
+  std::string low;   ///< 5 %
+  std::string high;  ///< 95 %
+};
+
+/// An effect that was added, or tried and taken back.
+struct AddedEffectCard {
+  std::string title;
+  std::string meaning;
+  std::string physics;
+  std::string when;  ///< "At all times of the record", "Since about 12 Mar 2021 (…)".
+  double probability;
+  std::vector<MeterImpact> impacts;
+  std::vector<EffectParameterRow> parameters;
+};
+
+/// A place where meters and model disagree.
+struct LocatedRow {
+  std::string meter;
+  std::string where;
+  double share;     ///< Measured minus modelled, of the modelled, there.
+  double share_se;  ///< Its standard error.
+  double kWh_month;
+};
+
+enum class CandidateKind { effect, none, unknown };
+
+struct CandidateBar {
+  std::string label;
+  std::string meaning;
+  CandidateKind kind;
+  double probability;
+  double evidence_gain;  ///< Log evidence above no effect, nats; NaN where it does not apply.
+  std::vector<EffectParameterRow> parameters;
+};
+
+/// Two effects that look alike on these meters, and the measurement that would part them.
+struct Separation {
+  std::string effect;
+  std::string rival;
+  double rival_probability;  ///< NaN where the rival was not among those that were fitted.
+  std::string measurement;
+};
+
+/// One meter's residuals before, and after what was added.
+struct MeterMaps {
+  std::string meter;
+  double mean_kW;  ///< Measured; what the shares are shares of.
+  diagnosis::ResidualMap before;
+  std::optional<diagnosis::ResidualMap> after;
+};
+
+/// One version of the model on the months kept back, every meter.
+struct GapStep {
+  std::string label;                      ///< "The model as drawn", "with night set-back missing".
+  std::vector<diagnosis::MeterGap> gaps;  ///< (m) NaN where the meter has nothing to be judged by.
+};
+
+/// An output of another model than the hourly one, before and after it got the same effects, on the
+/// same months kept back.
+struct OtherGapRow {
+  std::string model;     ///< "epc"
+  std::string output;    ///< As it shall be read.
+  double cvrmse_before;  ///< Of months, as all that follows.
+  double cvrmse_after;
+  double nmbe_before;  ///< Simulated minus measured.
+  double nmbe_after;
+  double log_score_before;
+  double log_score_after;
+};
+
+/// What one addition explains at one meter.
+struct EffectSignature {
+  std::string effect;
+  std::string meter;
+  diagnosis::Signature residual;  ///< Measured minus modelled, before the addition.
+  diagnosis::Signature change;    ///< What the model changed, its other parameters refitted.
+  diagnosis::Signature effect_alone;
+};
+
+struct NotIdentifiableRow {
+  std::string effect;
+  std::string why;
+};
+
+struct DiagnosisData {
+  std::string title;
+  std::string generated_at;  ///< Given by the caller; the page has no clock.
+  SiteLine site;
+  Provenance provenance;
+
+  DiagnosisVerdict verdict = DiagnosisVerdict::none;
+  std::string headline;
+  std::vector<std::string> explanations;
+  std::vector<Notice> notices;
+  std::vector<AddedEffectCard> added;
+
+  std::vector<std::string> meters;      ///< (m)
+  std::vector<metering::Month> months;  ///< Of the maps' columns.
+  std::vector<diagnosis::Role> uses;    ///< (months)
+  std::vector<double> temperature_limits_C;
+  std::vector<MeterMaps> maps;  ///< (m)
+
+  std::vector<LocatedRow> located;
+  std::vector<LocatedRow> located_after;  ///< With what was added.
+  std::vector<CandidateBar> candidates;   ///< Descending in probability.
+  std::vector<Separation> separations;
+  std::vector<GapStep> steps;  ///< Empty: no month was kept back.
+  std::vector<OtherGapRow> other_gaps;
+  std::vector<EffectSignature> signatures;
+  std::vector<diagnosis::MeterGap> base_fit;  ///< (m) on the fitted months.
+  std::vector<NotIdentifiableRow> not_identifiable;
+};
+
+}  // namespace recald::report

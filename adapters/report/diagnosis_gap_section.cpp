@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+
+#include "adapters/report/diagnosis_sections.hpp"
+#include "adapters/report/format.hpp"
+
+namespace recald::report {
+namespace {
+
+void add_gap_row(Table& table, const std::string& label, const diagnosis::MeterGap& gap) {
+  table.row({{label},
+             {percent_text(gap.cvrmse_daily), "number"},
+             {percent_text(gap.cvrmse_monthly), "number"},
+             {signed_percent_text(gap.nmbe_sim_minus_meas), "number"},
+             {number_text(gap.log_score), "number"},
+             {percent_text(gap.discrepancy_share, 0), "number"}});
+}
+
+const std::vector<std::string>& gap_columns() {
+  static const std::vector<std::string> kColumns{"",
+                                                 "CV(RMSE) of days",
+                                                 "CV(RMSE) of months",
+                                                 "Bias, model − meter",
+                                                 "Log score a month",
+                                                 "Structured share of what is left"};
+  return kColumns;
+}
+
+Table step_table(const DiagnosisData& data) {
+  Table table("The gap on the months kept back, step by step");
+  table.columns(gap_columns());
+  for (std::size_t g = 0; g < data.meters.size(); ++g) {
+    table.group(data.meters[g]);
+    for (const GapStep& step : data.steps) add_gap_row(table, step.label, step.gaps[g]);
+  }
+  return table;
+}
+
+Table measure_table(const DiagnosisData& data, const GapMeasure& measure) {
+  Table table{std::string{measure.label}};
+  std::vector<std::string> columns{"Model"};
+  columns.insert(columns.end(), data.meters.begin(), data.meters.end());
+  table.columns(std::move(columns));
+  for (const GapStep& step : data.steps) {
+    std::vector<Cell> row{{step.label}};
+    for (std::size_t g = 0; g < data.meters.size(); ++g) {
+      const double value = measure.value(data.steps.front().gaps[g], step.gaps[g]);
+      row.push_back({measure.is_share ? percent_text(value) : number_text(value), "number"});
+    }
+    table.row(std::move(row));
+  }
+  return table;
+}
+
+void write_measures(Html& html, const DiagnosisData& data) {
+  html.markup("<p class=\"key\" id=\"step-key\" aria-hidden=\"true\"></p>\n")
+      .markup("<div class=\"multiples\">\n");
+  int index = 0;
+  for (const GapMeasure& measure : gap_measures()) {
+    const std::string label{measure.label};
+    write_figure(html,
+                 {.kind = "steps",
+                  .index = index++,
+                  .title = label,
+                  .description = label + " of each meter, from the model as drawn through each "
+                                         "addition, on the months kept back.",
+                  .caption = measure.is_share ? "Lower is better."
+                                              : "Above the model as drawn. Higher is better.",
+                  .size = "small"},
+                 measure_table(data, measure));
+  }
+  html.markup("</div>\n");
+}
+
+void write_judgement(Html& html, const DiagnosisData& data) {
+  switch (data.verdict) {
+    case DiagnosisVerdict::named:
+      html.element("p",
+                   "The months kept back confirm it: together the meters are told better by more "
+                   "than two standard errors, and none is told clearly worse.");
+      return;
+    case DiagnosisVerdict::not_confirmed:
+      html.element(
+          "p",
+          "Not confirmed: on the months kept back the model with the additions is not "
+          "better by two standard errors, or tells one meter clearly worse, or the monthly "
+          "model speaks against them. What was tried has been taken back.",
+          "bad");
+      return;
+    default:
+      html.element("p",
+                   "Nothing was added, so there is nothing to compare: this is how the calibrated "
+                   "model tells the months kept back.");
+  }
+}
+
+void write_other_models(Html& html, const DiagnosisData& data) {
+  if (data.other_gaps.empty()) return;
+  Table table(
+      "The model that the site is calibrated with, given the same effects, on the same months");
+  table.columns({"Model and output", "CV(RMSE) before", "after", "Bias, model − meter, before",
+                 "after", "Log score a month before", "after"});
+  for (const OtherGapRow& row : data.other_gaps) {
+    table.row({{fmt::format("{}: {}", row.model, row.output)},
+               {percent_text(row.cvrmse_before), "number"},
+               {percent_text(row.cvrmse_after), "number"},
+               {signed_percent_text(row.nmbe_before), "number"},
+               {signed_percent_text(row.nmbe_after), "number"},
+               {number_text(row.log_score_before), "number"},
+               {number_text(row.log_score_after), "number"}});
+  }
+  table.write(html);
+}
+
+}  // namespace
+
+void write_gap_section(Html& html, const DiagnosisData& data) {
+  if (data.steps.empty()) return;
+  assert(data.steps.front().gaps.size() == data.meters.size());
+  open_section(html, "gap", "Did the gap shrink on months that chose nothing?");
+  write_judgement(html, data);
+  if (data.steps.size() > 1) write_measures(html, data);
+  step_table(data).write(html);
+  write_other_models(html, data);
+  html.element(
+      "p",
+      "CV(RMSE) is the scatter of days or months around the meter, as a share of its mean. "
+      "The log score rewards a model whose uncertainty is as large as its errors. The "
+      "last column is the part of what is left that has a pattern instead of being noise; "
+      "it is taken on the fitted months.",
+      "muted");
+  html.markup("</section>\n");
+}
+
+void write_base_section(Html& html, const DiagnosisData& data) {
+  if (data.base_fit.empty()) return;
+  assert(data.base_fit.size() == data.meters.size());
+  open_section(html, "base", "What did the diagnosis start from?");
+  html.element("p",
+               "The model as drawn, its uncertain parameters calibrated: how it tells the months "
+               "that it was fitted to. A scatter of days far above 10 % says that the model misses "
+               "more than one effect, and that names are to be taken with care.");
+  Table table("The calibrated model on the fitted months");
+  table.columns(gap_columns());
+  for (std::size_t g = 0; g < data.meters.size(); ++g) {
+    add_gap_row(table, data.meters[g], data.base_fit[g]);
+  }
+  table.write(html);
+  html.markup("</section>\n");
+}
+
+}  // namespace recald::report

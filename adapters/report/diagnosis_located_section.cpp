@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "adapters/report/diagnosis_sections.hpp"
+#include "adapters/report/format.hpp"
+
+namespace recald::report {
+namespace {
+
+constexpr std::size_t kRowsShown = 15;
+// Beyond three times the model's value a percentage says nothing: the model has next to nothing
+// there.
+constexpr double kSharePeopleRead = 2.0;
+
+/// "14.0 % more than the model (± 3.0 %)"
+std::string share_words(const LocatedRow& row) {
+  if (!std::isfinite(row.share)) return "–";
+  if (row.share > kSharePeopleRead) {
+    return fmt::format("{} times what the model says", number_text(1.0 + row.share));
+  }
+  return fmt::format("{} {} than the model (±\u00a0{})", percent_text(std::abs(row.share)),
+                     row.share > 0.0 ? "more" : "less", percent_text(row.share_se));
+}
+
+std::string kWh_words(double kWh_month) {
+  return kWh_month > 0.0 ? "+" + count_text(kWh_month) : count_text(kWh_month);
+}
+
+void write_rows(Html& html, const std::vector<LocatedRow>& rows, std::string caption) {
+  const std::size_t shown = std::min(rows.size(), kRowsShown);
+  if (shown < rows.size()) {
+    caption += fmt::format(" ({} of {} places; diagnosis.json has more)", shown, rows.size());
+  }
+  Table table(std::move(caption));
+  table.columns({"Meter", "When", "The meter reads", "kWh a month"});
+  for (std::size_t i = 0; i < shown; ++i) {
+    const LocatedRow& row = rows[i];
+    table.row({{row.meter},
+               {row.where, "words"},
+               {share_words(row), "nowrap"},
+               {kWh_words(row.kWh_month), "number"}});
+  }
+  table.write(html);
+}
+
+}  // namespace
+
+void write_located_section(Html& html, const DiagnosisData& data) {
+  open_section(html, "located", "Where do the meters and the model disagree?");
+  if (data.located.empty()) {
+    html.element("p",
+                 data.added.empty()
+                     ? "Nowhere beyond chance: in no hours, weather or months does a meter "
+                       "stand apart from the calibrated model further than a model without any "
+                       "missing effect would let it."
+                     : "No single place stands out beyond chance. What was named shows only "
+                       "when all of them are taken together.");
+    html.markup("</section>\n");
+    return;
+  }
+  html.element("p",
+               "The model was calibrated first: what is listed here is what is left when its "
+               "parameters have done what they can. The clearest places come first; a place that "
+               "chance could explain is not listed. The months kept back have no part in it.");
+  write_rows(html, data.located, "Before anything was added");
+  if (!data.added.empty()) {
+    if (data.located_after.empty()) {
+      html.element("p", "With what was added, no place is left that chance could not explain.");
+    } else {
+      write_rows(html, data.located_after, "What is left with the additions in the model");
+    }
+  }
+  html.markup("</section>\n");
+}
+
+}  // namespace recald::report

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "adapters/report/diagnosis_sections.hpp"
+#include "adapters/report/format.hpp"
+#include "adapters/report/sections.hpp"
+
+namespace recald::report {
+namespace {
+
+/// Word, sign and class together: the meaning never rests on colour.
+struct Mark {
+  std::string_view word;
+  std::string_view css_class;
+};
+
+Mark verdict_mark(DiagnosisVerdict verdict) {
+  switch (verdict) {
+    case DiagnosisVerdict::named:
+      return {"✓ Named", "pass"};
+    case DiagnosisVerdict::not_confirmed:
+      return {"✕ Not confirmed", "fail"};
+    case DiagnosisVerdict::confusable:
+      return {"▲ Cannot be told apart", "warning"};
+    case DiagnosisVerdict::unknown:
+      return {"▲ Not in the catalogue", "warning"};
+    case DiagnosisVerdict::none:
+      break;
+  }
+  return {"○ Nothing named", "note"};
+}
+
+std::string kWh_text(double kWh_month) {
+  const std::string text = count_text(kWh_month) + " kWh";
+  return kWh_month > 0.0 ? "+" + text : text;
+}
+
+void write_parameters(Html& html, const AddedEffectCard& card) {
+  Table table("Its size, fitted together with the rest of the model");
+  table.columns({"Parameter", "Most likely", "5 %", "95 %"});
+  for (const EffectParameterRow& row : card.parameters) {
+    table.row({{row.name}, {row.mode, "number"}, {row.low, "number"}, {row.high, "number"}});
+  }
+  table.write(html);
+}
+
+void write_impacts(Html& html, const AddedEffectCard& card) {
+  Table table("What it does to the meters");
+  table.columns({"Meter", "A month, on average"});
+  for (const MeterImpact& impact : card.impacts) {
+    table.row({{impact.meter}, {kWh_text(impact.kWh_month), "number"}});
+  }
+  table.write(html);
+}
+
+void write_card(Html& html, const AddedEffectCard& card, bool taken_back) {
+  html.markup(taken_back ? "<li class=\"fail\">" : "<li class=\"pass\">")
+      .element("span", taken_back ? "✕ Tried and taken back" : "✓ Added to the model", "badge")
+      .element("strong", card.title)
+      .element("p", card.meaning)
+      .element("p",
+               fmt::format("Probability {}. {}", probability_text(card.probability), card.when));
+  html.markup("<div class=\"side-by-side\">\n<div>\n");
+  if (!card.impacts.empty()) write_impacts(html, card);
+  html.markup("</div>\n<div>\n");
+  if (!card.parameters.empty()) write_parameters(html, card);
+  html.markup("</div>\n</div>\n");
+  if (!card.physics.empty()) html.element("p", "In the model: " + card.physics, "muted");
+  html.markup("</li>\n");
+}
+
+}  // namespace
+
+void write_outcome_section(Html& html, const DiagnosisData& data) {
+  const Mark mark = verdict_mark(data.verdict);
+  const bool taken_back = data.verdict == DiagnosisVerdict::not_confirmed;
+  open_section(html, "outcome", "In short");
+  html.markup(fmt::format("<p class=\"{}\">", mark.css_class))
+      .element("span", mark.word, "badge")
+      .markup("</p>\n");
+  html.element("p", data.headline, taken_back ? "headline bad" : "headline");
+  for (const std::string& sentence : data.explanations) html.element("p", sentence, "lead");
+  if (!data.added.empty()) {
+    html.markup("<ul class=\"verdicts effects\">\n");
+    for (const AddedEffectCard& card : data.added) write_card(html, card, taken_back);
+    html.markup("</ul>\n");
+  }
+  write_notices(html, data.notices);
+  html.markup("</section>\n");
+}
+
+}  // namespace recald::report

@@ -1,0 +1,45 @@
+#include "adapters/report/diagnosis_page.hpp"
+
+#include "adapters/report/diagnosis_sections.hpp"
+#include "adapters/report/page.hpp"
+#include "adapters/report/sections.hpp"
+
+namespace recald::report {
+namespace {
+
+struct Part {
+  std::string_view id;
+  std::string_view link_text;
+  void (*write)(Html&, const DiagnosisData&);
+};
+
+void write_origin_section(Html& html, const DiagnosisData& data) {
+  write_provenance(html, data.provenance, data.site.time_zone, data.generated_at);
+}
+
+constexpr Part kParts[] = {
+    {"outcome", "In short", write_outcome_section},
+    {"located", "Where", write_located_section},
+    {"maps", "Maps", write_map_section},
+    {"candidates", "Explanations", write_candidate_section},
+    {"gap", "Gap", write_gap_section},
+    {"signature", "Shape", write_signature_section},
+    {"not-identifiable", "Not seen here", write_not_identifiable_section},
+    {"base", "Starting point", write_base_section},
+    {"provenance", "Provenance", write_origin_section},
+};
+
+}  // namespace
+
+std::string render_diagnosis(const DiagnosisData& data) {
+  std::vector<PagePart> parts;
+  for (const Part& part : kParts) {
+    Html html;
+    part.write(html, data);
+    parts.push_back({part.id, part.link_text, html.str()});
+  }
+  return render_page({data.title, data.site, data.generated_at}, parts,
+                     diagnosis_figure_json(data));
+}
+
+}  // namespace recald::report
