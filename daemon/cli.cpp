@@ -154,6 +154,7 @@ struct Arguments {
   MetamodelArguments metamodel;
   DoeArguments doe;
   DiagnoseArguments diagnose;
+  DetectabilityArguments detectability;
   ModelArguments model;
 };
 
@@ -234,6 +235,18 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   diagnose->add_flag("--apply", given.diagnose.apply, "Put what is named in force");
   verbs.push_back(
       {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
+
+  CLI::App* detectability = app.add_subcommand(
+      "detectability", "How visible an effect of a given footprint is at a site without it");
+  add_site(*detectability, given.detectability);
+  detectability
+      ->add_option("--footprint", given.detectability.footprint,
+                   "What the effect adds to the meters: timestamp,meter,value,unit")
+      ->required();
+  detectability->add_option("--out", given.detectability.out, "Folder for detectability.json");
+  verbs.push_back({detectability, [&](const Console& console) {
+                     return run_detectability(given.detectability, console);
+                   }});
 
   CLI::App* model = app.add_subcommand("model", "Versions of the site's model");
   model->require_subcommand(1);

@@ -11,8 +11,16 @@ namespace recald::daemon {
 using diagnosis::AddedEffect;
 using diagnosis::EffectParameterRecord;
 
+Result<diagnosis::ModelVersion> active_version(const SiteConfig& site) {
+  return models::ModelStore{site.file, site.id}.active();
+}
+
+std::string version_name(const diagnosis::ModelVersion& active, const std::string& drawings) {
+  return active.effects.empty() ? drawings : active.version;
+}
+
 Result<std::vector<AddedEffect>> active_effects(const SiteConfig& site) {
-  auto version = models::ModelStore{site.file, site.id}.active();
+  auto version = active_version(site);
   if (!version) return tl::unexpected(version.error());
   return std::move(version->effects);
 }

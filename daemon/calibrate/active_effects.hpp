@@ -16,10 +16,18 @@
 
 namespace recald::daemon {
 
-/// Effects of the version in force, in the order of addition; none for the drawings.
+/// The version in force; that of the drawings where nothing was ever added.
 /// @return what `models::ModelStore::active` finds: a calibration must not go on without an effect
 ///         only because its file is damaged.
+[[nodiscard]] Result<diagnosis::ModelVersion> active_version(const SiteConfig& site);
+
+/// Its effects, in the order of addition; none for the drawings.
 [[nodiscard]] Result<std::vector<diagnosis::AddedEffect>> active_effects(const SiteConfig& site);
+
+/// How results name the model that made them: the version in force, or `drawings` where it is the
+/// model of the drawings.
+[[nodiscard]] std::string version_name(const diagnosis::ModelVersion& active,
+                                       const std::string& drawings);
 
 /// Whether the month may teach the effect's parameters: it lies after all that they learnt from.
 [[nodiscard]] bool may_teach(const diagnosis::AddedEffect& effect, metering::Month month);

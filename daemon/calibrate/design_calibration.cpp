@@ -190,12 +190,23 @@ doe::DesignFolder measured_outputs_of(doe::DesignFolder design, const doe::Month
   return design;
 }
 
+std::vector<int> without(const std::vector<std::string>& held, const doe::DesignFolder& design,
+                         std::vector<int> chosen) {
+  std::erase_if(chosen, [&](int j) {
+    const std::string& name = design.parameters[static_cast<std::size_t>(j)].name;
+    return std::ranges::find(held, name) != held.end();
+  });
+  return chosen;
+}
+
 Result<std::vector<int>> choose_parameters(const doe::DesignFolder& design,
                                            const DesignCalibrationOptions& options,
                                            DesignCalibration& result) {
   std::vector<int> all(design.parameters.size());
   std::iota(all.begin(), all.end(), 0);
-  if (!options.given_metamodel.empty() || options.parameters == "all") return all;
+  if (!options.given_metamodel.empty() || options.parameters == "all") {
+    return without(options.held, design, std::move(all));
+  }
   if (options.parameters != "screened") {
     return named_parameters(design.parameters, options.parameters);
   }
@@ -208,6 +219,7 @@ Result<std::vector<int>> choose_parameters(const doe::DesignFolder& design,
     const bool matters = result.screening->parameters[j].verdict == screening::Verdict::influential;
     if (matters) kept.push_back(static_cast<int>(j));
   }
+  kept = without(options.held, design, std::move(kept));
   if (!kept.empty()) return kept;
   return failure(ErrorCode::not_enough_data,
                  "screening finds no parameter that moves an output; widen the priors, or choose "

@@ -20,6 +20,8 @@ struct DesignCalibrationOptions {
   std::filesystem::path given_metamodel;  ///< Or empty: one is fitted.
   /// "screened": those that screening keeps; "all"; or names separated by commas.
   std::string parameters = "screened";
+  /// Never calibrated unless named in `parameters`: see design_site.hpp.
+  std::vector<std::string> held;
   calibration::CalibrationOptions calibration;
   bool prior_sensitivity = false;
 };

@@ -3,66 +3,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <memory>
 
 #include "core/model/epc/prepare.hpp"
-#include "core/model/hourly/hourly_model.hpp"
 #include "core/model/hourly/prepare.hpp"
 #include "core/weather/monthly_inputs.hpp"
+#include "daemon/calibrate/effects_calibration.hpp"
+#include "daemon/calibrate/model_adaptors.hpp"
+#include "daemon/calibrate/site_model.hpp"
+#include "daemon/calibrate/site_parts.hpp"
+#include "daemon/diagnose/site_problem.hpp"
 
 namespace recald::daemon {
 namespace {
 
 using assessment::MonthRole;
 using metering::Month;
-using model::epc::EpcModel;
 
-// A month whose weather is mostly invented cannot be held against a model.
-constexpr double kLeastWeatherCoverage = 0.5;
-constexpr double kGoodWeatherCoverage = 0.9;
 // One standard deviation of the share of lights and plugs that heats the zone, relative.
 constexpr double kHeatShareSd = 0.15;
 // The same of a meter's peaks: schedules are means over many days, and a month's highest quarter
 // hour is not on a mean day. Their own scatter lifts measured peaks by about 8 %.
 constexpr double kPeakSd = 0.08;
 
-bool is_hourly(const SiteConfig& site) { return site.model && site.model->kind == "hourly"; }
-
-struct Months {
-  std::vector<Month> all;
-  std::vector<MonthRole> roles;
-  std::vector<Month> calibration;  ///< The leading part of `all`.
-};
-
-Months choose_months(const PeriodConfig& period, const SiteWeather& weather,
-                     std::vector<std::string>& warnings) {
-  Months months;
-  const auto take = [&](const metering::MonthRange& range, MonthRole role) {
-    for (Month month = range.first; month <= range.last; month = metering::next_month(month)) {
-      const double coverage = weather_coverage(weather.filled, month);
-      if (coverage < kLeastWeatherCoverage) {
-        warnings.push_back(fmt::format("{} is left out: only {:.0f} % of its weather is known.",
-                                       metering::to_string(month), 100.0 * coverage));
-        continue;
-      }
-      if (coverage < kGoodWeatherCoverage) {
-        warnings.push_back(fmt::format(
-            "{}: only {:.0f} % of the weather was measured; the rest is typical of the month.",
-            metering::to_string(month), 100.0 * coverage));
-      }
-      months.all.push_back(month);
-      months.roles.push_back(role);
-      if (role == MonthRole::calibration) months.calibration.push_back(month);
-    }
-  };
-  take(period.calibration, MonthRole::calibration);
-  if (period.validation) take(*period.validation, MonthRole::validation);
-  return months;
-}
-
 /// A model needs at least one month with weather; without, later steps would blame the meters.
-Result<void> require_months(const Months& months, const PeriodConfig& period,
+Result<void> require_months(const SiteMonths& months, const PeriodConfig& period,
                             const SiteWeather& weather) {
   if (!months.calibration.empty()) return {};
   const Month first = period.calibration.first;
@@ -77,49 +42,6 @@ Result<void> require_months(const Months& months, const PeriodConfig& period,
 const metering::MonthlyFigure* find_figure(const MeterRecord& record, Month month) {
   const auto found = std::ranges::find(record.figures, month, &metering::MonthlyFigure::month);
   return found == record.figures.end() ? nullptr : &*found;
-}
-
-/// Main electricity meter: the first one of that utility.
-const MeterRecord* electricity_meter(const Recording& recording) {
-  const auto found = std::ranges::find_if(recording.meters, [](const MeterRecord& record) {
-    return record.meter.utility == metering::Utility::electricity;
-  });
-  return found == recording.meters.end() ? nullptr : &*found;
-}
-
-std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
-                                          const std::vector<Month>& months) {
-  std::vector<profile::HourlyLoad> loads;
-  for (const Month month : months) {
-    const auto found = record.hours.find(month);
-    if (found == record.hours.end()) continue;
-    loads.insert(loads.end(), found->second.begin(), found->second.end());
-  }
-  return loads;
-}
-
-Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
-                                                     const Recording& recording,
-                                                     const model::epc::Place& place,
-                                                     const std::vector<Month>& months) {
-  const MeterRecord* meter = electricity_meter(recording);
-  if (meter == nullptr) {
-    return failure(ErrorCode::not_enough_data,
-                   "the model takes lights and plugs from an electricity meter, and the site has "
-                   "none; add a [[meter]] with utility = \"electricity\"");
-  }
-  if (is_hourly(site)) {
-    return model::hourly::fit_profile_without_plant(loads_of(*meter, months), *site.building, place,
-                                                    months);
-  }
-  if (site.building->chiller_cop) {
-    return failure(
-        ErrorCode::unsupported,
-        "[building.cooling] chiller_cop: the monthly model's electricity profile cannot tell an "
-        "own chiller from lights and plugs, and would count it twice; take kind = \"hourly\" "
-        "(or --model hourly), or leave it out and do not model the cooling");
-  }
-  return model::epc::fit_profile_with_fans(loads_of(*meter, months), *site.building, place, months);
 }
 
 /// Whether the meter counts in another unit since: its figures are not the building's.
@@ -158,74 +80,6 @@ OutputCalibration peak_output(const std::string& id, std::size_t meter, const Me
     output.extra_variances.push_back(0.0);
   }
   return output;
-}
-
-/// Each meter's daily averages and, where the model has them, its peaks. In this order
-/// `hourly_outputs` asks the model for them.
-std::vector<OutputCalibration> collect_outputs(const SiteConfig& site, const Recording& recording,
-                                               const std::vector<Month>& months) {
-  std::vector<OutputCalibration> outputs;
-  for (const std::string& id : site.model->outputs) {
-    const std::size_t meter = *site.meter_index(id);
-    const MeterRecord& record = recording.meters[meter];
-    const auto weight = site.model->weights.find(id);
-    const auto add = [&](OutputCalibration output) {
-      if (weight != site.model->weights.end()) output.weight = weight->second;
-      outputs.push_back(std::move(output));
-    };
-    add(daily_output(id, meter, record, months));
-    if (is_hourly(site)) add(peak_output(id, meter, record, months));
-  }
-  return outputs;
-}
-
-std::vector<model::hourly::OutputDefinition> hourly_outputs(std::size_t meters) {
-  std::vector<model::hourly::OutputDefinition> outputs;
-  for (int meter = 0; meter < static_cast<int>(meters); ++meter) {
-    outputs.push_back({meter, model::hourly::OutputKind::daily_kWh});
-    outputs.push_back({meter, model::hourly::OutputKind::peak_kW});
-  }
-  return outputs;
-}
-
-/// Makes the site's model of some months for a building that differs from the site's in values.
-using ModelFactory = std::function<std::unique_ptr<MonthlyModel>(const model::Building&)>;
-
-Result<ModelFactory> model_of(const SiteConfig& site, const SiteCalibration& so_far,
-                              const std::vector<model::MeterMap>& maps,
-                              const std::vector<Month>& months, const model::epc::Place& place) {
-  if (!is_hourly(site)) {
-    auto climate = model::epc::prepare_climate(months, *site.building, so_far.profile.loads, place);
-    if (!climate) return tl::unexpected(climate.error());
-    return [=, definitions = so_far.definitions,
-            climate = std::move(*climate)](const model::Building& building) {
-      return std::make_unique<EpcModel>(building, definitions, maps, climate);
-    };
-  }
-  auto made = model::make_drivers(months, place.calendar, place.holidays, *site.building,
-                                  so_far.profile.loads, place.location, place.weather);
-  if (!made) return tl::unexpected(made.error());
-  // Peaks are means over the meters' interval, so the model's steps are no longer than that.
-  const int steps = site.interval < std::chrono::hours{1} ? 4 : 1;
-  return [=, definitions = so_far.definitions,
-          drivers = std::make_shared<const model::Drivers>(std::move(*made))](
-             const model::Building& building) {
-    return std::make_unique<model::hourly::HourlyModel>(
-        building, definitions, maps, hourly_outputs(maps.size()), drivers,
-        model::hourly::HourlyOptions{.steps_per_hour = steps});
-  };
-}
-
-Result<void> choose_parameters(const SiteConfig& site, SiteCalibration& result) {
-  for (const ParameterConfig& config : site.model->parameters) {
-    const auto definition = model::find_parameter(config.name);
-    if (!definition) return tl::unexpected(definition.error());
-    const auto parameter = model::make_parameter(**definition, *site.building, config.prior);
-    if (!parameter) return tl::unexpected(parameter.error());
-    result.definitions.push_back(*definition);
-    result.parameters.push_back(*parameter);
-  }
-  return {};
 }
 
 /// How all months move together when more or less of the lights and plugs heats the zone: the
@@ -291,22 +145,103 @@ void add_words(const Recording& recording, const SiteWeather& weather, SiteCalib
   result.warnings.insert(result.warnings.end(), weather.notes.begin(), weather.notes.end());
 }
 
+/// Makes the effects ready and counts their parameters among the site's.
+Result<void> take_effects(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                          const Recording& recording, const SiteWeather& weather,
+                          std::vector<diagnosis::AddedEffect> added, SiteCalibration& result) {
+  if (added.empty()) return {};
+  auto problem = make_site_problem(site, calendar, recording, weather);
+  if (!problem) return tl::unexpected(problem.error());
+  auto effects = make_model_effects(
+      std::move(added), std::make_shared<const diagnosis::SiteProblem>(std::move(*problem)));
+  if (!effects) return tl::unexpected(effects.error());
+  for (std::size_t j = 0; j < effects->parameters.size(); ++j) {
+    result.definitions.push_back(&effects->labels[j]->definition);
+    result.parameters.push_back(effects->parameters[j]);
+  }
+  result.effects = std::make_shared<const ModelEffects>(std::move(*effects));
+  // Factors of calendar months hold what an effect changes from month to month: it would count
+  // twice. The diagnosis went without them too.
+  result.profile.loads.month_factor.fill(1.0);
+  return {};
+}
+
+/// The model of all months. Effects are told dates, so an hourly one of theirs runs in order of
+/// time.
+Result<std::unique_ptr<MonthlyModel>> whole_model_of(const SiteConfig& site,
+                                                     const SiteModelParts& parts,
+                                                     const SiteMonths& months,
+                                                     const model::epc::Place& place) {
+  const auto of = [&](const std::vector<Month>& some) -> Result<std::unique_ptr<MonthlyModel>> {
+    const auto make = model_of(site, parts, some, place);
+    if (!make) return tl::unexpected(make.error());
+    return (*make)(*site.building);
+  };
+  if (!parts.effects || !is_hourly(site) || std::ranges::is_sorted(months.all)) {
+    return of(months.all);
+  }
+  auto first = of(months.calibration);
+  if (!first) return first;
+  auto second = of({months.all.begin() + std::ssize(months.calibration), months.all.end()});
+  if (!second) return second;
+  return std::make_unique<JoinedMonthsModel>(std::move(*first), std::move(*second));
+}
+
+void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weather,
+                const SiteMonths& months, PreparedSite& prepared) {
+  const weather::WeatherSeries& series = weather.filled.series;
+  const auto inputs = weather::monthly_inputs(series, calendar, months.calibration);
+  prepared.problem.inputs = {inputs.names, inputs.values};
+  prepared.inputs = also_in(weather::monthly_inputs(series, calendar, months.all), inputs.names);
+}
+
+void add_common_errors(const model::Building& building, const ModelFactory& make,
+                       PreparedSite& prepared) {
+  const std::vector<double> modes = prior_modes(prepared.so_far.parameters);
+  auto& errors = prepared.problem.common_errors;
+  errors.push_back(heat_share_error(building, make, modes));
+  for (Eigen::VectorXd& error : peak_errors(prepared.so_far.outputs, *prepared.model, modes)) {
+    errors.push_back(std::move(error));
+  }
+}
+
 }  // namespace
 
-Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site) {
-  std::vector<model::MeterMap> maps;
+std::vector<OutputCalibration> collect_outputs(const SiteConfig& site, const Recording& recording,
+                                               const std::vector<Month>& months) {
+  std::vector<OutputCalibration> outputs;
   for (const std::string& id : site.model->outputs) {
-    const MeterConfig& config = site.meters[*site.meter_index(id)];
-    if (config.end_uses) {
-      maps.push_back(*config.end_uses);
-      continue;
-    }
-    const auto map = model::default_meter_map(config.meter.utility);
-    if (!map)
-      return failure(map.error().code, fmt::format("meter '{}': {}", id, map.error().message));
-    maps.push_back(*map);
+    const std::size_t meter = *site.meter_index(id);
+    const MeterRecord& record = recording.meters[meter];
+    const auto weight = site.model->weights.find(id);
+    const auto add = [&](OutputCalibration output) {
+      if (weight != site.model->weights.end()) output.weight = weight->second;
+      outputs.push_back(std::move(output));
+    };
+    add(daily_output(id, meter, record, months));
+    if (is_hourly(site)) add(peak_output(id, meter, record, months));
   }
-  return maps;
+  return outputs;
+}
+
+Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
+                                                     const Recording& recording,
+                                                     const model::epc::Place& place,
+                                                     const std::vector<Month>& months) {
+  const auto meter = electricity_meter(recording);
+  if (!meter) return tl::unexpected(meter.error());
+  const std::vector<profile::HourlyLoad> loads = loads_of(**meter, months);
+  if (is_hourly(site)) {
+    return model::hourly::fit_profile_without_plant(loads, *site.building, place, months);
+  }
+  if (site.building->chiller_cop) {
+    return failure(
+        ErrorCode::unsupported,
+        "[building.cooling] chiller_cop: the monthly model's electricity profile cannot tell an "
+        "own chiller from lights and plugs, and would count it twice; take kind = \"hourly\" "
+        "(or --model hourly), or leave it out and do not model the cooling");
+  }
+  return model::epc::fit_profile_with_fans(loads, *site.building, place, months);
 }
 
 Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
@@ -314,7 +249,7 @@ Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
                                                  const Recording& recording,
                                                  const SiteWeather& weather) {
   std::vector<std::string> warnings;
-  const Months months = choose_months(*site.period, weather, warnings);
+  const SiteMonths months = choose_months(*site.period, weather, warnings);
   if (auto enough = require_months(months, *site.period, weather); !enough) {
     return tl::unexpected(enough.error());
   }
@@ -323,10 +258,11 @@ Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
 }
 
 Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalCalendar& calendar,
-                                  const Recording& recording, const SiteWeather& weather) {
+                                  const Recording& recording, const SiteWeather& weather,
+                                  std::vector<diagnosis::AddedEffect> added) {
   PreparedSite prepared;
   SiteCalibration& result = prepared.so_far;
-  const Months months = choose_months(*site.period, weather, result.warnings);
+  const SiteMonths months = choose_months(*site.period, weather, result.warnings);
   if (auto enough = require_months(months, *site.period, weather); !enough) {
     return tl::unexpected(enough.error());
   }
@@ -334,10 +270,11 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   result.months = months.all;
   for (const Month month : months.all) result.month_names.push_back(metering::to_string(month));
   result.roles = months.roles;
-  if (const auto chosen = choose_parameters(site, result); !chosen) {
-    return tl::unexpected(chosen.error());
-  }
-  const auto maps = meter_maps(site);
+  auto chosen = site_parameters(site);
+  if (!chosen) return tl::unexpected(chosen.error());
+  result.definitions = std::move(chosen->definitions);
+  result.parameters = std::move(chosen->parameters);
+  auto maps = meter_maps(site);
   if (!maps) return tl::unexpected(maps.error());
 
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
@@ -345,45 +282,53 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   if (!profile) return tl::unexpected(profile.error());
   result.profile = std::move(*profile);
   result.outputs = collect_outputs(site, recording, months.all);
-
-  const auto make = model_of(site, result, *maps, months.calibration, place);
-  if (!make) return tl::unexpected(make.error());
-  const auto make_whole = model_of(site, result, *maps, months.all, place);
-  if (!make_whole) return tl::unexpected(make_whole.error());
-  prepared.model = (*make)(*site.building);
-  prepared.whole_model = (*make_whole)(*site.building);
-
-  const auto inputs = weather::monthly_inputs(weather.filled.series, calendar, months.calibration);
-  prepared.problem = problem_of(result, months.calibration.size());
-  prepared.problem.inputs = {inputs.names, inputs.values};
-  prepared.inputs =
-      also_in(weather::monthly_inputs(weather.filled.series, calendar, months.all), inputs.names);
-  prepared.problem.common_errors.push_back(
-      heat_share_error(*site.building, *make, prior_modes(result.parameters)));
-  for (Eigen::VectorXd& error :
-       peak_errors(result.outputs, *prepared.model, prior_modes(result.parameters))) {
-    prepared.problem.common_errors.push_back(std::move(error));
+  SiteModelParts parts{result.definitions, std::move(*maps), {}, {}, {}};
+  if (auto with = take_effects(site, calendar, recording, weather, std::move(added), result);
+      !with) {
+    return tl::unexpected(with.error());
   }
+  parts.loads = result.profile.loads;
+  parts.effects = result.effects;
+  if (parts.effects && !is_hourly(site)) {
+    const std::span<const Parameter> theta{result.parameters};
+    parts.monthly = parts.effects->monthly(theta.first(parts.definitions.size()));
+  }
+
+  const auto make = model_of(site, parts, months.calibration, place);
+  if (!make) return tl::unexpected(make.error());
+  prepared.model = (*make)(*site.building);
+  auto whole = whole_model_of(site, parts, months, place);
+  if (!whole) return tl::unexpected(whole.error());
+  prepared.whole_model = std::move(*whole);
+
+  prepared.problem = problem_of(result, months.calibration.size());
+  add_inputs(calendar, weather, months, prepared);
+  add_common_errors(*site.building, *make, prepared);
   return prepared;
+}
+
+Result<void> calibrate_all(PreparedSite& prepared, const CalibrateOptions& options,
+                           const calibration::RunContext& context, SiteCalibration& result) {
+  auto design = calibration::run_design(*prepared.model, prepared.problem,
+                                        options.calibration.design_runs, context);
+  if (!design) return tl::unexpected(design.error());
+  set_aside_unresponsive(*design, result, prepared.problem);
+  return calibrate_into(*prepared.model, prepared.problem, options.calibration,
+                        options.prior_sensitivity, std::move(*design), context, result);
 }
 
 Result<SiteCalibration> calibrate_site(const SiteConfig& site,
                                        const metering::LocalCalendar& calendar,
                                        const Recording& recording, const SiteWeather& weather,
                                        const CalibrateOptions& options,
-                                       const calibration::RunContext& context) {
-  auto prepared = prepare_site(site, calendar, recording, weather);
+                                       const calibration::RunContext& context,
+                                       std::vector<diagnosis::AddedEffect> added) {
+  auto prepared = prepare_site(site, calendar, recording, weather, std::move(added));
   if (!prepared) return tl::unexpected(prepared.error());
   SiteCalibration result = std::move(prepared->so_far);
-  auto design = calibration::run_design(*prepared->model, prepared->problem,
-                                        options.calibration.design_runs, context);
-  if (!design) return tl::unexpected(design.error());
-  set_aside_unresponsive(*design, result, prepared->problem);
-  if (auto done = calibrate_into(*prepared->model, prepared->problem, options.calibration,
-                                 options.prior_sensitivity, std::move(*design), context, result);
-      !done) {
-    return tl::unexpected(done.error());
-  }
+  auto done = result.effects ? calibrate_with_effects(*prepared, options, context, result)
+                             : calibrate_all(*prepared, options, context, result);
+  if (!done) return tl::unexpected(done.error());
   if (auto assessed = assess(*prepared->whole_model, context, result); !assessed) {
     return tl::unexpected(assessed.error());
   }

@@ -4,12 +4,14 @@
 #include <memory>
 #include <vector>
 
+#include "core/model/epc/prepare.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter_library.hpp"
 #include "core/profile/electricity_profile.hpp"
 #include "core/result.hpp"
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/calibrate/assessed_calibration.hpp"
+#include "daemon/calibrate/model_effects.hpp"
 #include "daemon/config/site_config.hpp"
 #include "daemon/replay/recording.hpp"
 #include "daemon/replay/site_weather.hpp"
@@ -20,6 +22,9 @@ struct SiteCalibration : AssessedCalibration {
   std::vector<metering::Month> months;  ///< Those of `month_names`.
   std::vector<const model::ParameterDefinition*> definitions;
   profile::ElectricityProfile profile;
+  /// Of the version in force; null: the model is that of the drawings. Their parameters stand
+  /// behind the others in `parameters`.
+  std::shared_ptr<const ModelEffects> effects;
 };
 
 /// A site of which everything is known but the parameters: what a calibration samples and a design
@@ -37,22 +42,40 @@ struct CalibrateOptions {
   bool prior_sensitivity = false;
 };
 
-/// Profile, model and measurements. @pre the site has a model
+/// Profile, model and measurements.
+/// @param added  Effects of the version in force.
+/// @return the site, or what is missing of it; of effects also what `make_model_effects` finds.
+/// @pre the site has a model
 [[nodiscard]] Result<PreparedSite> prepare_site(const SiteConfig& site,
                                                 const metering::LocalCalendar& calendar,
                                                 const Recording& recording,
-                                                const SiteWeather& weather);
+                                                const SiteWeather& weather,
+                                                std::vector<diagnosis::AddedEffect> added = {});
+
+/// Design and chains of all parameters together. Fills `result.calibration`; the problem loses
+/// outputs that nothing moves.
+[[nodiscard]] Result<void> calibrate_all(PreparedSite& prepared, const CalibrateOptions& options,
+                                         const calibration::RunContext& context,
+                                         SiteCalibration& result);
 
 /// Profile, model, design, chains, assessment. @pre the site has a model
-[[nodiscard]] Result<SiteCalibration> calibrate_site(const SiteConfig& site,
-                                                     const metering::LocalCalendar& calendar,
-                                                     const Recording& recording,
-                                                     const SiteWeather& weather,
-                                                     const CalibrateOptions& options,
-                                                     const calibration::RunContext& context);
+/// @param added  Effects of the version in force; see effects_calibration.hpp.
+[[nodiscard]] Result<SiteCalibration> calibrate_site(
+    const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
+    const SiteWeather& weather, const CalibrateOptions& options,
+    const calibration::RunContext& context, std::vector<diagnosis::AddedEffect> added = {});
 
-/// What each modelled meter counts, in order of the model's outputs. @pre the site has a model
-[[nodiscard]] Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site);
+/// Each meter's daily averages in these months and, where the site's model is hourly, its peaks: in
+/// the order in which `model_of` gives them.
+[[nodiscard]] std::vector<OutputCalibration> collect_outputs(
+    const SiteConfig& site, const Recording& recording, const std::vector<metering::Month>& months);
+
+/// Lights and plugs for the site's kind of model.
+/// @return not_enough_data without an electricity meter; unsupported for a monthly model of a
+///         building with a chiller of its own.
+[[nodiscard]] Result<profile::ElectricityProfile> fit_site_profile(
+    const SiteConfig& site, const Recording& recording, const model::epc::Place& place,
+    const std::vector<metering::Month>& months);
 
 /// The electricity profile alone. @pre the site has a building and a period
 [[nodiscard]] Result<profile::ElectricityProfile> profile_site(

@@ -40,6 +40,9 @@ tl::expected<Finished, int> finish_calibration(const CalibrateArguments& argumen
   auto modelled = open_modelled_site(arguments.site, console, arguments.model);
   if (!modelled) return tl::unexpected(modelled.error());
   auto& [site, recording, weather, facts] = *modelled;
+  auto version = active_version(site.config);
+  if (!version) return tl::unexpected(console.fail(version.error()));
+  facts.model_version = version_name(*version, facts.model_version);
 
   const InterruptGuard guard;
   ProgressLine line{console};
@@ -49,17 +52,9 @@ tl::expected<Finished, int> finish_calibration(const CalibrateArguments& argumen
                                           line.show(progress);
                                           return !guard.interrupted();
                                         }};
-  auto calibrated =
-      calibrate_site(site.config, site.calendar, recording, weather, options, context);
+  auto calibrated = calibrate_site(site.config, site.calendar, recording, weather, options, context,
+                                   std::move(version->effects));
   if (!calibrated) return tl::unexpected(console.fail(calibrated.error()));
-  const auto effects = active_effects(site.config);
-  if (!effects) return tl::unexpected(console.fail(effects.error()));
-  if (!effects->empty()) {
-    calibrated->warnings.push_back(
-        fmt::format("The model version in force has {} effect{} (first: {}) that this calibration "
-                    "does not carry: it is of the drawings.",
-                    effects->size(), effects->size() == 1 ? "" : "s", effects->front().title));
-  }
   RunFacts complete = with_sampling(std::move(facts), arguments, calibrated->calibration);
   complete.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return Finished{std::move(site), std::move(recording), std::move(*calibrated),

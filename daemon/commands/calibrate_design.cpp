@@ -4,6 +4,7 @@
 
 #include "adapters/system/parallel_for.hpp"
 #include "daemon/calibrate/design_calibration.hpp"
+#include "daemon/calibrate/design_site.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
@@ -74,11 +75,15 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
   if (!design) return design.error();
   const auto measured = doe::read_measurements(measurements_file(arguments), *design);
   if (!measured) return console.fail(measured.error());
+  const auto design_site = check_design_site(*design);
+  if (!design_site) return console.fail(design_site.error());
   auto facts = design_facts(arguments, *design);
   if (!facts) return console.fail(facts.error());
+  DesignCalibrationOptions options = design_options(arguments, std::move(*calibration));
+  options.held = design_site->held;
 
   const InterruptGuard guard;
-  const auto calibrated = [&] {
+  auto calibrated = [&] {
     ProgressLine line{console};
     const calibration::RunContext context{.seed = arguments.seed,
                                           .executor = system::parallel_for(arguments.threads),
@@ -86,10 +91,11 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
                                             line.show(progress);
                                             return !guard.interrupted();
                                           }};
-    return calibrate_design(*design, *measured, design_options(arguments, std::move(*calibration)),
-                            context);
+    return calibrate_design(*design, *measured, options, context);
   }();
   if (!calibrated) return console.fail(calibrated.error());
+  calibrated->warnings.insert(calibrated->warnings.end(), design_site->notes.begin(),
+                              design_site->notes.end());
   RunFacts complete = with_sampling(std::move(*facts), arguments, calibrated->calibration);
   complete.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 

@@ -81,6 +81,11 @@ struct DiagnoseArguments : SiteArguments {
   bool apply = false;  ///< Put what was named in force.
 };
 
+struct DetectabilityArguments : SiteArguments {
+  std::filesystem::path footprint;  ///< Readings CSV: with the effect minus without.
+  std::filesystem::path out;        ///< Folder for detectability.json, or empty.
+};
+
 struct ModelArguments : SiteArguments {
   std::string version;  ///< Or its first digits; empty: the one in force, for revert its parent.
 };
@@ -100,6 +105,8 @@ int run_metamodel(const MetamodelArguments& arguments, const Console& console);
 int run_doe(const DoeArguments& arguments, const Console& console);
 /// Locates, names and shows what the model lacks; with `apply` the model gets it.
 int run_diagnose(const DiagnoseArguments& arguments, const Console& console);
+/// How visible an effect of a given footprint is at the site, whose data must be without it.
+int run_detectability(const DetectabilityArguments& arguments, const Console& console);
 /// The versions of the site's model, the one in force marked.
 int run_model_list(const ModelArguments& arguments, const Console& console);
 /// One version in full: its effects, what they were accepted on, what they change.

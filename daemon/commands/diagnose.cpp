@@ -1,20 +1,29 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
 
 #include "adapters/models/model_store.hpp"
+#include "adapters/report/diagnosis_page.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/calibrate/active_effects.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/diagnose/diagnosis_files.hpp"
+#include "daemon/diagnose/diagnosis_report.hpp"
+#include "daemon/diagnose/diagnosis_words.hpp"
+#include "daemon/diagnose/epc_gap.hpp"
 #include "daemon/diagnose/site_problem.hpp"
 
 namespace recald::daemon {
 namespace {
 
+/// The wall clock is read here and nowhere deeper. SOURCE_DATE_EPOCH makes the page repeatable.
 std::string now_text() {
+  if (const char* fixed = std::getenv("SOURCE_DATE_EPOCH")) {
+    return metering::to_string(metering::Instant{std::chrono::seconds{std::atoll(fixed)}});
+  }
   return metering::to_string(
       std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
 }
@@ -32,6 +41,54 @@ Result<std::string> apply(const ModelledSite& modelled, const diagnosis::Diagnos
   const auto active = store.activate(saved->version, at);
   if (!active) return tl::unexpected(active.error());
   return active->version;
+}
+
+/// The diagnosis, with progress on a terminal. @return cancelled after an interrupt, too
+Result<diagnosis::Diagnosis> diagnose_aloud(const diagnosis::SiteProblem& problem,
+                                            std::uint64_t seed, const Console& console) {
+  const InterruptGuard guard;
+  const auto observer = [&](const char* what, double share) {
+    if (console.is_terminal) console.err << fmt::format("\r{:3.0f} %  {:<32}", 100.0 * share, what);
+    return !guard.interrupted();
+  };
+  auto diagnosis = diagnosis::diagnose(problem, {.rules = {}, .seed = seed}, observer);
+  if (console.is_terminal) console.err << "\r\033[K";
+  return diagnosis;
+}
+
+/// What the same effects do to the monthly model, which has a vote: where it tells the months kept
+/// back worse with them, they are not confirmed. Empty where there was nothing to judge.
+/// @see discrepancy.md, 3.4.
+std::vector<ModelGap> ask_monthly_model(const ModelledSite& modelled,
+                                        const diagnosis::SiteProblem& problem,
+                                        diagnosis::Diagnosis& diagnosis) {
+  if (!diagnosis.gap) return {};
+  auto monthly = epc_gap(modelled.site.config, modelled.site.calendar, modelled.recording,
+                         modelled.weather, problem, diagnosis.added);
+  if (!monthly) {
+    diagnosis.warnings.push_back("The monthly model was not asked: " + monthly.error().message +
+                                 ".");
+    return {};
+  }
+  if (!diagnosis.not_confirmed && !monthly->agrees()) {
+    diagnosis.not_confirmed = true;
+    diagnosis.outcome = diagnosis::Outcome::unknown;
+    diagnosis.why =
+        "with what was named the monthly model tells the months that were kept back worse, so it "
+        "was taken back";
+  }
+  return {std::move(monthly->gap)};
+}
+
+/// The page first: diagnosis.json says that all is there. It goes before a new page comes, so that
+/// no interruption leaves a result beside the page of another.
+Result<void> write_all(const std::filesystem::path& folder, const std::string& json,
+                       const std::string& page) {
+  if (auto made = system::make_folder(folder); !made) return made;
+  std::error_code ignored;  // what cannot be removed cannot be written either, which is reported
+  std::filesystem::remove(folder / "diagnosis.json", ignored);
+  if (auto written = system::write_file(folder / "diagnosis.html", page); !written) return written;
+  return system::write_file(folder / "diagnosis.json", json);
 }
 
 }  // namespace
@@ -52,15 +109,9 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
                                    modelled->recording, modelled->weather);
   if (!problem) return console.fail(problem.error());
 
-  const InterruptGuard guard;
-  const auto observer = [&](const char* what, double share) {
-    if (console.is_terminal) console.err << fmt::format("\r{:3.0f} %  {:<32}", 100.0 * share, what);
-    return !guard.interrupted();
-  };
-  const auto diagnosis =
-      diagnosis::diagnose(*problem, {.rules = {}, .seed = arguments.seed}, observer);
-  if (console.is_terminal) console.err << "\r\033[K";
+  auto diagnosis = diagnose_aloud(*problem, arguments.seed, console);
   if (!diagnosis) return console.fail(diagnosis.error());
+  const std::vector<ModelGap> others = ask_monthly_model(*modelled, *problem, *diagnosis);
 
   std::string applied;
   if (arguments.apply && !diagnosis->added.empty() && !diagnosis->not_confirmed) {
@@ -71,10 +122,11 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   modelled->facts.seed = arguments.seed;
   modelled->facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::string json = diagnosis_json(*diagnosis, *problem, modelled->facts, applied);
+  const std::string json = diagnosis_json(*diagnosis, *problem, modelled->facts, applied, others);
   if (!arguments.out.empty()) {
-    if (auto made = system::make_folder(arguments.out); !made) return console.fail(made.error());
-    if (auto written = system::write_file(arguments.out / "diagnosis.json", json); !written) {
+    const std::string page = report::render_diagnosis(diagnosis_report_of(
+        modelled->site.config, *diagnosis, *problem, modelled->facts, now_text(), others));
+    if (auto written = write_all(arguments.out, json, page); !written) {
       return console.fail(written.error());
     }
   }

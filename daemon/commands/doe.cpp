@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/parallel_for.hpp"
+#include "daemon/calibrate/active_effects.hpp"
+#include "daemon/calibrate/design_site.hpp"
 #include "daemon/calibrate/site_design.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
@@ -42,13 +44,16 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
   auto modelled = open_modelled_site(arguments.site, console, arguments.model);
   if (!modelled) return modelled.error();
   const auto& [site, recording, weather, facts] = *modelled;
-  const auto prepared = prepare_site(site.config, site.calendar, recording, weather);
+  const auto version = active_version(site.config);
+  if (!version) return console.fail(version.error());
+  const auto prepared =
+      prepare_site(site.config, site.calendar, recording, weather, version->effects);
   if (!prepared) return console.fail(prepared.error());
   const SiteDesignOptions options{
       .runs = arguments.runs,
       .seed = arguments.seed,
-      .fingerprint =
-          fmt::format("{} {} {}", facts.model_version, facts.data_revision, facts.recald_version)};
+      .fingerprint = fmt::format("{} {} {}", version_name(*version, facts.model_version),
+                                 facts.data_revision, facts.recald_version)};
   const doe::DesignPlan plan = plan_design(*prepared, options);
 
   const InterruptGuard guard;
@@ -61,6 +66,9 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
                            });
   }();
   if (!before) return console.fail(before.error());
+  if (auto noted = note_site(arguments.out, arguments.site, version->effects); !noted) {
+    return console.fail(noted.error());
+  }
   const auto& warnings = prepared->so_far.warnings;
   console.out << (arguments.json ? design_json(arguments, plan, *before, warnings)
                                  : design_words(arguments, plan, *before, warnings));

@@ -1,6 +1,7 @@
 #include <chrono>
 
 #include "daemon/calibrate/design_calibration.hpp"
+#include "daemon/calibrate/design_site.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
 #include "daemon/results/design_files.hpp"
@@ -29,6 +30,8 @@ int run_metamodel(const MetamodelArguments& arguments, const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
   const auto design = open_design_folder(arguments.design, console);
   if (!design) return design.error();
+  const auto design_site = check_design_site(*design);
+  if (!design_site) return console.fail(design_site.error());
   const auto data = chosen_data(*design, arguments.parameters);
   if (!data) return console.fail(data.error());
   const auto fitted = fit_metamodel(*data, metamodel_options(arguments.design, arguments.seed));

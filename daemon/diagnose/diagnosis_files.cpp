@@ -6,6 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "daemon/diagnose/diagnosis_words.hpp"
+#include "daemon/diagnose/effect_posterior.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -16,8 +19,6 @@ using diagnosis::SiteProblem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kFindingsShown = 40;
-constexpr std::size_t kFindingsInWords = 5;
-constexpr std::size_t kCandidatesInWords = 5;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -41,49 +42,55 @@ Json located_json(const SiteProblem& site, const std::vector<diagnosis::Finding>
   return list;
 }
 
-/// Day parameters count from the first day of the record; people read dates.
-std::string date_of(const SiteProblem& site, double day) {
-  const std::chrono::sys_days first{site.drivers->hours.front().date};
-  return metering::to_string(
-      metering::Day{first + std::chrono::days{static_cast<int>(std::lround(day))}});
-}
-
-Json parameters_json(const SiteProblem& site, const Candidate& candidate,
-                     const std::vector<double>& values) {
+/// Days are written as the dates that people read, too.
+Json parameters_json(const SiteProblem& site, const std::vector<ParameterPosterior>& posterior) {
   Json list = Json::array();
-  for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
-    const diagnosis::EffectParameter& p = candidate.parameters[j];
-    Json entry = {{"name", p.name}, {"unit", p.unit}, {"mode", number(values[j])}};
-    if (p.unit == "day") entry["date"] = date_of(site, values[j]);
+  for (const ParameterPosterior& p : posterior) {
+    Json entry = {{"name", p.name},      {"unit", p.unit},       {"mode", number(p.mode)},
+                  {"sd", number(p.sd)},  {"q05", number(p.q05)}, {"q50", number(p.q50)},
+                  {"q95", number(p.q95)}};
+    if (p.is_day()) {
+      const auto date = [&](double days) { return metering::to_string(day_after(site, days)); };
+      entry["date"] = date(p.mode);
+      entry["date_q05"] = date(p.q05);
+      entry["date_q95"] = date(p.q95);
+    }
     list.push_back(std::move(entry));
   }
   return list;
 }
 
+void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosis::Explanation& e,
+                     Json& entry) {
+  const Candidate& candidate = d.candidates[e.candidate];
+  entry["key"] = candidate.key(site);
+  entry["title"] = candidate.effect->title;
+  entry["parameters"] = parameters_json(site, posterior_of(candidate, e.fit));
+  entry["evidence_gain"] = number(e.evidence_gain);
+  entry["first_look"] = number(e.first_look);
+  entry["selected_gain"] = number(e.selected_gain);
+  entry["selected_se"] = number(e.selected_se);
+  entry["null_scale"] = number(e.null_scale);
+  if (!e.objection.empty()) entry["objection"] = e.objection;
+  entry["at_truncation"] = e.at_truncation;
+  Json confusable = Json::array();
+  Json separated = Json::array();
+  for (const diagnosis::Confusable& c : candidate.effect->confusable) {
+    confusable.push_back(c.effect);
+    separated.push_back(c.separated_by);
+  }
+  entry["confusable_with"] = confusable;
+  entry["separated_by"] = separated;
+}
+
+/// Of the first search: there all rivals started from the model as drawn.
 Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
-  // Of the last pass, whose rivals all had the same model to start from.
   const diagnosis::Naming& naming = d.passes.front().naming;
   Json list = Json::array();
   for (const diagnosis::NameProbability& p : naming.probabilities) {
-    Json entry = {{"effect", p.effect}, {"probability", p.probability}};
+    Json entry = {{"effect", p.effect}, {"probability", number(p.probability)}};
     if (p.meter >= 0) entry["meter"] = meter_name(site, p.meter);
-    if (p.explanation) {
-      const diagnosis::Explanation& e = naming.explanations[*p.explanation];
-      const diagnosis::Effect* effect = diagnosis::find_effect(p.effect);
-      entry["title"] = effect->title;
-      entry["evidence_gain"] = number(e.evidence_gain);
-      entry["first_look"] = number(e.first_look);
-      entry["selected_gain"] = number(e.selected_gain);
-      entry["selected_se"] = number(e.selected_se);
-      Json confusable = Json::array();
-      Json separated = Json::array();
-      for (const diagnosis::Confusable& c : effect->confusable) {
-        confusable.push_back(c.effect);
-        separated.push_back(c.separated_by);
-      }
-      entry["confusable_with"] = confusable;
-      entry["separated_by"] = separated;
-    }
+    if (p.explanation) add_explanation(site, d, naming.explanations[*p.explanation], entry);
     list.push_back(std::move(entry));
   }
   return list;
@@ -101,22 +108,45 @@ Json gaps_json(const SiteProblem& site, const std::vector<diagnosis::MeterGap>& 
   return json;
 }
 
-Json gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
+Json hourly_gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
   Json change = Json::object();
   for (std::size_t g = 0; g < gap.log_score_change.size(); ++g) {
     change[site.meters[g].id] = {{"sum", number(gap.log_score_change[g].sum)},
                                  {"se", number(gap.log_score_change[g].se)}};
   }
-  return {{"hourly",
-           {{"before", gaps_json(site, gap.before)},
-            {"after", gaps_json(site, gap.after)},
-            {"log_score_change", change},
-            {"confirmed", gap.confirmed}}}};
+  return {{"before", gaps_json(site, gap.before)},
+          {"after", gaps_json(site, gap.after)},
+          {"log_score_change", change},
+          {"confirmed", gap.confirmed}};
 }
 
-Json added_json(const SiteProblem& site, const Diagnosis& d) {
+Json figures_json(const ModelGap& gap, const std::vector<ModelGap::Figures>& figures) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    json[gap.outputs[i]] = {{"nmbe_sim_minus_meas", number(figures[i].nmbe_sim_minus_meas)},
+                            {"cvrmse", number(figures[i].cvrmse)},
+                            {"discrepancy_share", number(figures[i].discrepancy_share)},
+                            {"log_score", number(figures[i].log_score)}};
+  }
+  return json;
+}
+
+/// One entry a model; null where nothing was added or no month was kept back.
+Json gap_json(const SiteProblem& site, const Diagnosis& d, const std::vector<ModelGap>& others) {
+  Json json = Json::object();
+  if (d.gap) json["hourly"] = hourly_gap_json(site, *d.gap);
+  for (const ModelGap& gap : others) {
+    json[gap.model] = {{"before", figures_json(gap, gap.before)},
+                       {"after", figures_json(gap, gap.after)}};
+  }
+  return json.empty() ? Json(nullptr) : json;
+}
+
+/// Ids of what is in the model now, in the order of their addition.
+Json added_json(const Diagnosis& d) {
   Json list = Json::array();
-  for (const Addition& addition : d.added) list.push_back(addition.candidate.key(site));
+  if (d.not_confirmed) return list;
+  for (const Addition& addition : d.added) list.push_back(addition.candidate.effect->id);
   return list;
 }
 
@@ -127,112 +157,77 @@ Json additions_json(const SiteProblem& site, const Diagnosis& d) {
     for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
       impact[site.meters[g].id] = number(addition.monthly_kWh[g]);
     }
-    Json parameters = parameters_json(site, addition.candidate, addition.eta);
-    for (std::size_t j = 0; j < addition.eta_sd.size(); ++j) {
-      parameters[j]["sd"] = number(addition.eta_sd[j]);
-    }
-    list.push_back({{"effect", addition.candidate.effect->id},
-                    {"title", addition.candidate.effect->title},
-                    {"meaning", addition.candidate.effect->meaning},
-                    {"meter", meter_name(site, addition.candidate.meter)},
-                    {"probability", addition.probability},
-                    {"evidence_gain", number(addition.evidence_gain)},
-                    {"parameters", parameters},
-                    {"monthly_kWh", impact}});
+    Json entry = {{"effect", addition.candidate.effect->id},
+                  {"key", addition.candidate.key(site)},
+                  {"title", addition.candidate.effect->title},
+                  {"meaning", addition.candidate.effect->meaning},
+                  {"meter", meter_name(site, addition.candidate.meter)},
+                  {"status", d.not_confirmed ? "tried and taken back" : "added"},
+                  {"when", when_words(site, addition)},
+                  {"probability", number(addition.probability)},
+                  {"evidence_gain", number(addition.evidence_gain)},
+                  {"parameters", parameters_json(site, posterior_of(addition))},
+                  {"monthly_kWh", impact}};
+    list.push_back(std::move(entry));
   }
   return list;
 }
 
-std::string gap_words(const SiteProblem& site, const diagnosis::GapChange& gap) {
-  std::string text = "On months that were kept back (daily CV(RMSE), before and after):\n";
-  for (std::size_t g = 0; g < gap.before.size(); ++g) {
-    text += fmt::format("  {:<16} {:5.1f} %  {:5.1f} %\n", site.meters[g].id,
-                        100.0 * gap.before[g].cvrmse_daily, 100.0 * gap.after[g].cvrmse_daily);
+Json not_identifiable_json(const SiteProblem& site, const Diagnosis& d) {
+  Json list = Json::array();
+  for (const NotSeen& n : not_seen_here(d)) {
+    Json entry = {{"effect", n.effect}, {"why", n.why}};
+    if (n.meter >= 0) entry["meter"] = meter_name(site, n.meter);
+    list.push_back(std::move(entry));
   }
-  return text;
+  return list;
 }
 
-diagnosis::EffectParameterRecord record_of(const Addition& addition, std::size_t j) {
-  const diagnosis::EffectParameter& p = addition.candidate.parameters[j];
-  std::vector<double> draws;
-  for (const auto& draw : addition.draws) draws.push_back(draw[j]);
-  std::vector<double> sorted = draws;
-  std::ranges::sort(sorted);
-  const auto at = [&](double share) {
-    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-  };
-  double mean = 0.0;
-  for (const double draw : draws) mean += draw / static_cast<double>(draws.size());
-  return {p.name, p.unit, p.prior, mean, addition.eta_sd[j], at(0.05), at(0.5), at(0.95), draws};
+std::vector<diagnosis::EffectParameterRecord> records_of(const Addition& addition) {
+  const std::vector<ParameterPosterior> posterior = posterior_of(addition);
+  std::vector<diagnosis::EffectParameterRecord> records;
+  for (std::size_t j = 0; j < posterior.size(); ++j) {
+    std::vector<double> draws;
+    double mean = 0.0;
+    for (const auto& draw : addition.draws) {
+      draws.push_back(draw[j]);
+      mean += draw[j] / static_cast<double>(addition.draws.size());
+    }
+    const ParameterPosterior& p = posterior[j];
+    records.push_back({p.name, p.unit, addition.candidate.parameters[j].prior, mean, p.sd, p.q05,
+                       p.q50, p.q95, std::move(draws)});
+  }
+  return records;
 }
 
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const RunFacts& facts,
-                           const std::string& applied) {
-  Json not_identifiable = Json::array();
-  for (const diagnosis::NotIdentifiable& n : d.not_identifiable) {
-    not_identifiable.push_back({{"effect", n.effect}, {"why", n.why}});
-  }
+                           const std::string& applied, const std::vector<ModelGap>& others) {
   const diagnosis::Pass& first = d.passes.front();
-  for (std::size_t i = 0; i < first.look.candidates.size(); ++i) {
-    const diagnosis::CandidateLook& look = first.look.candidates[i];
-    if (look.visible) continue;
-    not_identifiable.push_back(
-        {{"effect", d.candidates[i].key(site)},
-         {"why", fmt::format("too faint at these meters: detectability {:.1f}, needed {:.0f}",
-                             look.most_detectable, diagnosis::kLeastDetectability)}});
-  }
   Json json = {{"outcome", to_string(d.outcome)},
-               {"why", first.naming.why},
+               {"why", d.why},
+               {"not_confirmed", d.not_confirmed},
                {"located", located_json(site, first.located)},
                {"candidates", candidates_json(site, d)},
                {"confusable", first.naming.confusable},
-               {"added", d.not_confirmed ? Json::array() : added_json(site, d)},
+               {"added", added_json(d)},
                {"additions", additions_json(site, d)},
                {"null_threshold", number(first.naming.null_threshold)},
                {"unknown_gain", number(first.naming.unknown_gain)},
                {"base_fit", gaps_json(site, d.base_fit)},
-               {"gap", d.gap ? gap_json(site, *d.gap) : Json(nullptr)},
-               {"not_identifiable_here", not_identifiable},
+               {"gap", gap_json(site, d, others)},
+               {"not_identifiable_here", not_identifiable_json(site, d)},
                {"warnings", d.warnings},
                {"model_runs", d.model_runs},
                {"seed", facts.seed},
+               {"recald_version", facts.recald_version},
                {"data_revision", facts.data_revision},
                {"model_version", applied.empty() ? facts.model_version : applied},
                {"wall_s", facts.wall_s}};
-  return json.dump(2) + "\n";
-}
-
-std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site) {
-  std::string text;
-  const diagnosis::Pass& first = d.passes.front();
-  if (first.located.empty()) {
-    text += "Simulation and meters agree within what chance explains.\n";
-  } else {
-    text += "Where simulation and meters disagree most:\n";
-    for (std::size_t i = 0; i < std::min(first.located.size(), kFindingsInWords); ++i) {
-      const diagnosis::Finding& f = first.located[i];
-      text += fmt::format("  {}, {}: {:+.0f} % +- {:.0f}, {:+.0f} kWh a month\n",
-                          site.meters[f.meter].id, f.words, 100.0 * f.share, 100.0 * f.share_se,
-                          f.kWh_month);
-    }
-  }
-  text += "Explanations:\n";
-  for (std::size_t i = 0; i < std::min(first.naming.probabilities.size(), kCandidatesInWords);
-       ++i) {
-    const diagnosis::NameProbability& p = first.naming.probabilities[i];
-    const std::string at = p.meter < 0 ? "" : " (" + meter_name(site, p.meter) + ")";
-    text += fmt::format("  {:5.1f} %  {}{}\n", 100.0 * p.probability, p.effect, at);
-  }
-  text += fmt::format("Outcome: {}: {}.\n", to_string(d.outcome), first.naming.why);
-  for (const Addition& addition : d.added) {
-    text += fmt::format("{} (probability {:.0f} %): {}\n", addition.candidate.effect->title,
-                        100.0 * addition.probability, addition.candidate.effect->meaning);
-  }
-  if (d.gap) text += gap_words(site, *d.gap);
-  for (const std::string& warning : d.warnings) text += "! " + warning + "\n";
-  return text;
+  if (!d.added.empty()) json["located_after"] = located_json(site, d.passes.back().located);
+  // Bytes of a name that are not UTF-8 become U+FFFD instead of an exception.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 diagnosis::ModelVersion next_version(const Diagnosis& d, const SiteProblem& site,
@@ -246,7 +241,8 @@ diagnosis::ModelVersion next_version(const Diagnosis& d, const SiteProblem& site
   next.status = diagnosis::VersionStatus::proposed;
   next.data_revision = facts.data_revision;
   next.catalogue_version = facts.recald_version;
-  for (const Addition& addition : d.added) {
+  for (std::size_t i = 0; i < d.added.size(); ++i) {
+    const Addition& addition = d.added[i];
     diagnosis::AddedEffect added{.effect = std::string{addition.candidate.effect->id},
                                  .title = std::string{addition.candidate.effect->title},
                                  .meter = meter_name(site, addition.candidate.meter),
@@ -256,18 +252,13 @@ diagnosis::ModelVersion next_version(const Diagnosis& d, const SiteProblem& site
                                  .parameters = {},
                                  .log_evidence_gain = addition.evidence_gain,
                                  .probability = addition.probability};
-    for (std::size_t j = 0; j < addition.candidate.parameters.size(); ++j) {
-      added.parameters.push_back(record_of(addition, j));
-    }
-    const std::chrono::sys_days first{site.drivers->hours.front().date};
+    added.parameters = records_of(addition);
     const std::size_t n = addition.eta.size();
-    const auto day = [&](double days) {
-      return metering::Day{first + std::chrono::days{static_cast<int>(std::lround(days))}};
-    };
-    if (addition.candidate.begins)
-      added.from = day(addition.eta[n - (addition.candidate.ends ? 2 : 1)]);
-    if (addition.candidate.ends) added.to = day(addition.eta[n - 1]);
-    for (const diagnosis::NameProbability& p : d.passes.front().naming.probabilities) {
+    if (addition.candidate.begins) {
+      added.from = day_after(site, addition.eta[n - (addition.candidate.ends ? 2 : 1)]);
+    }
+    if (addition.candidate.ends) added.to = day_after(site, addition.eta[n - 1]);
+    for (const diagnosis::NameProbability& p : d.passes[i].naming.probabilities) {
       if (p.effect != added.effect) added.rivals.push_back({p.effect, p.probability});
     }
     for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {

@@ -1,23 +1,39 @@
-/// A diagnosis as files and words have it.
+/// A diagnosis as files have it.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/diagnosis/diagnose.hpp"
 #include "core/diagnosis/model_version.hpp"
-#include "daemon/config/site_config.hpp"
 #include "daemon/results/run_facts.hpp"
 
 namespace recald::daemon {
 
-/// `diagnosis.json`. @param applied  Version that was put in force; empty: none.
+/// The gap of another model than the hourly one, before and after it got the same effects, on the
+/// same months kept back.
+struct ModelGap {
+  /// One output; NaN where there is nothing to judge by.
+  struct Figures {
+    double nmbe_sim_minus_meas;
+    double cvrmse;  ///< Of months.
+    double log_score;
+    double discrepancy_share;
+  };
+  std::string model;                 ///< "epc"
+  std::vector<std::string> outputs;  ///< (n) as in calibration.json: "steam_daily_kWh"
+  std::vector<Figures> before;       ///< (n)
+  std::vector<Figures> after;        ///< (n)
+};
+
+/// `diagnosis.json`.
+/// @param applied  Version that was put in force; empty: none.
+/// @param others   Entries of `gap` beside the hourly model's.
+/// @pre the diagnosis has a pass.
 [[nodiscard]] std::string diagnosis_json(const diagnosis::Diagnosis& diagnosis,
                                          const diagnosis::SiteProblem& site, const RunFacts& facts,
-                                         const std::string& applied);
-
-/// For the person who runs the building.
-[[nodiscard]] std::string diagnosis_words(const diagnosis::Diagnosis& diagnosis,
-                                          const diagnosis::SiteProblem& site);
+                                         const std::string& applied,
+                                         const std::vector<ModelGap>& others = {});
 
 /// The model's next version: the parent and what the diagnosis added.
 [[nodiscard]] diagnosis::ModelVersion next_version(const diagnosis::Diagnosis& diagnosis,

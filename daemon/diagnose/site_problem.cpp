@@ -8,7 +8,7 @@
 
 #include "core/model/hourly/prepare.hpp"
 #include "daemon/calibrate/assessed_calibration.hpp"
-#include "daemon/calibrate/site_calibration.hpp"
+#include "daemon/calibrate/site_parts.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -17,48 +17,24 @@ using diagnosis::SiteProblem;
 using metering::Month;
 
 constexpr std::size_t kLeastMonths = 6;
-constexpr double kLeastWeatherCoverage = 0.5;
 constexpr double kLeastOkShare = 0.5;
 
-/// What day parts can inform besides the parameters that the site file names.
-constexpr std::array<std::string_view, 14> kDayPartParameters = {
-    "start_early",         "stop_late",        "occupancy_density",  "outdoor_airflow",
-    "cooling_setpoint",    "heating_setpoint", "u_factor_scale",     "shgc_scale",
-    "specific_heat_scale", "leakage_area",     "supply_temperature", "minimum_supply_flow",
-    "hot_water_volume",    "base_heat"};
-
-std::vector<Month> months_of(const PeriodConfig& period, const SiteWeather& weather) {
-  std::vector<Month> months;
-  const auto take = [&](const metering::MonthRange& range) {
-    for (Month month = range.first; month <= range.last; month = metering::next_month(month)) {
-      if (weather_coverage(weather.filled, month) >= kLeastWeatherCoverage) months.push_back(month);
-    }
-  };
-  take(period.calibration);
-  if (period.validation) take(*period.validation);
-  std::ranges::sort(months);
-  const auto repeated = std::ranges::unique(months);
-  months.erase(repeated.begin(), repeated.end());
-  return months;
-}
-
-const MeterRecord* electricity_of(const Recording& recording) {
-  const auto found = std::ranges::find_if(recording.meters, [](const MeterRecord& record) {
-    return record.meter.utility == metering::Utility::electricity;
-  });
-  return found == recording.meters.end() ? nullptr : &*found;
-}
-
-std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
-                                          const std::vector<Month>& months) {
-  std::vector<profile::HourlyLoad> loads;
-  for (const Month month : months) {
-    const auto found = record.hours.find(month);
-    if (found == record.hours.end()) continue;
-    loads.insert(loads.end(), found->second.begin(), found->second.end());
-  }
-  return loads;
-}
+/// What day parts can inform besides the parameters that the site file names. Where drawings may be
+/// wrong by a factor the prior is log-normal about them, wider than the library's range: a
+/// diagnosis must not take a misremembered number for an effect.
+struct DayPartParameter {
+  std::string_view name;
+  double log_sd = 0.0;  ///< 0: the library's prior.
+};
+constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
+    {"start_early"},           {"stop_late"},          {"occupancy_density", 0.5},
+    {"outdoor_airflow", 0.4},  {"cooling_setpoint"},   {"heating_setpoint"},
+    {"u_factor_scale", 0.3},   {"shgc_scale", 0.4},    {"specific_heat_scale", 0.6},
+    {"leakage_area", 0.7},     {"supply_temperature"}, {"minimum_supply_flow", 0.35},
+    {"hot_water_volume", 0.6}, {"base_heat", 0.7},     {"closet_share"},
+    {"gains_to_core"},         {"supply_reset"},       {"warm_up"},
+    {"closed_start"},
+});
 
 /// Measured hours of one meter in the order of the drivers; NaN where not measured. The hour that
 /// the clock repeats in autumn is recorded once and stands twice.
@@ -77,27 +53,35 @@ Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers
   return values;
 }
 
-Result<void> choose_parameters(const SiteConfig& site, SiteProblem& problem) {
-  const auto add = [&](std::string_view name, const std::optional<Prior>& prior) -> Result<void> {
-    const auto definition = model::find_parameter(name);
-    if (!definition) return tl::unexpected(definition.error());
-    auto parameter = model::make_parameter(**definition, *site.building, prior);
-    if (!parameter) return tl::unexpected(parameter.error());
-    problem.definitions.push_back(*definition);
-    problem.parameters.push_back(std::move(*parameter));
-    return {};
-  };
+/// The prior of a diagnosis; absent: the library's.
+std::optional<Prior> wide_prior(const DayPartParameter& parameter, const model::Building& nominal) {
+  if (parameter.log_sd == 0.0) return std::nullopt;
+  const auto definition = model::find_parameter(parameter.name);
+  const double drawn = definition ? (*definition)->get(nominal) : 0.0;
+  if (!(drawn > 0.0)) return std::nullopt;
+  return Prior{LogNormalPrior{.median = drawn, .log_sd = parameter.log_sd}};
+}
+
+/// Those of the site file, and what else day parts can inform. A prior that the file gives stands.
+Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
+  ChosenParameters chosen;
   for (const ParameterConfig& config : site.model->parameters) {
-    if (auto added = add(config.name, config.prior); !added) return added;
+    const auto wide = std::ranges::find(kDayPartParameters, config.name, &DayPartParameter::name);
+    const bool widen = !config.prior && wide != kDayPartParameters.end();
+    const auto prior = widen ? wide_prior(*wide, *site.building) : config.prior;
+    if (auto added = chosen.add(config.name, *site.building, prior); !added) {
+      return tl::unexpected(added.error());
+    }
   }
-  for (const std::string_view name : kDayPartParameters) {
-    if (std::ranges::find(problem.parameters, name, &Parameter::name) != problem.parameters.end()) {
+  for (const DayPartParameter& parameter : kDayPartParameters) {
+    if (std::ranges::find(chosen.parameters, parameter.name, &Parameter::name) !=
+        chosen.parameters.end()) {
       continue;
     }
     // A design value of 0 or outside the library's range: the drawings are taken at their word.
-    (void)add(name, {});
+    (void)chosen.add(parameter.name, *site.building, wide_prior(parameter, *site.building));
   }
-  return {};
+  return chosen;
 }
 
 }  // namespace
@@ -107,21 +91,19 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                       const Recording& recording, const SiteWeather& weather) {
   SiteProblem problem;
   problem.nominal = *site.building;
-  const std::vector<Month> months = months_of(*site.period, weather);
+  std::vector<std::string> said_by_calibrations;
+  const std::vector<Month> months =
+      choose_months(*site.period, weather, said_by_calibrations).in_order();
   if (months.size() < kLeastMonths) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("a diagnosis needs at least {} months with weather and meters; {} "
                                "has {}; widen [period] or give more weather",
                                kLeastMonths, site.id, months.size()));
   }
-  const MeterRecord* electricity = electricity_of(recording);
-  if (electricity == nullptr) {
-    return failure(ErrorCode::not_enough_data,
-                   "the model takes lights and plugs from an electricity meter, and the site has "
-                   "none; add a [[meter]] with utility = \"electricity\"");
-  }
+  const auto electricity = electricity_meter(recording);
+  if (!electricity) return tl::unexpected(electricity.error());
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
-  auto profile = model::hourly::fit_profile_without_plant(loads_of(*electricity, months),
+  auto profile = model::hourly::fit_profile_without_plant(loads_of(**electricity, months),
                                                           *site.building, place, months);
   if (!profile) return tl::unexpected(profile.error());
   // One profile for all months: factors of calendar months would hide what a diagnosis looks for.
@@ -144,9 +126,10 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
     problem.measured_kW.col(static_cast<Eigen::Index>(k)) =
         hours_of(recording.meters[meter], *problem.drivers);
   }
-  if (auto chosen = choose_parameters(site, problem); !chosen) {
-    return tl::unexpected(chosen.error());
-  }
+  auto chosen = choose_parameters(site);
+  if (!chosen) return tl::unexpected(chosen.error());
+  problem.definitions = std::move(chosen->definitions);
+  problem.parameters = std::move(chosen->parameters);
   problem.day_parts = diagnosis::make_day_parts(*problem.drivers);
   problem.measured_parts_kW = diagnosis::measured_parts(problem.day_parts, problem.measured_kW);
   const diagnosis::SplitOptions split;

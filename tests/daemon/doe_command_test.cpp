@@ -2,12 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
-#include "core/metering/civil_time.hpp"
+#include "depot_year.hpp"
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -15,14 +13,10 @@ namespace recald::daemon {
 namespace {
 
 using Json = nlohmann::json;
-using metering::Instant;
 using recald::testing::edited;
 using recald::testing::read_text;
 using recald::testing::sample_site;
 using recald::testing::write_text;
-using std::chrono::hours;
-using std::chrono::sys_days;
-using std::chrono::year;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::Outcome;
@@ -31,37 +25,9 @@ using testing::run;
 constexpr const char* kFiles[] = {"priors.csv", "doe_inputs.csv",   "doe_outputs.csv",
                                   "inputs.csv", "measurements.csv", "design.json"};
 
-/// The depot's 2021: a plain year's temperatures, heat that follows them, lights by day.
 class DoeCommand : public ::testing::Test {
  protected:
-  DoeCommand() {
-    std::string readings = "timestamp,meter,value,unit\n";
-    std::string weather =
-        "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2\n";
-    const Instant begin = sys_days{year{2020} / 12 / 31} + hours{23};
-    for (int h = 0; h < 8760; ++h) {
-      const std::string stamp = metering::to_string(begin + hours{h});
-      const double day = h / 24.0;
-      const double sun =
-          std::max(0.0, -std::cos(h * 0.2618)) * (350.0 - 250.0 * std::cos(day * 0.01721));
-      const double dry_bulb = 9.5 - 10.0 * std::cos((day - 20.0) * 0.01721) +
-                              3.0 * std::sin(day * 0.7) - 3.0 * std::cos((h - 3) * 0.2618);
-      const bool open = h % 24 >= 7 && h % 24 < 19;
-      // No two hours alike: a meter that stands still is not believed.
-      const double wiggle = std::sin(1.3 * h);
-      readings += stamp + ",electricity," + std::to_string((open ? 52.0 : 11.0) + wiggle) + ",kW\n";
-      readings += stamp + ",heat," +
-                  std::to_string(std::max(2.0, 5.2 * (15.5 - dry_bulb)) + 0.3 * wiggle) + ",kWh\n";
-      weather += stamp + "," + std::to_string(dry_bulb) + "," +
-                 std::to_string(72.0 + 12.0 * std::cos(day * 0.31)) + "," +
-                 std::to_string(2.5 + std::sin(day * 0.23)) + "," +
-                 std::to_string(std::fmod(180.0 + 90.0 * std::sin(day * 0.11), 360.0)) + "," +
-                 std::to_string(sun) + "\n";
-    }
-    write_text(folder_ / "readings.csv", readings);
-    write_text(folder_ / "weather.csv", weather);
-    write_text(folder_ / "site.toml", sample_site());
-  }
+  DoeCommand() { recald::testing::write_depot_year(folder_.path()); }
 
   [[nodiscard]] std::string path(std::string_view name) const { return (folder_ / name).string(); }
   Outcome doe(const std::string& out, std::vector<std::string> more = {}) {
