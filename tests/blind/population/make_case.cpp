@@ -1,6 +1,10 @@
 #include "tests/blind/population/make_case.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +12,7 @@
 #include "simulators/feed/feed_files.hpp"
 #include "simulators/scenario/scenario_files.hpp"
 #include "tests/blind/population/strength_search.hpp"
+#include "tests/blind/population/twin_gauge.hpp"
 
 namespace recald::blind {
 namespace {
@@ -15,11 +20,26 @@ namespace {
 using namespace simulators;
 using Json = nlohmann::ordered_json;
 
-/// What an effect does to each meter, as shares of the meter's own sum.
-struct Shares {
+// A building that lost or gained more than this would be another building.
+constexpr double kMovedShareMax = 0.4;
+// Detectabilities that populations are scored at.
+constexpr std::array kGrades{2.0, 4.0, 8.0, 16.0};
+
+/// What an effect does to each meter, as shares of the meter's own sum, and how visible that is.
+struct Footprint {
   std::vector<double> signed_share;
   std::vector<double> moved_share;
-  double largest = 0.0;  ///< As `moved_share`, of the meter that it moves most.
+  diagnosis::Detectability detectability;
+  double repeatable = 0.0;  ///< d* of what repeats of the footprint.
+
+  /// Of the meter that it moves most, four hours at a time.
+  [[nodiscard]] double largest_move() const {
+    double largest = 0.0;
+    for (const diagnosis::MeterMove& move : detectability.meters) {
+      largest = std::max(largest, move.moved_share);
+    }
+    return largest;
+  }
 };
 
 /// Interval to its month, kind of day and four hours of the day, counted through the year.
@@ -50,10 +70,9 @@ double moved_share(const std::vector<double>& footprint_kW, const std::vector<st
   return whole_kW > 0.0 ? moved_kW / whole_kW : 0.0;
 }
 
-Shares shares_of(const std::vector<std::vector<double>>& footprint_kW, const Simulated& twin,
-                 const std::vector<std::size_t>& blocks) {
-  Shares shares;
-  const std::vector<MeterPlate> plates = plates_of(twin.building.truth().drawings);
+Footprint shares_of(const std::vector<std::vector<double>>& footprint_kW, const Simulated& twin,
+                    const std::vector<MeterPlate>& plates, const std::vector<std::size_t>& blocks) {
+  Footprint shares;
   for (std::size_t meter = 0; meter < plates.size(); ++meter) {
     double whole_kW = 0.0;
     double net_kW = 0.0;
@@ -63,98 +82,168 @@ Shares shares_of(const std::vector<std::vector<double>>& footprint_kW, const Sim
     }
     shares.signed_share.push_back(whole_kW > 0.0 ? net_kW / whole_kW : 0.0);
     shares.moved_share.push_back(moved_share(footprint_kW[meter], blocks, whole_kW));
-    shares.largest = std::max(shares.largest, shares.moved_share.back());
   }
   return shares;
 }
 
 /// A phase is lost or it is not: what counts is that it shows at least as much as asked.
-StrengthFound whole_effect(double target_share, double strength, const Visibility& visibility) {
+StrengthFound whole_effect(double target, double strength, const Visibility& visibility) {
   const double reached = visibility(strength);
   return {.strength = strength,
           .reached = reached,
-          .attained = reached >= 0.95 * target_share,
+          .attained = reached >= 0.95 * target,
           .evaluations = 1};
+}
+
+/// The same building with a slightly other envelope: thermostats switch at other minutes, while an
+/// effect does what it does.
+Scenario nearly(Scenario scenario) {
+  constexpr double kOther = 1.03;
+  scenario.drawings.wall_u_W_m2K *= kOther;
+  scenario.drawings.window_u_W_m2K *= kOther;
+  scenario.drawings.leakage_cm2_m2 *= kOther;
+  return scenario;
+}
+
+/// A building without effects, ready to be compared with itself.
+struct Plain {
+  Scenario scenario;
+  Simulated twin;
+};
+
+Result<Plain> run_plain(Scenario scenario, std::uint64_t seed,
+                        const metering::LocalCalendar& calendar) {
+  auto twin = simulate(scenario, seed, calendar);
+  if (!twin) return tl::unexpected(twin.error());
+  return Plain{std::move(scenario), std::move(*twin)};
 }
 
 /// Settles one effect of a case after the other.
 class Settler {
  public:
-  Settler(const CasePlan& plan, const metering::LocalCalendar& calendar, const Simulated& twin)
+  /// @param nearly  `plain` with a slightly other envelope.
+  Settler(const CasePlan& plan, const metering::LocalCalendar& calendar, const Plain& plain,
+          const Plain& nearly, const TwinGauge& gauge)
       : plan_(plan),
         calendar_(calendar),
-        twin_(twin),
-        blocks_(blocks_of(twin.recording, calendar)) {
+        plain_(plain),
+        nearly_(nearly),
+        gauge_(gauge),
+        plates_(plates_of(plain.twin.building.truth().drawings)),
+        blocks_(blocks_of(plain.twin.recording, calendar)) {
     settled_.scenario = plan.scenario;
-    settled_.simulations = 1;
+    settled_.simulations = 2;
   }
 
-  void settle(const Wanted& wanted) {
-    std::optional<HiddenAtStrength> best;
+  Result<void> settle(const Wanted& wanted) {
     for (const HiddenChoice& candidate : wanted.candidates) {
       Scenario together = settled_.scenario;
       together.effects.push_back(candidate);
       if (!check_effects(together)) continue;
-      HiddenAtStrength tried = search(candidate, wanted.target_share);
-      const bool better = !best || tried.reached_share > best->reached_share;
-      if (tried.attained || better) best = std::move(tried);
-      if (best->attained) break;
+      auto found = search(candidate, wanted.target);
+      if (!found) return tl::unexpected(found.error());
+      if (*found) {
+        settled_.scenario.effects.push_back((*found)->choice);
+        settled_.effects.push_back(std::move(**found));
+        return {};
+      }
       settled_.refused.emplace_back(candidate.kind->id);
     }
-    // Less than half of what was asked would be another block's case.
-    if (!best || best->reached_share < 0.5 * wanted.target_share) {
-      missed_ = wanted.candidates.front().kind->id;
-      return;
-    }
-    settled_.scenario.effects.push_back(best->choice);
-    settled_.effects.push_back(std::move(*best));
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("{}: nothing like {} has d* = {:g} in this building; draw the "
+                               "population with another --seed",
+                               plan_.id, wanted.candidates.front().kind->id, wanted.target));
   }
 
-  /// @return not_enough_data where neither an effect nor a stand-in shows enough
-  [[nodiscard]] Result<SettledCase> result() && {
-    if (missed_.empty()) return std::move(settled_);
-    return failure(ErrorCode::not_enough_data,
-                   plan_.id + ": nothing like " + missed_ +
-                       " shows enough in this building; draw the population with another --seed");
-  }
+  [[nodiscard]] SettledCase result() && { return std::move(settled_); }
 
  private:
-  HiddenAtStrength search(const HiddenChoice& candidate, double target_share) {
-    std::map<double, Shares> seen;
+  /// The effect as strong as asked; nothing where no strength is.
+  Result<std::optional<HiddenAtStrength>> search(const HiddenChoice& candidate, double target) {
+    std::map<double, Footprint> seen;
+    std::optional<Error> error;
     const auto visibility = [&](double strength) {
-      const Shares shares = try_out(candidate, strength);
-      return seen.emplace(strength, shares).first->second.largest;
+      auto footprint = try_out(candidate, strength);
+      if (!footprint) {
+        error = footprint.error();
+        return 0.0;
+      }
+      return seen.emplace(strength, std::move(*footprint)).first->second.repeatable;
     };
     const StrengthFound found =
         candidate.kind->all_or_nothing
-            ? whole_effect(target_share, candidate.kind->strength.typical, visibility)
-            : strength_for(target_share, candidate.strength, visibility);
+            ? whole_effect(target, candidate.kind->strength.typical, visibility)
+            : strength_for(target, candidate.strength, visibility);
+    if (error) return tl::unexpected(*error);
+    Footprint& footprint = seen.at(found.strength);
+    if (!found.attained || footprint.largest_move() > kMovedShareMax) return std::nullopt;
     HiddenAtStrength result{.choice = candidate,
-                            .target_share = target_share,
-                            .reached_share = found.reached,
-                            .attained = found.attained,
-                            .share_of_meter = seen.at(found.strength).signed_share,
-                            .moved_share = seen.at(found.strength).moved_share};
+                            .target = target,
+                            .repeatable = footprint.repeatable,
+                            .reached = std::move(footprint.detectability),
+                            .share_of_meter = std::move(footprint.signed_share),
+                            .moved_share = std::move(footprint.moved_share)};
     result.choice.strength = found.strength;
     return result;
   }
 
-  Shares try_out(HiddenChoice choice, double strength) {
+  Result<Footprint> try_out(HiddenChoice choice, double strength) {
     choice.strength = strength;
-    Scenario alone = plan_.scenario;
+    const auto here_kW = added_kW(plain_, choice);
+    if (!here_kW) return tl::unexpected(here_kW.error());
+    const auto nearby_kW = added_kW(nearly_, choice);
+    if (!nearby_kW) return tl::unexpected(nearby_kW.error());
+    const auto& recording = plain_.twin.recording;
+    auto detectability = gauge_.measure(*here_kW, plates_, recording);
+    if (!detectability) return tl::unexpected(detectability.error());
+    const auto repeatable = gauge_.repeatable(*here_kW, *nearby_kW, plates_, recording);
+    if (!repeatable) return tl::unexpected(repeatable.error());
+    Footprint footprint = shares_of(*here_kW, plain_.twin, plates_, blocks_);
+    footprint.detectability = std::move(*detectability);
+    footprint.repeatable = *repeatable;
+    return footprint;
+  }
+
+  /// By plate, then interval.
+  Result<std::vector<std::vector<double>>> added_kW(const Plain& plain,
+                                                    const HiddenChoice& choice) {
+    Scenario alone = plain.scenario;
     alone.effects = {choice};
     const auto with = simulate(alone, plan_.seed, calendar_);
+    if (!with) return tl::unexpected(with.error());
     ++settled_.simulations;
-    return shares_of(footprint_kW(*with, twin_, calendar_), twin_, blocks_);
+    return footprint_kW(*with, plain.twin, calendar_);
   }
 
   const CasePlan& plan_;
   const metering::LocalCalendar& calendar_;
-  const Simulated& twin_;
+  const Plain& plain_;
+  const Plain& nearly_;
+  const TwinGauge& gauge_;
+  std::vector<MeterPlate> plates_;
   std::vector<std::size_t> blocks_;
   SettledCase settled_;
-  std::string missed_;
 };
+
+/// The highest grade that was reached within 5 %: what an effect that is there whole or not at all
+/// has beyond it cannot be taken away.
+double grade_of(double detectability) {
+  double grade = 0.0;
+  for (const double one : kGrades) {
+    if (detectability >= 0.95 * one) grade = one;
+  }
+  return grade;
+}
+
+/// Grade and d* of the weakest effect; null where none is hidden.
+Json grain_json(const SettledCase& settled) {
+  if (settled.effects.empty()) return {{"detectability", nullptr}};
+  double weakest = std::numeric_limits<double>::infinity();
+  for (const HiddenAtStrength& hidden : settled.effects) {
+    weakest = std::min(weakest, hidden.repeatable);
+  }
+  return {{"detectability", grade_of(weakest)}, {"measured", weakest}};
+}
 
 Json date_of(const std::optional<metering::Day>& day) {
   return day ? Json(metering::to_string(*day)) : Json(nullptr);
@@ -180,9 +269,13 @@ Json effects_json(const SettledCase& settled) {
                     {"to", date_of(hidden.choice.to)},
                     {"share_of_meter", shares},
                     {"moved_share", moved},
-                    {"target_share", hidden.target_share},
-                    {"reached_share", hidden.reached_share},
-                    {"attained", hidden.attained}});
+                    {"target", hidden.target},
+                    {"repeatable", hidden.repeatable},
+                    {"detectability",
+                     {{"month", hidden.reached.month.detectability},
+                      {"day", hidden.reached.day.detectability},
+                      {"block", hidden.reached.block.detectability}}},
+                    {"absorbed_share", hidden.reached.block.absorbed_share}});
   }
   return list;
 }
@@ -201,7 +294,7 @@ Json answer_json(const CasePlan& plan, const SettledCase& settled, const Truth& 
   const double air_m3_s = drawings.outdoor_air_m3_s();
   return {{"case", plan.id},
           {"block", block_name(plan.block)},
-          {"grain", {{"detectability", nullptr}}},
+          {"grain", grain_json(settled)},
           {"effects", effects_json(settled)},
           {"decoys", decoys},
           {"climate", name_of(drawings.climate)},
@@ -255,7 +348,7 @@ Result<void> write_twin(const std::filesystem::path& folder, const CasePlan& pla
 
 }  // namespace
 
-Result<SettledCase> settle(const CasePlan& plan) {
+Result<SettledCase> settle(const CasePlan& plan, const std::filesystem::path& twin_folder) {
   const auto calendar = metering::LocalCalendar::open(plan.scenario.drawings.time_zone);
   if (!calendar) return tl::unexpected(calendar.error());
   if (plan.wanted.empty()) {
@@ -263,10 +356,18 @@ Result<SettledCase> settle(const CasePlan& plan) {
     plain.scenario = plan.scenario;
     return plain;
   }
-  const auto twin = simulate(plan.scenario, plan.seed, *calendar);
-  if (!twin) return tl::unexpected(twin.error());
-  Settler settler(plan, *calendar, *twin);
-  for (const Wanted& wanted : plan.wanted) settler.settle(wanted);
+  const auto plain = run_plain(plan.scenario, plan.seed, *calendar);
+  if (!plain) return tl::unexpected(plain.error());
+  const auto other = run_plain(nearly(plan.scenario), plan.seed, *calendar);
+  if (!other) return tl::unexpected(other.error());
+  auto written = write_feed(twin_folder, plan, plan.scenario, plain->twin, *calendar);
+  if (!written) return tl::unexpected(written.error());
+  const auto gauge = TwinGauge::open(twin_folder / "site.toml");
+  if (!gauge) return tl::unexpected(gauge.error());
+  Settler settler(plan, *calendar, *plain, *other, *gauge);
+  for (const Wanted& wanted : plan.wanted) {
+    if (auto settled = settler.settle(wanted); !settled) return tl::unexpected(settled.error());
+  }
   return std::move(settler).result();
 }
 

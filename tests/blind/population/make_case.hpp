@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "core/diagnosis/detectability.hpp"
 #include "simulators/scenario/twin.hpp"
 #include "tests/blind/population/plan.hpp"
 
@@ -11,24 +12,28 @@ namespace recald::blind {
 /// One effect as it came out.
 struct HiddenAtStrength {
   simulators::HiddenChoice choice;
-  double target_share = 0.0;
-  double reached_share = 0.0;  ///< Of the meter it moves most: moves within parts of the day count.
-  bool attained = false;
-  std::vector<double> share_of_meter;  ///< Signed, in the order of `plates_of`.
-  std::vector<double> moved_share;     ///< By months and parts of the day; likewise.
+  double target = 0.0;                    ///< d* that it should have, what repeats of it.
+  double repeatable = 0.0;                ///< d* that it has, likewise; see `TwinGauge`.
+  diagnosis::Detectability reached = {};  ///< Alone, at the case's twin.
+  std::vector<double> share_of_meter;     ///< Signed, in the order of `plates_of`.
+  std::vector<double> moved_share;        ///< By months and parts of the day; likewise.
 };
 
 struct SettledCase {
   simulators::Scenario scenario;  ///< With the effects at their strengths.
   std::vector<HiddenAtStrength> effects;
   std::vector<std::string>
-      refused;  ///< Effects drawn before that could not be made to show enough.
+      refused;  ///< Effects drawn before that have no strength as asked; see `settle`.
   int simulations = 0;
 };
 
-/// Finds for each wanted effect the strength that shows as much as asked, or a stand-in that can.
-/// @return not_found if the system has no zone files; not_enough_data where nothing shows enough.
-[[nodiscard]] Result<SettledCase> settle(const CasePlan& plan);
+/// Finds for each wanted effect the strength at which it has the d* asked for, within 5 %, while it
+/// moves no meter by more than 40 %; or a stand-in that has one.
+/// @param twin_folder  Gets the twin's files, for the model to be calibrated to.
+/// @return not_found if the system has no zone files; not_enough_data where no stand-in has such a
+///         strength; io_failed; or what the calibration to the twin refuses.
+[[nodiscard]] Result<SettledCase> settle(const CasePlan& plan,
+                                         const std::filesystem::path& twin_folder);
 
 struct CaseFolders {
   std::filesystem::path cases;    ///< Gets `<id>/` with readings.csv, weather.csv, site.toml.

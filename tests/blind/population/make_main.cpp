@@ -54,11 +54,22 @@ std::optional<std::pair<std::size_t, std::size_t>> range_of(const std::string& t
 /// Makes those of the plans that have no answer yet; a run that was stopped goes on where it was.
 class Maker {
  public:
-  Maker(const CaseFolders& folders, std::size_t total) : folders_(folders), total_(total) {}
+  /// @param scratch  For the twins that strengths are measured at; nothing of it stays.
+  Maker(const CaseFolders& folders, std::filesystem::path scratch, std::size_t total)
+      : folders_(folders), scratch_(std::move(scratch)), total_(total) {}
+  ~Maker() {
+    std::error_code whatever;  // a folder that stays harms nothing, and may be another run's
+    std::filesystem::remove(scratch_, whatever);
+  }
+  Maker(const Maker&) = delete;
+  Maker& operator=(const Maker&) = delete;
 
   void make(const CasePlan& plan) {
     if (stopped_ || std::filesystem::exists(folders_.answers / (plan.id + ".json"))) return;
-    auto settled = settle(plan);
+    const std::filesystem::path twin = scratch_ / plan.id;
+    auto settled = settle(plan, twin);
+    std::error_code whatever;
+    std::filesystem::remove_all(twin, whatever);
     const auto written = settled ? write_case(plan, *settled, folders_)
                                  : Result<void>(tl::unexpected(settled.error()));
     const std::lock_guard lock(mutex_);
@@ -76,6 +87,7 @@ class Maker {
 
  private:
   const CaseFolders& folders_;
+  std::filesystem::path scratch_;
   std::size_t total_;
   std::mutex mutex_;
   std::atomic<bool> stopped_ = false;
@@ -117,7 +129,7 @@ int make(const Arguments& given) {
     return failed(fmt::format("{} is sealed already; choose another --out", given.out.string()));
   }
   if (const auto same = claim(given); !same) return failed(same.error().message);
-  Maker maker(folders, range->second - range->first + 1);
+  Maker maker(folders, given.out / "scratch", range->second - range->first + 1);
   system::parallel_for(given.threads)(range->second - range->first + 1, [&](std::size_t i) {
     maker.make(plans[range->first - 1 + i]);
   });

@@ -15,9 +15,11 @@ using namespace simulators;
 using std::chrono::days;
 using std::chrono::sys_days;
 
-constexpr std::array kPlainShares{0.02, 0.03, 0.05};
-constexpr std::array kStrongShares{0.06, 0.09, 0.12};
-constexpr int kStandIns = 6;
+constexpr double kPlain = 8.0;
+constexpr double kStrong = 16.0;
+// A strength is found within 5 %, and neither effect of a pair may fall below 8.
+constexpr double kInPair = 8.43;
+constexpr int kStandIns = 12;
 
 /// Streams of one population's seed. A case's own numbers come from its index.
 enum class Chance : std::uint64_t { order = 1, cases = 1'000 };
@@ -85,7 +87,7 @@ HiddenChoice draw_choice(const EffectKind& kind, const Scenario& scenario, Rng& 
 struct Hidden {
   Block block;
   std::vector<const EffectKind*> kinds;  ///< To be there together.
-  bool strong = false;
+  double target = kPlain;                ///< d* of each.
   std::optional<Decoy> decoy;
 };
 
@@ -128,10 +130,8 @@ CasePlan plan_case(const PopulationKind& kind, std::uint64_t population_seed, st
   scenario.care = gaps ? MeterCare::gaps : MeterCare::perfect;
   if (hidden.decoy) scenario.decoys.push_back(*hidden.decoy);
   plan.as_believed = misremembered(scenario.drawings, rng);
-  const auto& shares = hidden.strong ? kStrongShares : kPlainShares;
   for (const EffectKind* effect : hidden.kinds) {
-    const double target = shares[rng.below(shares.size())];
-    plan.wanted.push_back({with_stand_ins(*effect, scenario, rng), target});
+    plan.wanted.push_back({with_stand_ins(*effect, scenario, rng), hidden.target});
   }
   return plan;
 }
@@ -149,7 +149,8 @@ Hidden draw_pair(bool same_class, Deck& deck) {
     for (int attempt = 0; attempt < 60; ++attempt) {
       const EffectKind* other = deck.deal();
       const bool wanted = (one->group == other->group) == same_class;
-      if (wanted && can_stand_together(*one, *other)) return {Block::pair, {one, other}, false, {}};
+      if (wanted && can_stand_together(*one, *other))
+        return {Block::pair, {one, other}, kInPair, {}};
     }
   }
 }
@@ -158,20 +159,20 @@ std::vector<Hidden> deal_blocks(const BlockSizes& sizes, Rng& rng) {
   Deck known(true, rng);
   Deck unknown(false, rng);
   std::vector<Hidden> all;
-  for (int i = 0; i < sizes.no_effect; ++i) all.push_back({Block::no_effect, {}, false, {}});
-  for (int i = 0; i < sizes.single_plain; ++i) {
-    all.push_back({Block::single, {known.deal()}, false, {}});
-  }
-  for (int i = 0; i < sizes.single_strong; ++i) {
-    all.push_back({Block::single, {known.deal()}, true, {}});
+  for (int i = 0; i < sizes.no_effect; ++i) all.push_back({Block::no_effect, {}, kPlain, {}});
+  for (const Singles& singles : sizes.singles) {
+    for (int i = 0; i < singles.count; ++i) {
+      all.push_back({Block::single, {known.deal()}, singles.detectability, {}});
+    }
   }
   // One in five hides nothing but offers a driver that causes nothing.
   for (int i = 0; i < sizes.out_of_catalogue; ++i) {
     if (i % 5 == 4) {
       const Decoy decoy = i % 2 == 0 ? Decoy::wind_of_another_year : Decoy::neighbour_meter;
-      all.push_back({Block::out_of_catalogue, {}, false, decoy});
+      all.push_back({Block::out_of_catalogue, {}, kPlain, decoy});
     } else {
-      all.push_back({Block::out_of_catalogue, {unknown.deal()}, i % 2 == 0, {}});
+      const double target = i % 2 == 0 ? kStrong : kPlain;
+      all.push_back({Block::out_of_catalogue, {unknown.deal()}, target, {}});
     }
   }
   for (int i = 0; i < sizes.pairs; ++i) all.push_back(draw_pair(i % 2 == 0, known));
@@ -183,9 +184,15 @@ std::vector<Hidden> deal_blocks(const BlockSizes& sizes, Rng& rng) {
 }  // namespace
 
 Result<PopulationKind> population_kind(std::string_view name) {
-  if (name == "smoke") return PopulationKind{"smoke", {3, 3, 2, 2, 2}, 1};
-  if (name == "training" || name == "sealed") {
-    return PopulationKind{std::string(name), {60, 60, 40, 20, 20}, 3};
+  if (name == "smoke") {
+    return PopulationKind{"smoke", {3, {{kPlain, 3}, {kStrong, 2}}, 2, 2}, 1};
+  }
+  if (name == "training") {
+    const std::vector<Singles> singles{{2.0, 25}, {4.0, 25}, {kPlain, 25}, {kStrong, 25}};
+    return PopulationKind{"training", {60, singles, 20, 20}, 3};
+  }
+  if (name == "sealed") {
+    return PopulationKind{"sealed", {60, {{kPlain, 60}, {kStrong, 40}}, 20, 20}, 3};
   }
   return failure(ErrorCode::not_found,
                  fmt::format("unknown population {}; there are smoke, training and sealed", name));

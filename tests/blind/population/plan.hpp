@@ -13,7 +13,7 @@ namespace recald::blind {
 /// taken, the others stand by.
 struct Wanted {
   std::vector<simulators::HiddenChoice> candidates;  ///< Strengths are limits: the sign is drawn.
-  double target_share;                               ///< Of the meter that it moves most.
+  double target;                                     ///< d* that it shall have, alone.
 };
 
 struct CasePlan {
@@ -25,10 +25,15 @@ struct CasePlan {
   std::vector<Wanted> wanted;
 };
 
+/// So many single effects at this d*.
+struct Singles {
+  double detectability;
+  int count;
+};
+
 struct BlockSizes {
   int no_effect;
-  int single_plain;   ///< Will stand at d* = 8.
-  int single_strong;  ///< Will stand at d* = 16.
+  std::vector<Singles> singles;
   int out_of_catalogue;
   int pairs;
 };

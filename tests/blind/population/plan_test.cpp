@@ -28,6 +28,24 @@ TEST(Plan, HasTheBlocksOfTheProtocol) {
             "unknown population secret; there are smoke, training and sealed");
 }
 
+TEST(Plan, AsksForTheDetectabilitiesOfTheProtocol) {
+  const auto singles_of = [](const char* name) {
+    std::map<double, int> count;
+    for (const CasePlan& plan : plans_of(name, 2)) {
+      if (plan.block == Block::single) ++count[plan.wanted[0].target];
+    }
+    return count;
+  };
+  EXPECT_EQ(singles_of("sealed"), (std::map<double, int>{{8.0, 60}, {16.0, 40}}));
+  EXPECT_EQ(singles_of("training"),
+            (std::map<double, int>{{2.0, 25}, {4.0, 25}, {8.0, 25}, {16.0, 25}}));
+  for (const CasePlan& plan : plans_of("sealed", 2)) {
+    if (plan.block != Block::pair) continue;
+    // Found within 5 %, neither of two may fall below 8.
+    for (const Wanted& wanted : plan.wanted) EXPECT_GE(0.95 * wanted.target, 8.0);
+  }
+}
+
 TEST(Plan, HidesWhatItsBlockSays) {
   for (const CasePlan& plan : plans_of("training", 3)) {
     SCOPED_TRACE(plan.id);
@@ -60,8 +78,8 @@ TEST(Plan, HidesWhatItsBlockSays) {
   }
 }
 
-// Sixty plain singles over forty kinds: each comes at least once, none more than twice; a draw
-// without replacement, then another.
+// A hundred singles over forty kinds: each comes twice or thrice, drawn without replacement, then
+// again.
 TEST(Plan, DealsEveryKindBeforeAnyComesTwice) {
   std::map<std::string_view, int> dealt;
   for (const CasePlan& plan : plans_of("sealed", 9)) {

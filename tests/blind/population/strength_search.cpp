@@ -8,7 +8,29 @@ namespace recald::blind {
 namespace {
 
 constexpr double kTolerance = 0.05;
-constexpr int kEvaluations = 12;
+constexpr int kEvaluations = 10;
+
+struct Look {
+  double strength;
+  double reached;
+};
+
+/// Where a power law through both ends reaches the target; a straight line where the weaker end
+/// shows nothing.
+double between(const Look& low, const Look& high, double target) {
+  if (low.reached <= 0.0) {
+    return low.strength + target / high.reached * (high.strength - low.strength);
+  }
+  const double share = std::log(target / low.reached) / std::log(high.reached / low.reached);
+  return low.strength * std::pow(high.strength / low.strength, share);
+}
+
+/// The same where that crept along one end: visibility grows like a root, or sets in late.
+double further(const Look& low, const Look& high, double target) {
+  if (low.strength == 0.0) return high.strength * std::pow(target / high.reached, 2.0);
+  if (low.reached <= 0.0) return 0.5 * (low.strength + high.strength);
+  return low.strength * std::sqrt(high.strength / low.strength);
+}
 
 }  // namespace
 
@@ -25,20 +47,15 @@ StrengthFound strength_for(double target, double limit, const Visibility& visibi
     }
     return reached;
   };
-  double low = 0.0;
-  double low_gap = -target;
-  double high = limit;
-  double high_gap = try_strength(limit) - target;
+  Look low{0.0, 0.0};
+  Look high{limit, try_strength(limit)};
   int same_side = 0;
-  while (!found.attained && high_gap > 0.0 && found.evaluations < kEvaluations) {
-    double share = low_gap / (low_gap - high_gap);
-    // Footprints that saturate would pull the secant to one end again and again.
-    if (std::abs(same_side) >= 2) share = 0.5;
-    const double strength = low + std::clamp(share, 0.02, 0.98) * (high - low);
-    const double gap = try_strength(strength) - target;
-    same_side = gap > 0.0 ? std::max(same_side, 0) + 1 : std::min(same_side, 0) - 1;
-    (gap > 0.0 ? high : low) = strength;
-    (gap > 0.0 ? high_gap : low_gap) = gap;
+  while (!found.attained && high.reached > target && found.evaluations < kEvaluations) {
+    const double strength =
+        std::abs(same_side) >= 2 ? further(low, high, target) : between(low, high, target);
+    const Look look{strength, try_strength(strength)};
+    same_side = look.reached > target ? std::max(same_side, 0) + 1 : std::min(same_side, 0) - 1;
+    (look.reached > target ? high : low) = look;
   }
   return found;
 }

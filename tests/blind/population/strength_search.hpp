@@ -5,8 +5,7 @@
 
 namespace recald::blind {
 
-/// How visible an effect of this strength is, in the terms of the target: for now the largest share
-/// of any meter that it moves, by parts of the day and months; d* once the model can measure it.
+/// How visible an effect of this strength is, in the terms of the target: d*.
 using Visibility = std::function<double(double strength)>;
 
 struct StrengthFound {
@@ -17,9 +16,9 @@ struct StrengthFound {
 };
 
 /// Strength between 0 and `limit` (either sign) whose visibility is within 5 % of `target`, by
-/// false position kept inside a bisected bracket (Illinois). Visibility is taken to be 0 at
-/// strength 0 and to grow with |strength|; where it jumps over the target the nearer side is given,
-/// not attained.
+/// power laws through the ends of a bracket, bisected where they creep. Visibility is taken to be 0
+/// at strength 0 and to grow with |strength|; where it jumps over the target the nearer side is
+/// given, not attained.
 /// @pre target > 0, limit != 0
 [[nodiscard]] StrengthFound strength_for(double target, double limit, const Visibility& visibility);
 

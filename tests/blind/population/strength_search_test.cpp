@@ -34,6 +34,14 @@ TEST(StrengthSearch, BisectsWhereTheSecantCreeps) {
   EXPECT_NEAR(found.strength, std::pow(0.02, 1.0 / 12.0), 0.01);
 }
 
+// As wind through cracks on a scale of square roots: three decades below the limit.
+TEST(StrengthSearch, FindsRootsFarBelowTheLimit) {
+  const StrengthFound found =
+      strength_for(4.0, 3.0, [](double s) { return 120.0 * std::pow(s / 3.0, 0.4); });
+  EXPECT_TRUE(found.attained);
+  EXPECT_LE(found.evaluations, 7);
+}
+
 TEST(StrengthSearch, FollowsTheSignOfItsLimit) {
   const StrengthFound found = strength_for(0.02, -1.0, [](double s) { return std::abs(0.1 * s); });
   EXPECT_NEAR(found.strength, -0.2, 1e-12);
