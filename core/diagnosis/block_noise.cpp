@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace recald::diagnosis {
 namespace {
@@ -128,8 +129,12 @@ bool any_near(const Eigen::VectorXd& times_h, const std::vector<bool>& out, doub
 
 }  // namespace
 
-BlockNoise::BlockNoise(const BlockDesign& design, const NoiseLevel& level)
-    : level_(level), patterns_((level.pattern_sd * design.patterns).sparseView()) {
+SparsePatterns sparse_patterns(const BlockDesign& design) {
+  return std::make_shared<const Eigen::SparseMatrix<double>>(design.patterns.sparseView());
+}
+
+BlockNoise::BlockNoise(const BlockDesign& design, const NoiseLevel& level, SparsePatterns patterns)
+    : level_(level), patterns_(std::move(patterns)) {
   const Eigen::Index n = design.times_h.size();
   assert(n >= 1 && design.patterns.rows() == n);
   assert(design.gated.empty() || static_cast<Eigen::Index>(design.gated.size()) == n);
@@ -172,12 +177,14 @@ void BlockNoise::factor_filter(const BlockDesign& design) {
 void BlockNoise::factor_patterns() {
   // A few columns at a time stay in the cache; all of them at once take twice as long.
   constexpr Eigen::Index columns_at_once = 8;
-  const Eigen::Index p = patterns_.cols();
+  const Eigen::Index p = patterns_->cols();
+  const double variance = level_.pattern_sd * level_.pattern_sd;
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(p, p);
   for (Eigen::Index j = 0; j < p; j += columns_at_once) {
     const Eigen::Index count = std::min(columns_at_once, p - j);
-    const Eigen::MatrixXd some = patterns_.middleCols(j, count);
-    matrix.middleCols(j, count) += patterns_.transpose() * whiten_transposed(whiten(some));
+    const Eigen::MatrixXd some = patterns_->middleCols(j, count);
+    matrix.middleCols(j, count) +=
+        variance * (patterns_->transpose() * whiten_transposed(whiten(some)));
   }
   // I plus a positive semi-definite matrix: it has a factor whatever the data.
   pattern_factor_.compute(matrix);
@@ -211,27 +218,29 @@ Eigen::MatrixXd BlockNoise::whiten_transposed(const Eigen::MatrixXd& columns) co
   return product;
 }
 
+Eigen::MatrixXd BlockNoise::in_patterns(const Eigen::MatrixXd& columns) const {
+  return level_.pattern_sd * (patterns_->transpose() * columns);
+}
+
 Eigen::MatrixXd BlockNoise::gram(const Eigen::MatrixXd& columns) const {
   const Eigen::MatrixXd whitened = whiten(columns);
-  const Eigen::MatrixXd in_patterns = pattern_factor_.matrixL().solve(
-      Eigen::MatrixXd(patterns_.transpose() * whiten_transposed(whitened)));
+  const Eigen::MatrixXd explained =
+      pattern_factor_.matrixL().solve(in_patterns(whiten_transposed(whitened)));
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
   products.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose());
-  products.selfadjointView<Eigen::Lower>().rankUpdate(in_patterns.transpose(), -1.0);
+  products.selfadjointView<Eigen::Lower>().rankUpdate(explained.transpose(), -1.0);
   return products.selfadjointView<Eigen::Lower>();
 }
 
 Eigen::MatrixXd BlockNoise::solve(const Eigen::MatrixXd& columns) const {
   const Eigen::MatrixXd weighted = whiten_transposed(whiten(columns));
-  const Eigen::MatrixXd pattern =
-      pattern_factor_.solve(Eigen::MatrixXd(patterns_.transpose() * weighted));
-  return weighted - whiten_transposed(whiten(patterns_ * pattern));
+  const Eigen::MatrixXd pattern = pattern_factor_.solve(in_patterns(weighted));
+  return weighted - whiten_transposed(whiten(level_.pattern_sd * (*patterns_ * pattern)));
 }
 
 Eigen::VectorXd BlockNoise::pattern_mean(const Eigen::VectorXd& residual) const {
   const Eigen::VectorXd weighted = whiten_transposed(whiten(residual));
-  return level_.pattern_sd *
-         pattern_factor_.solve(Eigen::VectorXd(patterns_.transpose() * weighted));
+  return level_.pattern_sd * pattern_factor_.solve(in_patterns(weighted));
 }
 
 double BlockNoise::marginal_log_density(const Eigen::VectorXd& residual) const {
@@ -243,8 +252,8 @@ Eigen::VectorXd BlockNoise::draw(Rng& rng) const {
   const auto standard_normals = [&rng](Eigen::Index size) {
     return Eigen::VectorXd::NullaryExpr(size, [&rng](Eigen::Index) { return rng.normal(); });
   };
-  const Eigen::VectorXd pattern = standard_normals(patterns_.cols());
-  Eigen::VectorXd values = patterns_ * pattern;
+  const Eigen::VectorXd pattern = standard_normals(patterns_->cols());
+  Eigen::VectorXd values = level_.pattern_sd * (*patterns_ * pattern);
   double structure = level_.structure_sd * rng.normal();
   for (Eigen::Index i = 0; i < points(); ++i) {
     values[i] += structure + std::sqrt(white_variance_[i]) * rng.normal();
@@ -264,10 +273,11 @@ Eigen::VectorXd BlockNoise::inverse_diagonal() const {
     diagonal[i] = own + take_[i] * take_[i] * later;
     later = own + keep_[i] * keep_[i] * later;
   }
-  const Eigen::MatrixXd weighted = whiten_transposed(whiten(Eigen::MatrixXd(patterns_)));
-  const Eigen::MatrixXd in_patterns =
+  const Eigen::MatrixXd weighted =
+      level_.pattern_sd * whiten_transposed(whiten(Eigen::MatrixXd(*patterns_)));
+  const Eigen::MatrixXd explained =
       pattern_factor_.matrixL().solve(Eigen::MatrixXd(weighted.transpose()));
-  return diagonal - in_patterns.colwise().squaredNorm().transpose();
+  return diagonal - explained.colwise().squaredNorm().transpose();
 }
 
 // e | r, parameters has mean E Sigma^-1 r and covariance E - E Sigma^-1 E, and so has the structure
@@ -305,13 +315,14 @@ Result<LevelFit> fit_levels(const Eigen::VectorXd& residual, const BlockDesign& 
     return failure(ErrorCode::not_finite, "a residual of a meter is not a finite number");
   }
   int evaluations = 0;
+  const SparsePatterns patterns = sparse_patterns(design);
   const auto log_density = [&](const LogLevel& at) {
     const LogLevel inside = inside_support(at, mean);
     const NoiseLevel level = level_at(inside, pattern_share * mean);
     ++evaluations;
     const double standardised = level.structure_sd / (structure_prior_share * mean);
     // Outside the support a slope leads back, where a wall would flatten the simplex.
-    return BlockNoise(design, level).marginal_log_density(residual) -
+    return BlockNoise(design, level, patterns).marginal_log_density(residual) -
            0.5 * standardised * standardised - (at - inside).squaredNorm();
   };
   const double root_mean_square = residual.norm() / std::sqrt(static_cast<double>(residual.size()));

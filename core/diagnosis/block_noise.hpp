@@ -14,6 +14,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -48,6 +49,10 @@ struct ResidualShares {
   double white;       ///< B
 };
 
+/// Z in few bytes; what is built for several levels shares one.
+using SparsePatterns = std::shared_ptr<const Eigen::SparseMatrix<double>>;
+[[nodiscard]] SparsePatterns sparse_patterns(const BlockDesign& design);
+
 /// Sigma of one meter, factored once for one `NoiseLevel`.
 ///
 /// Factoring costs O(n p^2) at worst, O(n p) for sparse patterns; everything else is linear in n.
@@ -56,7 +61,10 @@ struct ResidualShares {
 class BlockNoise {
  public:
   /// @pre sizes agree, times increase, n >= 1, and the level is in the ranges stated there.
-  BlockNoise(const BlockDesign& design, const NoiseLevel& level);
+  BlockNoise(const BlockDesign& design, const NoiseLevel& level)
+      : BlockNoise(design, level, sparse_patterns(design)) {}
+  /// @param patterns  `sparse_patterns` of the same design.
+  BlockNoise(const BlockDesign& design, const NoiseLevel& level, SparsePatterns patterns);
 
   [[nodiscard]] Eigen::Index points() const { return weight_.size(); }
   [[nodiscard]] const NoiseLevel& level() const { return level_; }
@@ -101,16 +109,18 @@ class BlockNoise {
   void factor_patterns();
   /// W' E (n x k).
   [[nodiscard]] Eigen::MatrixXd whiten_transposed(const Eigen::MatrixXd& columns) const;
+  /// tau Z' X (p x k).
+  [[nodiscard]] Eigen::MatrixXd in_patterns(const Eigen::MatrixXd& columns) const;
   /// Diagonal of Sigma^-1 (n).
   [[nodiscard]] Eigen::VectorXd inverse_diagonal() const;
 
   NoiseLevel level_;
-  Eigen::VectorXd white_variance_;        ///< (n) E_i
-  Eigen::VectorXd correlation_;           ///< (n) of u_i and u_{i+1}; last one 0.
-  Eigen::VectorXd weight_;                ///< (n) 1 / sd of the one-step prediction error.
-  Eigen::VectorXd keep_;                  ///< (n) share of the old prediction in the next one.
-  Eigen::VectorXd take_;                  ///< (n) share of the reading in the next prediction.
-  Eigen::SparseMatrix<double> patterns_;  ///< tau Z (n x p); by columns, so Z' X gathers.
+  Eigen::VectorXd white_variance_;  ///< (n) E_i
+  Eigen::VectorXd correlation_;     ///< (n) of u_i and u_{i+1}; last one 0.
+  Eigen::VectorXd weight_;          ///< (n) 1 / sd of the one-step prediction error.
+  Eigen::VectorXd keep_;            ///< (n) share of the old prediction in the next one.
+  Eigen::VectorXd take_;            ///< (n) share of the reading in the next prediction.
+  SparsePatterns patterns_;         ///< Z (n x p), by columns, so Z' X gathers.
   Eigen::LLT<Eigen::MatrixXd> pattern_factor_;  ///< C = I + tau^2 Z' Sigma_0^-1 Z (p x p)
   double log_determinant_ = 0.0;
 };

@@ -101,9 +101,10 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   if (!first->none.converged) {
     result.warnings.push_back("The base calibration of the hourly model did not settle.");
   }
-  Ground now = *first;
+  std::optional<Ground> latest;  // of the model with what was added
   for (int turn = 0; turn <= options.additions_max; ++turn) {
     if (!go_on("looking for disagreement", 0.2 + 0.15 * turn)) return tl::unexpected(cancelled());
+    const Ground& now = latest ? *latest : *first;
     Rng rng{options.seed, static_cast<std::uint64_t>(turn)};
     Predictor predictor{site, accepted};
     const std::vector<Candidate> open = still_open(list, result.added);
@@ -111,7 +112,9 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
     if (!located) return tl::unexpected(located.error());
     auto look = look_at(predictor, now.context(site), now.none, open, rng);
     if (!look) return tl::unexpected(look.error());
-    const NamingData data{now.context(site), now.unknown, now.unknown_grid, now.select, now.levels};
+    const auto unknown = unknown_log_evidence(site, now);
+    if (!unknown) return tl::unexpected(unknown.error());
+    const NamingData data{now.context(site), *unknown, now.select, now.levels};
     auto naming = name_effect(predictor, data, now.none, open, *look, options.rules);
     if (!naming) return tl::unexpected(naming.error());
     const bool named = naming->outcome == Outcome::named && turn < options.additions_max;
@@ -125,19 +128,27 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
                              .naming = std::move(*naming),
                              .modelled_kW = now.none.parts_kW,
                              .gaps = gaps_of(site, now, first->show)});
+    result.model_runs += predictor.runs();
     if (!named) break;
     Predictor altered{site, accepted};
     auto next = lay_ground(altered, site);
     if (!next) return tl::unexpected(next.error());
-    now = std::move(*next);
-    result.model_runs += predictor.runs() + altered.runs();
+    latest = std::move(*next);
+    result.model_runs += altered.runs();
   }
+  const Ground& now = latest ? *latest : *first;
   result.modelled_kW = now.none.parts_kW;
   result.gaps = gaps_of(site, now, first->show);
   const Naming& verdict = result.passes.front().naming;
   result.outcome = verdict.outcome;
   result.why = verdict.why;
-  if (!result.added.empty() && first->show.count() > 0) {
+  if (!result.added.empty() && first->show.count() == 0) {
+    result.not_confirmed = true;
+    result.outcome = Outcome::unknown;
+    result.why =
+        "no reading lies in the months kept back, so nothing confirms what was named and it was "
+        "taken back";
+  } else if (!result.added.empty()) {
     if (!go_on("showing", 0.95)) return tl::unexpected(cancelled());
     double scale = 1.0;
     for (const Addition& addition : result.added) scale = std::max(scale, addition.null_scale);

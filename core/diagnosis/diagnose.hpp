@@ -63,7 +63,7 @@ struct Diagnosis {
 using Observer = std::function<bool(const char* what, double share)>;
 
 /// @return the diagnosis, whatever its outcome; or
-///         not_enough_data  no meter with 100 measured day parts;
+///         not_enough_data  a meter has fewer than 100 measured day parts in the months to fit;
 ///         not_finite, not_positive_definite from the fits; cancelled.
 [[nodiscard]] Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& options,
                                          const Observer& observer = {});

@@ -9,7 +9,7 @@
 
 namespace recald::diagnosis {
 
-/// How well a model tells one meter's months. Shares of the mean measured.
+/// How well a model tells one meter's months. Shares of the mean measured; NaN where none was.
 struct MeterGap {
   double nmbe_sim_minus_meas;  ///< Of the day parts' energy.
   double cvrmse_daily;
@@ -23,7 +23,7 @@ struct GapChange {
   std::vector<MeterGap> after;              ///< (m)
   std::vector<ScoreGain> log_score_change;  ///< (m) after - before, summed over the shown months.
   /// Better by `kLeastConfirmation` in units of the effects' null scale, and no meter worse by two
-  /// standard errors.
+  /// standard errors and a nat.
   bool confirmed = false;
 };
 

@@ -8,7 +8,7 @@
 namespace recald::diagnosis {
 namespace {
 
-constexpr Eigen::Index kLeastParts = 100;
+constexpr std::size_t kLeastParts = 100;
 // Spread of residuals in the upper half of the levels over that in the lower half, beyond which a
 // meter is judged on the square-root scale.
 constexpr double kSpreadRatio = 1.6;
@@ -111,12 +111,14 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
   Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(site.parameters.size()));
   for (int round = 0; round < 3; ++round) {
     ground.fit = observe(site, fit_parts, scales, Patterns::modest);
-    for (const MeterRows& meter : ground.fit.meters) {
-      if (static_cast<Eigen::Index>(meter.rows.size()) < kLeastParts) {
-        return failure(ErrorCode::not_enough_data,
-                       "a meter has fewer than 100 measured four-hour parts in the months to fit; "
-                       "leave it out of the model's outputs or give more readings");
-      }
+    for (std::size_t g = 0; g < site.meters.size(); ++g) {
+      const std::size_t measured = ground.fit.meters[g].rows.size();
+      if (measured >= kLeastParts) continue;
+      return failure(
+          ErrorCode::not_enough_data,
+          "meter '" + site.meters[g].id + "' has " + std::to_string(measured) +
+              " measured four-hour parts in the months to fit, and a diagnosis needs 100 "
+              "of each; leave it out of the model's outputs or give more readings");
     }
     if (round == 0) {
       ground.levels = first_levels(ground.fit);
@@ -143,16 +145,24 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
       }
     }
   }
-  ground.unknown = observe(site, fit_parts, scales, Patterns::generous);
-  for (std::size_t g = 0; g < ground.unknown.meters.size(); ++g) {
-    ground.unknown.meters[g].design.gated = ground.fit.meters[g].design.gated;
-  }
-  std::vector<NoiseLevel> generous = ground.levels;
-  for (NoiseLevel& level : generous) level.pattern_sd *= kGenerous;
-  ground.unknown_grid = noise_grid(ground.unknown, generous, true);
   ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
   ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
   return ground;
+}
+
+Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground) {
+  std::vector<ResidualScale> scales;
+  for (const MeterRows& meter : ground.fit.meters) scales.push_back(meter.scale);
+  Observations generous = observe(site, parts_of(site, {Role::fit}), scales, Patterns::generous);
+  std::vector<NoiseLevel> levels = ground.levels;
+  for (std::size_t g = 0; g < levels.size(); ++g) {
+    generous.meters[g].design.gated = ground.fit.meters[g].design.gated;
+    levels[g].pattern_sd *= kGenerous;
+  }
+  const auto evidence = evidence_over(noise_grid(generous, levels, true), generous,
+                                      ground.none.linear_residual(), ground.none.jacobian);
+  if (!evidence) return tl::unexpected(evidence.error());
+  return evidence->log_evidence;
 }
 
 }  // namespace recald::diagnosis

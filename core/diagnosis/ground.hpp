@@ -14,12 +14,10 @@ namespace recald::diagnosis {
 /// Observations by role, noise and base fit of one version of the model.
 struct Ground {
   Observations fit;                ///< Months to fit.
-  Observations unknown;            ///< The same rows under generous patterns.
   Observations select;             ///< Months to choose by; may be empty.
   Observations show;               ///< Months that are kept back; may be empty.
   std::vector<NoiseLevel> levels;  ///< (m) as fitted to what the base model leaves.
   std::vector<NoiseNode> grid;
-  std::vector<NoiseNode> unknown_grid;
   JointFit none;  ///< Base parameters alone, at their mode.
   /// (parts x m) kW: the base model alone, fitted by nearly white noise. What the anonymous terms
   /// may take up in `none` is the model's own gap here.
@@ -29,6 +27,10 @@ struct Ground {
     return {site, fit, grid, grid.size() / 2};
   }
 };
+
+/// Log evidence of the unknown model: the base model, linearised at its mode, under larger patterns
+/// and one in date.
+[[nodiscard]] Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground);
 
 /// Finds scales, noise and mode by turns: the first fit finds the scales, the second the noise, the
 /// third stands.

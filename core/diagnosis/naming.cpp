@@ -12,8 +12,8 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr double kConfusable = 0.7;
-// Scores beyond this lie in the outer 2.5 % of a prior: where its truncation is felt.
-constexpr double kScoreAtEnd = 1.96;
+// Of the prior's range: so near its upper end a value is taken to run against it.
+constexpr double kNearEnd = 0.05;
 
 double class_weight(EffectClass effect_class) {
   switch (effect_class) {
@@ -103,13 +103,14 @@ Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const
 }
 
 bool is_at_truncation(const Candidate& candidate, const JointFit& fit) {
-  const auto q = fit.scores.size() - static_cast<Eigen::Index>(candidate.parameters.size());
   for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
     const Prior& prior = candidate.parameters[j].prior;
-    const double score = fit.scores[q + static_cast<Eigen::Index>(j)];
+    const double value = fit.eta[j];
     // Shares end where nature ends them; only cut normals and log-normals can be cut too early.
     const bool natural = std::holds_alternative<UniformPrior>(prior.distribution());
-    if (!natural && std::isfinite(prior.max()) && score > kScoreAtEnd) return true;
+    if (!natural && std::isfinite(prior.max()) && std::isfinite(prior.min()) &&
+        value > prior.max() - kNearEnd * (prior.max() - prior.min()))
+      return true;
   }
   return false;
 }
@@ -233,10 +234,7 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
                         data.levels};
   const MonthScores base_scores = judge.scores(none.parts_kW);
 
-  const auto unknown =
-      evidence_over(data.unknown_grid, data.unknown_fit, none.linear_residual(), none.jacobian);
-  if (!unknown) return tl::unexpected(unknown.error());
-  naming.unknown_gain = unknown->log_evidence - none.log_evidence;
+  naming.unknown_gain = data.unknown_log_evidence - none.log_evidence;
 
   for (const std::size_t i : survivors_of(look, candidates, rules)) {
     const Candidate& candidate = candidates[i];
@@ -257,6 +255,7 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     e.evidence_gain = e.fit.log_evidence - none.log_evidence;
     e.at_truncation = is_at_truncation(candidate, e.fit);
     e.objection = objection(e, naming, rules);
+    e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
   }
   std::ranges::stable_sort(naming.explanations, std::greater{},
                            [](const Explanation& e) { return e.evidence_gain / e.null_scale; });

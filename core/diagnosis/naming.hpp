@@ -25,7 +25,7 @@ struct NamingRules {
   double confusable_share = 0.1;  ///< Probability of each member of a confusable set.
   double unknown_probability = 0.5;
   std::size_t survivors_min = 8;
-  double survivor_gap = 2.0;  ///< Nats of the first look below the best.
+  double survivor_gap = 0.5;  ///< Of the first look below the best, by null scale.
   double prior_none = 0.5;
   double prior_unknown = 0.1;
 };
@@ -33,7 +33,7 @@ struct NamingRules {
 /// A rival explanation after its fit.
 struct Explanation {
   std::size_t candidate;  ///< Index into the list.
-  JointFit fit;
+  JointFit fit;           ///< Without its Jacobian.
   double evidence_gain;   ///< L_k - L_none, nats.
   double selected_gain;   ///< Log score on the months to choose by, above none's.
   double selected_se;     ///< Of that, by month.
@@ -63,9 +63,8 @@ struct Naming {
 
 /// Data that a naming is judged by: fitted months, and months to choose by.
 struct NamingData {
-  FitContext fit;                   ///< Months to fit.
-  const Observations& unknown_fit;  ///< The same rows under generous patterns.
-  const std::vector<NoiseNode>& unknown_grid;
+  FitContext fit;                      ///< Months to fit.
+  double unknown_log_evidence;         ///< L_U
   const Observations& select;          ///< Months to choose by; may be empty.
   std::span<const NoiseLevel> levels;  ///< Of the fitted noise.
 };

@@ -214,6 +214,10 @@ std::vector<NoiseNode> noise_grid(const Observations& observations,
   const auto& white = whole ? kWhite : kMiddle;
   std::vector<NoiseNode> grid;
   const double log_weight = -std::log(static_cast<double>(n * n * n));
+  std::vector<SparsePatterns> patterns;
+  for (const MeterRows& meter : observations.meters) {
+    patterns.push_back(sparse_patterns(meter.design));
+  }
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t b = 0; b < n; ++b) {
       for (std::size_t c = 0; c < n; ++c) {
@@ -224,7 +228,7 @@ std::vector<NoiseNode> noise_grid(const Observations& observations,
           level.structure_sd *= structure[a];
           level.correlation_h *= correlation[b];
           level.white_sd *= white[c];
-          node.meters.emplace_back(observations.meters[g].design, level);
+          node.meters.emplace_back(observations.meters[g].design, level, patterns[g]);
         }
         grid.push_back(std::move(node));
       }

@@ -29,7 +29,7 @@ class PhaseLost final : public model::hourly::Alteration {
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "lost_share",
            .unit = "-",
-           .prior = TruncatedNormalPrior{.location = 1.0 / 3.0, .sd = 0.12, .min = 0.0, .max = 1.0},
+           .prior = TruncatedNormalPrior{.location = 1.0 / 3.0, .sd = 0.2, .min = 0.0, .max = 1.0},
            .neutral = 0.0,
            .scan = {1.0 / 3.0, 2.0 / 3.0, 1.0}}};
 }

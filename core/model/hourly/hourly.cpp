@@ -18,7 +18,6 @@ constexpr double kCoilRelativeHumidity = 0.95;  // of air that leaves a wet coil
 constexpr double kResetFrom_C = 18.0;
 constexpr double kResetOver_K = 13.0;
 constexpr double kLeastLift_K = 1.0;  // between supply air and a closet
-constexpr double kLongRunning_h = 100.0;
 
 /// Set-points of rooms that stand for this share of them at daytime values.
 double between(double share, double daytime, double night) {
@@ -126,37 +125,34 @@ void Hourly::prepare(const Building& building, std::span<const Alteration* const
   if (air.humidification_kg_kg) standing_.humidifier_kg_kg = *air.humidification_kg_kg;
 }
 
-/// The plant's day: its timetable, begun early and ended late, with rooms that warm up at first and
-/// supply air that is warmer on cold days.
+/// The plant's day: its timetable, begun early and ended late; supply air is warmer on cold days.
 void Hourly::follow_timetable(const Hour& hour, StepOperation& operation) const {
   const SetPoints& set = building_.set_points;
-  double since_start_h;
-  if (hour.occupied) {
-    operation.daytime_share = std::max(1.0 - covered(-set.start_early_h, hour.hours_since_start) -
-                                           covered(-set.stop_late_h, hour.hours_to_stop),
-                                       0.0);
-    since_start_h = hour.hours_since_start + set.start_early_h;
-  } else {
-    operation.daytime_share = std::max(covered(set.start_early_h, hour.hours_to_start),
-                                       covered(set.stop_late_h, hour.hours_since_stop));
-    since_start_h = hour.hours_to_start < hour.hours_since_stop
-                        ? set.start_early_h - hour.hours_to_start
-                        : kLongRunning_h;
-  }
-  if (set.warm_up_h > 0.0 && since_start_h < set.warm_up_h) {
-    const double climbed = std::max(since_start_h, 0.0) / set.warm_up_h;
-    operation.heating_occupied_C =
-        between(climbed, set.heating_occupied_C, set.heating_unoccupied_C);
-  }
-  if (since_start_h < set.closed_start_h + 0.5 && operation.daytime_share > 0.0) {
-    const double open = 1.0 - closed_share(set.closed_start_h, since_start_h);
-    operation.outdoor_air_m3_s *= open;
-    operation.economiser_share *= open;
-  }
+  operation.daytime_share =
+      hour.occupied ? std::max(1.0 - covered(-set.start_early_h, hour.hours_since_start) -
+                                   covered(-set.stop_late_h, hour.hours_to_stop),
+                               0.0)
+                    : std::max(covered(set.start_early_h, hour.hours_to_start),
+                               covered(set.stop_late_h, hour.hours_since_stop));
   if (building_.air && operation.dry_bulb_C < kResetFrom_C) {
     operation.supply_C += building_.air->supply_reset_K *
                           std::min((kResetFrom_C - operation.dry_bulb_C) / kResetOver_K, 1.0);
   }
+}
+
+/// Rooms that are left at night warm up slowly, and their handlers begin with shut dampers.
+Hourly::Morning Hourly::morning_of(const Hour& hour) const {
+  const SetPoints& set = building_.set_points;
+  const bool before_start = !hour.occupied && hour.hours_to_start < hour.hours_since_stop;
+  if (!hour.occupied && !before_start) return {};
+  const double since_start_h =
+      (hour.occupied ? hour.hours_since_start : -hour.hours_to_start) + set.start_early_h;
+  Morning morning;
+  if (set.warm_up_h > 0.0) {
+    morning.climbed = std::clamp(since_start_h / set.warm_up_h, 0.0, 1.0);
+  }
+  morning.open = 1.0 - closed_share(set.closed_start_h, since_start_h);
+  return morning;
 }
 
 StepOperation Hourly::operation_of(std::size_t hour, int step) const {
@@ -186,7 +182,7 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
 }
 
 ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
-                               double served_share) {
+                               const Morning& morning, double served_share) {
   const Use& use = building_.use;
   const double closets = building_.air ? use.closet_share : 0.0;
   const std::size_t sides = drivers_->orientations.size();
@@ -212,8 +208,10 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
   for (int p = 0; p < part_count_; ++p) {
     const Part& part = parts_[static_cast<std::size_t>(p)];
     const double served = part.always ? 1.0 : served_share;
-    const double heating_C =
-        between(served, operation.heating_occupied_C, operation.heating_unoccupied_C);
+    const double daytime_heating_C =
+        between(part.always ? 1.0 : morning.climbed, operation.heating_occupied_C,
+                operation.heating_unoccupied_C);
+    const double heating_C = between(served, daytime_heating_C, operation.heating_unoccupied_C);
     const double cooling_C =
         between(served, operation.cooling_occupied_C, operation.cooling_unoccupied_C);
     // Without air handlers outdoor air meets the zone.
@@ -255,7 +253,8 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
     alteration->operate(drivers_->hours[hour], operation);
   }
   const double served_share = std::clamp(operation.daytime_share, 0.0, 1.0);
-  const ZoneTotals zones = solve_zones(hour, operation, served_share);
+  const Morning morning = morning_of(hours_[hour]);
+  const ZoneTotals zones = solve_zones(hour, operation, morning, served_share);
   if (hot_water_day_ != hours_[hour].day_of_year) {
     hot_water_day_ = hours_[hour].day_of_year;
     hot_water_W_ = hot_water_W(building_.hot_water, hot_water_day_);
@@ -280,8 +279,13 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
     const double running_share = always + (1.0 - always) * served_share;
     const double latent_W = building_.floor_area_m2 * building_.use.occupancy_person_m2 *
                             building_.use.latent_W_person * operation.people_share;
-    add_air_handlers(*building_.air, heat_capacity_J_m3K_, running_share, zones, latent_W,
-                     operation, loads);
+    const double day_share = running_share > 0.0 ? 1.0 - always / running_share : 0.0;
+    StepOperation dampers = operation;
+    const double open = 1.0 - day_share * (1.0 - morning.open);
+    dampers.outdoor_air_m3_s *= open;
+    dampers.economiser_share *= open;
+    add_air_handlers(*building_.air, heat_capacity_J_m3K_, running_share, zones, latent_W, dampers,
+                     loads);
   }
   for (const Alteration* alteration : alterations) {
     alteration->supply(building_, drivers_->hours[hour], operation, loads);

@@ -77,9 +77,15 @@ class Hourly {
   void read_meters(std::span<const MeterMap> meters);
   void prepare(const Building& building, std::span<const Alteration* const> alterations);
   [[nodiscard]] StepOperation operation_of(std::size_t hour, int step) const;
+  /// How far a day of operation has begun; all 1 later in the day and at night.
+  struct Morning {
+    double climbed = 1.0;  ///< Of the heating set-point, from its night value.
+    double open = 1.0;     ///< Share of the hour's running part with outdoor-air dampers open.
+  };
+  [[nodiscard]] Morning morning_of(const Hour& hour) const;
   void follow_timetable(const Hour& hour, StepOperation& operation) const;
   [[nodiscard]] ZoneTotals solve_zones(std::size_t hour, const StepOperation& operation,
-                                       double served_share);
+                                       const Morning& morning, double served_share);
   void serve_closets(double heat_W, const StepOperation& operation, ZoneTotals& totals) const;
   [[nodiscard]] StepLoads solve_step(std::size_t hour, int step,
                                      std::span<const Alteration* const> alterations);
