@@ -79,15 +79,15 @@ void write_judgement(Html& html, const DiagnosisData& data) {
     case DiagnosisVerdict::named:
       html.element("p",
                    "The months kept back confirm it: together the meters are told better by more "
-                   "than two standard errors, and none is told clearly worse.");
+                   "than three to one, the effect's evidence counted as on this page, and none is "
+                   "told clearly worse.");
       return;
     case DiagnosisVerdict::not_confirmed:
-      html.element(
-          "p",
-          "Not confirmed: on the months kept back the model with the additions is not "
-          "better by two standard errors, or tells one meter clearly worse, or the monthly "
-          "model speaks against them. What was tried has been taken back.",
-          "bad");
+      html.element("p",
+                   "Not confirmed: on the months kept back the model with the additions is not "
+                   "better by three to one, or tells one meter clearly worse, or the monthly "
+                   "model speaks against them. What was tried has been taken back.",
+                   "bad");
       return;
     default:
       html.element("p",

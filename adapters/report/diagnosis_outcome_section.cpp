@@ -56,7 +56,7 @@ void write_impacts(Html& html, const AddedEffectCard& card) {
 
 void write_card(Html& html, const AddedEffectCard& card, bool taken_back) {
   html.markup(taken_back ? "<li class=\"fail\">" : "<li class=\"pass\">")
-      .element("span", taken_back ? "✕ Tried and taken back" : "✓ Added to the model", "badge")
+      .element("span", taken_back ? "✕ Tried and taken back" : "✓ Named and confirmed", "badge")
       .element("strong", card.title)
       .element("p", card.meaning)
       .element("p",

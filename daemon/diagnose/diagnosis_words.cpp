@@ -74,7 +74,7 @@ std::string addition_words(const SiteProblem& site, const Addition& addition) {
 
 std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
   if (!d.gap) {
-    return "No month was kept back, because the record is too short: nothing confirms this yet.";
+    return "No reading lies in the months kept back: nothing confirms this yet.";
   }
   std::vector<std::string> items;
   for (std::size_t g = 0; g < d.gap->before.size(); ++g) {

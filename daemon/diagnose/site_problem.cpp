@@ -103,7 +103,14 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   const auto electricity = electricity_meter(recording);
   if (!electricity) return tl::unexpected(electricity.error());
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
-  auto profile = model::hourly::fit_profile_without_plant(loads_of(**electricity, months),
+  const diagnosis::SplitOptions split;
+  problem.month_roles = diagnosis::split_months(months, split);
+  // The months to be shown must not tell their own electricity.
+  std::vector<Month> told;
+  for (std::size_t i = 0; i < months.size(); ++i) {
+    if (problem.month_roles[i] != diagnosis::Role::show) told.push_back(months[i]);
+  }
+  auto profile = model::hourly::fit_profile_without_plant(loads_of(**electricity, told),
                                                           *site.building, place, months);
   if (!profile) return tl::unexpected(profile.error());
   // One profile for all months: factors of calendar months would hide what a diagnosis looks for.
@@ -132,8 +139,6 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   problem.parameters = std::move(chosen->parameters);
   problem.day_parts = diagnosis::make_day_parts(*problem.drivers);
   problem.measured_parts_kW = diagnosis::measured_parts(problem.day_parts, problem.measured_kW);
-  const diagnosis::SplitOptions split;
-  problem.month_roles = diagnosis::split_months(months, split);
   problem.roles = diagnosis::part_roles(problem.day_parts, problem.month_roles, split.buffer_days);
   return problem;
 }
