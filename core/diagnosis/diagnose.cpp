@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 
 namespace recald::diagnosis {
 namespace {
@@ -80,6 +80,56 @@ std::vector<Candidate> still_open(const CandidateList& list, const std::vector<A
   return open;
 }
 
+/// One pass: where, who, which one. @param now  The model as it stands, with `accepted`.
+Result<Pass> search(Predictor& predictor, const SiteProblem& site, const Ground& now,
+                    const HeldJudge& shown, const std::vector<Candidate>& open,
+                    const NamingRules& rules, Rng& rng) {
+  auto located = locate(now.context(site), now.none, rng);
+  if (!located) return tl::unexpected(located.error());
+  auto look = look_at(predictor, now.context(site), now.none, open, rng);
+  if (!look) return tl::unexpected(look.error());
+  const auto unknown = unknown_log_evidence(site, now);
+  if (!unknown) return tl::unexpected(unknown.error());
+  const NamingData data{now.context(site), *unknown, now.select, now.levels};
+  auto naming = name_effect(predictor, data, now.none, open, *look, rules);
+  if (!naming) return tl::unexpected(naming.error());
+  return Pass{.located = std::move(*located),
+              .look = std::move(*look),
+              .naming = std::move(*naming),
+              .modelled_kW = now.none.parts_kW,
+              .gaps = gaps_of(site, now, shown)};
+}
+
+void take_back(const char* why, Diagnosis& result) {
+  result.not_confirmed = true;
+  result.outcome = Outcome::unknown;
+  result.why = why;
+}
+
+/// The verdict of the first pass, unless the months kept back do not bear out what was added.
+void conclude(const SiteProblem& site, const Ground& first, const Ground& last, Diagnosis& result) {
+  const Naming& verdict = result.passes.front().naming;
+  result.outcome = verdict.outcome;
+  result.why = verdict.why;
+  if (result.added.empty()) return;
+  if (first.show.count() == 0) {
+    take_back(
+        "no reading lies in the months kept back, so nothing confirms what was named and it "
+        "was taken back",
+        result);
+    return;
+  }
+  double scale = 1.0;
+  for (const Addition& addition : result.added) scale = std::max(scale, addition.null_scale);
+  result.gap = change_of(site, first, last, scale);
+  if (!result.gap->confirmed) {
+    take_back(
+        "what was named does not foretell the months that were kept back, so it was taken "
+        "back",
+        result);
+  }
+}
+
 }  // namespace
 
 Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& options,
@@ -97,37 +147,26 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   Predictor base{site};
   auto first = lay_ground(base, site);
   if (!first) return tl::unexpected(first.error());
-  result.base_fit = gaps_of(site, *first, first->fit);
+  result.base_fit = gaps_of(site, *first, judge_of(site, *first, first->fit));
   if (!first->none.converged) {
     result.warnings.push_back("The base calibration of the hourly model did not settle.");
   }
+  const HeldJudge shown = judge_of(site, *first, first->show);
   std::optional<Ground> latest;  // of the model with what was added
   for (int turn = 0; turn <= options.additions_max; ++turn) {
     if (!go_on("looking for disagreement", 0.2 + 0.15 * turn)) return tl::unexpected(cancelled());
-    const Ground& now = latest ? *latest : *first;
     Rng rng{options.seed, static_cast<std::uint64_t>(turn)};
     Predictor predictor{site, accepted};
     const std::vector<Candidate> open = still_open(list, result.added);
-    auto located = locate(now.context(site), now.none, rng);
-    if (!located) return tl::unexpected(located.error());
-    auto look = look_at(predictor, now.context(site), now.none, open, rng);
-    if (!look) return tl::unexpected(look.error());
-    const auto unknown = unknown_log_evidence(site, now);
-    if (!unknown) return tl::unexpected(unknown.error());
-    const NamingData data{now.context(site), *unknown, now.select, now.levels};
-    auto naming = name_effect(predictor, data, now.none, open, *look, options.rules);
-    if (!naming) return tl::unexpected(naming.error());
-    const bool named = naming->outcome == Outcome::named && turn < options.additions_max;
+    auto pass = search(predictor, site, latest ? *latest : *first, shown, open, options.rules, rng);
+    if (!pass) return tl::unexpected(pass.error());
+    const bool named = pass->naming.outcome == Outcome::named && turn < options.additions_max;
     if (named) {
-      result.added.push_back(addition_of(predictor, site, open, *naming, rng));
+      result.added.push_back(addition_of(predictor, site, open, pass->naming, rng));
       const Addition& addition = result.added.back();
       accepted.push_back(alteration_of(addition.candidate, site.facts(), addition.eta));
     }
-    result.passes.push_back({.located = std::move(*located),
-                             .look = std::move(*look),
-                             .naming = std::move(*naming),
-                             .modelled_kW = now.none.parts_kW,
-                             .gaps = gaps_of(site, now, first->show)});
+    result.passes.push_back(std::move(*pass));
     result.model_runs += predictor.runs();
     if (!named) break;
     Predictor altered{site, accepted};
@@ -136,30 +175,11 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
     latest = std::move(*next);
     result.model_runs += altered.runs();
   }
-  const Ground& now = latest ? *latest : *first;
-  result.modelled_kW = now.none.parts_kW;
-  result.gaps = gaps_of(site, now, first->show);
-  const Naming& verdict = result.passes.front().naming;
-  result.outcome = verdict.outcome;
-  result.why = verdict.why;
-  if (!result.added.empty() && first->show.count() == 0) {
-    result.not_confirmed = true;
-    result.outcome = Outcome::unknown;
-    result.why =
-        "no reading lies in the months kept back, so nothing confirms what was named and it was "
-        "taken back";
-  } else if (!result.added.empty()) {
-    if (!go_on("showing", 0.95)) return tl::unexpected(cancelled());
-    double scale = 1.0;
-    for (const Addition& addition : result.added) scale = std::max(scale, addition.null_scale);
-    result.gap = change_of(site, *first, now, scale);
-    result.not_confirmed = !result.gap->confirmed;
-    if (result.not_confirmed) {
-      result.outcome = Outcome::unknown;
-      result.why =
-          "what was named does not foretell the months that were kept back, so it was taken back";
-    }
-  }
+  if (!go_on("showing", 0.95)) return tl::unexpected(cancelled());
+  const Ground& last = latest ? *latest : *first;
+  result.modelled_kW = last.none.parts_kW;
+  result.gaps = gaps_of(site, last, shown);
+  conclude(site, *first, last, result);
   result.model_runs += base.runs();
   return result;
 }

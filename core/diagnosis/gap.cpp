@@ -27,19 +27,23 @@ double cvrmse_by(const SiteProblem& site, const MeterRows& rows, Eigen::Index g,
     total += pair.first;
   }
   const auto n = static_cast<double>(sums.size());
-  return n > 1.0 && total > 0.0 ? std::sqrt(squares / (n - 1.0)) / (total / n)
-                                : std::numeric_limits<double>::quiet_NaN();
+  return n > 1.0 && total > 0.0 ? std::sqrt(squares / (n - 1.0)) / (total / n) : kNothing;
 }
 
 }  // namespace
 
+HeldJudge judge_of(const SiteProblem& site, const Ground& ground, const Observations& held) {
+  return {site, ground.fit, ground.grid[static_cast<std::size_t>(ground.none.best_node)], held,
+          ground.levels};
+}
+
 std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
-                              const Observations& held) {
+                              const HeldJudge& judge) {
   const JointFit& fit = ground.none;
-  std::vector<MeterGap> gaps;
+  const Observations& held = judge.held;
   const NoiseNode& node = ground.grid[static_cast<std::size_t>(fit.best_node)];
-  const MonthScores scores =
-      HeldJudge{site, ground.fit, node, held, ground.levels}.scores(fit.parts_kW);
+  const MonthScores scores = judge.scores(fit.parts_kW);
+  std::vector<MeterGap> gaps;
   for (std::size_t g = 0; g < held.meters.size(); ++g) {
     const MeterRows& rows = held.meters[g];
     const auto column = static_cast<Eigen::Index>(g);
@@ -73,13 +77,11 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
 
 GapChange change_of(const SiteProblem& site, const Ground& before, const Ground& after,
                     double null_scale) {
-  const HeldJudge judge{site, before.fit,
-                        before.grid[static_cast<std::size_t>(before.none.best_node)], before.show,
-                        before.levels};
+  const HeldJudge judge = judge_of(site, before, before.show);
   const MonthScores old_scores = judge.scores(before.none.parts_kW);
   const MonthScores new_scores = judge.scores(after.none.parts_kW);
-  GapChange change{.before = gaps_of(site, before, before.show),
-                   .after = gaps_of(site, after, before.show),
+  GapChange change{.before = gaps_of(site, before, judge),
+                   .after = gaps_of(site, after, judge),
                    .log_score_change = gain_by_meter(new_scores, old_scores)};
   const bool worse = std::ranges::any_of(change.log_score_change, [](const ScoreGain& meter) {
     return meter.sum < -2.0 * meter.se - 1.0;

@@ -30,11 +30,19 @@ struct GapChange {
 /// Three to one: what months that chose nothing must say for an effect.
 inline constexpr double kLeastConfirmation = 1.1;
 
-/// @param held  The months to judge by.
-[[nodiscard]] std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
-                                            const Observations& held);
+/// The judge of `ground` itself: what it was fitted to teaches, its noise scores.
+/// @param held  Months to be scored, of `ground`.
+[[nodiscard]] HeldJudge judge_of(const SiteProblem& site, const Ground& ground,
+                                 const Observations& held);
 
-/// Judged by the noise of the model before: a change of noise is no better model.
+/// @param ground  The model to be judged.
+/// @param judge   Of the first model, for all that are compared: a change of noise or of scale is
+/// no
+///                better model.
+[[nodiscard]] std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
+                                            const HeldJudge& judge);
+
+/// On the months that `before` keeps back, by its own judge.
 /// @param null_scale  Of the effects that were added, the largest.
 [[nodiscard]] GapChange change_of(const SiteProblem& site, const Ground& before,
                                   const Ground& after, double null_scale);

@@ -28,14 +28,11 @@ MonthScores HeldJudge::scores(const Eigen::ArrayXXd& parts_kW) const {
   MonthScores scores(held.meters.size());
   const Eigen::VectorXd fitted = fit.measured - fit.stack(parts_kW);
   const Eigen::VectorXd residual = held.measured - held.stack(parts_kW);
-  std::size_t fitted_meters = 0;
   for (std::size_t g = 0; g < held.meters.size(); ++g) {
     const MeterRows& teacher = fit.meters[g];
     const MeterRows& meter = held.meters[g];
-    if (teacher.rows.empty()) continue;
-    const BlockNoise& noise = node.meters[fitted_meters++];
     if (meter.rows.empty()) continue;
-    const Eigen::VectorXd patterns = noise.pattern_mean(
+    const Eigen::VectorXd patterns = node.meters[g].pattern_mean(
         fitted.segment(teacher.offset, static_cast<Eigen::Index>(teacher.rows.size())));
     NoiseLevel level = levels[g];
     level.pattern_sd *= kPatternsLeftOpen;

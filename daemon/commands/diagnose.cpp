@@ -28,19 +28,15 @@ std::string now_text() {
       std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
 }
 
-/// Puts the additions in force. @return the version's name, or what the store refuses
-Result<std::string> apply(const ModelledSite& modelled, const diagnosis::Diagnosis& diagnosis,
-                          const diagnosis::SiteProblem& site) {
-  const SiteConfig& config = modelled.site.config;
-  const models::ModelStore store{config.file, config.id};
+/// Stores the additions as a version that is not in force yet. @return its name
+Result<std::string> store_version(const models::ModelStore& store, const ModelledSite& modelled,
+                                  const diagnosis::Diagnosis& diagnosis,
+                                  const diagnosis::SiteProblem& site, const std::string& at) {
   const auto parent = store.active();
   if (!parent) return tl::unexpected(parent.error());
-  const std::string at = now_text();
   auto saved = store.save(next_version(diagnosis, site, *parent, modelled.facts, at));
   if (!saved) return tl::unexpected(saved.error());
-  const auto active = store.activate(saved->version, at);
-  if (!active) return tl::unexpected(active.error());
-  return active->version;
+  return std::move(saved->version);
 }
 
 /// The diagnosis, with progress on a terminal. @return cancelled after an interrupt, too
@@ -113,22 +109,29 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   if (!diagnosis) return console.fail(diagnosis.error());
   const std::vector<ModelGap> others = ask_monthly_model(*modelled, *problem, *diagnosis);
 
+  const std::string at = now_text();
+  const models::ModelStore store{modelled->site.config.file, modelled->site.config.id};
+  const bool keep = arguments.apply && !diagnosis->added.empty() && !diagnosis->not_confirmed;
   std::string applied;
-  if (arguments.apply && !diagnosis->added.empty() && !diagnosis->not_confirmed) {
-    auto version = apply(*modelled, *diagnosis, *problem);
+  if (keep) {
+    auto version = store_version(store, *modelled, *diagnosis, *problem, at);
     if (!version) return console.fail(version.error());
-    applied = std::move(*version);
+    modelled->facts.model_version = applied = std::move(*version);
   }
   modelled->facts.seed = arguments.seed;
   modelled->facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::string json = diagnosis_json(*diagnosis, *problem, modelled->facts, applied, others);
+  const std::string json = diagnosis_json(*diagnosis, *problem, modelled->facts, others);
   if (!arguments.out.empty()) {
     const std::string page = report::render_diagnosis(diagnosis_report_of(
-        modelled->site.config, *diagnosis, *problem, modelled->facts, now_text(), others));
+        modelled->site.config, *diagnosis, *problem, modelled->facts, at, others));
     if (auto written = write_all(arguments.out, json, page); !written) {
       return console.fail(written.error());
     }
+  }
+  // Last of all: what is in force has its page.
+  if (keep) {
+    if (auto active = store.activate(applied, at); !active) return console.fail(active.error());
   }
   console.out << (arguments.json ? json : diagnosis_words(*diagnosis, *problem));
   if (!applied.empty() && !arguments.json) {

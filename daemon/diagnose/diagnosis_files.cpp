@@ -203,7 +203,7 @@ std::vector<diagnosis::EffectParameterRecord> records_of(const Addition& additio
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const RunFacts& facts,
-                           const std::string& applied, const std::vector<ModelGap>& others) {
+                           const std::vector<ModelGap>& others) {
   const diagnosis::Pass& first = d.passes.front();
   Json json = {{"outcome", to_string(d.outcome)},
                {"why", d.why},
@@ -223,7 +223,7 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"seed", facts.seed},
                {"recald_version", facts.recald_version},
                {"data_revision", facts.data_revision},
-               {"model_version", applied.empty() ? facts.model_version : applied},
+               {"model_version", facts.model_version},
                {"wall_s", facts.wall_s}};
   if (!d.added.empty()) json["located_after"] = located_json(site, d.passes.back().located);
   // Bytes of a name that are not UTF-8 become U+FFFD instead of an exception.

@@ -27,12 +27,10 @@ struct ModelGap {
 };
 
 /// `diagnosis.json`.
-/// @param applied  Version that was put in force; empty: none.
 /// @param others   Entries of `gap` beside the hourly model's.
 /// @pre the diagnosis has a pass.
 [[nodiscard]] std::string diagnosis_json(const diagnosis::Diagnosis& diagnosis,
                                          const diagnosis::SiteProblem& site, const RunFacts& facts,
-                                         const std::string& applied,
                                          const std::vector<ModelGap>& others = {});
 
 /// The model's next version: the parent and what the diagnosis added.

@@ -1,6 +1,5 @@
 /// New equipment, or old taken out, on one day.
 #include <algorithm>
-#include <limits>
 
 #include "core/diagnosis/effects/support/meter_priors.hpp"
 
@@ -41,11 +40,7 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .unit = "kW",
            .prior = TruncatedNormalPrior{.location = 0.0, .sd = sd_kW},
            .neutral = 0.0},
-          {.name = "following_use",
-           .unit = "-",
-           .prior = UniformPrior{.min = 0.0, .max = 1.0},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
-           .scan = {0.0, 1.0}}};
+          either_share("following_use")};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,

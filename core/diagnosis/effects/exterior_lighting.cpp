@@ -1,7 +1,6 @@
 /// Lamps outdoors that the drawings do not know.
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "core/diagnosis/effects/support/meter_priors.hpp"
 #include "core/model/dark_hours.hpp"
@@ -52,11 +51,7 @@ class ExteriorLighting final : public model::hourly::Alteration {
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
   const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.05);
   return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
-          {.name = "share_in_plugs",
-           .unit = "-",
-           .prior = UniformPrior{.min = 0.0, .max = 1.0},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
-           .scan = {0.0, 1.0}}};
+          either_share("share_in_plugs")};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,

@@ -8,6 +8,7 @@
 
 #include "adapters/report/assets.hpp"
 #include "adapters/report/diagnosis_sections.hpp"
+#include "tests/adapters/report/page_text.hpp"
 #include "tests/adapters/report/sample_diagnosis.hpp"
 
 namespace recald::report {
@@ -17,29 +18,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The page without its embedded script, style and licence texts: what is made from the data.
-std::string own_markup(std::string page) {
-  for (const std::string_view asset : {assets().script, assets().style}) {
-    const std::size_t at = page.find(asset);
-    if (at != std::string::npos) page.erase(at, asset.size());
-  }
-  const std::size_t licences = page.find("<details id=\"licences\">");
-  if (licences != std::string::npos) {
-    page.erase(licences, page.find("</details>", licences) - licences);
-  }
-  return page;
-}
-
 std::string markup_of(const DiagnosisData& data) { return own_markup(render_diagnosis(data)); }
-
-std::size_t occurrences(std::string_view text, std::string_view what) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(what); at != std::string_view::npos;
-       at = text.find(what, at + 1)) {
-    ++count;
-  }
-  return count;
-}
 
 TEST(DiagnosisPage, AnswersTheReadersQuestionsInTheirOrder) {
   const std::string page = render_diagnosis(sample_diagnosis());

@@ -8,6 +8,7 @@
 
 #include "adapters/report/assets.hpp"
 #include "adapters/report/figure_data.hpp"
+#include "tests/adapters/report/page_text.hpp"
 #include "tests/adapters/report/sample_report.hpp"
 
 namespace recald::report {
@@ -18,28 +19,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr std::string_view kHostile = "</script><script>alert(\"&'\")</script><!--";
-
-/// The page without its embedded script, style and licence texts: what is made from the data.
-std::string own_markup(std::string page) {
-  for (const std::string_view asset : {assets().script, assets().style}) {
-    const std::size_t at = page.find(asset);
-    if (at != std::string::npos) page.erase(at, asset.size());
-  }
-  const std::size_t licences = page.find("<details id=\"licences\">");
-  if (licences != std::string::npos) {
-    page.erase(licences, page.find("</details>", licences) - licences);
-  }
-  return page;
-}
-
-std::size_t occurrences(std::string_view text, std::string_view what) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(what); at != std::string_view::npos;
-       at = text.find(what, at + 1)) {
-    ++count;
-  }
-  return count;
-}
 
 /// The embedded data, found as a browser would: from the tag to the first closing script tag.
 json embedded_data(const std::string& page) {

@@ -2,34 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/sample_building.hpp"
+#include "tests/support/sample_problem.hpp"
 
 namespace recald::diagnosis {
 namespace {
 
-using metering::Utility;
-
 /// The sample building as its own meters, with what `hidden` adds and noise. The calibrated model
 /// generated its own data: these tests prove the machinery, never that it names real effects.
 SiteProblem site_with(const Effect* hidden, const std::vector<double>& values, int months = 24) {
-  SiteProblem site;
-  site.nominal = testing::sample_building();
-  for (const char* name : {"outdoor_airflow", "cooling_setpoint", "leakage_area"}) {
-    site.definitions.push_back(*model::find_parameter(name));
-    site.parameters.push_back(*model::make_parameter(*site.definitions.back(), site.nominal));
-  }
-  site.drivers =
-      std::make_shared<const model::Drivers>(testing::sample_drivers(site.nominal, months));
-  for (const auto& [id, utility] :
-       {std::pair{"electricity", Utility::electricity},
-        std::pair{"chilled_water", Utility::chilled_water}, std::pair{"steam", Utility::steam}}) {
-    site.meters.push_back({id, utility, *model::default_meter_map(utility)});
-  }
-  site.day_parts = make_day_parts(*site.drivers);
-  site.measured_parts_kW = Eigen::ArrayXXd::Ones(site.day_parts.count(), 3);
-  site.month_roles = split_months(site.drivers->months, {});
-  site.roles = part_roles(site.day_parts, site.month_roles, 7);
-
+  constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint", "leakage_area"};
+  SiteProblem site = testing::sample_problem(kParameters, months);
   Predictor predictor{site};
   std::vector<double> theta;
   for (const Parameter& p : site.parameters) theta.push_back(p.prior.quantile(0.4));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "tests/support/sample_building.hpp"
+#include "tests/support/sample_problem.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -13,25 +13,9 @@ namespace {
 using metering::Utility;
 using model::hourly::Alteration;
 
-/// The sample building with its three meters; measured is what the drawings give.
 SiteProblem sample_site(int months) {
-  SiteProblem site;
-  site.nominal = testing::sample_building();
-  for (const char* name : {"outdoor_airflow", "cooling_setpoint"}) {
-    site.definitions.push_back(*model::find_parameter(name));
-    site.parameters.push_back(*model::make_parameter(*site.definitions.back(), site.nominal));
-  }
-  site.drivers =
-      std::make_shared<const model::Drivers>(testing::sample_drivers(site.nominal, months));
-  for (const auto& [id, utility] :
-       {std::pair{"electricity", Utility::electricity},
-        std::pair{"chilled_water", Utility::chilled_water}, std::pair{"steam", Utility::steam}}) {
-    site.meters.push_back({id, utility, *model::default_meter_map(utility)});
-  }
-  site.day_parts = make_day_parts(*site.drivers);
-  site.measured_parts_kW = Eigen::ArrayXXd::Ones(site.day_parts.count(), 3);
-  site.measured_parts_kW = Predictor{site}.parts_kW({});
-  return site;
+  constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint"};
+  return testing::sample_problem(kParameters, months);
 }
 
 /// (meters * months) kWh/day of the hourly model.

@@ -31,7 +31,7 @@ class DiagnosisFiles : public ::testing::Test {
     facts.data_revision = "9f2c";
     facts.model_version = "hourly-3b1c";
     facts.seed = 7;
-    return json::parse(diagnosis_json(d, site_, facts, "", others));
+    return json::parse(diagnosis_json(d, site_, facts, others));
   }
   [[nodiscard]] report::DiagnosisData page_data(const Diagnosis& d,
                                                 const std::vector<ModelGap>& others = {}) const {

@@ -1,6 +1,8 @@
 /// Priors of positive amounts: below a physical limit, or as a share of a meter's mean.
 #pragma once
 
+#include <limits>
+
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/half_normal.hpp"
 
@@ -17,6 +19,15 @@ namespace recald::diagnosis::effects {
                                              double share) {
   const double mean_kW = facts.mean_of_kW(utility);
   return share * (mean_kW > 0.0 ? mean_kW : 0.010 * facts.building.floor_area_m2);
+}
+
+/// A share of one or the other, tried at both ends. @param name  snake_case
+[[nodiscard]] inline EffectParameter either_share(const char* name) {
+  return {.name = name,
+          .unit = "-",
+          .prior = UniformPrior{.min = 0.0, .max = 1.0},
+          .neutral = std::numeric_limits<double>::quiet_NaN(),
+          .scan = {0.0, 1.0}};
 }
 
 }  // namespace recald::diagnosis::effects

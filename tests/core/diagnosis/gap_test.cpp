@@ -1,0 +1,114 @@
+#include "core/diagnosis/gap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/diagnosis/null_scale.hpp"
+#include "tests/support/sample_problem.hpp"
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint"};
+
+/// The sample building's own meters with white noise of 3 % of their means.
+SiteProblem noisy_site() {
+  SiteProblem site = testing::sample_problem(kParameters, 24);
+  Rng rng{11};
+  for (Eigen::Index g = 0; g < site.measured_parts_kW.cols(); ++g) {
+    const double mean = site.measured_parts_kW.col(g).mean();
+    for (double& value : site.measured_parts_kW.col(g)) value += 0.03 * mean * rng.normal();
+  }
+  return site;
+}
+
+Ground ground_of(const SiteProblem& site) {
+  Predictor predictor{site};
+  auto ground = lay_ground(predictor, site);
+  EXPECT_TRUE(ground.has_value()) << ground.error().message;
+  return std::move(*ground);
+}
+
+TEST(ScoreGain, AddsMonthsAndKnowsTheirSpread) {
+  const MonthScores without{{{3, -10.0}, {7, -12.0}}, {{3, -1.0}, {7, -1.0}}};
+  const MonthScores with{{{3, -8.0}, {7, -11.0}}, {{3, -1.5}, {7, -1.0}}};
+  const auto meters = gain_by_meter(with, without);
+  EXPECT_DOUBLE_EQ(meters[0].sum, 3.0);
+  EXPECT_DOUBLE_EQ(meters[0].se, 1.0);  // differences 2 and 1: sd 1/sqrt(2), of a sum of two
+  EXPECT_DOUBLE_EQ(meters[1].sum, -0.5);
+  const ScoreGain all = gain_over(with, without);
+  EXPECT_DOUBLE_EQ(all.sum, 2.5);
+  EXPECT_DOUBLE_EQ(all.se, 0.5);  // 1.5 and 1
+}
+
+TEST(ScoreGain, OneMonthHasNoSpread) {
+  const ScoreGain gain = gain_over({{{0, 2.0}}}, {{{0, 1.5}}});
+  EXPECT_DOUBLE_EQ(gain.sum, 0.5);
+  EXPECT_EQ(gain.se, 0.0);
+}
+
+// What is wrong every working day alike is no news in a held month; what begins there is.
+TEST(HeldJudge, ForgivesWhatTheFittedMonthsHaveTaught) {
+  SiteProblem site = noisy_site();
+  const Ground ground = ground_of(site);
+  const HeldJudge judge = judge_of(site, ground, ground.show);
+  const MonthScores plain = judge.scores(ground.none.parts_kW);
+
+  const double step_kW = 0.05 * ground.fit.meters[1].mean_kW;
+  Eigen::ArrayXXd always_kW = ground.none.parts_kW;
+  Eigen::ArrayXXd late_kW = ground.none.parts_kW;
+  for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {
+    const auto part = static_cast<std::size_t>(i);
+    if (site.day_parts.parts[part].part != 3) continue;
+    always_kW(i, 1) += step_kW;
+    if (site.roles[part] == Role::show) late_kW(i, 1) += step_kW;
+  }
+  const double always = gain_over(judge.scores(always_kW), plain).sum;
+  const double late = gain_over(judge.scores(late_kW), plain).sum;
+  EXPECT_LT(late, -20.0);
+  EXPECT_GT(always, 0.3 * late);
+}
+
+TEST(Gap, IsUnknownWhereAMeterHasNoHeldReading) {
+  SiteProblem site = noisy_site();
+  for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {
+    if (site.roles[static_cast<std::size_t>(i)] == Role::show) {
+      site.measured_parts_kW(i, 2) = std::nan("");
+    }
+  }
+  const Ground ground = ground_of(site);
+  const auto gaps = gaps_of(site, ground, judge_of(site, ground, ground.show));
+  EXPECT_LT(gaps[0].cvrmse_daily, 0.05);
+  EXPECT_TRUE(std::isnan(gaps[2].nmbe_sim_minus_meas));
+  EXPECT_TRUE(std::isnan(gaps[2].cvrmse_daily));
+  EXPECT_TRUE(std::isnan(gaps[2].log_score));
+}
+
+TEST(Gap, AModelIsNotConfirmedAgainstItself) {
+  const SiteProblem site = noisy_site();
+  const Ground ground = ground_of(site);
+  const GapChange change = change_of(site, ground, ground, 1.0);
+  EXPECT_FALSE(change.confirmed);
+  for (const ScoreGain& meter : change.log_score_change) EXPECT_EQ(meter.sum, 0.0);
+}
+
+TEST(Ground, NamesTheMeterThatHasTooFewReadings) {
+  SiteProblem site = noisy_site();
+  site.measured_parts_kW.col(1).bottomRows(site.day_parts.count() - 60) = std::nan("");
+  Predictor predictor{site};
+  const auto refused = lay_ground(predictor, site);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::not_enough_data);
+  EXPECT_NE(refused.error().message.find("'chilled_water' has 60"), std::string::npos)
+      << refused.error().message;
+}
+
+TEST(NullScale, NeverFlattersAnEffect) {
+  for (const Effect& effect : catalogue()) EXPECT_GE(null_scale(effect.id), 1.0) << effect.id;
+  EXPECT_GT(null_scale("damper_stuck_open"), null_scale("steam_trap_leak"));
+  EXPECT_GT(null_scale("an effect that nobody knows"), 10.0);
+}
+
+}  // namespace
+}  // namespace recald::diagnosis
