@@ -77,6 +77,9 @@ class BlockNoise {
   /// @note  O(n k (k + nonzeros of Z per row)).
   [[nodiscard]] Eigen::MatrixXd gram(const Eigen::MatrixXd& columns) const;
 
+  /// x' Sigma^-1 x of each column (k): the diagonal of `gram`.
+  [[nodiscard]] Eigen::VectorXd squared_norms(const Eigen::MatrixXd& columns) const;
+
   /// Sigma^-1 X (n x k). The product with data draws then costs one inner product each.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& columns) const;
 

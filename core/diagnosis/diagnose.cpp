@@ -90,7 +90,7 @@ Result<Pass> search(Predictor& predictor, const SiteProblem& site, const Ground&
   if (!look) return tl::unexpected(look.error());
   const auto unknown = unknown_log_evidence(site, now);
   if (!unknown) return tl::unexpected(unknown.error());
-  const NamingData data{now.context(site), *unknown, now.select, now.levels};
+  const NamingData data{now.context(site), *unknown, now.select, now.levels, *now.usual};
   auto naming = name_effect(predictor, data, now.none, open, *look, rules);
   if (!naming) return tl::unexpected(naming.error());
   return Pass{.located = std::move(*located),
@@ -145,7 +145,8 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   if (!go_on("calibrating the hourly model", 0.0)) return tl::unexpected(cancelled());
   Alterations accepted;
   Predictor base{site};
-  auto first = lay_ground(base, site);
+  auto first = lay_ground(
+      base, site, options.rules.errs_as_learnt ? nullptr : std::make_shared<const UsualErrors>());
   if (!first) return tl::unexpected(first.error());
   result.base_fit = gaps_of(site, *first, judge_of(site, *first, first->fit));
   if (!first->none.converged) {
@@ -170,7 +171,7 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
     result.model_runs += predictor.runs();
     if (!named) break;
     Predictor altered{site, accepted};
-    auto next = lay_ground(altered, site);
+    auto next = lay_ground(altered, site, first->usual);
     if (!next) return tl::unexpected(next.error());
     latest = std::move(*next);
     result.model_runs += altered.runs();

@@ -4,68 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "core/diagnosis/candidate_shapes.hpp"
+
 namespace recald::diagnosis {
 namespace {
 
 constexpr std::size_t kColumnsAtOnce = 24;
 constexpr int kNullDraws = 999;
 constexpr double kNullProbability = 0.99;
-
-/// What is scanned is no amount, even where it has a neutral value: a clock two hours off is not
-/// twice a clock one hour off.
-bool is_amount(const EffectParameter& parameter) {
-  return std::isfinite(parameter.neutral) && parameter.scan.empty();
-}
-
-/// A typical amount: the prior's mean, or one standard deviation up where that is nothing.
-double typical_value(const EffectParameter& parameter) {
-  const double mean = parameter.prior.mean();
-  const double sd = std::sqrt(parameter.prior.variance());
-  return std::abs(mean - parameter.neutral) > 0.1 * sd ? mean : parameter.neutral + sd;
-}
-
-/// The prior of a factor on the typical deviation from neutral.
-AmountPrior factor_prior(const EffectParameter& parameter) {
-  const double typical = std::abs(typical_value(parameter) - parameter.neutral);
-  const Prior& prior = parameter.prior;
-  const bool one_sided = prior.min() >= parameter.neutral || prior.max() <= parameter.neutral;
-  if (!one_sided) return {AmountPriorKind::normal, std::sqrt(prior.variance()) / typical};
-  if (std::holds_alternative<UniformPrior>(prior.distribution())) {
-    return {AmountPriorKind::uniform, (prior.max() - prior.min()) / typical};
-  }
-  // Of a half-normal: its second moment about the neutral value is the scale squared.
-  const double shift = prior.mean() - parameter.neutral;
-  return {AmountPriorKind::half_normal, std::sqrt(prior.variance() + shift * shift) / typical};
-}
-
-AmountPrior prior_of(const Candidate& candidate) {
-  for (const EffectParameter& parameter : candidate.parameters) {
-    if (is_amount(parameter)) return factor_prior(parameter);
-  }
-  return {AmountPriorKind::half_normal, 1.0};  // nothing but shapes: there or not
-}
-
-/// Combinations of the scanned values of the effect's own parameters; amounts at typical values.
-std::vector<std::vector<double>> own_shapes(const Candidate& candidate) {
-  const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
-  std::vector<std::vector<double>> shapes{{}};
-  for (std::size_t j = 0; j + days < candidate.parameters.size(); ++j) {
-    const EffectParameter& parameter = candidate.parameters[j];
-    std::vector<double> values = parameter.scan;
-    if (values.empty()) {
-      values.push_back(is_amount(parameter) ? typical_value(parameter) : parameter.prior.mean());
-    }
-    std::vector<std::vector<double>> longer;
-    for (const auto& shape : shapes) {
-      for (const double value : values) {
-        longer.push_back(shape);
-        longer.back().push_back(value);
-      }
-    }
-    shapes = std::move(longer);
-  }
-  return shapes;
-}
 
 /// First and last days to try: all pairs in which the effect lasts a week at least.
 std::vector<std::pair<double, double>> day_choices(const Candidate& candidate) {
@@ -103,27 +49,66 @@ Eigen::VectorXd cut_to_days(const SiteProblem& site, const Observations& observa
   return cut;
 }
 
-/// Collects footprints and judges them many at once.
+/// How visible columns are and how far the residual speaks for them, many at once.
+struct Judgement {
+  Eigen::VectorXd detectability;  ///< (k) d
+  Eigen::VectorXd score;          ///< (k) z, 0 where nothing is visible.
+};
+
+/// M as it stands under the base model, factored once for thousands of columns.
 class Judge {
  public:
-  Judge(const FitContext& context, const JointFit& none)
-      : context_(context), node_(context.grid[static_cast<std::size_t>(none.best_node)]) {
-    base_.resize(none.residual.size(), none.jacobian.cols() + 1);
-    base_ << none.linear_residual(), none.jacobian;
+  static Result<Judge> make(const FitContext& context, const JointFit& none) {
+    Judge judge{context, none};
+    const Eigen::Index q = none.jacobian.cols();
+    const Eigen::MatrixXd information = none.jacobian.transpose() * judge.solved_.rightCols(q);
+    judge.factor_.compute(Eigen::MatrixXd::Identity(q, q) + information);
+    if (judge.factor_.info() != Eigen::Success || !judge.factor_.matrixLLT().allFinite()) {
+      return failure(ErrorCode::not_positive_definite,
+                     "a sensitivity of the base model is not a finite number");
+    }
+    judge.residual_ =
+        judge.factor_.matrixL().solve(none.jacobian.transpose() * judge.solved_.col(0));
+    return judge;
   }
 
-  /// d and z of each column. @param columns  (n x k)
-  Result<GramSystem> judge(const Eigen::MatrixXd& columns) const {
-    Eigen::MatrixXd all(base_.rows(), base_.cols() + columns.cols());
-    all << base_, columns;
-    const Eigen::Index q = base_.cols() - 1;
+  /// @param columns  (n x k)
+  [[nodiscard]] Judgement judge(const Eigen::MatrixXd& columns) const {
+    const Eigen::MatrixXd products = solved_.transpose() * columns;  // [r | J]' Sigma^-1 s
+    const Eigen::MatrixXd imitated =
+        factor_.matrixL().solve(products.bottomRows(products.rows() - 1));
+    const Eigen::VectorXd squares = (node_.squared_norms(context_.observations, columns) -
+                                     imitated.colwise().squaredNorm().transpose())
+                                        .cwiseMax(0.0);
+    const Eigen::VectorXd spoken = products.row(0).transpose() - imitated.transpose() * residual_;
+    const Eigen::VectorXd d = squares.cwiseSqrt();
+    return {d, (d.array() > kInvisible).select(spoken.array() / d.array(), 0.0)};
+  }
+
+  /// All products, also between the columns.
+  [[nodiscard]] Result<GramSystem> system(const JointFit& none,
+                                          const Eigen::MatrixXd& columns) const {
+    const Eigen::Index q = none.jacobian.cols();
+    Eigen::MatrixXd all(columns.rows(), 1 + q + columns.cols());
+    all << none.linear_residual(), none.jacobian, columns;
     return marginalise(node_.gram(context_.observations, all), Eigen::MatrixXd::Identity(q, q));
   }
 
  private:
+  static constexpr double kInvisible = 1e-6;
+
+  Judge(const FitContext& context, const JointFit& none)
+      : context_(context), node_(context.grid[static_cast<std::size_t>(none.best_node)]) {
+    Eigen::MatrixXd base(none.residual.size(), none.jacobian.cols() + 1);
+    base << none.linear_residual(), none.jacobian;
+    solved_ = node_.solve(context.observations, base);
+  }
+
   const FitContext& context_;
   const NoiseNode& node_;
-  Eigen::MatrixXd base_;  ///< [r | J]
+  Eigen::MatrixXd solved_;              ///< Sigma^-1 [r | J] (n x (1 + q))
+  Eigen::LLT<Eigen::MatrixXd> factor_;  ///< I + J' Sigma^-1 J
+  Eigen::VectorXd residual_;            ///< (q) J' Sigma^-1 r under that factor.
 };
 
 struct Footprints {
@@ -136,7 +121,7 @@ Footprints footprints_of(Predictor& predictor, const FitContext& context, const 
                          const Eigen::VectorXd& base) {
   Footprints result;
   const SiteFacts facts = context.site.facts();
-  const AmountPrior prior = prior_of(candidate);
+  const AmountPrior prior = amount_prior(candidate);
   // Undated first: days are cut out of one run.
   Candidate undated = candidate;
   undated.begins = undated.ends = false;
@@ -157,25 +142,21 @@ Footprints footprints_of(Predictor& predictor, const FitContext& context, const 
   return result;
 }
 
-Result<void> judge_all(const Judge& judge, Footprints& prints) {
+void judge_all(const Judge& judge, Footprints& prints) {
   for (std::size_t first = 0; first < prints.looks.size(); first += kColumnsAtOnce) {
     const std::size_t count = std::min(kColumnsAtOnce, prints.looks.size() - first);
     Eigen::MatrixXd columns(prints.columns[first].size(), static_cast<Eigen::Index>(count));
     for (std::size_t i = 0; i < count; ++i) {
       columns.col(static_cast<Eigen::Index>(i)) = prints.columns[first + i];
     }
-    const auto system = judge.judge(columns);
-    if (!system) return tl::unexpected(system.error());
-    const Eigen::VectorXd d = detectability(*system);
-    const Eigen::VectorXd z = score(*system);
+    const Judgement judged = judge.judge(columns);
     for (std::size_t i = 0; i < count; ++i) {
       Look& look = prints.looks[first + i];
-      look.detectability = d[static_cast<Eigen::Index>(i)];
-      look.score = z[static_cast<Eigen::Index>(i)];
+      look.detectability = judged.detectability[static_cast<Eigen::Index>(i)];
+      look.score = judged.score[static_cast<Eigen::Index>(i)];
       look.log_bayes_factor = log_bayes_factor(look.detectability, look.score, look.prior);
     }
   }
-  return {};
 }
 
 CandidateLook summarise(const std::vector<Look>& looks) {
@@ -198,13 +179,14 @@ CandidateLook summarise(const std::vector<Look>& looks) {
 Result<FirstLook> look_at(Predictor& predictor, const FitContext& context, const JointFit& none,
                           const std::vector<Candidate>& candidates, Rng& rng) {
   FirstLook result;
-  const Judge judge{context, none};
+  const auto judge = Judge::make(context, none);
+  if (!judge) return tl::unexpected(judge.error());
   const Eigen::VectorXd base = context.observations.stack(predictor.parts_kW(none.theta));
   Eigen::MatrixXd best_columns(base.size(), static_cast<Eigen::Index>(candidates.size()));
   std::vector<CandidateScale> scales;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Footprints prints = footprints_of(predictor, context, none, candidates[i], i, base);
-    if (auto judged = judge_all(judge, prints); !judged) return tl::unexpected(judged.error());
+    judge_all(*judge, prints);
     result.candidates.push_back(summarise(prints.looks));
     const Look& best = result.candidates.back().best;
     const auto column = std::ranges::find_if(
@@ -213,7 +195,7 @@ Result<FirstLook> look_at(Predictor& predictor, const FitContext& context, const
         prints.columns[static_cast<std::size_t>(column - prints.looks.begin())];
     scales.push_back({best.detectability, best.prior});
   }
-  const auto system = judge.judge(best_columns);
+  const auto system = judge->system(none, best_columns);
   if (!system) return tl::unexpected(system.error());
   result.confusability = confusability(*system);
   result.null_threshold =

@@ -12,8 +12,9 @@ constexpr std::size_t kLeastParts = 100;
 // Spread of residuals in the upper half of the levels over that in the lower half, beyond which a
 // meter is judged on the square-root scale.
 constexpr double kSpreadRatio = 1.6;
-constexpr double kGenerous = 1.5;     // patterns of the unknown model, over those of all others
-constexpr int kFirstIterations = 25;  // from the middle of the priors
+constexpr double kGenerous = 1.5;        // patterns of the unknown model, over those of all others
+constexpr double kGenerousErrors = 3.0;  // and its errors in the ways that the catalogue knows
+constexpr int kFirstIterations = 25;     // from the middle of the priors
 constexpr int kIterations = 8;
 // What the anonymous patterns may be, in units of a meter's mean; the likeliest is taken.
 constexpr std::array kPatternShares{0.02, 0.06, 0.15};
@@ -102,13 +103,27 @@ void set_gates(Observations& observations, const Eigen::VectorXd& residual,
   for (std::size_t g = 0; g < gates.size(); ++g) observations.meters[g].design.gated = gates[g];
 }
 
+/// From what patterns and usual errors leave over.
+void set_spreads(const SiteProblem& site, const Ground& ground, std::vector<MeterScale>& scales) {
+  const NoiseNode& node = ground.grid[static_cast<std::size_t>(ground.none.best_node)];
+  for (std::size_t g = 0; g < scales.size(); ++g) {
+    const MeterRows& meter = ground.fit.meters[g];
+    const Eigen::VectorXd own =
+        ground.none.residual.segment(meter.offset, static_cast<Eigen::Index>(meter.rows.size()));
+    scales[g].spread =
+        spread_of(site, meter, own - meter.design.patterns * node.meters[g].pattern_mean(own));
+  }
+}
+
 }  // namespace
 
-Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
+Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
+                          std::shared_ptr<const UsualErrors> usual) {
   Ground ground;
-  std::vector<ResidualScale> scales(site.meters.size(), ResidualScale::linear);
+  std::vector<MeterScale> scales(site.meters.size());
   const auto fit_parts = parts_of(site, {Role::fit});
   Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(site.parameters.size()));
+  const UsualErrors no_errors;  // the first fit is to explain all it can by the parameters
   for (int round = 0; round < 3; ++round) {
     ground.fit = observe(site, fit_parts, scales, Patterns::modest);
     for (std::size_t g = 0; g < site.meters.size(); ++g) {
@@ -121,9 +136,12 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
               "of each; leave it out of the model's outputs or give more readings");
     }
     if (round == 0) {
+      ground.errors = no_errors.columns(ground.fit);
       ground.levels = first_levels(ground.fit);
     } else {
-      const Eigen::VectorXd left = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
+      ground.errors = ground.usual->columns(ground.fit);
+      const Eigen::VectorXd left = ground.fit.measured - ground.fit.stack(ground.none.parts_kW) -
+                                   ground.errors * start.tail(ground.errors.cols());
       auto levels =
           levels_of(ground.fit, left, round == 1 ? std::vector<NoiseLevel>{} : ground.levels);
       if (!levels) return tl::unexpected(levels.error());
@@ -136,12 +154,17 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
     if (!none) return tl::unexpected(none.error());
     ground.none = std::move(*none);
     start = ground.none.scores;
+    if (round == 1) set_spreads(site, ground, scales);
     if (round > 0) continue;
     ground.plain_kW = ground.none.parts_kW;
+    ground.usual = usual ? std::move(usual)
+                         : std::make_shared<const UsualErrors>(
+                               UsualErrors::draw(predictor, site, ground.none.theta));
+    start.conservativeResizeLike(Eigen::VectorXd::Zero(start.size() + ground.usual->count()));
     const Eigen::VectorXd modelled = ground.fit.stack(ground.none.parts_kW);
     for (std::size_t g = 0; g < scales.size(); ++g) {
       if (spread_ratio(ground.fit, g, ground.none.residual, modelled) > kSpreadRatio) {
-        scales[g] = ResidualScale::square_root;
+        scales[g].levels = ResidualScale::square_root;
       }
     }
   }
@@ -151,7 +174,7 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site) {
 }
 
 Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground) {
-  std::vector<ResidualScale> scales;
+  std::vector<MeterScale> scales;
   for (const MeterRows& meter : ground.fit.meters) scales.push_back(meter.scale);
   Observations generous = observe(site, parts_of(site, {Role::fit}), scales, Patterns::generous);
   std::vector<NoiseLevel> levels = ground.levels;
@@ -159,8 +182,10 @@ Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& groun
     generous.meters[g].design.gated = ground.fit.meters[g].design.gated;
     levels[g].pattern_sd *= kGenerous;
   }
+  Eigen::MatrixXd jacobian = ground.none.jacobian;
+  jacobian.rightCols(ground.errors.cols()) *= kGenerousErrors;
   const auto evidence = evidence_over(noise_grid(generous, levels, true), generous,
-                                      ground.none.linear_residual(), ground.none.jacobian);
+                                      ground.none.linear_residual(), jacobian);
   if (!evidence) return tl::unexpected(evidence.error());
   return evidence->log_evidence;
 }

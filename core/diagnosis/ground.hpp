@@ -2,20 +2,24 @@
 /// from.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/diagnosis/joint_fit.hpp"
 #include "core/diagnosis/observations.hpp"
 #include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/usual_errors.hpp"
 #include "core/result.hpp"
 
 namespace recald::diagnosis {
 
 /// Observations by role, noise and base fit of one version of the model.
 struct Ground {
-  Observations fit;                ///< Months to fit.
-  Observations select;             ///< Months to choose by; may be empty.
-  Observations show;               ///< Months that are kept back; may be empty.
+  Observations fit;     ///< Months to fit.
+  Observations select;  ///< Months to choose by; may be empty.
+  Observations show;    ///< Months that are kept back; may be empty.
+  std::shared_ptr<const UsualErrors> usual;
+  Eigen::MatrixXd errors;          ///< E of the months to fit.
   std::vector<NoiseLevel> levels;  ///< (m) as fitted to what the base model leaves.
   std::vector<NoiseNode> grid;
   JointFit none;  ///< Base parameters alone, at their mode.
@@ -24,7 +28,7 @@ struct Ground {
   Eigen::ArrayXXd plain_kW;
 
   [[nodiscard]] FitContext context(const SiteProblem& site) const {
-    return {site, fit, grid, grid.size() / 2};
+    return {site, fit, errors, grid, grid.size() / 2};
   }
 };
 
@@ -35,8 +39,10 @@ struct Ground {
 /// Finds scales, noise and mode by turns: the first fit finds the scales, the second the noise, the
 /// third stands.
 /// @param predictor  With the effects that the model has already.
+/// @param usual  What the model usually errs by; absent: drawn here, after the first fit.
 /// @return the ground; not_enough_data where a meter has fewer than 100 measured parts to fit; or
 ///         not_finite, not_positive_definite from the fits.
-[[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site);
+[[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
+                                        std::shared_ptr<const UsualErrors> usual = nullptr);
 
 }  // namespace recald::diagnosis

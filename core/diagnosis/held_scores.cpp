@@ -24,10 +24,13 @@ ScoreGain sum_of(const std::vector<double>& differences) {
 
 }  // namespace
 
-MonthScores HeldJudge::scores(const Eigen::ArrayXXd& parts_kW) const {
+MonthScores HeldJudge::scores(const JointFit& model) const {
   MonthScores scores(held.meters.size());
-  const Eigen::VectorXd fitted = fit.measured - fit.stack(parts_kW);
-  const Eigen::VectorXd residual = held.measured - held.stack(parts_kW);
+  const auto left_of = [&](const Observations& months) -> Eigen::VectorXd {
+    return months.measured - months.stack(model.parts_kW) - usual.columns(months) * model.usual;
+  };
+  const Eigen::VectorXd fitted = left_of(fit);
+  const Eigen::VectorXd residual = left_of(held);
   for (std::size_t g = 0; g < held.meters.size(); ++g) {
     const MeterRows& teacher = fit.meters[g];
     const MeterRows& meter = held.meters[g];

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/diagnosis/observations.hpp"
+#include "core/diagnosis/joint_fit.hpp"
+#include "core/diagnosis/usual_errors.hpp"
 
 namespace recald::diagnosis {
 
@@ -14,17 +15,18 @@ namespace recald::diagnosis {
 using MonthScores = std::vector<std::map<int, double>>;
 
 /// What the model errs by in every week and weather alike is no news in a held month: each model
-/// brings the recurring patterns that it needs on the fitted months, and only what they leave open
-/// counts as noise.
+/// brings the recurring patterns and the usual errors that it needs on the fitted months, and only
+/// what they leave open counts as noise.
 struct HeldJudge {
   const SiteProblem& site;
   const Observations& fit;             ///< Months that teach the patterns.
   const NoiseNode& node;               ///< Their noise.
   const Observations& held;            ///< Months that are scored.
   std::span<const NoiseLevel> levels;  ///< (m) noise of a held month.
+  const UsualErrors& usual;            ///< That the models were fitted with.
 
-  /// @param parts_kW  (parts x m) of the model.
-  [[nodiscard]] MonthScores scores(const Eigen::ArrayXXd& parts_kW) const;
+  /// @param model  Fitted with the same usual errors.
+  [[nodiscard]] MonthScores scores(const JointFit& model) const;
 };
 
 /// A sum over months and its standard error, the months taken as independent.

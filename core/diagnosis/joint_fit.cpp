@@ -27,14 +27,19 @@ class ScoredModel {
   [[nodiscard]] Eigen::Index theta_count() const {
     return static_cast<Eigen::Index>(theta_priors_.size());
   }
+  [[nodiscard]] Eigen::Index error_count() const { return context_.errors.cols(); }
+  [[nodiscard]] Eigen::Index eta_begin() const { return theta_count() + error_count(); }
   [[nodiscard]] Eigen::Index count() const {
-    return theta_count() + static_cast<Eigen::Index>(eta_priors_.size());
+    return eta_begin() + static_cast<Eigen::Index>(eta_priors_.size());
   }
   [[nodiscard]] std::vector<double> theta(const Eigen::VectorXd& scores) const {
     return values_at(theta_priors_, scores.head(theta_count()));
   }
   [[nodiscard]] std::vector<double> eta(const Eigen::VectorXd& scores) const {
-    return values_at(eta_priors_, scores.tail(count() - theta_count()));
+    return values_at(eta_priors_, scores.tail(count() - eta_begin()));
+  }
+  [[nodiscard]] Eigen::VectorXd usual(const Eigen::VectorXd& scores) const {
+    return scores.segment(theta_count(), error_count());
   }
   const Eigen::ArrayXXd& run(const Eigen::VectorXd& scores) {
     const std::vector<double> values = theta(scores);
@@ -42,14 +47,17 @@ class ScoredModel {
     const auto alteration = alteration_of(candidate_, facts_, eta(scores));
     return predictor_.parts_kW(values, alteration.get());
   }
+  /// Model and usual errors together.
   Eigen::VectorXd stacked(const Eigen::VectorXd& scores) {
-    return context_.observations.stack(run(scores));
+    return context_.observations.stack(run(scores)) + context_.errors * usual(scores);
   }
 
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& scores, const Eigen::VectorXd& here) {
     Eigen::MatrixXd columns(here.size(), count());
+    columns.middleCols(theta_count(), error_count()) = context_.errors;
     Eigen::VectorXd moved = scores;
     for (Eigen::Index j = 0; j < count(); ++j) {
+      if (j >= theta_count() && j < eta_begin()) continue;
       // Towards the middle of the prior: the step never leaves what is plausible.
       const double step = (scores[j] > 0.0 ? -1.0 : 1.0) * step_of(j, scores[j]);
       moved[j] = scores[j] + step;
@@ -62,7 +70,7 @@ class ScoredModel {
  private:
   [[nodiscard]] double step_of(Eigen::Index j, double score) const {
     if (j < theta_count()) return kScoreStep;
-    const auto k = static_cast<std::size_t>(j - theta_count());
+    const auto k = static_cast<std::size_t>(j - eta_begin());
     if (candidate_.parameters[k].unit != "day") return kScoreStep;
     const double days_per_score = std::abs(eta_priors_[k].at_score(score).derivative);
     return std::clamp(kDayStep_d / std::max(days_per_score, 1e-6), 1e-4, kScoreStep);
@@ -199,6 +207,7 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   if (!spread) return tl::unexpected(spread.error());
   fit.posterior = *spread;
   fit.theta = model.theta(fit.scores);
+  fit.usual = model.usual(fit.scores);
   fit.eta = model.eta(fit.scores);
   return fit;
 }

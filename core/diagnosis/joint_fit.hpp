@@ -1,8 +1,9 @@
 /// Base parameters and one candidate effect fitted together, from their original priors.
 ///
 /// Everything is a standard normal score: value = prior.at_score(u), so the prior of all scores is
-/// N(0, I) and no value ever leaves its prior. Gauss-Newton finds the mode; the evidence is
-/// Laplace's, at every node of the noise grid with the model linearised at that mode.
+/// N(0, I) and no value ever leaves its prior. What models usually err by has amounts of the same
+/// prior, fitted with the rest. Gauss-Newton finds the mode; the evidence is Laplace's, at every
+/// node of the noise grid with the model linearised at that mode.
 /// @see discrepancy.md, 3.2, stage B (i).
 #pragma once
 
@@ -24,12 +25,13 @@ struct FitOptions {
 
 /// A model linearised at its mode.
 struct JointFit {
-  Eigen::VectorXd scores;        ///< (q + r) at the mode, theta first.
+  Eigen::VectorXd scores;        ///< (q + k + r) at the mode: theta, usual errors, eta.
   std::vector<double> theta;     ///< (q)
+  Eigen::VectorXd usual;         ///< (k) amounts b of the usual errors.
   std::vector<double> eta;       ///< (r)
-  Eigen::VectorXd residual;      ///< (n) measured - modelled, on the scale.
-  Eigen::MatrixXd jacobian;      ///< (n x (q + r)) of the modelled with respect to the scores.
-  Eigen::ArrayXXd parts_kW;      ///< (parts x m) of the whole period at the mode.
+  Eigen::VectorXd residual;      ///< (n) measured - modelled - E b, on the scale.
+  Eigen::MatrixXd jacobian;      ///< (n x (q + k + r)) with respect to the scores.
+  Eigen::ArrayXXd parts_kW;      ///< (parts x m) the model at the mode, whole period, without E b.
   double log_evidence = 0.0;     ///< Over the grid.
   Eigen::VectorXd node_weights;  ///< (nodes) posterior.
   Eigen::Index best_node = 0;
@@ -45,12 +47,13 @@ struct JointFit {
 struct FitContext {
   const SiteProblem& site;
   const Observations& observations;
+  const Eigen::MatrixXd& errors;  ///< E (n x k), usual errors of these observations; k may be 0.
   const std::vector<NoiseNode>& grid;
   std::size_t reference_node;  ///< Gauss-Newton goes by this one.
 };
 
 /// @param candidate  effect == nullptr: the base model alone.
-/// @param start      (q + r) scores.
+/// @param start      (q + k + r) scores.
 /// @return the fit, converged or not; not_finite where the model leaves the numbers.
 [[nodiscard]] Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
                                            const Candidate& candidate, const Eigen::VectorXd& start,

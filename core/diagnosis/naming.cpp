@@ -229,10 +229,10 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   Naming naming;
   naming.null_threshold = look.null_threshold;
   const SiteProblem& site = data.fit.site;
-  const HeldJudge judge{site, data.fit.observations,
-                        data.fit.grid[static_cast<std::size_t>(none.best_node)], data.select,
-                        data.levels};
-  const MonthScores base_scores = judge.scores(none.parts_kW);
+  const HeldJudge judge{
+      site,        data.fit.observations, data.fit.grid[static_cast<std::size_t>(none.best_node)],
+      data.select, data.levels,           data.usual};
+  const MonthScores base_scores = judge.scores(none);
 
   naming.unknown_gain = data.unknown_log_evidence - none.log_evidence;
 
@@ -241,7 +241,7 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     auto fit = fit_jointly(predictor, data.fit, candidate,
                            start_at(none, candidate, look.candidates[i].best));
     if (!fit) return tl::unexpected(fit.error());
-    const ScoreGain gain = gain_over(judge.scores(fit->parts_kW), base_scores);
+    const ScoreGain gain = gain_over(judge.scores(*fit), base_scores);
     naming.explanations.push_back({.candidate = i,
                                    .fit = std::move(*fit),
                                    .evidence_gain = 0.0,

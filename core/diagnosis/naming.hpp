@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/diagnosis/first_look.hpp"
+#include "core/diagnosis/usual_errors.hpp"
 #include "core/executor.hpp"
 
 namespace recald::diagnosis {
@@ -67,6 +68,7 @@ struct NamingData {
   double unknown_log_evidence;         ///< L_U
   const Observations& select;          ///< Months to choose by; may be empty.
   std::span<const NoiseLevel> levels;  ///< Of the fitted noise.
+  const UsualErrors& usual;            ///< That all are fitted with.
 };
 
 [[nodiscard]] Result<Naming> name_effect(Predictor& predictor, const NamingData& data,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace recald::diagnosis {
 namespace {
@@ -13,6 +14,8 @@ constexpr int kTemperatureSplinesByPart = 5;
 constexpr int kDriverSplines = 6;
 constexpr int kSeasonSplines = 10;
 constexpr double kDaysPerDateSpline = 45.0;
+// A slow drift of the meters' own ways, in units of the other patterns.
+constexpr double kDateFactor = 0.5;
 // The electricity meter's hourly pattern was read off the meter itself: its level in each part of
 // the week says nothing about the model.
 constexpr double kElectricityPatternFactor = 15.0;
@@ -63,6 +66,7 @@ double season_days(metering::Day date) {
 struct SplineOver {
   PartValue value;
   Hats hats;
+  double factor = 1.0;  ///< Of its size, on that of the other patterns.
 };
 
 /// Knots of the whole period, whatever months are observed: what one set of months teaches can be
@@ -87,11 +91,11 @@ std::vector<SplineOver> splines_of(const SiteProblem& site, Patterns patterns) {
     add([](const DayPart& p) { return p.humidity_ratio; }, kDriverSplines);
   }
   if (site.drivers->has_wind) add([](const DayPart& p) { return p.wind_m_s; }, kDriverSplines);
-  if (patterns == Patterns::modest) return splines;
   const auto& parts = site.day_parts.parts;
   const double days = parts.back().day_index - parts.front().day_index + 1.0;
   add([](const DayPart& p) { return static_cast<double>(p.day_index); },
       std::max(3, static_cast<int>(days / kDaysPerDateSpline)));
+  splines.back().factor = patterns == Patterns::modest ? kDateFactor : 1.0;
   return splines;
 }
 
@@ -122,7 +126,7 @@ BlockDesign design_of(const SiteProblem& site, const std::vector<Eigen::Index>& 
     for (const SplineOver& s : splines) {
       hats.setZero(s.hats.count());
       s.hats.fill(s.value(part), hats);
-      design.patterns.row(i).segment(first, s.hats.count()) = hats;
+      design.patterns.row(i).segment(first, s.hats.count()) = s.factor * hats;
       first += s.hats.count();
     }
   }
@@ -141,15 +145,19 @@ Eigen::VectorXd Observations::stack(const Eigen::ArrayXXd& parts_kW) const {
   for (std::size_t g = 0; g < meters.size(); ++g) {
     const MeterRows& meter = meters[g];
     for (std::size_t i = 0; i < meter.rows.size(); ++i) {
-      stacked[meter.offset + static_cast<Eigen::Index>(i)] = on_scale(
-          parts_kW(meter.rows[i], static_cast<Eigen::Index>(g)), meter.mean_kW, meter.scale);
+      const double spread =
+          meter.scale.spread.size() == 0 ? 1.0 : meter.scale.spread[meter.rows[i]];
+      stacked[meter.offset + static_cast<Eigen::Index>(i)] =
+          on_scale(parts_kW(meter.rows[i], static_cast<Eigen::Index>(g)), meter.mean_kW,
+                   meter.scale.levels) /
+          spread;
     }
   }
   return stacked;
 }
 
 Observations observe(const SiteProblem& site, const std::vector<bool>& part_flags,
-                     std::span<const ResidualScale> scales, Patterns patterns) {
+                     std::span<const MeterScale> scales, Patterns patterns) {
   Observations result;
   const SiteFacts facts = site.facts();
   Eigen::Index offset = 0;
@@ -176,6 +184,41 @@ Observations observe(const SiteProblem& site, const std::vector<bool>& part_flag
   return result;
 }
 
+Eigen::ArrayXd spread_of(const SiteProblem& site, const MeterRows& meter,
+                         const Eigen::Ref<const Eigen::VectorXd>& residual) {
+  constexpr int kTemperatures = 3;
+  constexpr double kPriorParts = 50.0;  // the weight of all bins' mean in each
+  constexpr double kLeast = 0.25;       // of that mean: no part is known to the watt
+  const SplineOver thirds = spline_over(
+      site, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatures + 1);
+  const auto bin_of = [&](const DayPart& part) {
+    const auto& knots = thirds.hats.knots;
+    const auto above =
+        std::ranges::count_if(knots, [&](double knot) { return part.dry_bulb_C >= knot; });
+    const int third = std::clamp(static_cast<int>(above) - 1, 0, kTemperatures - 1);
+    const int workday = part.day == model::DayType::workday ? 0 : 1;
+    return static_cast<std::size_t>((part.part + kPartsPerDay * workday) * kTemperatures + third);
+  };
+  std::array<double, 2 * kPartsPerDay * kTemperatures> squares{};
+  std::array<double, 2 * kPartsPerDay * kTemperatures> counts{};
+  for (std::size_t i = 0; i < meter.rows.size(); ++i) {
+    const std::size_t bin = bin_of(site.day_parts.parts[static_cast<std::size_t>(meter.rows[i])]);
+    squares[bin] += residual[static_cast<Eigen::Index>(i)] * residual[static_cast<Eigen::Index>(i)];
+    counts[bin] += 1.0;
+  }
+  const double mean = std::max(residual.squaredNorm() / static_cast<double>(residual.size()),
+                               std::numeric_limits<double>::min());
+  Eigen::ArrayXd spread(site.day_parts.count());
+  for (Eigen::Index i = 0; i < spread.size(); ++i) {
+    const std::size_t bin = bin_of(site.day_parts.parts[static_cast<std::size_t>(i)]);
+    const double square = (squares[bin] + kPriorParts * mean) / (counts[bin] + kPriorParts);
+    spread[i] = std::sqrt(std::max(square / mean, kLeast * kLeast));
+  }
+  double logs = 0.0;
+  for (const Eigen::Index row : meter.rows) logs += std::log(spread[row]);
+  return spread / std::exp(logs / static_cast<double>(meter.rows.size()));
+}
+
 std::vector<bool> parts_of(const SiteProblem& site, std::initializer_list<Role> roles) {
   std::vector<bool> flags;
   flags.reserve(site.roles.size());
@@ -195,6 +238,30 @@ GramSystem NoiseNode::gram(const Observations& observations,
                columns.middleRows(meter.offset, static_cast<Eigen::Index>(meter.rows.size())));
   }
   return system;
+}
+
+Eigen::MatrixXd NoiseNode::solve(const Observations& observations,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  Eigen::MatrixXd solved(columns.rows(), columns.cols());
+  std::size_t next = 0;
+  for (const MeterRows& meter : observations.meters) {
+    if (meter.rows.empty()) continue;
+    const auto n = static_cast<Eigen::Index>(meter.rows.size());
+    solved.middleRows(meter.offset, n) = meters[next++].solve(columns.middleRows(meter.offset, n));
+  }
+  return solved;
+}
+
+Eigen::VectorXd NoiseNode::squared_norms(const Observations& observations,
+                                         const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(columns.cols());
+  std::size_t next = 0;
+  for (const MeterRows& meter : observations.meters) {
+    if (meter.rows.empty()) continue;
+    squares += meters[next++].squared_norms(
+        columns.middleRows(meter.offset, static_cast<Eigen::Index>(meter.rows.size())));
+  }
+  return squares;
 }
 
 double NoiseNode::log_density(const Observations& observations,

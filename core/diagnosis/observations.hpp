@@ -18,12 +18,19 @@ enum class ResidualScale { linear, square_root };
 /// square_root: 2 sqrt(m (y + m/10)) with the mean m; y below 0 counts as 0.
 [[nodiscard]] double on_scale(double power_kW, double mean_kW, ResidualScale scale);
 
+/// On which a meter's residuals have the same spread at all times.
+struct MeterScale {
+  ResidualScale levels = ResidualScale::linear;
+  /// (parts) Spread of the residuals, its geometric mean 1: powers are divided by it. Empty: 1.
+  Eigen::ArrayXd spread = {};
+};
+
 struct MeterRows {
   std::vector<Eigen::Index> rows;  ///< Parts that were measured and have a wanted role.
   BlockDesign design;              ///< Part of week and a spline in outdoor temperature.
   Eigen::Index offset = 0;         ///< Of the meter in stacked vectors.
   double mean_kW = 0.0;
-  ResidualScale scale = ResidualScale::linear;
+  MeterScale scale;
 };
 
 struct Observations {
@@ -45,7 +52,14 @@ enum class Patterns {
 /// @param scales  (m)
 /// @param part_flags  (parts) which to take.
 [[nodiscard]] Observations observe(const SiteProblem& site, const std::vector<bool>& part_flags,
-                                   std::span<const ResidualScale> scales, Patterns patterns);
+                                   std::span<const MeterScale> scales, Patterns patterns);
+
+/// How the spread of a meter's residuals goes with the part of the day, workdays and others apart,
+/// and outdoor temperature: a model errs most where most happens.
+/// @param residual  (n) of the meter's rows, recurring patterns taken out.
+/// @return (parts) for the whole period; bins of few parts are drawn towards the mean of all.
+[[nodiscard]] Eigen::ArrayXd spread_of(const SiteProblem& site, const MeterRows& meter,
+                                       const Eigen::Ref<const Eigen::VectorXd>& residual);
 
 /// Flags of the parts whose role is one of `roles`.
 [[nodiscard]] std::vector<bool> parts_of(const SiteProblem& site,
@@ -59,6 +73,12 @@ struct NoiseNode {
   /// Gram of stacked columns, summed over meters.
   [[nodiscard]] GramSystem gram(const Observations& observations,
                                 const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+  /// Sigma^-1 X of stacked columns (n x k).
+  [[nodiscard]] Eigen::MatrixXd solve(const Observations& observations,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+  /// x' Sigma^-1 x of each stacked column (k).
+  [[nodiscard]] Eigen::VectorXd squared_norms(
+      const Observations& observations, const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
   /// log N(r; 0, Sigma)
   [[nodiscard]] double log_density(const Observations& observations,
                                    const Eigen::VectorXd& residual) const;

@@ -49,7 +49,7 @@ struct Made {
 };
 
 Made made_up(const SiteProblem& site, ResidualScale scale) {
-  const std::vector<ResidualScale> scales(2, scale);
+  const std::vector<MeterScale> scales(2, MeterScale{scale});
   Made made;
   made.observations = observe(site, parts_of(site, {Role::fit}), scales, Patterns::modest);
   for (MeterRows& meter : made.observations.meters) {

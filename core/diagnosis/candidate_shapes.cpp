@@ -1,0 +1,64 @@
+#include "core/diagnosis/candidate_shapes.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace recald::diagnosis {
+namespace {
+
+/// What is scanned is no amount, even where it has a neutral value: a clock two hours off is not
+/// twice a clock one hour off.
+bool is_amount(const EffectParameter& parameter) {
+  return std::isfinite(parameter.neutral) && parameter.scan.empty();
+}
+
+AmountPrior factor_prior(const EffectParameter& parameter) {
+  const double typical = std::abs(typical_value(parameter) - parameter.neutral);
+  const Prior& prior = parameter.prior;
+  const bool one_sided = prior.min() >= parameter.neutral || prior.max() <= parameter.neutral;
+  if (!one_sided) return {AmountPriorKind::normal, std::sqrt(prior.variance()) / typical};
+  if (std::holds_alternative<UniformPrior>(prior.distribution())) {
+    return {AmountPriorKind::uniform, (prior.max() - prior.min()) / typical};
+  }
+  // Of a half-normal: its second moment about the neutral value is the scale squared.
+  const double shift = prior.mean() - parameter.neutral;
+  return {AmountPriorKind::half_normal, std::sqrt(prior.variance() + shift * shift) / typical};
+}
+
+}  // namespace
+
+double typical_value(const EffectParameter& parameter) {
+  const double mean = parameter.prior.mean();
+  const double sd = std::sqrt(parameter.prior.variance());
+  return std::abs(mean - parameter.neutral) > 0.1 * sd ? mean : parameter.neutral + sd;
+}
+
+AmountPrior amount_prior(const Candidate& candidate) {
+  for (const EffectParameter& parameter : candidate.parameters) {
+    if (is_amount(parameter)) return factor_prior(parameter);
+  }
+  return {AmountPriorKind::half_normal, 1.0};  // nothing but shapes: there or not
+}
+
+std::vector<std::vector<double>> own_shapes(const Candidate& candidate) {
+  const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
+  std::vector<std::vector<double>> shapes{{}};
+  for (std::size_t j = 0; j + days < candidate.parameters.size(); ++j) {
+    const EffectParameter& parameter = candidate.parameters[j];
+    std::vector<double> values = parameter.scan;
+    if (values.empty()) {
+      values.push_back(is_amount(parameter) ? typical_value(parameter) : parameter.prior.mean());
+    }
+    std::vector<std::vector<double>> longer;
+    for (const auto& shape : shapes) {
+      for (const double value : values) {
+        longer.push_back(shape);
+        longer.back().push_back(value);
+      }
+    }
+    shapes = std::move(longer);
+  }
+  return shapes;
+}
+
+}  // namespace recald::diagnosis
