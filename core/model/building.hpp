@@ -77,6 +77,9 @@ struct AirSystem {
   double heat_recovery = 0.0;   ///< Sensible effectiveness, 0…1.
   std::optional<double> economiser_lockout_C;  ///< Above it only minimum outdoor air; absent: none.
   std::optional<double> humidification_kg_kg;  ///< Humidity ratio held by steam; absent: none.
+  /// Of the fans' design power while rooms are heated with the handlers off by schedule; 0: heaters
+  /// in the rooms do it. Only the hourly model can tell.
+  double night_fan_share = 0.0;
 };
 
 /// Warm water at the taps.
@@ -93,6 +96,10 @@ struct Building {
   int storeys = 1;
   double storey_height_m = 3.0;
   double heat_capacity_J_m2K = 165e3;
+  // How the rooms hold that heat; only the hourly model can tell.
+  double mass_coupling = 1.0;       ///< Between mass and inner surfaces, over the standard's.
+  double core_mass_share = 1.0;     ///< Capacity per floor of rooms without outer walls, over that.
+  double air_capacity_J_m2K = 0.0;  ///< Air and furniture: follow the air at once, not the mass.
   std::vector<Surface> surfaces;
   Use use;
   HourlySchedule occupied_fraction;
@@ -104,6 +111,9 @@ struct Building {
   double heating_efficiency = 1.0;  ///< Boiler or heat exchanger, metered energy to heat.
   double cooling_loss_fraction = 0.0;
   std::optional<double> chiller_cop;  ///< Absent: district chilled water.
+  /// An own chiller's electricity per cooling: so much more per K of outdoor wet bulb. Only the
+  /// hourly model can tell.
+  double chiller_lift_per_K = 0.0;
   HotWater hot_water;
   double base_heat_kW = 0.0;  ///< Heat drawn at all hours that serves no zone.
   double ground_temperature_C = 12.0;

@@ -7,7 +7,9 @@ namespace recald::weather {
 namespace {
 
 constexpr double kSeaLevelPressure_Pa = 101325.0;
-constexpr double kMolarMassRatio = 0.621945;  // water over dry air
+constexpr double kMolarMassRatio = 0.621945;     // water over dry air
+constexpr double kClausiusClapeyron_K = 5400.0;  // d ln p / d(1/T) of water, near 10 °C
+constexpr int kWetBulbSteps = 7;
 
 }  // namespace
 
@@ -27,6 +29,19 @@ double humidity_ratio(double temperature_C, double relative_humidity, double pre
   const double vapour_Pa = relative_humidity * saturation_pressure_Pa(temperature_C);
   // A sensor that reads 60 °C at 100 % on a mountain must not divide by zero.
   return kMolarMassRatio * vapour_Pa / std::max(pressure_Pa - vapour_Pa, 0.1 * pressure_Pa);
+}
+
+double wet_bulb_C(double dry_bulb_C, double humidity_ratio, double pressure_Pa) {
+  // Newton's method from above: the balance is convex in the wet bulb.
+  constexpr double kPerRatio_K = kVaporisationHeat_J_kg / kAirHeatCapacity_J_kgK;
+  double wet_C = dry_bulb_C;
+  for (int step = 0; step < kWetBulbSteps; ++step) {
+    const double kelvin = wet_C + 273.15;
+    const double saturated = weather::humidity_ratio(wet_C, 1.0, pressure_Pa);
+    const double excess_K = wet_C - dry_bulb_C + kPerRatio_K * (saturated - humidity_ratio);
+    wet_C -= excess_K / (1.0 + kPerRatio_K * saturated * kClausiusClapeyron_K / (kelvin * kelvin));
+  }
+  return std::min(wet_C, dry_bulb_C);
 }
 
 double pressure_at_altitude_Pa(double altitude_m) {

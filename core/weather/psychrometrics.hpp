@@ -15,6 +15,10 @@ inline constexpr double kAirHeatCapacity_J_kgK = 1005.0;  ///< c_p of dry air.
 [[nodiscard]] double humidity_ratio(double temperature_C, double relative_humidity,
                                     double pressure_Pa);
 
+/// Adiabatic saturation with constant h_fg and c_p: within 0.5 K of the chart over 0…40 °C. Never
+/// above the dry bulb. @param humidity_ratio  kg/kg
+[[nodiscard]] double wet_bulb_C(double dry_bulb_C, double humidity_ratio, double pressure_Pa);
+
 /// Standard-atmosphere pressure. @see the same chapter, eq. (3).
 [[nodiscard]] double pressure_at_altitude_Pa(double altitude_m);
 

@@ -11,6 +11,8 @@ namespace {
 using weather::kAirHeatCapacity_J_kgK;
 using weather::kVaporisationHeat_J_kg;
 
+constexpr double kNightLift_K = 1.0;
+
 /// Outdoor air's share of the supply. Below the lock-out an economiser opens as far as the supply
 /// temperature asks for, which the fan's heat is still to reach.
 double outdoor_air_share(const StepOperation& operation, double least_share, double return_C,
@@ -20,6 +22,15 @@ double outdoor_air_share(const StepOperation& operation, double least_share, dou
   const double wanted = (return_C - (operation.supply_C - fan_rise_K)) / (return_C - outdoor_C);
   const double extra = std::clamp(wanted, least_share, 1.0) - least_share;
   return least_share + operation.economiser_share * extra;
+}
+
+/// Fans that carry heat to rooms whose handlers stand by schedule. They run the whole hour once the
+/// rooms ask for what the least flow brings by one kelvin.
+double night_fan_W(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
+                   double heating_W) {
+  const double whole_W = heat_capacity_J_m3K * air.supply_flow_min_m3_s * kNightLift_K;
+  const double hour_share = whole_W > 0.0 ? std::min(heating_W / whole_W, 1.0) : 0.0;
+  return 1000.0 * air.fan_design_kW * air.night_fan_share * (1.0 - running_share) * hour_share;
 }
 
 /// Handlers that stand by schedule and are called to hold a night set-point.
@@ -43,6 +54,9 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
   loads.zone_heating_W = zones.zone_heating_W;
   loads.reheat_W = zones.reheat_W;
   loads.running_share = running_share;
+  if (air.night_fan_share > 0.0) {
+    loads.fans_W += night_fan_W(air, heat_capacity_J_m3K, running_share, zones.zone_heating_W);
+  }
   if (zones.on_call_W_K > 0.0) add_on_call(air, zones, heat_capacity_J_m3K, operation, loads);
   if (running_share <= 0.0 || zones.scheduled_W_K <= 0.0) return;
 

@@ -18,6 +18,10 @@ constexpr double kCoilRelativeHumidity = 0.95;  // of air that leaves a wet coil
 constexpr double kResetFrom_C = 18.0;
 constexpr double kResetOver_K = 13.0;
 constexpr double kLeastLift_K = 1.0;  // between supply air and a closet
+// Where chillers meet their nameplates (median of the training buildings), and the least that cold
+// weather leaves of their electricity.
+constexpr double kRatedWetBulb_C = 22.0;
+constexpr double kLeastChillerCost = 0.4;
 
 /// Set-points of rooms that stand for this share of them at daytime values.
 double between(double share, double daytime, double night) {
@@ -28,6 +32,13 @@ double between(double share, double daytime, double night) {
 /// middle.
 double covered(double reach_h, double distance_h) {
   return std::clamp(reach_h - (distance_h - 0.5), 0.0, 1.0);
+}
+
+/// Electricity per cooling of an own chiller, over the nameplate's: a warmer tower, a higher lift.
+double chiller_cost(const Building& building, double wet_bulb_C) {
+  if (!building.chiller_cop) return 1.0;
+  return std::max(1.0 + building.chiller_lift_per_K * (wet_bulb_C - kRatedWetBulb_C),
+                  kLeastChillerCost);
 }
 
 double weekly_mean(const HourlySchedule& schedule) {
@@ -62,21 +73,23 @@ Hourly::Hourly(std::shared_ptr<const Drivers> drivers, const HourlyOptions& opti
     const DriverHour& h = drivers_->hours[i];
     const auto sun = drivers_->irradiance_W_m2.col(static_cast<Eigen::Index>(i));
     const bool begins = i == 0 || h.start - drivers_->hours[i - 1].start != std::chrono::hours{1};
-    hours_.push_back({.dry_bulb_C = h.dry_bulb_C,
-                      .humidity_ratio = h.humidity_ratio,
-                      .wind_m_s = h.wind_m_s,
-                      .occupied_fraction = h.occupied_fraction,
-                      .lights_W = h.lights_W,
-                      .plugs_W = h.plugs_W,
-                      .dark_share = static_cast<float>(dark_share(h)),
-                      .hours_to_start = static_cast<float>(h.hours_to_start),
-                      .hours_since_stop = static_cast<float>(h.hours_since_stop),
-                      .hours_since_start = static_cast<float>(h.hours_since_start),
-                      .hours_to_stop = static_cast<float>(h.hours_to_stop),
-                      .day_of_year = h.day_of_year,
-                      .occupied = h.occupied,
-                      .sunlit = (sun != 0.0).any(),
-                      .begins = begins});
+    hours_.push_back(
+        {.dry_bulb_C = h.dry_bulb_C,
+         .humidity_ratio = h.humidity_ratio,
+         .wind_m_s = h.wind_m_s,
+         .wet_bulb_C = weather::wet_bulb_C(h.dry_bulb_C, h.humidity_ratio, drivers_->pressure_Pa),
+         .occupied_fraction = h.occupied_fraction,
+         .lights_W = h.lights_W,
+         .plugs_W = h.plugs_W,
+         .dark_share = static_cast<float>(dark_share(h)),
+         .hours_to_start = static_cast<float>(h.hours_to_start),
+         .hours_since_stop = static_cast<float>(h.hours_since_stop),
+         .hours_since_start = static_cast<float>(h.hours_since_start),
+         .hours_to_stop = static_cast<float>(h.hours_to_stop),
+         .day_of_year = h.day_of_year,
+         .occupied = h.occupied,
+         .sunlit = (sun != 0.0).any(),
+         .begins = begins});
     for (Eigen::Index k = 0; k < sides; ++k) irradiance_W_m2_.push_back(sun[k]);
   }
 }
@@ -272,7 +285,7 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
                   .base_heat_W = 1000.0 * building_.base_heat_kW,
                   .mean_zone_C = zones.mean_air_C,
                   .hot_water_litres_share = draw_share,
-                  .cooling_cost_factor = 1.0,
+                  .cooling_cost_factor = chiller_cost(building_, hours_[hour].wet_bulb_C),
                   .heating_cost_factor = 1.0};
   if (building_.air) {
     const double always = building_.air->outdoor_air_unoccupied_fraction;

@@ -55,6 +55,7 @@ class Hourly {
     double dry_bulb_C;
     double humidity_ratio;
     double wind_m_s;
+    double wet_bulb_C;
     double occupied_fraction;
     double lights_W;
     double plugs_W;

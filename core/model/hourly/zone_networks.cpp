@@ -44,15 +44,15 @@ ZoneConductances zone_conductances(const Building& building, const Zone& zone, d
   const double opaque_W_K = std::max(zone.transmission_W_K - window_W_K, 0.0);
   const double heavy_W_K = opaque_W_K + zone.ground_W_K;  // what passes through the mass
   const double mass_per_floor = mass_surface_per_floor(building.heat_capacity_J_m2K);
-  const double floor_m2 =
-      std::max({zone.floor_share * building.floor_area_m2,
-                heavy_W_K / (kMostOfSurfaces * kSurfaceToMass_W_m2K * mass_per_floor),
-                window_W_K / (kMostOfSurfaces * kSurfaceToMass_W_m2K *
-                              (kInnerSurfacePerFloor - mass_per_floor)),
-                1.0});
+  const double coupling_W_m2K = building.mass_coupling * kSurfaceToMass_W_m2K;
+  const double floor_m2 = std::max({zone.floor_share * building.floor_area_m2,
+                                    heavy_W_K / (kMostOfSurfaces * coupling_W_m2K * mass_per_floor),
+                                    window_W_K / (kMostOfSurfaces * kSurfaceToMass_W_m2K *
+                                                  (kInnerSurfacePerFloor - mass_per_floor)),
+                                    1.0});
   const double mass_m2 = mass_per_floor * floor_m2;
   const double surface_m2 = kInnerSurfacePerFloor * floor_m2;
-  const double to_mass_W_K = kSurfaceToMass_W_m2K * mass_m2;
+  const double to_mass_W_K = coupling_W_m2K * mass_m2;
   // H_em = 1 / (1/H_op - 1/H_ms), in a form that stays finite without an envelope; the ground takes
   // its share of the same path.
   const double stretch = 1.0 / (1.0 - heavy_W_K / to_mass_W_K);
@@ -122,6 +122,8 @@ void ZoneNetworks::describe(const Building& building,
   const std::size_t count = (n + 1) / 2;
   pairs_.resize(count);
   mass_C_.resize(count * static_cast<std::size_t>(parts));
+  air_C_.resize(mass_C_.size());
+  air_store_W_K_ = building.air_capacity_J_m2K * building.floor_area_m2 / step_s;
   to_air_W_.resize(count);
   to_mass_K_.resize(count);
   aperture_m2_.assign(count * orientations.size(), ZonePair::Zero());
@@ -136,8 +138,12 @@ void ZoneNetworks::describe(const Building& building,
     pair.gain_share[place] = real ? gain_share(building, like, described - 1) : 0.0;
     pair.leakage_cm2[place] = zones_[like].leakage_cm2;
     pair.sky_loss_W[place] = zones_[like].sky_loss_W;
-    set_coefficients(zone_conductances(building, zones_[like], glazing_[like].transmission_W_K),
-                     step_s, place, pair);
+    ZoneConductances conductances =
+        zone_conductances(building, zones_[like], glazing_[like].transmission_W_K);
+    if (described > 1 && like + 1 >= described) {
+      conductances.capacity_J_K *= building.core_mass_share;
+    }
+    set_coefficients(conductances, step_s, place, pair);
     for (std::size_t k = 0; real && k < orientations.size(); ++k) {
       aperture_m2_[z / 2 * orientations.size() + k][place] = zones_[like].solar_aperture_m2[k];
     }
@@ -155,7 +161,10 @@ double ZoneNetworks::gain_share(const Building& building, std::size_t zone,
                            : even * (1.0 + moved * (1.0 - core_share) / core_share);
 }
 
-void ZoneNetworks::reset(double mass_C) { std::ranges::fill(mass_C_, ZonePair::Constant(mass_C)); }
+void ZoneNetworks::reset(double mass_C) {
+  std::ranges::fill(mass_C_, ZonePair::Constant(mass_C));
+  std::ranges::fill(air_C_, ZonePair::Constant(mass_C));
+}
 
 double ZoneNetworks::mass_C(int part, std::size_t zone) const {
   return mass_C_[static_cast<std::size_t>(part) * pairs_.size() + zone / 2]
@@ -189,12 +198,14 @@ ZoneTotals ZoneNetworks::serve_with_boxes(int part, const ZoneService& s) {
   ZonePair all_W = ZonePair::Zero();
   ZonePair air_C_sum = ZonePair::Zero();
   ZonePair* mass_C = mass_C_.data() + static_cast<std::size_t>(part) * pairs_.size();
+  ZonePair* last_air_C = air_C_.data() + static_cast<std::size_t>(part) * pairs_.size();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& z = pairs_[i];
     const ZonePair outdoor_W_K = z.leakage_cm2 * s.leakage_W_K_cm2 + z.floor_share * s.outdoor_W_K;
-    const ZonePair lost_W_K = z.air_W_K + outdoor_W_K;
-    const ZonePair source_W =
-        to_air_W_[i] + z.air_from_mass * mass_C[i] + outdoor_W_K * dry_bulb_C_;
+    const ZonePair store_W_K = z.floor_share * air_store_W_K_;
+    const ZonePair lost_W_K = z.air_W_K + outdoor_W_K + store_W_K;
+    const ZonePair source_W = to_air_W_[i] + z.air_from_mass * mass_C[i] +
+                              outdoor_W_K * dry_bulb_C_ + store_W_K * last_air_C[i];
     const ZonePair most_W_K = z.floor_share * s.most_W_K;
     const ZonePair flow_W_K = ((source_W - lost_W_K * s.cooling_C) * per_lift_K)
                                   .max(z.floor_share * s.least_W_K)
@@ -203,6 +214,7 @@ ZoneTotals ZoneNetworks::serve_with_boxes(int part, const ZoneService& s) {
     const ZonePair total_W = source_W + flow_W_K * s.supply_C;
     const ZonePair air_C = (total_W / total_W_K).max(s.heating_C);
     const ZonePair heat_W = z.counts * (total_W_K * s.heating_C - total_W).max(0.0);
+    last_air_C[i] = air_C;
     mass_C[i] = to_mass_K_[i] + z.mass_from_mass * mass_C[i] + z.mass_from_air * air_C;
 
     const ZonePair by_schedule_W_K = flow_W_K.min(most_W_K * s.scheduled_share);
@@ -230,13 +242,16 @@ ZoneTotals ZoneNetworks::serve(int part, const ZoneService& s) {
   ZonePair cold_W = ZonePair::Zero();
   ZonePair air_C_sum = ZonePair::Zero();
   ZonePair* mass_C = mass_C_.data() + static_cast<std::size_t>(part) * pairs_.size();
+  ZonePair* last_air_C = air_C_.data() + static_cast<std::size_t>(part) * pairs_.size();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& z = pairs_[i];
     const ZonePair outdoor_W_K = z.leakage_cm2 * s.leakage_W_K_cm2 + z.floor_share * s.outdoor_W_K;
-    const ZonePair lost_W_K = z.air_W_K + outdoor_W_K;
-    const ZonePair source_W =
-        to_air_W_[i] + z.air_from_mass * mass_C[i] + outdoor_W_K * dry_bulb_C_;
+    const ZonePair store_W_K = z.floor_share * air_store_W_K_;
+    const ZonePair lost_W_K = z.air_W_K + outdoor_W_K + store_W_K;
+    const ZonePair source_W = to_air_W_[i] + z.air_from_mass * mass_C[i] +
+                              outdoor_W_K * dry_bulb_C_ + store_W_K * last_air_C[i];
     const ZonePair air_C = (source_W / lost_W_K).max(s.heating_C).min(s.cooling_C);
+    last_air_C[i] = air_C;
     mass_C[i] = to_mass_K_[i] + z.mass_from_mass * mass_C[i] + z.mass_from_air * air_C;
     heat_W += z.counts * (lost_W_K * s.heating_C - source_W).max(0.0);
     cold_W += z.counts * (source_W - lost_W_K * s.cooling_C).max(0.0);

@@ -7,7 +7,9 @@
 ///
 ///     (Y + H_ve) θ_air = J + H_ve θ_e + Φ_HC,   θ_m⁺ = linear in θ_m⁻, θ_e, θ_g, gains, θ_air
 ///
-/// This is annex C of the standard to rounding, without its probe for the demand.
+/// This is annex C of the standard to rounding, without its probe for the demand. A heat capacity
+/// of air and furniture, which the standard has not, is a conductance C / Δt to the air before the
+/// step.
 /// @see ISO 13790:2008, annex C, eqs. (C.1) to (C.11), and 12.2.2
 #pragma once
 
@@ -95,7 +97,7 @@ class ZoneNetworks {
   void describe(const Building& building, std::span<const weather::Orientation> orientations,
                 double step_s, int parts);
 
-  /// Sets all masses to one temperature.
+  /// Sets all masses, and the air, to one temperature.
   void reset(double mass_C);
 
   /// Heat that the surroundings bring to all parts in this step; to be called before `serve`.
@@ -140,6 +142,8 @@ class ZoneNetworks {
   std::vector<ZonePair> mass_C_;       ///< [part * pairs + pair]
   std::vector<ZonePair> to_air_W_;     ///< By pair: J without the mass.
   std::vector<ZonePair> to_mass_K_;    ///< By pair: θ_m⁺ without mass and air.
+  std::vector<ZonePair> air_C_;        ///< [part * pairs + pair], of the step before.
+  double air_store_W_K_ = 0.0;         ///< Of air and furniture of the whole building, C / Δt.
   double dry_bulb_C_ = 0.0;
 };
 

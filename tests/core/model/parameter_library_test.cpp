@@ -51,6 +51,26 @@ TEST(ParameterLibrary, RelativeRangeOfNothingAsksForOne) {
   EXPECT_FALSE(make_parameter(**find_parameter("base_heat"), building).has_value());
 }
 
+// What the standard has not got must be neutral until it is calibrated.
+TEST(ParameterLibrary, RoomsHoldHeatAsTheStandardSaysUntilToldOtherwise) {
+  Building building = sample_building();
+  const auto value_of = [&](std::string_view name) {
+    return (*find_parameter(name))->get(building);
+  };
+  EXPECT_EQ(value_of("mass_coupling"), 1.0);
+  EXPECT_EQ(value_of("core_mass"), 1.0);
+  EXPECT_EQ(value_of("air_capacity"), 0.0);
+  EXPECT_EQ(value_of("night_fan"), 0.0);
+  EXPECT_EQ(value_of("chiller_lift"), 0.0);
+  (*find_parameter("air_capacity"))->set(building, 35.0);
+  EXPECT_DOUBLE_EQ(building.air_capacity_J_m2K, 35e3);
+  (*find_parameter("night_fan"))->set(building, 0.4);
+  EXPECT_DOUBLE_EQ(building.air->night_fan_share, 0.4);
+  building.air.reset();
+  (*find_parameter("night_fan"))->set(building, 0.4);
+  EXPECT_EQ(value_of("night_fan"), 0.0);
+}
+
 TEST(ParameterLibrary, SettleKeepsTheDeadBand) {
   Building building = sample_building();
   (*find_parameter("cooling_setpoint"))->set(building, 20.0);

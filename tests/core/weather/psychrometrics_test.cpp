@@ -37,6 +37,26 @@ TEST(HumidityRatio, MeetsThePsychrometricChart) {
   EXPECT_EQ(humidity_ratio(25.0, 0.0, kSeaLevel_Pa), 0.0);
 }
 
+// Read off the chart for sea level.
+TEST(WetBulb, MeetsThePsychrometricChart) {
+  struct Row {
+    double dry_bulb_C, relative_humidity, wet_bulb_C;
+  };
+  for (const Row& row : {Row{10.0, 0.5, 5.5}, Row{20.0, 0.5, 13.8}, Row{30.0, 0.5, 22.0},
+                         Row{35.0, 0.2, 18.9}, Row{40.0, 0.1, 18.6}}) {
+    SCOPED_TRACE(row.dry_bulb_C);
+    const double ratio = humidity_ratio(row.dry_bulb_C, row.relative_humidity, kSeaLevel_Pa);
+    EXPECT_NEAR(wet_bulb_C(row.dry_bulb_C, ratio, kSeaLevel_Pa), row.wet_bulb_C, 0.5);
+  }
+}
+
+TEST(WetBulb, IsTheDryBulbOfSaturatedAirAndNeverMore) {
+  const double saturated = humidity_ratio(20.0, 1.0, kSeaLevel_Pa);
+  EXPECT_NEAR(wet_bulb_C(20.0, saturated, kSeaLevel_Pa), 20.0, 1e-9);
+  EXPECT_EQ(wet_bulb_C(20.0, 1.1 * saturated, kSeaLevel_Pa), 20.0);
+  EXPECT_LT(wet_bulb_C(-10.0, 0.0, kSeaLevel_Pa), -10.0);
+}
+
 TEST(HumidityRatio, IsLargerWhereTheAirIsThinner) {
   EXPECT_GT(humidity_ratio(25.0, 0.5, 84'556.0), humidity_ratio(25.0, 0.5, kSeaLevel_Pa));
 }

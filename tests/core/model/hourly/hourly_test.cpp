@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/model/epc/epc.hpp"
+#include "core/weather/psychrometrics.hpp"
 #include "tests/support/allocations.hpp"
 #include "tests/support/sample_building.hpp"
 
@@ -306,6 +307,46 @@ TEST(Hourly, AnOwnChillerPaysByElectricity) {
   building.chiller_cop = 4.0;
   const Eigen::ArrayXXd own = power_of(hourly, building);
   EXPECT_LT((own.col(0) - district.col(0) - district.col(1) / 4.0).abs().maxCoeff(), 1e-9);
+}
+
+TEST(Hourly, AnOwnChillerPaysForEachKelvinOfWetBulb) {
+  Hourly hourly = make_hourly(8);
+  Building building = sample_building();
+  building.chiller_lift_per_K = 0.03;
+  const Eigen::ArrayXXd district = power_of(hourly, building);
+  building.chiller_cop = 4.0;
+  const Eigen::ArrayXXd own = power_of(hourly, building);
+  const Drivers& drivers = hourly.drivers();
+  for (std::size_t i = 0; i < drivers.hours.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double wet_C = weather::wet_bulb_C(drivers.hours[i].dry_bulb_C,
+                                             drivers.hours[i].humidity_ratio, drivers.pressure_Pa);
+    const double cost = std::max(1.0 + 0.03 * (wet_C - 22.0), 0.4);
+    ASSERT_NEAR(own(row, 0) - district(row, 0), cost * district(row, 1) / 4.0, 1e-9) << i;
+  }
+  EXPECT_TRUE((own.rightCols(2) == district.rightCols(2)).all());
+}
+
+TEST(Hourly, NightFansRunWhileRoomsAreHeatedAndOnlyThen) {
+  Hourly hourly = make_hourly(8);
+  Building building = sample_building();
+  building.air->outdoor_air_unoccupied_fraction = 0.0;
+  const Eigen::ArrayXXd plain = power_of(hourly, building);
+  building.air->night_fan_share = 0.5;
+  const Eigen::ArrayXXd fanned = power_of(hourly, building);
+  const auto& hours = hourly.drivers().hours;
+  double winter_kW = 0.0;
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double more_kW = fanned(row, 0) - plain(row, 0);
+    if (hours[i].occupied || hours[i].month == 6) {
+      ASSERT_EQ(more_kW, 0.0) << i;
+    } else {
+      winter_kW = std::max(winter_kW, more_kW);
+    }
+  }
+  EXPECT_NEAR(winter_kW, 0.5 * 35.0, 1e-9);  // a cold night: the whole hour
+  EXPECT_TRUE((fanned.rightCols(2) == plain.rightCols(2)).all());
 }
 
 TEST(Hourly, IdleHandlersThatLeakCostHeat) {

@@ -250,6 +250,90 @@ TEST(ZoneNetworks, BoxesCoolByFlowThenFloatThenReheat) {
   EXPECT_NEAR(called.on_call_return_W, 24.0 * called.on_call_W_K, 1e-6 * called.on_call_return_W);
 }
 
+// Of a room that is left at 28 °C, air and furniture are to be cooled as well as the mass.
+TEST(ZoneNetworks, AirAndFurnitureCostTheFirstHourOnly) {
+  Building building = one_zone();
+  const auto orientations = orientations_of(building);
+  const auto cold_W = [&](double air_capacity_J_m2K, int hours) {
+    building.air_capacity_J_m2K = air_capacity_J_m2K;
+    ZoneNetworks zones;
+    zones.describe(building, orientations, kHour_s, 1);
+    zones.reset(28.0);
+    double cooling_W = 0.0;
+    for (int hour = 0; hour < hours; ++hour) {
+      zones.expose({28.0, 28.0, 0.0, 1.0, {}});
+      cooling_W = zones.serve(0, {.heating_C = 10.0, .cooling_C = 24.0}).cooling_W;
+    }
+    return cooling_W;
+  };
+  // 40 kJ/(m²K) over 5000 m² by 4 K in an hour.
+  EXPECT_NEAR(cold_W(40e3, 1) - cold_W(0.0, 1), 40e3 * 5000.0 * 4.0 / kHour_s, 1e-3);
+  EXPECT_NEAR(cold_W(40e3, 2), cold_W(0.0, 2), 1e-3);
+}
+
+// A room warmer than it was has stored its gains in air and furniture until they fill.
+TEST(ZoneNetworks, AirAndFurnitureDelayTheFloatingRoom) {
+  Building building = one_zone();
+  const auto orientations = orientations_of(building);
+  const auto air_C = [&](double air_capacity_J_m2K) {
+    building.air_capacity_J_m2K = air_capacity_J_m2K;
+    ZoneNetworks zones;
+    zones.describe(building, orientations, kHour_s, 1);
+    zones.reset(20.0);
+    zones.expose({20.0, 20.0, 100e3, 1.0, {}});
+    return zones.serve_with_boxes(0, {.heating_C = 10.0, .cooling_C = 40.0, .supply_C = 13.0})
+        .mean_air_C;
+  };
+  EXPECT_GT(air_C(40e3), 20.0);
+  EXPECT_LT(air_C(40e3), 0.5 * (20.0 + air_C(0.0)));
+}
+
+TEST(ZoneNetworks, ALooserMassTakesLessAndLeavesTheAirWarmer) {
+  Building building = one_zone();
+  const auto orientations = orientations_of(building);
+  const auto after_an_hour = [&](double coupling) {
+    building.mass_coupling = coupling;
+    ZoneNetworks zones;
+    zones.describe(building, orientations, kHour_s, 1);
+    zones.reset(20.0);
+    zones.expose({20.0, 20.0, 100e3, 1.0, {}});
+    const double air_C = zones.serve(0, {.heating_C = 10.0, .cooling_C = 40.0}).mean_air_C;
+    return std::pair{air_C, zones.mass_C(0, 0)};
+  };
+  const auto [tight_air_C, tight_mass_C] = after_an_hour(1.0);
+  const auto [loose_air_C, loose_mass_C] = after_an_hour(0.3);
+  EXPECT_GT(loose_air_C, tight_air_C + 0.1);
+  EXPECT_LT(loose_mass_C, tight_mass_C);
+}
+
+// The façades come first, the core under the roof and that of the storeys below last.
+TEST(ZoneNetworks, ALighterCoreWarmsFasterAndNoOtherRoomDoes) {
+  Building building = sample_building();
+  const auto orientations = orientations_of(building);
+  const auto mass_C = [&](double core_share) {
+    building.core_mass_share = core_share;
+    ZoneNetworks zones;
+    zones.describe(building, orientations, kHour_s, 1);
+    zones.reset(20.0);
+    zones.expose({20.0, 20.0, 100e3, 1.0, {}});
+    zones.serve_with_boxes(0, {.heating_C = 10.0, .cooling_C = 40.0, .supply_C = 13.0});
+    std::vector<double> masses_C;
+    for (std::size_t z = 0; z < zones.zones(); ++z) masses_C.push_back(zones.mass_C(0, z));
+    return masses_C;
+  };
+  const auto even_C = mass_C(1.0);
+  const auto light_C = mass_C(0.2);
+  const std::size_t first_core = even_C.size() - 2;
+  for (std::size_t z = 0; z < even_C.size(); ++z) {
+    SCOPED_TRACE(z);
+    if (z < first_core) {
+      EXPECT_EQ(light_C[z], even_C[z]);
+    } else {
+      EXPECT_GT(light_C[z] - 20.0, 2.0 * (even_C[z] - 20.0));
+    }
+  }
+}
+
 // Two weeks must forget where the masses began, to the 0.01 K that ends a warm-up.
 TEST(ZoneNetworks, FourteenDaysForgetTheStart) {
   const Building building = sample_building();
