@@ -14,6 +14,7 @@
 #include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
 #include "tests/blind/population/make_case.hpp"
+#include "tests/blind/scoring/case_range.hpp"
 #include "tests/blind/scoring/seal.hpp"
 
 namespace {
@@ -33,22 +34,6 @@ struct Arguments {
 int failed(const std::string& sentence, int code = 1) {
   std::cerr << "blind_make: " << sentence << '\n';
   return code;
-}
-
-/// "3" or "3-17", counted from 1; empty for all.
-std::optional<std::pair<std::size_t, std::size_t>> range_of(const std::string& text,
-                                                            std::size_t size) {
-  if (text.empty()) return std::pair{std::size_t{1}, size};
-  std::size_t first = 0;
-  std::size_t last = 0;
-  char dash = 0;
-  char rest = 0;
-  std::istringstream words(text);
-  if (!(words >> first)) return std::nullopt;
-  last = words >> dash ? 0 : first;
-  if (dash != 0 && (dash != '-' || !(words >> last))) return std::nullopt;
-  if (words >> rest || first < 1 || first > last || last > size) return std::nullopt;
-  return std::pair{first, last};
 }
 
 /// Makes those of the plans that have no answer yet; a run that was stopped goes on where it was.
@@ -114,7 +99,7 @@ int make(const Arguments& given) {
   const auto kind = population_kind(given.population);
   if (!kind) return failed(kind.error().message, 2);
   const std::vector<CasePlan> plans = plan_population(*kind, given.seed);
-  const auto range = range_of(given.cases, plans.size());
+  const auto range = case_range_of(given.cases, plans.size());
   if (!range) {
     return failed(fmt::format("--cases {}: give one number or two with a dash, 1 to {}",
                               given.cases, plans.size()),
@@ -129,13 +114,13 @@ int make(const Arguments& given) {
     return failed(fmt::format("{} is sealed already; choose another --out", given.out.string()));
   }
   if (const auto same = claim(given); !same) return failed(same.error().message);
-  Maker maker(folders, given.out / "scratch", range->second - range->first + 1);
-  system::parallel_for(given.threads)(range->second - range->first + 1, [&](std::size_t i) {
+  Maker maker(folders, given.out / "scratch", range->size());
+  system::parallel_for(given.threads)(range->size(), [&](std::size_t i) {
     maker.make(plans[range->first - 1 + i]);
   });
   std::cerr << '\n';
   if (!maker.error().empty()) return failed(maker.error());
-  if (range->second - range->first + 1 < plans.size()) {
+  if (range->size() < plans.size()) {
     std::cout << "part of the population, not sealed\n";
     return 0;
   }

@@ -160,11 +160,9 @@ Result<void> append_result(const std::filesystem::path& file, std::string_view l
   return {};
 }
 
-Result<PendingCases> pending_cases(const std::filesystem::path& population,
-                                   const std::filesystem::path& results,
-                                   const std::string& method) {
+Result<std::vector<std::string>> cases_in(const std::filesystem::path& population) {
   auto cases = names_in(population);
-  if (!cases) return tl::unexpected(cases.error());
+  if (!cases) return cases;
   std::erase_if(*cases, [&](const std::string& name) {
     return !std::filesystem::exists(population / name / "site.toml");
   });
@@ -172,6 +170,14 @@ Result<PendingCases> pending_cases(const std::filesystem::path& population,
     return failure(ErrorCode::not_found,
                    "no case (a folder with a site.toml) in '" + population.string() + "'");
   }
+  return cases;
+}
+
+Result<PendingCases> pending_cases(const std::filesystem::path& population,
+                                   const std::filesystem::path& results,
+                                   const std::string& method) {
+  auto cases = cases_in(population);
+  if (!cases) return tl::unexpected(cases.error());
   if (!std::filesystem::exists(results)) return PendingCases{.cases = std::move(*cases)};
 
   auto log = read_results({&results, 1}, Reruns::replace);

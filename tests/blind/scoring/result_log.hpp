@@ -44,13 +44,17 @@ struct ResultLog {
 [[nodiscard]] Result<void> append_result(const std::filesystem::path& file, std::string_view line,
                                          Reruns reruns);
 
+/// Cases of the population, sorted. A case is a folder in `population` that holds a `site.toml`.
+/// @return not_found if there is none.
+[[nodiscard]] Result<std::vector<std::string>> cases_in(const std::filesystem::path& population);
+
 struct PendingCases {
   std::vector<std::string> cases;
   std::vector<std::string> torn;  ///< A sentence for a torn last line.
 };
 
-/// Cases of the population without a line of `method`, sorted. A case is a folder in `population`
-/// that holds a `site.toml`. A results file that does not exist yet holds no line.
+/// Cases of the population without a line of `method`, sorted. A results file that does not exist
+/// yet holds no line.
 /// @return not_found if the population has no case; else as `read_results`.
 [[nodiscard]] Result<PendingCases> pending_cases(const std::filesystem::path& population,
                                                  const std::filesystem::path& results,

@@ -1,0 +1,347 @@
+#include "tests/blind/running/run_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "tests/blind/running/baseline_lines.hpp"
+#include "tests/blind/running/child_process.hpp"
+#include "tests/blind/running/diagnosis_line.hpp"
+#include "tests/blind/scoring/answers.hpp"
+#include "tests/blind/scoring/case_range.hpp"
+#include "tests/blind/scoring/files.hpp"
+#include "tests/blind/scoring/gap_scores.hpp"
+#include "tests/blind/scoring/result_log.hpp"
+
+namespace recald::blind {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSeed = "1";
+constexpr int kExitUsage = 2;  // of recald, as of all its commands
+
+// Effects that change what one meter shows; the diagnosis is told which.
+constexpr std::array<std::string_view, 4> kOfOneMeter{"clock_offset", "phase_lost", "scale_fault",
+                                                      "stuck_meter"};
+
+/// What the oracle tells the diagnosis of one case.
+struct Assumed {
+  std::vector<std::string> effects;    ///< Ids.
+  std::vector<std::string> arguments;  ///< EFFECT or EFFECT:METER
+};
+
+using CaseAssumptions = std::map<std::string, Assumed>;
+
+std::string argument_of(const HiddenEffect& effect) {
+  if (std::ranges::find(kOfOneMeter, effect.effect) == kOfOneMeter.end()) return effect.effect;
+  Answer alone;
+  alone.effects = {effect};
+  return effect.effect + ":" + most_affected_meter(alone);
+}
+
+/// Cases that hide something of the catalogue.
+Result<CaseAssumptions> assumptions_from(const fs::path& answers) {
+  const auto key = read_answers(answers);
+  if (!key) return tl::unexpected(key.error());
+  CaseAssumptions all;
+  for (const auto& [case_id, answer] : *key) {
+    for (const HiddenEffect& effect : answer.effects) {
+      if (!effect.in_catalogue) continue;
+      all[case_id].effects.push_back(effect.effect);
+      all[case_id].arguments.push_back(argument_of(effect));
+    }
+  }
+  return all;
+}
+
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (fs::temp_directory_path() / "blind_run-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) != nullptr) path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code whatever;  // a folder that stays harms nothing
+    if (!path_.empty()) fs::remove_all(path_, whatever);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }  ///< Empty where none can be made.
+
+ private:
+  fs::path path_;
+};
+
+/// The last line that says anything.
+std::string last_words(const fs::path& said) {
+  const auto text = read_file(said);
+  if (!text) return "";
+  const std::size_t end = text->find_last_not_of(" \r\n");
+  if (end == std::string::npos) return "";
+  const std::size_t begin = text->find_last_of("\r\n", end);
+  return text->substr(begin == std::string::npos ? 0 : begin + 1, end - begin);
+}
+
+/// Why there is no diagnosis; empty where there is one.
+std::string failure_of(const ProcessEnd& end, double limit_s, const fs::path& said) {
+  switch (end.ending) {
+    case Ending::over_limit:
+      return fmt::format("no diagnosis within {:g} s", limit_s);
+    case Ending::killed:
+      return fmt::format("ended by signal {}", end.signal);
+    case Ending::exited:
+      if (end.exit_code == 0) return "";
+      return fmt::format("exit code {}: {}", end.exit_code, last_words(said));
+    case Ending::stopped:
+      break;
+  }
+  return "stopped";
+}
+
+class Runner {
+ public:
+  Runner(const RunRequest& request, fs::path population, CaseAssumptions assumed,
+         const std::atomic<bool>& stop, const RunObserver& observer)
+      : request_(request),
+        population_(std::move(population)),
+        assumed_(std::move(assumed)),
+        stop_(stop),
+        observer_(observer) {}
+
+  Result<RunSummary> run() {
+    if (auto listed = list_cases(); !listed) return tl::unexpected(listed.error());
+    if (scratch_.path().empty()) {
+      return failure(ErrorCode::io_failed, "cannot make a folder for temporary files");
+    }
+    if (auto asked = ask_version(); !asked) return tl::unexpected(asked.error());
+    const std::size_t threads = std::min<std::size_t>(request_.jobs, open_.size());
+    {
+      std::vector<std::jthread> workers;
+      for (std::size_t i = 0; i < threads; ++i) workers.emplace_back([this] { work(); });
+    }
+    if (error_) return tl::unexpected(*error_);
+    summary_.stopped = stop_ && summary_.done < open_.size();
+    return summary_;
+  }
+
+ private:
+  [[nodiscard]] bool is_oracle() const { return request_.method == kOracle; }
+
+  /// Those of the range without a line.
+  Result<void> list_cases() {
+    auto all = cases_in(population_);
+    if (!all) return tl::unexpected(all.error());
+    const auto range = case_range_of(request_.cases, all->size());
+    if (!range) {
+      return failure(ErrorCode::invalid_value,
+                     fmt::format("--cases {}: give one number or two with a dash, 1 to {}",
+                                 request_.cases, all->size()));
+    }
+    auto pending = pending_cases(population_, request_.results, request_.method);
+    if (!pending) return tl::unexpected(pending.error());
+    summary_.torn = std::move(pending->torn);
+    for (std::size_t i = range->first - 1; i < range->last; ++i) {
+      std::string& name = (*all)[i];
+      if (is_oracle() && !assumed_.contains(name)) continue;
+      ++summary_.cases;
+      if (std::ranges::binary_search(pending->cases, name)) open_.push_back(std::move(name));
+    }
+    summary_.found = summary_.cases - open_.size();
+    return request_.baselines ? list_baselines() : Result<void>{};
+  }
+
+  /// A run that was stopped between a baseline's line and the case's own has the former already.
+  Result<void> list_baselines() {
+    if (!fs::exists(request_.results)) return {};
+    const auto log = read_results({&request_.results, 1}, Reruns::replace);
+    if (!log) return tl::unexpected(log.error());
+    for (const CaseResult& result : log->results) there_.insert({result.case_id, result.method});
+    return {};
+  }
+
+  /// Also of the cases that fail: the scorer counts versions.
+  Result<void> ask_version() {
+    const fs::path said = scratch_.path() / "version.txt";
+    const auto end =
+        run_process({request_.program.string(), "--version"}, said, request_.limit_s, stop_);
+    if (!end) return tl::unexpected(end.error());
+    version_ = "recald " + last_words(said);
+    return {};
+  }
+
+  void work() {
+    for (std::size_t i = next_++; i < open_.size() && !stop_ && !ended_; i = next_++) {
+      const auto done = diagnose(open_[i]);
+      if (done) continue;
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+      if (!error_) error_ = Error{done.error().code, open_[i] + ": " + done.error().message};
+    }
+  }
+
+  Result<void> diagnose(const std::string& case_id) {
+    const fs::path folder = scratch_.path() / case_id;
+    std::error_code error;
+    fs::create_directory(folder, error);
+    const fs::path said = folder / "said.txt";
+    const auto end = run_process(command_of(case_id, folder), said, request_.limit_s, stop_);
+    if (!end) return tl::unexpected(end.error());
+    if (end->ending == Ending::stopped) return {};
+    if (end->ending == Ending::exited && end->exit_code == kExitUsage) {
+      return failure(ErrorCode::unsupported, "the program refuses its arguments: " +
+                                                 read_file(said).value_or(std::string()));
+    }
+    const auto noted = note(case_id, *end, folder);
+    fs::remove_all(folder, error);
+    return noted;
+  }
+
+  [[nodiscard]] std::vector<std::string> command_of(const std::string& case_id,
+                                                    const fs::path& folder) const {
+    std::vector<std::string> command{request_.program.string(),
+                                     "diagnose",
+                                     (population_ / case_id / "site.toml").string(),
+                                     "--out",
+                                     folder.string(),
+                                     "--seed",
+                                     kSeed};
+    if (!is_oracle()) return command;
+    for (const std::string& argument : assumed_.at(case_id).arguments) {
+      command.insert(command.end(), {"--assume", argument});
+    }
+    return command;
+  }
+
+  Result<void> note(const std::string& case_id, const ProcessEnd& end, const fs::path& folder) {
+    const CaseRun run{case_id, request_.method, end.wall_s, end.cpu_s, end.peak_rss_MB, version_};
+    std::string why = failure_of(end, request_.limit_s, folder / "said.txt");
+    const auto diagnosis =
+        why.empty() ? read_diagnosis(folder) : Result<Json>(failure(ErrorCode::not_found, why));
+    if (diagnosis) {
+      if (auto kept = keep(case_id, folder); !kept) return kept;
+    }
+    const auto line =
+        diagnosis ? line_of(*diagnosis, run) : Result<Json>(tl::unexpected(diagnosis.error()));
+    if (!line) why = line.error().message;
+    const std::lock_guard lock(mutex_);
+    if (request_.baselines) {
+      const auto noted = note_baselines(line ? &*diagnosis : nullptr, run, why);
+      if (!noted) return noted;
+    }
+    if (const auto noted = append(line ? *line : failure_line(run, why)); !noted) return noted;
+    ++summary_.done;
+    if (!line) ++summary_.failed;
+    if (end.ending == Ending::over_limit) ++summary_.over_limit;
+    if (observer_) observer_(summary_.done, open_.size(), summary_.failed);
+    return {};
+  }
+
+  static Result<Json> read_diagnosis(const fs::path& folder) {
+    const auto text = read_file(folder / "diagnosis.json");
+    if (!text) return failure(ErrorCode::not_found, "exit code 0, but no diagnosis.json");
+    Json diagnosis = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+    if (diagnosis.is_discarded()) return failure(ErrorCode::malformed, "diagnosis.json is no JSON");
+    return diagnosis;
+  }
+
+  [[nodiscard]] Result<void> keep(const std::string& case_id, const fs::path& folder) const {
+    if (request_.keep.empty()) return {};
+    std::error_code error;
+    fs::copy_file(folder / "diagnosis.json", request_.keep / (case_id + ".json"),
+                  fs::copy_options::overwrite_existing, error);
+    if (!error) return {};
+    return failure(ErrorCode::io_failed, "its diagnosis cannot be kept: " + error.message());
+  }
+
+  [[nodiscard]] Result<Json> line_of(const Json& diagnosis, const CaseRun& run) const {
+    return is_oracle() ? oracle_line(diagnosis, run, assumed_.at(run.case_id).effects)
+                       : diagnosis_line(diagnosis, run);
+  }
+
+  /// @param diagnosis  nullptr where there is none: then no method has anything to say.
+  Result<void> note_baselines(const Json* diagnosis, CaseRun run, const std::string& why) {
+    for (const std::string_view baseline : kBaselines) {
+      run.method = baseline;
+      if (there_.contains({run.case_id, run.method})) continue;
+      const auto line = diagnosis != nullptr ? baseline_line(*diagnosis, run)
+                                             : Result<Json>(failure_line(run, why));
+      if (!line && line.error().code == ErrorCode::not_found) {
+        ++summary_.without_baseline[run.method];
+        continue;
+      }
+      const auto noted = append(line ? *line : failure_line(run, line.error().message));
+      if (!noted) return noted;
+    }
+    return {};
+  }
+
+  [[nodiscard]] Result<void> append(const Json& line) const {
+    return append_result(request_.results,
+                         line.dump(-1, ' ', false, Json::error_handler_t::replace), Reruns::refuse);
+  }
+
+  const RunRequest& request_;
+  fs::path population_;
+  CaseAssumptions assumed_;
+  const std::atomic<bool>& stop_;
+  const RunObserver& observer_;
+  ScratchFolder scratch_;
+  std::string version_;
+  std::vector<std::string> open_;                        // cases without a line
+  std::set<std::pair<std::string, std::string>> there_;  // case and method
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> ended_ = false;  // by an error
+  std::mutex mutex_;                 // of what stands below
+  RunSummary summary_;
+  std::optional<Error> error_;
+};
+
+/// What would only show after the first diagnosis, or after the last.
+std::optional<Error> misuse_of(const RunRequest& request) {
+  const bool oracle = request.method == kOracle;
+  std::string what;
+  if (oracle == request.answers.empty()) {
+    what = oracle ? "method oracle needs --answers" : "--answers is for method oracle alone";
+  } else if (oracle && request.baselines) {
+    what = "baselines come from a diagnosis that was told nothing";
+  } else if (std::ranges::find(kBaselines, request.method) != kBaselines.end()) {
+    what = "--baselines makes the lines of " + request.method;
+  }
+  if (what.empty()) return std::nullopt;
+  return Error{ErrorCode::invalid_value, what};
+}
+
+}  // namespace
+
+Result<RunSummary> run_cases(const RunRequest& request, const std::atomic<bool>& stop,
+                             const RunObserver& observer) {
+  if (auto misuse = misuse_of(request)) return tl::unexpected(std::move(*misuse));
+  CaseAssumptions assumed;
+  if (request.method == kOracle) {
+    auto read = assumptions_from(request.answers);
+    if (!read) return tl::unexpected(read.error());
+    assumed = std::move(*read);
+  }
+  if (!request.keep.empty()) {
+    std::error_code error;
+    fs::create_directories(request.keep, error);
+    if (error) {
+      return failure(ErrorCode::io_failed,
+                     "cannot make '" + request.keep.string() + "': " + error.message());
+    }
+  }
+  const fs::path inner = request.population / "cases";
+  return Runner(request, fs::is_directory(inner) ? inner : request.population, std::move(assumed),
+                stop, observer)
+      .run();
+}
+
+}  // namespace recald::blind
