@@ -40,6 +40,7 @@ struct BlockDesign {
   Eigen::VectorXd times_h;   ///< (n) strictly increasing; gaps of any length.
   Eigen::MatrixXd patterns;  ///< Z (n x p), p may be 0; mostly zeros (one-hot, B-splines) is fast.
   std::vector<bool> gated;   ///< (n), or empty: no point is.
+  Eigen::Index drifts = 0;   ///< So many of the last patterns belong to dates and do not recur.
 };
 
 /// A = sum_i E[(Z a + u)_i^2 | r] and B = sum_i E[e_i^2 | r], unit of the residual squared.

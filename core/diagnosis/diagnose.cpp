@@ -41,6 +41,13 @@ std::vector<double> monthly_impact_kWh(const SiteProblem& site, const Eigen::Arr
   return impact;
 }
 
+double probability_of(const Naming& naming, const Candidate& candidate) {
+  const auto found = std::ranges::find_if(naming.probabilities, [&](const NameProbability& p) {
+    return p.effect == candidate.effect->id && p.meter == candidate.meter;
+  });
+  return found == naming.probabilities.end() ? 0.0 : found->probability;
+}
+
 Addition addition_of(Predictor& predictor, const SiteProblem& site,
                      const std::vector<Candidate>& candidates, const Naming& naming, Rng& rng) {
   const Explanation& e = naming.explanations[*naming.named];
@@ -48,7 +55,7 @@ Addition addition_of(Predictor& predictor, const SiteProblem& site,
                     .eta = e.fit.eta,
                     .eta_sd = {},
                     .draws = draw_effect(candidates[e.candidate], e.fit, rng),
-                    .probability = naming.probabilities.front().probability,
+                    .probability = probability_of(naming, candidates[e.candidate]),
                     .evidence_gain = e.evidence_gain,
                     .null_scale = e.null_scale,
                     .monthly_kWh = {},
@@ -100,35 +107,190 @@ Result<Pass> search(Predictor& predictor, const SiteProblem& site, const Ground&
               .gaps = gaps_of(site, now, shown)};
 }
 
+/// Of `open`, what is meant by an id such as "scale_fault:steam": indices.
+Result<std::vector<std::size_t>> meant_by(const std::string& id, const std::vector<Candidate>& open,
+                                          const SiteProblem& site, const CandidateList& list) {
+  std::vector<std::size_t> meant;
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    std::string key = open[i].key(site);
+    if (key.ends_with('@')) key.pop_back();
+    if (key == id || open[i].effect->id == id) meant.push_back(i);
+  }
+  if (!meant.empty()) return meant;
+  for (const NotIdentifiable& hidden : list.not_identifiable) {
+    if (hidden.effect == id) {
+      return failure(ErrorCode::not_found, "'" + id + "' cannot be judged here: " + hidden.why);
+    }
+  }
+  return failure(ErrorCode::not_found,
+                 "'" + id + "' is no effect of the catalogue, or one that the model has already");
+}
+
+/// Within the posterior, linearised in the scores.
+std::vector<ParameterBelief> beliefs_of(const SiteProblem& site, const JointFit& fit) {
+  constexpr double kQuantile95 = 1.6448536269514722;
+  std::vector<ParameterBelief> beliefs;
+  for (std::size_t j = 0; j < site.parameters.size(); ++j) {
+    const auto k = static_cast<Eigen::Index>(j);
+    const double reach = kQuantile95 * std::sqrt(fit.posterior.covariance(k, k));
+    const auto value = [&](double score) { return site.parameters[j].prior.at_score(score).value; };
+    beliefs.push_back({fit.theta[j], value(fit.scores[k] - reach), value(fit.scores[k] + reach)});
+  }
+  return beliefs;
+}
+
+/// The best fit of what is assumed stands as named.
+void take_as_named(Naming& naming) {
+  naming.outcome = Outcome::named;
+  naming.named = 0;
+  naming.why = "it was said to be there";
+}
+
 void take_back(const char* why, Diagnosis& result) {
   result.not_confirmed = true;
   result.outcome = Outcome::unknown;
   result.why = why;
 }
 
-/// The verdict of the first pass, unless the months kept back do not bear out what was added.
-void conclude(const SiteProblem& site, const Ground& first, const Ground& last, Diagnosis& result) {
+/// Keeps the first `count` additions, as if the search had ended there.
+void keep_first(std::size_t count, Diagnosis& result) {
+  for (std::size_t i = count; i < result.added.size(); ++i) {
+    result.warnings.push_back("'" + std::string{result.added[i].candidate.effect->title} +
+                              "' was named after the others and taken back: the months kept back "
+                              "do not bear it out.");
+  }
+  result.added.resize(count);
+  result.modelled_kW = result.passes[count].modelled_kW;
+  result.gaps = result.passes[count].gaps;
+}
+
+/// The verdict of the first pass, unless the months kept back do not bear out what was added: then
+/// the most that they do bear out.
+/// @param changes  Of each addition with all before it, against the drawings alone.
+void conclude(const std::vector<GapChange>& changes, bool assumed, Diagnosis& result) {
   const Naming& verdict = result.passes.front().naming;
   result.outcome = verdict.outcome;
   result.why = verdict.why;
   if (result.added.empty()) return;
-  if (first.show.count() == 0) {
+  if (changes.empty()) {
     take_back(
         "no reading lies in the months kept back, so nothing confirms what was named and it "
         "was taken back",
         result);
     return;
   }
-  double scale = 1.0;
-  for (const Addition& addition : result.added) scale = std::max(scale, addition.null_scale);
-  result.gap = change_of(site, first, last, scale);
-  if (!result.gap->confirmed) {
+  std::size_t confirmed = changes.size();
+  while (confirmed > 0 && !changes[confirmed - 1].confirmed) --confirmed;
+  if (assumed || confirmed == changes.size()) {
+    result.gap = changes.back();
+  } else if (confirmed > 0) {
+    result.gap = changes[confirmed - 1];
+    keep_first(confirmed, result);
+  } else {
+    result.gap = changes.back();
     take_back(
         "what was named does not foretell the months that were kept back, so it was taken "
         "back",
         result);
   }
 }
+
+/// A diagnosis on its way: the model as it stands and what was found so far.
+class Search {
+ public:
+  Search(const SiteProblem& site, const DiagnoseOptions& options)
+      : site_(site), options_(options), list_(list_candidates(site)) {
+    result_.not_identifiable = list_.not_identifiable;
+    result_.candidates = list_.candidates;
+  }
+
+  Result<void> begin() {
+    Predictor base{site_};
+    auto first = lay_ground(base, site_, errors());
+    if (!first) return tl::unexpected(first.error());
+    first_ = std::move(*first);
+    result_.parameters_before = beliefs_of(site_, first_.none);
+    result_.base_fit = gaps_of(site_, first_, judge_of(site_, first_, first_.fit));
+    if (!first_.none.converged) {
+      result_.warnings.push_back(
+          "The base calibration of the hourly model did not settle, so nothing is named: compare "
+          "[building] with the drawings and look for a meter in a wrong unit.");
+    }
+    result_.model_runs += base.runs();
+    return {};
+  }
+
+  /// One pass, and the next model where it named something. @return whether it did
+  Result<bool> turn() {
+    const std::size_t count = result_.passes.size();
+    Rng rng{options_.seed, static_cast<std::uint64_t>(count)};
+    Predictor predictor{site_, accepted_};
+    const std::vector<Candidate> open = still_open(list_, result_.added);
+    NamingRules rules = options_.rules;
+    const bool assumed = count < options_.assumed.size();
+    if (assumed) {
+      auto meant = meant_by(options_.assumed[count], open, site_, list_);
+      if (!meant) return tl::unexpected(meant.error());
+      rules.only = std::move(*meant);
+    }
+    auto pass =
+        search(predictor, site_, now(), judge_of(site_, first_, first_.show), open, rules, rng);
+    if (!pass) return tl::unexpected(pass.error());
+    if (assumed) take_as_named(pass->naming);
+    const bool named = pass->naming.outcome == Outcome::named && may_add(count);
+    if (named) result_.added.push_back(addition_of(predictor, site_, open, pass->naming, rng));
+    result_.passes.push_back(std::move(*pass));
+    result_.model_runs += predictor.runs();
+    if (!named) return false;
+    if (auto added = take_up(result_.added.back()); !added) return tl::unexpected(added.error());
+    return true;
+  }
+
+  Diagnosis end() && {
+    result_.modelled_kW = now().none.parts_kW;
+    result_.gaps = gaps_of(site_, now(), judge_of(site_, first_, first_.show));
+    result_.parameters_after = beliefs_of(site_, now().none);
+    conclude(changes_, !options_.assumed.empty(), result_);
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
+
+  [[nodiscard]] ModelErrors errors() const {
+    return options_.rules.errs_as_learnt ? ModelErrors::usual : ModelErrors::none;
+  }
+
+  [[nodiscard]] bool may_add(std::size_t count) const {
+    return count < (options_.assumed.empty() ? static_cast<std::size_t>(options_.additions_max)
+                                             : options_.assumed.size());
+  }
+
+  /// The model with one more effect, and what it does to the months kept back.
+  Result<void> take_up(const Addition& addition) {
+    accepted_.push_back(alteration_of(addition.candidate, site_.facts(), addition.eta));
+    Predictor altered{site_, accepted_};
+    auto next = lay_ground(altered, site_, errors());
+    if (!next) return tl::unexpected(next.error());
+    latest_ = std::move(*next);
+    result_.model_runs += altered.runs();
+    largest_scale_ = std::max(largest_scale_, addition.null_scale);
+    if (first_.show.count() > 0) {
+      changes_.push_back(change_of(site_, first_, *latest_, largest_scale_));
+    }
+    return {};
+  }
+
+  const SiteProblem& site_;
+  const DiagnoseOptions& options_;
+  CandidateList list_;
+  Alterations accepted_;
+  Ground first_;
+  std::optional<Ground> latest_;  ///< Of the model with what was added.
+  std::vector<GapChange> changes_;
+  double largest_scale_ = 1.0;
+  Diagnosis result_;
+};
 
 }  // namespace
 
@@ -137,52 +299,17 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   const auto go_on = [&](const char* what, double share) {
     return !observer || observer(what, share);
   };
-  Diagnosis result;
-  CandidateList list = list_candidates(site);
-  result.not_identifiable = list.not_identifiable;
-  result.candidates = list.candidates;
-
+  Search search{site, options};
   if (!go_on("calibrating the hourly model", 0.0)) return tl::unexpected(cancelled());
-  Alterations accepted;
-  Predictor base{site};
-  auto first = lay_ground(
-      base, site, options.rules.errs_as_learnt ? nullptr : std::make_shared<const UsualErrors>());
-  if (!first) return tl::unexpected(first.error());
-  result.base_fit = gaps_of(site, *first, judge_of(site, *first, first->fit));
-  if (!first->none.converged) {
-    result.warnings.push_back("The base calibration of the hourly model did not settle.");
-  }
-  const HeldJudge shown = judge_of(site, *first, first->show);
-  std::optional<Ground> latest;  // of the model with what was added
-  for (int turn = 0; turn <= options.additions_max; ++turn) {
+  if (auto begun = search.begin(); !begun) return tl::unexpected(begun.error());
+  for (int turn = 0;; ++turn) {
     if (!go_on("looking for disagreement", 0.2 + 0.15 * turn)) return tl::unexpected(cancelled());
-    Rng rng{options.seed, static_cast<std::uint64_t>(turn)};
-    Predictor predictor{site, accepted};
-    const std::vector<Candidate> open = still_open(list, result.added);
-    auto pass = search(predictor, site, latest ? *latest : *first, shown, open, options.rules, rng);
-    if (!pass) return tl::unexpected(pass.error());
-    const bool named = pass->naming.outcome == Outcome::named && turn < options.additions_max;
-    if (named) {
-      result.added.push_back(addition_of(predictor, site, open, pass->naming, rng));
-      const Addition& addition = result.added.back();
-      accepted.push_back(alteration_of(addition.candidate, site.facts(), addition.eta));
-    }
-    result.passes.push_back(std::move(*pass));
-    result.model_runs += predictor.runs();
-    if (!named) break;
-    Predictor altered{site, accepted};
-    auto next = lay_ground(altered, site, first->usual);
-    if (!next) return tl::unexpected(next.error());
-    latest = std::move(*next);
-    result.model_runs += altered.runs();
+    const auto named = search.turn();
+    if (!named) return tl::unexpected(named.error());
+    if (!*named) break;
   }
   if (!go_on("showing", 0.95)) return tl::unexpected(cancelled());
-  const Ground& last = latest ? *latest : *first;
-  result.modelled_kW = last.none.parts_kW;
-  result.gaps = gaps_of(site, last, shown);
-  conclude(site, *first, last, result);
-  result.model_runs += base.runs();
-  return result;
+  return std::move(search).end();
 }
 
 }  // namespace recald::diagnosis

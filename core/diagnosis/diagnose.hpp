@@ -19,6 +19,9 @@ struct DiagnoseOptions {
   NamingRules rules;
   int additions_max = 4;
   std::uint64_t seed = 1;
+  /// What is known to be there, "damper_stuck_open" or "scale_fault:steam": added in this order,
+  /// whatever its probability, and kept whatever the months kept back say. Nothing else is added.
+  std::vector<std::string> assumed = {};
 };
 
 /// One effect that was added, as it stood when it was.
@@ -32,6 +35,13 @@ struct Addition {
   double null_scale;
   std::vector<double> monthly_kWh;  ///< (m) with the effect minus without, mean month.
   Eigen::ArrayXXd effect_kW;        ///< (parts x m) with the effect minus without.
+};
+
+/// A base parameter as the hourly model was calibrated, in its own unit.
+struct ParameterBelief {
+  double mode;
+  double q05;
+  double q95;
 };
 
 /// One turn of the wheel.
@@ -55,6 +65,8 @@ struct Diagnosis {
   std::optional<GapChange> gap;    ///< Of the hourly model; absent where no month was held.
   bool not_confirmed = false;      ///< Effects were named, and the shown months did not agree.
   std::vector<MeterGap> base_fit;  ///< (m) the base model on the fitted months.
+  std::vector<ParameterBelief> parameters_before;  ///< (q) of the drawings alone.
+  std::vector<ParameterBelief> parameters_after;   ///< (q) with what was added.
   std::vector<std::string> warnings;
   int model_runs = 0;
 };
@@ -64,6 +76,7 @@ using Observer = std::function<bool(const char* what, double share)>;
 
 /// @return the diagnosis, whatever its outcome; or
 ///         not_enough_data  a meter has fewer than 100 measured day parts in the months to fit;
+///         not_found        an assumed effect is not in the catalogue, or not to be seen here;
 ///         not_finite, not_positive_definite from the fits; cancelled.
 [[nodiscard]] Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& options,
                                          const Observer& observer = {});

@@ -39,6 +39,8 @@ struct EffectParameter {
   /// Values at which the first look tries a shape (threshold, hour, date); empty: an amount, which
   /// the first look takes as linear around a typical value.
   std::vector<double> scan = {};
+  /// One of the scanned values and nothing between them: a calendar. Never fitted, only chosen.
+  bool choice = false;
 };
 
 /// What an effect needs before it may be a candidate.

@@ -33,8 +33,8 @@ double cvrmse_by(const SiteProblem& site, const MeterRows& rows, Eigen::Index g,
 }  // namespace
 
 HeldJudge judge_of(const SiteProblem& site, const Ground& ground, const Observations& held) {
-  return {site, ground.fit,    ground.grid[static_cast<std::size_t>(ground.none.best_node)],
-          held, ground.levels, *ground.usual};
+  return {site, ground.fit, ground.grid[static_cast<std::size_t>(ground.none.best_node)], held,
+          ground.levels};
 }
 
 std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
@@ -42,7 +42,7 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
   const JointFit& fit = ground.none;
   const Observations& held = judge.held;
   const NoiseNode& node = ground.grid[static_cast<std::size_t>(fit.best_node)];
-  const MonthScores scores = judge.scores(fit);
+  const MonthScores scores = judge.scores(fit, *ground.usual);
   std::vector<MeterGap> gaps;
   for (std::size_t g = 0; g < held.meters.size(); ++g) {
     const MeterRows& rows = held.meters[g];
@@ -78,8 +78,8 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
 GapChange change_of(const SiteProblem& site, const Ground& before, const Ground& after,
                     double null_scale) {
   const HeldJudge judge = judge_of(site, before, before.show);
-  const MonthScores old_scores = judge.scores(before.none);
-  const MonthScores new_scores = judge.scores(after.none);
+  const MonthScores old_scores = judge.scores(before.none, *before.usual);
+  const MonthScores new_scores = judge.scores(after.none, *after.usual);
   GapChange change{.before = gaps_of(site, before, judge),
                    .after = gaps_of(site, after, judge),
                    .log_score_change = gain_by_meter(new_scores, old_scores)};

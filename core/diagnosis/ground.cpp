@@ -16,6 +16,7 @@ constexpr double kGenerous = 1.5;        // patterns of the unknown model, over 
 constexpr double kGenerousErrors = 3.0;  // and its errors in the ways that the catalogue knows
 constexpr int kFirstIterations = 25;     // from the middle of the priors
 constexpr int kIterations = 8;
+constexpr int kLastIterations = 30;  // the mode that everything is compared with
 // What the anonymous patterns may be, in units of a meter's mean; the likeliest is taken.
 constexpr std::array kPatternShares{0.02, 0.06, 0.15};
 
@@ -115,59 +116,106 @@ void set_spreads(const SiteProblem& site, const Ground& ground, std::vector<Mete
   }
 }
 
+/// The base model from the middle of the priors and from the site's second start: the likelier.
+Result<JointFit> first_fit(Predictor& predictor, const SiteProblem& site, const Ground& ground) {
+  const FitContext context = ground.context(site);
+  const FitOptions options{.iterations_max = kFirstIterations, .damped = true};
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(site.parameters.size()));
+  auto best = fit_jointly(predictor, context, Candidate{}, start, options);
+  if (!best || site.second_start.size() == 0) return best;
+  start.head(site.second_start.size()) = site.second_start;
+  auto other = fit_jointly(predictor, context, Candidate{}, start, options);
+  if (!other) return other;
+  return other->log_density > best->log_density ? std::move(other) : std::move(best);
+}
+
+Result<void> require_parts(const SiteProblem& site, const Observations& fit) {
+  for (std::size_t g = 0; g < site.meters.size(); ++g) {
+    const std::size_t measured = fit.meters[g].rows.size();
+    if (measured >= kLeastParts) continue;
+    return failure(ErrorCode::not_enough_data,
+                   "meter '" + site.meters[g].id + "' has " + std::to_string(measured) +
+                       " measured four-hour parts in the months to fit, and a diagnosis needs 100 "
+                       "of each; leave it out of the model's outputs or give more readings");
+  }
+  return {};
+}
+
+/// Which meters err in proportion to what they show.
+void set_levels_scale(const Ground& ground, std::vector<MeterScale>& scales) {
+  const Eigen::VectorXd modelled = ground.fit.stack(ground.none.parts_kW);
+  for (std::size_t g = 0; g < scales.size(); ++g) {
+    if (spread_ratio(ground.fit, g, ground.none.residual, modelled) > kSpreadRatio) {
+      scales[g].levels = ResidualScale::square_root;
+    }
+  }
+}
+
+/// The usual errors at the present mode: base parameters move when errors join them, and the
+/// errors' shapes with them. @return scores to start from
+Eigen::VectorXd draw_errors(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
+                            Ground& ground) {
+  ground.usual = std::make_shared<const UsualErrors>(
+      errors == ModelErrors::usual ? UsualErrors::draw(predictor, site, ground.none.theta)
+                                   : UsualErrors{});
+  ground.errors = ground.usual->columns(ground.fit);
+  Eigen::VectorXd start = ground.none.scores;
+  if (start.size() != std::ssize(site.parameters) + ground.usual->count()) {
+    start.conservativeResizeLike(
+        Eigen::VectorXd::Zero(std::ssize(site.parameters) + ground.usual->count()));
+  }
+  return start;
+}
+
+/// Noise of what the present mode leaves. @param last  Near the levels known, and a whole grid.
+Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last) {
+  const Eigen::VectorXd left = ground.fit.measured - ground.fit.stack(ground.none.parts_kW) -
+                               ground.errors * start.tail(ground.errors.cols());
+  auto levels = levels_of(ground.fit, left, last ? ground.levels : std::vector<NoiseLevel>{});
+  if (!levels) return tl::unexpected(levels.error());
+  ground.levels = std::move(*levels);
+  set_gates(ground.fit, left, ground.levels);
+  ground.grid = noise_grid(ground.fit, ground.levels, last);
+  return {};
+}
+
 }  // namespace
 
-Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
-                          std::shared_ptr<const UsualErrors> usual) {
+Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelErrors errors) {
   Ground ground;
   std::vector<MeterScale> scales(site.meters.size());
   const auto fit_parts = parts_of(site, {Role::fit});
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(site.parameters.size()));
-  const UsualErrors no_errors;  // the first fit is to explain all it can by the parameters
-  for (int round = 0; round < 3; ++round) {
+  ground.fit = observe(site, fit_parts, scales, Patterns::modest);
+  if (auto enough = require_parts(site, ground.fit); !enough) {
+    return tl::unexpected(enough.error());
+  }
+  ground.errors = UsualErrors{}.columns(ground.fit);  // first the parameters explain all they can
+  ground.levels = first_levels(ground.fit);
+  ground.grid = noise_grid(ground.fit, ground.levels, false);
+  auto plain = first_fit(predictor, site, ground);
+  if (!plain) return tl::unexpected(plain.error());
+  ground.none = std::move(*plain);
+  ground.plain_kW = ground.none.parts_kW;
+  set_levels_scale(ground, scales);
+
+  for (const bool last : {false, true}) {
     ground.fit = observe(site, fit_parts, scales, Patterns::modest);
-    for (std::size_t g = 0; g < site.meters.size(); ++g) {
-      const std::size_t measured = ground.fit.meters[g].rows.size();
-      if (measured >= kLeastParts) continue;
-      return failure(
-          ErrorCode::not_enough_data,
-          "meter '" + site.meters[g].id + "' has " + std::to_string(measured) +
-              " measured four-hour parts in the months to fit, and a diagnosis needs 100 "
-              "of each; leave it out of the model's outputs or give more readings");
+    const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
+    if (auto learnt = learn_noise(ground, start, last); !learnt) {
+      return tl::unexpected(learnt.error());
     }
-    if (round == 0) {
-      ground.errors = no_errors.columns(ground.fit);
-      ground.levels = first_levels(ground.fit);
-    } else {
-      ground.errors = ground.usual->columns(ground.fit);
-      const Eigen::VectorXd left = ground.fit.measured - ground.fit.stack(ground.none.parts_kW) -
-                                   ground.errors * start.tail(ground.errors.cols());
-      auto levels =
-          levels_of(ground.fit, left, round == 1 ? std::vector<NoiseLevel>{} : ground.levels);
-      if (!levels) return tl::unexpected(levels.error());
-      ground.levels = std::move(*levels);
-      set_gates(ground.fit, left, ground.levels);
-    }
-    ground.grid = noise_grid(ground.fit, ground.levels, round == 2);
     auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
-                            {.iterations_max = round == 0 ? kFirstIterations : kIterations});
+                            {.iterations_max = kIterations});
     if (!none) return tl::unexpected(none.error());
     ground.none = std::move(*none);
-    start = ground.none.scores;
-    if (round == 1) set_spreads(site, ground, scales);
-    if (round > 0) continue;
-    ground.plain_kW = ground.none.parts_kW;
-    ground.usual = usual ? std::move(usual)
-                         : std::make_shared<const UsualErrors>(
-                               UsualErrors::draw(predictor, site, ground.none.theta));
-    start.conservativeResizeLike(Eigen::VectorXd::Zero(start.size() + ground.usual->count()));
-    const Eigen::VectorXd modelled = ground.fit.stack(ground.none.parts_kW);
-    for (std::size_t g = 0; g < scales.size(); ++g) {
-      if (spread_ratio(ground.fit, g, ground.none.residual, modelled) > kSpreadRatio) {
-        scales[g].levels = ResidualScale::square_root;
-      }
-    }
+    if (!last) set_spreads(site, ground, scales);
   }
+  // Under the final noise the mode has moved once more.
+  const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
+  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
+                          {.iterations_max = kLastIterations});
+  if (!none) return tl::unexpected(none.error());
+  ground.none = std::move(*none);
   ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
   ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
   return ground;

@@ -13,14 +13,20 @@
 
 namespace recald::diagnosis {
 
+/// What the model is taken to err by, besides its parameters and its noise.
+enum class ModelErrors {
+  usual,  ///< What was learnt of models where nothing was hidden.
+  none,   ///< Nothing: the model made the data itself (tests).
+};
+
 /// Observations by role, noise and base fit of one version of the model.
 struct Ground {
-  Observations fit;     ///< Months to fit.
-  Observations select;  ///< Months to choose by; may be empty.
-  Observations show;    ///< Months that are kept back; may be empty.
-  std::shared_ptr<const UsualErrors> usual;
-  Eigen::MatrixXd errors;          ///< E of the months to fit.
-  std::vector<NoiseLevel> levels;  ///< (m) as fitted to what the base model leaves.
+  Observations fit;                          ///< Months to fit.
+  Observations select;                       ///< Months to choose by; may be empty.
+  Observations show;                         ///< Months that are kept back; may be empty.
+  std::shared_ptr<const UsualErrors> usual;  ///< Drawn at a mode near the last one.
+  Eigen::MatrixXd errors;                    ///< E of the months to fit.
+  std::vector<NoiseLevel> levels;            ///< (m) as fitted to what the base model leaves.
   std::vector<NoiseNode> grid;
   JointFit none;  ///< Base parameters alone, at their mode.
   /// (parts x m) kW: the base model alone, fitted by nearly white noise. What the anonymous terms
@@ -39,10 +45,9 @@ struct Ground {
 /// Finds scales, noise and mode by turns: the first fit finds the scales, the second the noise, the
 /// third stands.
 /// @param predictor  With the effects that the model has already.
-/// @param usual  What the model usually errs by; absent: drawn here, after the first fit.
 /// @return the ground; not_enough_data where a meter has fewer than 100 measured parts to fit; or
 ///         not_finite, not_positive_definite from the fits.
 [[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
-                                        std::shared_ptr<const UsualErrors> usual = nullptr);
+                                        ModelErrors errors = ModelErrors::usual);
 
 }  // namespace recald::diagnosis

@@ -22,14 +22,32 @@ ScoreGain sum_of(const std::vector<double>& differences) {
   return {sum, std::sqrt(n * variance)};
 }
 
+/// What the fitted months leave open of the usual errors' amounts: a root of their covariance.
+Eigen::MatrixXd root_of_errors(const JointFit& model) {
+  const Eigen::Index k = model.usual.size();
+  const auto q = static_cast<Eigen::Index>(model.theta.size());
+  if (k == 0) return Eigen::MatrixXd(0, 0);
+  return model.posterior.covariance.block(q, q, k, k).llt().matrixL();
+}
+
+/// A drift is not learnt from other months, and the errors' amounts are not known to the digit.
+/// @param errors  (n x k) one sd of each, in units of the patterns left open.
+void leave_open(BlockDesign& month, const Eigen::MatrixXd& errors) {
+  Eigen::MatrixXd patterns(month.patterns.rows(), month.patterns.cols() + errors.cols());
+  patterns << month.patterns, errors;
+  patterns.middleCols(month.patterns.cols() - month.drifts, month.drifts) /= kPatternsLeftOpen;
+  month.patterns = std::move(patterns);
+}
+
 }  // namespace
 
-MonthScores HeldJudge::scores(const JointFit& model) const {
+MonthScores HeldJudge::scores(const JointFit& model, const UsualErrors& usual) const {
   MonthScores scores(held.meters.size());
   const auto left_of = [&](const Observations& months) -> Eigen::VectorXd {
     return months.measured - months.stack(model.parts_kW) - usual.columns(months) * model.usual;
   };
   const Eigen::VectorXd fitted = left_of(fit);
+  const Eigen::MatrixXd open_errors = usual.columns(held) * root_of_errors(model);
   const Eigen::VectorXd residual = left_of(held);
   for (std::size_t g = 0; g < held.meters.size(); ++g) {
     const MeterRows& teacher = fit.meters[g];
@@ -46,10 +64,14 @@ MonthScores HeldJudge::scores(const JointFit& model) const {
       while (end < meter.rows.size() && month_at(end) == month_at(begin)) ++end;
       const auto first = static_cast<Eigen::Index>(begin);
       const auto n = static_cast<Eigen::Index>(end - begin);
-      const BlockDesign month{
-          meter.design.times_h.segment(first, n), meter.design.patterns.middleRows(first, n), {}};
+      BlockDesign month{meter.design.times_h.segment(first, n),
+                        meter.design.patterns.middleRows(first, n),
+                        {},
+                        meter.design.drifts};
+      const Eigen::VectorXd expected = month.patterns * patterns;
+      leave_open(month, open_errors.middleRows(meter.offset + first, n) / level.pattern_sd);
       scores[g][month_at(begin)] = BlockNoise{month, level}.marginal_log_density(
-          residual.segment(meter.offset + first, n) - month.patterns * patterns);
+          residual.segment(meter.offset + first, n) - expected);
     }
   }
   return scores;

@@ -23,10 +23,9 @@ struct HeldJudge {
   const NoiseNode& node;               ///< Their noise.
   const Observations& held;            ///< Months that are scored.
   std::span<const NoiseLevel> levels;  ///< (m) noise of a held month.
-  const UsualErrors& usual;            ///< That the models were fitted with.
 
-  /// @param model  Fitted with the same usual errors.
-  [[nodiscard]] MonthScores scores(const JointFit& model) const;
+  /// @param usual  The usual errors that the model was fitted with.
+  [[nodiscard]] MonthScores scores(const JointFit& model, const UsualErrors& usual) const;
 };
 
 /// A sum over months and its standard error, the months taken as independent.

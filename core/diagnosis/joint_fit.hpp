@@ -20,6 +20,9 @@ namespace recald::diagnosis {
 
 struct FitOptions {
   int iterations_max = 8;
+  /// Failing steps turn towards steepest ascent instead of being halved: slower, and surer from
+  /// afar.
+  bool damped = false;
   double small_gain = 0.05;  ///< Stop when an iteration gains less log posterior density.
 };
 
@@ -32,7 +35,9 @@ struct JointFit {
   Eigen::VectorXd residual;      ///< (n) measured - modelled - E b, on the scale.
   Eigen::MatrixXd jacobian;      ///< (n x (q + k + r)) with respect to the scores.
   Eigen::ArrayXXd parts_kW;      ///< (parts x m) the model at the mode, whole period, without E b.
+  double log_density = 0.0;      ///< Posterior of the scores at the reference node, but a constant.
   double log_evidence = 0.0;     ///< Over the grid.
+  double log_likelihood = 0.0;   ///< Of all scores at the mode, at the best node.
   Eigen::VectorXd node_weights;  ///< (nodes) posterior.
   Eigen::Index best_node = 0;
   GaussianPosterior posterior;  ///< Of the scores at the best node.

@@ -102,6 +102,13 @@ Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const
   return start;
 }
 
+/// sum |with - without| / sum without, of the meter where it is largest.
+double largest_move(const Eigen::ArrayXXd& with_kW, const Eigen::ArrayXXd& without_kW) {
+  const Eigen::ArrayXd moved = (with_kW - without_kW).abs().colwise().sum().transpose();
+  const Eigen::ArrayXd whole = without_kW.abs().colwise().sum().transpose();
+  return (moved / whole.max(1e-9)).maxCoeff();
+}
+
 bool is_at_truncation(const Candidate& candidate, const JointFit& fit) {
   for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
     const Prior& prior = candidate.parameters[j].prior;
@@ -169,16 +176,40 @@ std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& ex
   return list;
 }
 
+/// What every name stands on.
+struct Grounds {
+  bool settled;  ///< The base calibration is at its mode.
+  int months;    ///< With readings.
+};
+
+int months_read(const SiteProblem& site) {
+  std::set<int> months;
+  for (Eigen::Index i = 0; i < site.measured_parts_kW.rows(); ++i) {
+    if (site.measured_parts_kW.row(i).isFinite().any()) {
+      months.insert(site.day_parts.parts[static_cast<std::size_t>(i)].month);
+    }
+  }
+  return static_cast<int>(months.size());
+}
+
 /// What keeps an explanation from being named; empty where nothing does.
-std::string objection(const Explanation& e, const Naming& naming, const NamingRules& rules) {
+std::string objection(const Explanation& e, const Grounds& grounds, const Naming& naming,
+                      const NamingRules& rules) {
   const double least = std::max(rules.least_evidence, naming.null_threshold);
   if (e.evidence_gain / e.null_scale < least) {
     return "its evidence is no stronger than where nothing is hidden";
   }
+  if (grounds.months < rules.least_months) {
+    return std::to_string(grounds.months) +
+           " months of readings are too few to tell a season from "
+           "an effect: most of a year is needed";
+  }
+  if (!grounds.settled) return "the base calibration of the hourly model did not settle";
   if (e.first_look < naming.null_threshold) return "the residuals alone do not speak for it";
-  if (e.selected_gain < -rules.most_against * e.null_scale) {
+  if (e.selected_gain < -rules.most_against * e.null_scale - 2.0 * e.selected_se) {
     return "the months that were held for choosing speak against it";
   }
+  if (e.move < rules.least_move) return "it would move no meter by more than a trifle";
   if (e.at_truncation) return "its size runs against the end of what was thought possible";
   return {};
 }
@@ -221,6 +252,27 @@ void decide(Naming& naming, const NamingRules& rules) {
   naming.why = "no effect is supported strongly enough";
 }
 
+void sort_by_evidence(std::vector<Explanation>& explanations) {
+  std::ranges::stable_sort(explanations, std::greater{},
+                           [](const Explanation& e) { return e.evidence_gain / e.null_scale; });
+}
+
+/// By how much the base model alone gains when it starts where the best rivals have led its
+/// parameters: what a rival owes to a better mode of the base model is none of its own.
+Result<double> better_none(Predictor& predictor, const FitContext& context, const JointFit& none,
+                           const std::vector<Explanation>& explanations) {
+  constexpr std::size_t kRestarts = 3;
+  double best = none.log_evidence;
+  for (std::size_t i = 0; i < std::min(kRestarts, explanations.size()); ++i) {
+    if (explanations[i].evidence_gain <= 0.0) break;
+    const Eigen::VectorXd start = explanations[i].fit.scores.head(none.scores.size());
+    const auto again = fit_jointly(predictor, context, Candidate{}, start);
+    if (!again) return tl::unexpected(again.error());
+    best = std::max(best, again->log_evidence);
+  }
+  return best - none.log_evidence;
+}
+
 }  // namespace
 
 Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const JointFit& none,
@@ -229,19 +281,22 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   Naming naming;
   naming.null_threshold = look.null_threshold;
   const SiteProblem& site = data.fit.site;
-  const HeldJudge judge{
-      site,        data.fit.observations, data.fit.grid[static_cast<std::size_t>(none.best_node)],
-      data.select, data.levels,           data.usual};
-  const MonthScores base_scores = judge.scores(none);
+  const HeldJudge judge{site, data.fit.observations,
+                        data.fit.grid[static_cast<std::size_t>(none.best_node)], data.select,
+                        data.levels};
+  const MonthScores base_scores = judge.scores(none, data.usual);
 
+  const Grounds grounds{none.converged, months_read(site)};
   naming.unknown_gain = data.unknown_log_evidence - none.log_evidence;
 
-  for (const std::size_t i : survivors_of(look, candidates, rules)) {
+  const std::vector<std::size_t> rivals =
+      rules.only.empty() ? survivors_of(look, candidates, rules) : rules.only;
+  for (const std::size_t i : rivals) {
     const Candidate& candidate = candidates[i];
     auto fit = fit_jointly(predictor, data.fit, candidate,
                            start_at(none, candidate, look.candidates[i].best));
     if (!fit) return tl::unexpected(fit.error());
-    const ScoreGain gain = gain_over(judge.scores(*fit), base_scores);
+    const ScoreGain gain = gain_over(judge.scores(*fit, data.usual), base_scores);
     naming.explanations.push_back({.candidate = i,
                                    .fit = std::move(*fit),
                                    .evidence_gain = 0.0,
@@ -253,12 +308,20 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
                                    .objection = {}});
     Explanation& e = naming.explanations.back();
     e.evidence_gain = e.fit.log_evidence - none.log_evidence;
+    e.likelihood_gain = e.fit.log_likelihood - none.log_likelihood;
     e.at_truncation = is_at_truncation(candidate, e.fit);
-    e.objection = objection(e, naming, rules);
+    e.move = largest_move(e.fit.parts_kW, predictor.parts_kW(e.fit.theta));
     e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
   }
-  std::ranges::stable_sort(naming.explanations, std::greater{},
-                           [](const Explanation& e) { return e.evidence_gain / e.null_scale; });
+  sort_by_evidence(naming.explanations);
+  const auto better = better_none(predictor, data.fit, none, naming.explanations);
+  if (!better) return tl::unexpected(better.error());
+  naming.unknown_gain -= *better;
+  for (Explanation& e : naming.explanations) {
+    e.evidence_gain -= *better;
+    e.objection = objection(e, grounds, naming, rules);
+  }
+  sort_by_evidence(naming.explanations);
   naming.probabilities =
       probabilities_of(naming.explanations, candidates, naming.unknown_gain, rules);
   decide(naming, rules);

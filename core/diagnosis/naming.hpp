@@ -21,27 +21,33 @@ struct NamingRules {
   double unknown_scale = 20.0;  ///< The unknown model's evidence is divided by it.
   bool errs_as_learnt = true;   ///< False: the model is exact and every null scale 1 (tests).
   double least_probability = 0.8;
-  double most_against = 1.0;      ///< Nats in units of the null scale, on the months to choose by.
-  double least_evidence = 5.0;    ///< (L_k - L_none) / null scale, or the null threshold if larger.
+  double most_against = 1.0;     ///< Nats in units of the null scale, on the months to choose by,
+                                 ///< beyond two standard errors.
+  double least_evidence = 10.0;  ///< (L_k - L_none) / null scale, or the null threshold if larger.
+  int least_months = 10;         ///< With readings: in less, a season looks like an effect.
+  double least_move = 0.003;     ///< Of some meter's energy, sum of what it moves a four-hour part.
   double confusable_share = 0.1;  ///< Probability of each member of a confusable set.
   double unknown_probability = 0.5;
   std::size_t survivors_min = 8;
-  double survivor_gap = 0.5;  ///< Of the first look below the best, by null scale.
+  double survivor_gap = 1.0;  ///< Of the first look below the best, by null scale.
   double prior_none = 0.5;
   double prior_unknown = 0.1;
+  std::vector<std::size_t> only = {};  ///< Candidates to fit; empty: those that the looks favour.
 };
 
 /// A rival explanation after its fit.
 struct Explanation {
-  std::size_t candidate;  ///< Index into the list.
-  JointFit fit;           ///< Without its Jacobian.
-  double evidence_gain;   ///< L_k - L_none, nats.
-  double selected_gain;   ///< Log score on the months to choose by, above none's.
-  double selected_se;     ///< Of that, by month.
-  double null_scale;      ///< By which such gains are inflated where nothing is hidden.
-  double first_look;      ///< Log Bayes factor of the first look.
-  bool at_truncation;     ///< A posterior piled at an end that is no physical end.
-  std::string objection;  ///< What keeps it from being named, in words; empty: nothing.
+  std::size_t candidate;         ///< Index into the list.
+  JointFit fit;                  ///< Without its Jacobian.
+  double evidence_gain;          ///< L_k - L_none, nats.
+  double likelihood_gain = 0.0;  ///< Log likelihood at the mode above none's, nats.
+  double selected_gain;          ///< Log score on the months to choose by, above none's.
+  double selected_se;            ///< Of that, by month.
+  double null_scale;             ///< By which such gains are inflated where nothing is hidden.
+  double first_look;             ///< Log Bayes factor of the first look.
+  double move = 0.0;             ///< Share of the energy of the meter that it moves most.
+  bool at_truncation;            ///< A posterior piled at an end that is no physical end.
+  std::string objection;         ///< What keeps it from being named, in words; empty: nothing.
 };
 
 struct NameProbability {

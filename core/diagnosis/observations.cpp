@@ -130,6 +130,7 @@ BlockDesign design_of(const SiteProblem& site, const std::vector<Eigen::Index>& 
       first += s.hats.count();
     }
   }
+  design.drifts = splines.back().hats.count();  // the dates
   return design;
 }
 

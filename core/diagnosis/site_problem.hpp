@@ -25,6 +25,9 @@ struct SiteProblem {
   model::Building nominal;
   std::vector<const model::ParameterDefinition*> definitions;  ///< (q)
   std::vector<Parameter> parameters;                           ///< (q) with their original priors.
+  /// (q) scores of a second place from which the base model is fitted, beside the middle of the
+  /// priors; empty: none.
+  Eigen::VectorXd second_start;
   std::shared_ptr<const model::Drivers> drivers;
   std::vector<MeterData> meters;  ///< (m)
   Eigen::ArrayXXd measured_kW;    ///< (hours x m) NaN where not measured.

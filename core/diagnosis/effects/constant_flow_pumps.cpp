@@ -82,7 +82,8 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .unit = "1: all year, 2: warm months, 3: cold months",
            .prior = UniformPrior{0.5, 3.5},
            .neutral = std::numeric_limits<double>::quiet_NaN(),
-           .scan = {1.0, 2.0, 3.0}}};
+           .scan = {1.0, 2.0, 3.0},
+           .choice = true}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,

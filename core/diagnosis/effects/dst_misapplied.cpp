@@ -1,4 +1,6 @@
 /// A logger that changes its clock when the building does not, or the other way round.
+#include <algorithm>
+#include <chrono>
 #include <cstddef>
 
 #include "core/diagnosis/effect.hpp"
@@ -10,10 +12,39 @@ Effect dst_misapplied();
 
 namespace {
 
+using metering::Day;
+
+/// The usual summer time of the place's half of the world, for a site whose own clock never
+/// changes: the second Sunday of March to the first of November west of the Atlantic, the last ones
+/// of March and October elsewhere.
+bool is_summer_elsewhere(Day date, bool western) {
+  using namespace std::chrono;  // NOLINT: calendar literals
+  const year y = date.year();
+  const Day begin =
+      western ? Day{sys_days{y / March / Sunday[2]}} : Day{sys_days{y / March / Sunday[last]}};
+  const Day end =
+      western ? Day{sys_days{y / November / Sunday[1]}} : Day{sys_days{y / October / Sunday[last]}};
+  return date >= begin && date < end;
+}
+
+/// Local noon comes late in the UTC day there.
+bool is_western(const model::DriverHour& hour) {
+  const auto utc_hour =
+      std::chrono::hh_mm_ss{hour.start.time_since_epoch() -
+                            std::chrono::floor<std::chrono::days>(hour.start).time_since_epoch()}
+          .hours()
+          .count();
+  const auto ahead = (hour.local_hour - utc_hour + 36) % 24 - 12;  // -12 ... 11
+  return ahead <= -3;
+}
+
 /// All meters of a logger share its clock, so `record` does not ask which one it has.
 class DstMisapplied final : public model::hourly::Alteration {
  public:
-  explicit DstMisapplied(double offset_hours) : offset_hours_(offset_hours) {}
+  DstMisapplied(const model::Drivers& drivers, double offset_hours)
+      : offset_hours_(offset_hours),
+        site_changes_(std::ranges::any_of(drivers.hours, &model::DriverHour::daylight_saving)),
+        western_(!drivers.hours.empty() && is_western(drivers.hours.front())) {}
 
   void record(std::span<const model::DriverHour> hours, int /*meter*/,
               std::span<double> power_kW) const override {
@@ -21,12 +52,18 @@ class DstMisapplied final : public model::hourly::Alteration {
     const std::size_t steps_per_hour = power_kW.size() / hours.size();
     const std::vector<double> shifted = shifted_record(hours, power_kW, offset_hours_);
     for (std::size_t i = 0; i < power_kW.size(); ++i) {
-      if (hours[i / steps_per_hour].daylight_saving) power_kW[i] = shifted[i];
+      if (is_summer(hours[i / steps_per_hour])) power_kW[i] = shifted[i];
     }
   }
 
  private:
+  [[nodiscard]] bool is_summer(const model::DriverHour& hour) const {
+    return site_changes_ ? hour.daylight_saving : is_summer_elsewhere(hour.date, western_);
+  }
+
   double offset_hours_;
+  bool site_changes_;
+  bool western_;
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts&) {
@@ -37,9 +74,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {-1.0, 1.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
-  return std::make_unique<DstMisapplied>(values[0]);
+std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
+                                                std::span<const double> values, int) {
+  return std::make_unique<DstMisapplied>(facts.drivers, values[0]);
 }
 
 }  // namespace
@@ -51,8 +88,8 @@ Effect dst_misapplied() {
               "From March to November all readings stand one hour off: the logger's clock "
               "and the building's do not agree about daylight saving.",
           .physics =
-              "y(t + D) while daylight saving is on, all meters; y recorded power in kW, D "
-              "in h",
+              "y(t + D) while daylight saving is on, here or, where it never is, in most places "
+              "of the continent, all meters; y recorded power in kW, D in h",
           .effect_class = EffectClass::meter,
           .confusable = {{"after_hours",
                           "Both edges of the day in the week of the change: a clock moves both."},

@@ -63,10 +63,38 @@ DateTable european_holidays() {
   return table;
 }
 
+/// A British holiday on a weekend is made up for on the next working day.
+Day made_up(std::chrono::sys_days day) {
+  const std::chrono::weekday weekday{day};
+  if (weekday == std::chrono::Saturday) return day + std::chrono::days{2};
+  if (weekday == std::chrono::Sunday) return day + std::chrono::days{1};
+  return day;
+}
+
+/// Bank holidays of England and Wales, and the days to New Year, when offices mostly stay shut.
+DateTable british_holidays() {
+  using namespace std::chrono;  // NOLINT: calendar literals
+  DateTable table;
+  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
+    const year year{y};
+    const sys_days easter = easter_sunday(year);
+    table.mark(made_up(year / January / 1));
+    table.mark(easter - days{2});  // Good Friday
+    table.mark(easter + days{1});  // Easter Monday
+    table.mark(sys_days{year / May / Monday[1]});
+    table.mark(sys_days{year / May / Monday[last]});
+    table.mark(sys_days{year / August / Monday[last]});
+    table.mark(year / 12 / 24, year / 12 / 31);
+  }
+  return table;
+}
+
 const DateTable& holidays_of(double calendar) {
   static const DateTable north_american = north_american_holidays();
   static const DateTable european = european_holidays();
-  return calendar < 1.5 ? north_american : european;
+  static const DateTable british = british_holidays();
+  if (calendar < 1.5) return north_american;
+  return calendar < 2.5 ? european : british;
 }
 
 /// The building's own Sundays, by calendar month and local hour: what a holiday looks like.
@@ -105,12 +133,16 @@ class Sundays {
 /// holidays look like Sundays in real meters.
 class MissingHolidays final : public model::hourly::Alteration {
  public:
-  MissingHolidays(const model::Drivers& drivers, double shut_share, double calendar)
-      : sundays_(drivers), holidays_(&holidays_of(calendar)), shut_share_(shut_share) {}
+  MissingHolidays(const model::Drivers& drivers, double shut_share, double plant_share,
+                  double calendar)
+      : sundays_(drivers),
+        holidays_(&holidays_of(calendar)),
+        shut_share_(shut_share),
+        plant_share_(plant_share) {}
 
   void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
     if (hour.day != model::DayType::workday || !holidays_->contains(hour.date)) return;
-    op.daytime_share *= 1.0 - shut_share_;
+    op.daytime_share *= 1.0 - plant_share_;
     if (const auto sunday = sundays_.at(hour)) {
       op.people_share += shut_share_ * (sunday->people_share - op.people_share);
       op.lights_W += shut_share_ * (sunday->lights_W - op.lights_W);
@@ -122,6 +154,7 @@ class MissingHolidays final : public model::hourly::Alteration {
   Sundays sundays_;
   const DateTable* holidays_;  // Of static storage.
   double shut_share_;
+  double plant_share_;
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts&) {
@@ -129,16 +162,21 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .unit = "share of the building",
            .prior = UniformPrior{0.0, 1.0},
            .neutral = 0.0},
+          {.name = "plant_share",
+           .unit = "share of the plant that is off",
+           .prior = UniformPrior{0.0, 1.0},
+           .neutral = 0.0},
           {.name = "calendar",
-           .unit = "1: North America, 2: Europe",
-           .prior = UniformPrior{0.5, 2.5},
+           .unit = "1: North America, 2: Europe, 3: Britain",
+           .prior = UniformPrior{0.5, 3.5},
            .neutral = std::numeric_limits<double>::quiet_NaN(),
-           .scan = {1.0, 2.0}}};
+           .scan = {1.0, 2.0, 3.0},
+           .choice = true}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
                                                 std::span<const double> values, int) {
-  return std::make_unique<MissingHolidays>(facts.drivers, values[0], values[1]);
+  return std::make_unique<MissingHolidays>(facts.drivers, values[0], values[1], values[2]);
 }
 
 }  // namespace

@@ -25,11 +25,11 @@ class PhaseLost final : public model::hourly::Alteration {
 /// One factor 1 - a serves both faults of three even phases, which the sum cannot tell apart:
 /// a = 1/3 one phase lost; 2/3 two lost, or one transformer reversed (1 - 2/3 = 1 - 2 x 1/3);
 /// 1 all lost. Phases are rarely even, so values between are open to the fit; much less than a
-/// third is no phase but a change of load.
+/// third is no phase but a change of load, and the prior says so.
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "lost_share",
            .unit = "-",
-           .prior = TruncatedNormalPrior{.location = 1.0 / 3.0, .sd = 0.2, .min = 0.0, .max = 1.0},
+           .prior = TruncatedNormalPrior{.location = 1.0 / 3.0, .sd = 0.1, .min = 0.0, .max = 1.0},
            .neutral = 0.0,
            .scan = {1.0 / 3.0, 2.0 / 3.0, 1.0}}};
 }

@@ -182,12 +182,12 @@ TEST(EffectsOfOperation, WeekendOperationRunsEachDayByItself) {
 TEST(EffectsOfOperation, MissingHolidaysTurnsListedWorkdaysIntoSundays) {
   const Effect effect = effects::missing_holidays();
   // 25 November 2021 was Thanksgiving; workday lights 35 kW, Sunday's 5 kW; plugs 45 and 20.
-  const StepOperation op = operated(effect, {0.5, 1.0}, hour_of(11, 25, 10));
-  EXPECT_EQ(op.daytime_share, 0.5);
+  const StepOperation op = operated(effect, {0.5, 0.3, 1.0}, hour_of(11, 25, 10));
+  EXPECT_EQ(op.daytime_share, 0.7);  // most of the plant goes on
   EXPECT_DOUBLE_EQ(op.people_share, 0.4);
   EXPECT_DOUBLE_EQ(op.lights_W, 20e3);
   EXPECT_DOUBLE_EQ(op.plugs_W, 32.5e3);
-  EXPECT_EQ(operated(effect, {0.5, 2.0}, hour_of(11, 25, 10)).daytime_share, 1.0);
+  EXPECT_EQ(operated(effect, {0.5, 0.3, 2.0}, hour_of(11, 25, 10)).daytime_share, 1.0);
 }
 
 TEST(EffectsOfOperation, MissingHolidaysKnowsTheRulesOfTheDates) {
@@ -197,14 +197,16 @@ TEST(EffectsOfOperation, MissingHolidaysKnowsTheRulesOfTheDates) {
     bool holiday;
   };
   // 2021: Easter on 4 April, 4 July on a Sunday.
-  for (const Case& c : {Case{1.0, 1, 1, true}, Case{1.0, 1, 18, true}, Case{1.0, 5, 31, true},
-                        Case{1.0, 7, 5, true}, Case{1.0, 7, 6, false}, Case{1.0, 9, 6, true},
-                        Case{1.0, 11, 26, true}, Case{1.0, 4, 5, false}, Case{2.0, 4, 2, true},
-                        Case{2.0, 4, 5, true}, Case{2.0, 5, 13, true}, Case{2.0, 5, 24, true},
-                        Case{2.0, 7, 5, false}, Case{2.0, 12, 24, true}}) {
+  for (const Case& c : {Case{1.0, 1, 1, true},   Case{1.0, 1, 18, true},  Case{1.0, 5, 31, true},
+                        Case{1.0, 7, 5, true},   Case{1.0, 7, 6, false},  Case{1.0, 9, 6, true},
+                        Case{1.0, 11, 26, true}, Case{1.0, 4, 5, false},  Case{2.0, 4, 2, true},
+                        Case{2.0, 4, 5, true},   Case{2.0, 5, 13, true},  Case{2.0, 5, 24, true},
+                        Case{2.0, 7, 5, false},  Case{2.0, 12, 24, true}, Case{3.0, 4, 5, true},
+                        Case{3.0, 5, 3, true},   Case{3.0, 5, 31, true},  Case{3.0, 8, 30, true},
+                        Case{3.0, 5, 13, false}, Case{3.0, 12, 28, true}}) {
     SCOPED_TRACE(::testing::Message() << c.calendar << ": " << c.month << "/" << c.day);
     const double share =
-        operated(effects::missing_holidays(), {1.0, c.calendar}, hour_of(c.month, c.day, 10))
+        operated(effects::missing_holidays(), {1.0, 1.0, c.calendar}, hour_of(c.month, c.day, 10))
             .daytime_share;
     EXPECT_EQ(share, c.holiday ? 0.0 : 1.0);
   }
@@ -379,7 +381,7 @@ std::vector<Direction> directions() {
   return {
       {night_setback_missing(), {0.5}, {0.0}, {any, rises, rises}},
       {weekend_operation(), {0.5, 0.5}, {0.0, 0.0}, {rises, rises, any}},
-      {missing_holidays(), {0.5, 1.0}, {0.0, 1.0}, {falls, falls, any}},
+      {missing_holidays(), {0.5, 0.5, 1.0}, {0.0, 0.0, 1.0}, {falls, falls, any}},
       {after_hours(), {2.0}, {0.0}, {rises, rises, rises}},
       {early_start(), {1.5, 0.05}, {0.0, 0.0}, {rises, rises, rises}},
       {round_the_clock_zone(), {0.3}, {0.0}, {rises, rises, rises}},

@@ -30,6 +30,20 @@ Ground ground_of(const SiteProblem& site) {
   return std::move(*ground);
 }
 
+// The first round's mode is the likelier of the two, so a bad second place costs time alone.
+TEST(LayGround, ASecondStartIsTriedAndDoesNoHarm) {
+  SiteProblem site = noisy_site();
+  Predictor once{site};
+  const auto plain = lay_ground(once, site);
+  site.second_start = Eigen::VectorXd::Constant(2, 4.0);
+  Predictor twice{site};
+  const auto tried = lay_ground(twice, site);
+  ASSERT_TRUE(plain && tried);
+  EXPECT_GT(twice.runs(), once.runs() + 2);
+  EXPECT_NEAR(tried->none.log_density, plain->none.log_density, 0.1);
+  EXPECT_LT((tried->none.scores - plain->none.scores).norm(), 0.05);
+}
+
 TEST(ScoreGain, AddsMonthsAndKnowsTheirSpread) {
   const MonthScores without{{{3, -10.0}, {7, -12.0}}, {{3, -1.0}, {7, -1.0}}};
   const MonthScores with{{{3, -8.0}, {7, -11.0}}, {{3, -1.5}, {7, -1.0}}};
@@ -53,7 +67,12 @@ TEST(HeldJudge, ForgivesWhatTheFittedMonthsHaveTaught) {
   SiteProblem site = noisy_site();
   const Ground ground = ground_of(site);
   const HeldJudge judge = judge_of(site, ground, ground.show);
-  const MonthScores plain = judge.scores(ground.none.parts_kW);
+  const auto scores_of = [&](const Eigen::ArrayXXd& parts_kW) {
+    JointFit told = ground.none;
+    told.parts_kW = parts_kW;
+    return judge.scores(told, *ground.usual);
+  };
+  const MonthScores plain = scores_of(ground.none.parts_kW);
 
   const double step_kW = 0.05 * ground.fit.meters[1].mean_kW;
   Eigen::ArrayXXd always_kW = ground.none.parts_kW;
@@ -64,8 +83,8 @@ TEST(HeldJudge, ForgivesWhatTheFittedMonthsHaveTaught) {
     always_kW(i, 1) += step_kW;
     if (site.roles[part] == Role::show) late_kW(i, 1) += step_kW;
   }
-  const double always = gain_over(judge.scores(always_kW), plain).sum;
-  const double late = gain_over(judge.scores(late_kW), plain).sum;
+  const double always = gain_over(scores_of(always_kW), plain).sum;
+  const double late = gain_over(scores_of(late_kW), plain).sum;
   EXPECT_LT(late, -20.0);
   EXPECT_GT(always, 0.3 * late);
 }
@@ -107,7 +126,7 @@ TEST(Ground, NamesTheMeterThatHasTooFewReadings) {
 TEST(NullScale, NeverFlattersAnEffect) {
   for (const Effect& effect : catalogue()) EXPECT_GE(null_scale(effect.id), 1.0) << effect.id;
   EXPECT_GT(null_scale("damper_stuck_open"), null_scale("steam_trap_leak"));
-  EXPECT_GT(null_scale("an effect that nobody knows"), 10.0);
+  EXPECT_GT(null_scale("an effect that nobody knows"), null_scale("steam_trap_leak"));
 }
 
 }  // namespace

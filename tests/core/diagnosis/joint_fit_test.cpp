@@ -1,0 +1,93 @@
+#include "core/diagnosis/joint_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/diagnosis/diagnose.hpp"
+#include "core/diagnosis/ground.hpp"
+#include "tests/support/sample_problem.hpp"
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint"};
+
+Candidate candidate_of(const SiteProblem& site, std::string_view effect) {
+  const auto candidates = list_candidates(site).candidates;
+  const auto found = std::ranges::find_if(
+      candidates, [&](const Candidate& c) { return c.effect->id == effect && !c.begins; });
+  EXPECT_NE(found, candidates.end());
+  return *found;
+}
+
+struct Fitted {
+  double none_evidence;
+  JointFit fit;
+};
+
+/// The sample building shut on holidays that its site file lacks, fitted with one calendar chosen.
+Fitted fit_holidays(double chosen) {
+  SiteProblem site = testing::sample_problem(kParameters, 14);
+  const Candidate holidays = candidate_of(site, "missing_holidays");
+  Predictor predictor{site};
+  std::vector<double> theta;
+  for (const Parameter& p : site.parameters) theta.push_back(p.prior.quantile(0.45));
+  const auto shut = holidays.effect->bind(site.facts(), std::vector{0.8, 0.8, 1.0}, -1);
+  site.measured_parts_kW = predictor.parts_kW(theta, shut.get());
+  Rng rng{5};
+  for (double& value : site.measured_parts_kW.reshaped()) value *= 1.0 + 0.01 * rng.normal();
+
+  const auto ground = lay_ground(predictor, site, ModelErrors::none);
+  EXPECT_TRUE(ground.has_value());
+  const auto q = ground->none.scores.size();
+  Eigen::VectorXd start(q + 3);
+  start.head(q) = ground->none.scores;
+  for (int j = 0; j < 3; ++j) {
+    const Prior& prior = holidays.parameters[static_cast<std::size_t>(j)].prior;
+    start[q + j] = score_of(prior, j < 2 ? 0.5 : chosen);
+  }
+  auto fit = fit_jointly(predictor, ground->context(site), holidays, start);
+  EXPECT_TRUE(fit.has_value());
+  return {ground->none.log_evidence, std::move(*fit)};
+}
+
+// Half way between two calendars there is none: the one chosen is kept to the digit, and known.
+TEST(FitJointly, AChoiceIsNeverFitted) {
+  const Fitted right = fit_holidays(1.0);
+  EXPECT_NEAR(right.fit.eta[2], 1.0, 1e-9);
+  EXPECT_NEAR(right.fit.eta[0], 0.8, 0.1);
+  EXPECT_LT(right.fit.posterior.covariance.bottomRightCorner(1, 1)(0, 0), 1e-9);
+  const Fitted wrong = fit_holidays(3.0);
+  EXPECT_NEAR(wrong.fit.eta[2], 3.0, 1e-9);
+  EXPECT_GT(right.fit.log_evidence, wrong.fit.log_evidence + 20.0);
+  EXPECT_GT(right.fit.log_evidence, right.none_evidence + 20.0);
+}
+
+// What is known to be there is added, and nothing else is asked.
+TEST(Diagnose, AddsWhatIsAssumed) {
+  const SiteProblem site = testing::sample_problem(kParameters, 14);
+  DiagnoseOptions options;
+  options.assumed = {"steam_trap_leak"};
+  const auto diagnosis = diagnose(site, options);
+  ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
+  ASSERT_EQ(diagnosis->added.size(), 1u);
+  EXPECT_EQ(diagnosis->added[0].candidate.effect->id, "steam_trap_leak");
+  EXPECT_EQ(diagnosis->outcome, Outcome::named);
+  EXPECT_FALSE(diagnosis->not_confirmed);
+  EXPECT_TRUE(diagnosis->gap.has_value());
+  EXPECT_EQ(diagnosis->passes.size(), 2u);
+}
+
+TEST(Diagnose, AnAssumedEffectThatIsNoneIsExplained) {
+  const SiteProblem site = testing::sample_problem(kParameters, 14);
+  DiagnoseOptions options;
+  options.assumed = {"poltergeist"};
+  const auto refused = diagnose(site, options);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::not_found);
+  EXPECT_NE(refused.error().message.find("'poltergeist'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace recald::diagnosis

@@ -1,0 +1,143 @@
+#include "core/diagnosis/usual_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/diagnosis/candidate_shapes.hpp"
+#include "core/diagnosis/ground.hpp"
+#include "tests/support/sample_problem.hpp"
+
+namespace recald::diagnosis {
+namespace {
+
+constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint"};
+
+std::vector<double> middle_of(const SiteProblem& site) {
+  std::vector<double> theta;
+  for (const Parameter& p : site.parameters) theta.push_back(p.prior.quantile(0.5));
+  return theta;
+}
+
+std::vector<MeterScale> linear(const SiteProblem& site) {
+  return std::vector<MeterScale>(site.meters.size());
+}
+
+// Of an amount's typical footprint as much as was learnt, on every meter at once.
+TEST(UsualErrors, AColumnIsALittleOfItsEffect) {
+  const SiteProblem site = testing::sample_problem(kParameters, 12);
+  Predictor predictor{site};
+  const std::vector<double> theta = middle_of(site);
+  const UsualErrors errors = UsualErrors::draw(predictor, site, theta);
+  const Observations all =
+      observe(site, std::vector<bool>(site.roles.size(), true), linear(site), Patterns::modest);
+  const Eigen::MatrixXd columns = errors.columns(all);
+  ASSERT_EQ(columns.cols(), errors.count());
+
+  const auto candidates = list_candidates(site).candidates;
+  const auto leak = std::ranges::find_if(candidates, [](const Candidate& c) {
+    return c.effect->id == "steam_trap_leak" && !c.begins;
+  });
+  ASSERT_NE(leak, candidates.end());
+  const Eigen::VectorXd base = all.stack(predictor.parts_kW(theta));
+  const auto whole = alteration_of(*leak, site.facts(), own_shapes(*leak).front());
+  const Eigen::VectorXd footprint = all.stack(predictor.parts_kW(theta, whole.get())) - base;
+  const auto at = std::ranges::find(errors.effects(), "steam_trap_leak");
+  ASSERT_NE(at, errors.effects().end());
+  const Eigen::VectorXd column = columns.col(at - errors.effects().begin());
+  EXPECT_LT((column - usual_amount_sd("steam_trap_leak") * footprint).norm(),
+            1e-9 * footprint.norm());
+  EXPECT_GT(footprint.norm(), 0.0);
+}
+
+// A clock is right or wrong, and what has a first day is no habit of models.
+TEST(UsualErrors, HoldNoClockAndNothingDated) {
+  const SiteProblem site = testing::sample_problem(kParameters, 12);
+  Predictor predictor{site};
+  const UsualErrors errors = UsualErrors::draw(predictor, site, middle_of(site));
+  const auto holds = [&](std::string_view effect) {
+    return std::ranges::find(errors.effects(), effect) != errors.effects().end();
+  };
+  EXPECT_TRUE(holds("damper_stuck_open"));
+  EXPECT_TRUE(holds("scale_fault"));
+  EXPECT_FALSE(holds("clock_offset"));
+  EXPECT_FALSE(holds("stuck_meter"));
+  EXPECT_FALSE(holds("equipment_step"));
+}
+
+TEST(UsualErrors, AModelMayHaveNone) {
+  const SiteProblem site = testing::sample_problem(kParameters, 12);
+  Predictor predictor{site};
+  const auto ground = lay_ground(predictor, site, ModelErrors::none);
+  ASSERT_TRUE(ground.has_value()) << ground.error().message;
+  EXPECT_EQ(ground->errors.cols(), 0);
+  EXPECT_EQ(ground->none.scores.size(), std::ssize(site.parameters));
+}
+
+// Where a little of an effect is usual, it takes much of it to stand out.
+TEST(UsualErrors, MakeTheirOwnEffectsLessVisible) {
+  SiteProblem site = testing::sample_problem(kParameters, 12);
+  Rng rng{4};
+  for (double& value : site.measured_parts_kW.reshaped()) value *= 1.0 + 0.02 * rng.normal();
+  Predictor predictor{site};
+  const auto ground = lay_ground(predictor, site);
+  ASSERT_TRUE(ground.has_value()) << ground.error().message;
+  const auto& effects = ground->usual->effects();
+  const auto damper = std::ranges::find(effects, "damper_stuck_open") - effects.begin();
+  const NoiseNode& node = ground->grid[static_cast<std::size_t>(ground->none.best_node)];
+  // d of one usual sd, the first `known` of the base columns being integrated out.
+  const auto visibility = [&](Eigen::Index known) {
+    Eigen::MatrixXd columns(ground->fit.count(), known + 2);
+    columns << ground->none.linear_residual(), ground->none.jacobian.leftCols(known),
+        ground->errors.col(damper);
+    const auto system =
+        marginalise(node.gram(ground->fit, columns), Eigen::MatrixXd::Identity(known, known));
+    return detectability(*system)[0];
+  };
+  EXPECT_LT(visibility(ground->none.jacobian.cols()), 1.0);
+  EXPECT_GT(visibility(std::ssize(site.parameters)), 1.0);
+}
+
+// A meter that errs three times as much by day as by night.
+TEST(Spread, FollowsThePartOfTheDay) {
+  const SiteProblem site = testing::sample_problem(kParameters, 24);
+  const Observations all =
+      observe(site, std::vector<bool>(site.roles.size(), true), linear(site), Patterns::modest);
+  const MeterRows& meter = all.meters[1];
+  Rng rng{3};
+  Eigen::VectorXd residual(std::ssize(meter.rows));
+  for (std::size_t i = 0; i < meter.rows.size(); ++i) {
+    const int part = site.day_parts.parts[static_cast<std::size_t>(meter.rows[i])].part;
+    residual[static_cast<Eigen::Index>(i)] = (part == 3 ? 6.0 : 2.0) * rng.normal();
+  }
+  const Eigen::ArrayXd spread = spread_of(site, meter, residual);
+  ASSERT_EQ(spread.size(), site.day_parts.count());
+  double noon = 0.0;
+  double night = 0.0;
+  double logs = 0.0;
+  for (Eigen::Index i = 0; i < spread.size(); ++i) {
+    const int part = site.day_parts.parts[static_cast<std::size_t>(i)].part;
+    if (part == 3) noon += spread[i];
+    if (part == 0) night += spread[i];
+    logs += std::log(spread[i]);
+  }
+  EXPECT_GT(noon / night, 1.8);  // drawn towards the mean of all
+  EXPECT_LT(noon / night, 3.2);
+  EXPECT_NEAR(logs / static_cast<double>(spread.size()), 0.0, 1e-9);
+}
+
+TEST(Spread, DividesWhatIsStacked) {
+  const SiteProblem site = testing::sample_problem(kParameters, 12);
+  std::vector<MeterScale> scales = linear(site);
+  const std::vector<bool> flags(site.roles.size(), true);
+  const Eigen::VectorXd plain = observe(site, flags, scales, Patterns::modest).measured;
+  scales[0].spread = Eigen::ArrayXd::Constant(site.day_parts.count(), 4.0);
+  const Observations spread = observe(site, flags, scales, Patterns::modest);
+  const auto n = std::ssize(spread.meters[0].rows);
+  EXPECT_LT((4.0 * spread.measured.head(n) - plain.head(n)).norm(), 1e-9 * plain.head(n).norm());
+  EXPECT_EQ(spread.measured.tail(plain.size() - n), plain.tail(plain.size() - n));
+}
+
+}  // namespace
+}  // namespace recald::diagnosis
