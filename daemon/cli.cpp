@@ -233,6 +233,9 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
       ->capture_default_str();
   diagnose->add_flag("--apply", given.diagnose.apply, "Put what is named in force");
+  diagnose->add_option("--assume", given.diagnose.assumed,
+                       "An effect that is known to be there, EFFECT or EFFECT:METER: added without "
+                       "asking how probable it is, and nothing else");
   verbs.push_back(
       {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
 

@@ -31,14 +31,17 @@ SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
     for (Month month = range.first; month <= range.last; month = metering::next_month(month)) {
       const double coverage = weather_coverage(weather.filled, month);
       if (coverage < kLeastWeatherCoverage) {
-        warnings.push_back(fmt::format("{} is left out: only {:.0f} % of its weather is known.",
-                                       metering::to_string(month), 100.0 * coverage));
+        warnings.push_back(
+            fmt::format("{} is left out: only {:.0f} % of its weather ({}) is known.",
+                        metering::to_string(month), 100.0 * coverage,
+                        least_known_variable(weather.filled, month)));
         continue;
       }
       if (coverage < kGoodWeatherCoverage) {
         warnings.push_back(fmt::format(
-            "{}: only {:.0f} % of the weather was measured; the rest is typical of the month.",
-            metering::to_string(month), 100.0 * coverage));
+            "{}: only {:.0f} % of the weather ({}) was measured; the rest is typical of the month.",
+            metering::to_string(month), 100.0 * coverage,
+            least_known_variable(weather.filled, month)));
       }
       months.all.push_back(month);
       months.roles.push_back(role);

@@ -78,7 +78,8 @@ struct DoeArguments : SiteArguments {
 struct DiagnoseArguments : SiteArguments {
   std::filesystem::path out;
   std::uint64_t seed = 1;
-  bool apply = false;  ///< Put what was named in force.
+  bool apply = false;                ///< Put what was named in force.
+  std::vector<std::string> assumed;  ///< Effects known to be there, "scale_fault:steam".
 };
 
 struct DetectabilityArguments : SiteArguments {

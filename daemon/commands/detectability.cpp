@@ -67,6 +67,9 @@ int run_detectability(const DetectabilityArguments& arguments, const Console& co
   const auto modelled = open_modelled_site(arguments.site, console, "hourly");
   if (!modelled) return modelled.error();
   const auto& [site, recording, weather, facts] = *modelled;
+  if (auto enough = require_months(site.config, recording, weather); !enough) {
+    return console.fail(enough.error());
+  }
   const auto twin = make_site_problem(site.config, site.calendar, recording, weather);
   if (!twin) return console.fail(twin.error());
   // Before the calibration: a wrong file is told at once.

@@ -43,6 +43,7 @@ int run_metamodel(const MetamodelArguments& arguments, const Console& console) {
   facts->wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   std::vector<std::string> notes = design->notes;
+  notes.insert(notes.end(), design_site->notes.begin(), design_site->notes.end());
   notes.insert(notes.end(), fitted->notes.begin(), fitted->notes.end());
   const std::string json = metamodel_json(*fitted, notes, *facts);
   if (auto written = write_result(arguments.out, "metamodel.json", json); !written) {

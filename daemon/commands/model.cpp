@@ -6,6 +6,7 @@
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/models/version_file.hpp"
+#include "adapters/report/format.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/config/site_config.hpp"
 
@@ -16,6 +17,8 @@ using diagnosis::AddedEffect;
 using diagnosis::ModelVersion;
 using diagnosis::short_version;
 using Json = nlohmann::ordered_json;
+
+constexpr double kRivalWorthALine = 0.005;  // what rounds to 0 % is no rival
 
 /// @return the store of the site, or the exit code after saying what is wrong with the site file.
 tl::expected<models::ModelStore, int> open_store(const ModelArguments& arguments,
@@ -75,9 +78,10 @@ std::string effect_words(const AddedEffect& added) {
   std::string text = fmt::format("\n{} ({}){}{}\n  {}\n", added.title, added.effect,
                                  added.meter.empty() ? "" : ", meter " + added.meter,
                                  period_words(added), added.physics);
-  text += fmt::format("  probability {:.0f} %, evidence gain {:.1f} nats\n",
-                      100.0 * added.probability, added.log_evidence_gain);
+  text += fmt::format("  probability {}, evidence gain {:.1f} nats\n",
+                      report::probability_text(added.probability), added.log_evidence_gain);
   for (const auto& rival : added.rivals) {
+    if (rival.probability < kRivalWorthALine) continue;
     text += fmt::format("  rival: {} {:.0f} %\n", rival.effect, 100.0 * rival.probability);
   }
   for (const auto& p : added.parameters) {

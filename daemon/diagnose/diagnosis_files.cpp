@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "daemon/diagnose/diagnosis_words.hpp"
 #include "daemon/diagnose/effect_posterior.hpp"
@@ -67,6 +68,7 @@ void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosi
   entry["title"] = candidate.effect->title;
   entry["parameters"] = parameters_json(site, posterior_of(candidate, e.fit));
   entry["evidence_gain"] = number(e.evidence_gain);
+  entry["log_likelihood_gain"] = number(e.likelihood_gain);
   entry["first_look"] = number(e.first_look);
   entry["selected_gain"] = number(e.selected_gain);
   entry["selected_se"] = number(e.selected_se);
@@ -92,6 +94,36 @@ Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
     if (p.meter >= 0) entry["meter"] = meter_name(site, p.meter);
     if (p.explanation) add_explanation(site, d, naming.explanations[*p.explanation], entry);
     list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+/// All candidates as the residuals alone see them, before any was fitted.
+Json first_look_json(const SiteProblem& site, const Diagnosis& d) {
+  Json list = Json::array();
+  const diagnosis::FirstLook& look = d.passes.front().look;
+  for (std::size_t i = 0; i < look.candidates.size(); ++i) {
+    const diagnosis::CandidateLook& c = look.candidates[i];
+    Json entry = {{"effect", d.candidates[i].effect->id},
+                  {"key", d.candidates[i].key(site)},
+                  {"log_bayes_factor", number(c.log_bayes_factor)},
+                  {"score", number(c.best.score)},
+                  {"detectability", number(c.best.detectability)}};
+    if (d.candidates[i].meter >= 0) entry["meter"] = meter_name(site, d.candidates[i].meter);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json base_parameters_json(const SiteProblem& site,
+                          const std::vector<diagnosis::ParameterBelief>& beliefs) {
+  Json list = Json::array();
+  for (std::size_t j = 0; j < beliefs.size(); ++j) {
+    list.push_back({{"name", site.parameters[j].name},
+                    {"unit", site.definitions[j]->unit},
+                    {"mode", number(beliefs[j].mode)},
+                    {"q05", number(beliefs[j].q05)},
+                    {"q95", number(beliefs[j].q95)}});
   }
   return list;
 }
@@ -131,13 +163,29 @@ Json figures_json(const ModelGap& gap, const std::vector<ModelGap::Figures>& fig
   return json;
 }
 
+Json change_json(const ModelGap& gap) {
+  const auto interval = [](const ChangeInterval& change) {
+    return Json{{"q05", number(change.low)}, {"q95", number(change.high)}};
+  };
+  Json json = Json::object();
+  for (std::size_t i = 0; i < gap.change.size(); ++i) {
+    const ModelGap::Change& change = gap.change[i];
+    json[gap.outputs[i]] = {
+        {"log_score", {{"sum", number(change.log_score.sum)}, {"se", number(change.log_score.se)}}},
+        {"nmbe_size", interval(change.nmbe_size)},
+        {"cvrmse", interval(change.cvrmse)}};
+  }
+  return json;
+}
+
 /// One entry a model; null where nothing was added or no month was kept back.
 Json gap_json(const SiteProblem& site, const Diagnosis& d, const std::vector<ModelGap>& others) {
   Json json = Json::object();
   if (d.gap) json["hourly"] = hourly_gap_json(site, *d.gap);
   for (const ModelGap& gap : others) {
     json[gap.model] = {{"before", figures_json(gap, gap.before)},
-                       {"after", figures_json(gap, gap.after)}};
+                       {"after", figures_json(gap, gap.after)},
+                       {"change", change_json(gap)}};
   }
   return json.empty() ? Json(nullptr) : json;
 }
@@ -200,6 +248,18 @@ std::vector<diagnosis::EffectParameterRecord> records_of(const Addition& additio
   return records;
 }
 
+/// Months whose readings were fitted or chose.
+std::vector<metering::Month> months_that_taught(const SiteProblem& site) {
+  std::set<metering::Month> months;
+  for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {
+    const auto month =
+        static_cast<std::size_t>(site.day_parts.parts[static_cast<std::size_t>(i)].month);
+    if (site.month_roles[month] == diagnosis::Role::show) continue;
+    if (site.measured_parts_kW.row(i).isFinite().any()) months.insert(site.drivers->months[month]);
+  }
+  return {months.begin(), months.end()};
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const RunFacts& facts,
@@ -215,7 +275,11 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"additions", additions_json(site, d)},
                {"null_threshold", number(first.naming.null_threshold)},
                {"unknown_gain", number(first.naming.unknown_gain)},
+               {"first_look", first_look_json(site, d)},
+               {"parameters_before", base_parameters_json(site, d.parameters_before)},
+               {"parameters_after", base_parameters_json(site, d.parameters_after)},
                {"base_fit", gaps_json(site, d.base_fit)},
+               {"held_fit", gaps_json(site, d.passes.front().gaps)},
                {"gap", gap_json(site, d, others)},
                {"not_identifiable_here", not_identifiable_json(site, d)},
                {"warnings", d.warnings},
@@ -264,11 +328,7 @@ diagnosis::ModelVersion next_version(const Diagnosis& d, const SiteProblem& site
     for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
       added.impacts.push_back({site.meters[g].id, addition.monthly_kWh[g]});
     }
-    for (std::size_t m = 0; m < site.drivers->months.size(); ++m) {
-      if (site.month_roles[m] != diagnosis::Role::show) {
-        added.months_used.push_back(site.drivers->months[m]);
-      }
-    }
+    added.months_used = months_that_taught(site);
     next.effects.push_back(std::move(added));
   }
   return next;

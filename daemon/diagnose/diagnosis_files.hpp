@@ -10,6 +10,12 @@
 
 namespace recald::daemon {
 
+/// 90 % interval of a change, after - before, over resampled months; NaN without a month.
+struct ChangeInterval {
+  double low;
+  double high;
+};
+
 /// The gap of another model than the hourly one, before and after it got the same effects, on the
 /// same months kept back.
 struct ModelGap {
@@ -20,10 +26,17 @@ struct ModelGap {
     double log_score;
     double discrepancy_share;
   };
+  /// Of one output, after - before.
+  struct Change {
+    diagnosis::ScoreGain log_score;
+    ChangeInterval nmbe_size;
+    ChangeInterval cvrmse;
+  };
   std::string model;                 ///< "epc"
   std::vector<std::string> outputs;  ///< (n) as in calibration.json: "steam_daily_kWh"
   std::vector<Figures> before;       ///< (n)
   std::vector<Figures> after;        ///< (n)
+  std::vector<Change> change;        ///< (n)
 };
 
 /// `diagnosis.json`.

@@ -213,7 +213,7 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
                                           const SiteProblem& site, const RunFacts& facts,
                                           std::string generated_at,
                                           const std::vector<ModelGap>& others) {
-  OutcomeWords words = outcome_words(d, site);
+  OutcomeWords words = outcome_words(d, site, others);
   report::DiagnosisData data{.title = "Diagnosis of " + config.name,
                              .generated_at = std::move(generated_at),
                              .site = {config.id, config.name, config.timezone},

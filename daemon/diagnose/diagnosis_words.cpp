@@ -24,6 +24,9 @@ constexpr std::size_t kFindingsInWords = 5;
 constexpr std::size_t kCandidatesInWords = 5;
 // A meter that an effect touches by less than this share of the most it does is not worth a word.
 constexpr double kImpactWorthAWord = 0.05;
+constexpr double kLeastImpact_kWh = 0.5;
+// Beyond ten times the simulation a percentage says nothing: there is next to none.
+constexpr double kSharePeopleRead = 10.0;
 // Below this probability the likeliest effect is no lead worth a measurement.
 constexpr double kLeadWorthMeasuring = 0.1;
 
@@ -58,7 +61,7 @@ std::string impact_words(const SiteProblem& site, const Addition& addition) {
   std::vector<std::string> items;
   for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
     const double kWh = addition.monthly_kWh[g];
-    if (!(std::abs(kWh) > kImpactWorthAWord * most)) continue;
+    if (!(std::abs(kWh) > std::max(kImpactWorthAWord * most, kLeastImpact_kWh))) continue;
     items.push_back(fmt::format("{} kWh a month {} at {}", report::count_text(std::abs(kWh)),
                                 kWh > 0.0 ? "more" : "less", meter_label(site.meters[g].id)));
   }
@@ -74,7 +77,9 @@ std::string addition_words(const SiteProblem& site, const Addition& addition) {
 
 std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
   if (!d.gap) {
-    return "No reading lies in the months kept back: nothing confirms this yet.";
+    // What was taken back for that reason says so itself.
+    return d.not_confirmed ? ""
+                           : "No reading lies in the months kept back: nothing confirms this yet.";
   }
   std::vector<std::string> items;
   for (std::size_t g = 0; g < d.gap->before.size(); ++g) {
@@ -85,6 +90,30 @@ std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
   const auto kept = std::ranges::count(site.month_roles, diagnosis::Role::show);
   return fmt::format("Scatter of days (CV(RMSE)) on the {} months kept back: {}.", kept,
                      listed(items, "and"));
+}
+
+/// "electricity_daily_kWh" -> "Electricity"
+std::string output_label(std::string_view output) {
+  constexpr std::string_view kSuffix = "_daily_kWh";
+  if (output.ends_with(kSuffix)) output.remove_suffix(kSuffix.size());
+  return meter_label(std::string{output});
+}
+
+/// Empty where the model has nothing to judge by.
+std::string other_model_words(const ModelGap& gap) {
+  std::vector<std::string> items;
+  for (std::size_t i = 0; i < gap.change.size(); ++i) {
+    const ChangeInterval& change = gap.change[i].cvrmse;
+    if (!std::isfinite(gap.before[i].cvrmse) || !std::isfinite(change.low)) continue;
+    items.push_back(
+        fmt::format("{} {:.1f} % before, {:.1f} % after (90 % of the change: {:+.1f} to "
+                    "{:+.1f})",
+                    output_label(gap.outputs[i]), 100.0 * gap.before[i].cvrmse,
+                    100.0 * gap.after[i].cvrmse, 100.0 * change.low, 100.0 * change.high));
+  }
+  if (items.empty()) return {};
+  return fmt::format("Scatter of months in the {} model: {}.",
+                     gap.model == "epc" ? "monthly" : gap.model, listed(items, "and"));
 }
 
 /// What the last search left open, after effects had been added.
@@ -191,9 +220,12 @@ std::string located_words(const Diagnosis& d, const SiteProblem& site) {
   std::string text = "Where simulation and meters disagree most:\n";
   for (std::size_t i = 0; i < std::min(located.size(), kFindingsInWords); ++i) {
     const diagnosis::Finding& f = located[i];
-    text += fmt::format("  {}, {}: {:+.0f} % +- {:.0f}, {:+.0f} kWh a month\n",
-                        meter_label(site.meters[f.meter].id), f.words, 100.0 * f.share,
-                        100.0 * f.share_se, f.kWh_month);
+    const std::string share =
+        std::abs(f.share) > kSharePeopleRead
+            ? "next to nothing is simulated"
+            : fmt::format("{:+.0f} % +- {:.0f}", 100.0 * f.share, 100.0 * f.share_se);
+    text += fmt::format("  {}, {}: {}, {:+.0f} kWh a month\n", meter_label(site.meters[f.meter].id),
+                        f.words, share, f.kWh_month);
   }
   return text;
 }
@@ -291,7 +323,8 @@ std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
   return list;
 }
 
-OutcomeWords outcome_words(const Diagnosis& d, const SiteProblem& site) {
+OutcomeWords outcome_words(const Diagnosis& d, const SiteProblem& site,
+                           const std::vector<ModelGap>& others) {
   OutcomeWords words{.headline = headline_of(d, site), .sentences = {}};
   const auto add = [&words](std::string sentence) {
     if (!sentence.empty()) words.sentences.push_back(std::move(sentence));
@@ -299,6 +332,7 @@ OutcomeWords outcome_words(const Diagnosis& d, const SiteProblem& site) {
   add(sentence_of(d.why));
   if (!d.added.empty()) {
     add(confirmation_words(d, site));
+    for (const ModelGap& gap : others) add(other_model_words(gap));
     if (!d.not_confirmed) add(remainder_words(d));
     return words;
   }
@@ -310,9 +344,10 @@ OutcomeWords outcome_words(const Diagnosis& d, const SiteProblem& site) {
   return words;
 }
 
-std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site) {
+std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site,
+                            const std::vector<ModelGap>& others) {
   std::string text = located_words(d, site) + probability_words(d, site);
-  const OutcomeWords words = outcome_words(d, site);
+  const OutcomeWords words = outcome_words(d, site, others);
   text += fmt::format("Outcome: {}. {}\n", to_string(d.outcome), words.headline);
   for (const Addition& addition : d.added) {
     text += fmt::format("{}{}\n", d.not_confirmed ? "Tried and taken back: " : "",

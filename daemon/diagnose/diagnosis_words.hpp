@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/diagnosis/diagnose.hpp"
+#include "daemon/diagnose/diagnosis_files.hpp"
 
 namespace recald::daemon {
 
@@ -13,13 +14,16 @@ struct OutcomeWords {
   std::vector<std::string> sentences;  ///< Why, how sure, what to do next.
 };
 
+/// @param others  Gaps of other models than the hourly one.
 /// @pre the diagnosis has a pass.
 [[nodiscard]] OutcomeWords outcome_words(const diagnosis::Diagnosis& diagnosis,
-                                         const diagnosis::SiteProblem& site);
+                                         const diagnosis::SiteProblem& site,
+                                         const std::vector<ModelGap>& others = {});
 
 /// For a terminal. @pre the diagnosis has a pass.
 [[nodiscard]] std::string diagnosis_words(const diagnosis::Diagnosis& diagnosis,
-                                          const diagnosis::SiteProblem& site);
+                                          const diagnosis::SiteProblem& site,
+                                          const std::vector<ModelGap>& others = {});
 
 /// "Chilled water" of "chilled_water".
 [[nodiscard]] std::string meter_label(const std::string& id);

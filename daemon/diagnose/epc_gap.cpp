@@ -245,6 +245,7 @@ EpcGap compare(const Measured& measured, const Fit& before, const std::vector<do
   EpcGap result;
   result.gap.model = "epc";
   result.months_shown = static_cast<int>(measured.shown.size());
+  result.figures_shown = 0;
   std::vector<double> by_month(measured.shown.size(), 0.0);
   const std::size_t months = after.size() / measured.outputs.size();
   Rng rng{seed};
@@ -263,10 +264,9 @@ EpcGap compare(const Measured& measured, const Fit& before, const std::vector<do
                       log_density(y - before.modelled[k * months + i], sd));
       by_month[s] += gains.back();
     }
-    result.log_score_change.push_back(gain_of(gains));
     const auto [nmbe, cvrmse] = resampled(pairs, rng);
-    result.nmbe_change.push_back(nmbe);
-    result.cvrmse_change.push_back(cvrmse);
+    result.gap.change.push_back({gain_of(gains), nmbe, cvrmse});
+    result.figures_shown += static_cast<int>(gains.size());
   }
   result.total = gain_of(by_month);
   return result;

@@ -17,23 +17,17 @@
 
 namespace recald::daemon {
 
-/// 90 % interval of a change, after - before, over resampled months.
-struct ChangeInterval {
-  double low;
-  double high;
-};
-
 struct EpcGap {
   /// Log scores are mean log densities of a month's daily average in kWh, under the errors that the
   /// fit before left: a change of noise is no better model. A monthly model has no discrepancy
   /// share of its own: NaN.
   ModelGap gap;
-  std::vector<diagnosis::ScoreGain> log_score_change;  ///< (outputs) over the months shown.
-  diagnosis::ScoreGain total;                          ///< Of all outputs, month by month.
-  std::vector<ChangeInterval> nmbe_change;             ///< (outputs) of its size.
-  std::vector<ChangeInterval> cvrmse_change;           ///< (outputs)
+  diagnosis::ScoreGain total;  ///< Of all outputs, month by month.
   int months_shown;
-  /// The months kept back do not speak against the effect in this model either.
+  int figures_shown;  ///< Measured monthly figures in them, of all outputs.
+  /// Whether there is anything to judge by.
+  [[nodiscard]] bool has_vote() const { return figures_shown > 0; }
+  /// The months kept back do not speak against the effect in this model either. @pre has_vote()
   [[nodiscard]] bool agrees() const { return total.sum >= 0.0; }
 };
 

@@ -57,6 +57,24 @@ Result<weather::WeatherSeries> read_epw_years(const WeatherConfig& config,
   return all;
 }
 
+struct KnownShare {
+  double share;
+  std::size_t variable;  ///< Position in `weather::kWeatherVariables`.
+};
+
+/// Of the needed variables the one that is known least; none of a month that the file does not
+/// touch.
+KnownShare least_known(const weather::FilledWeather& filled, metering::Month month) {
+  const auto found = std::ranges::find(filled.coverage, month, &weather::WeatherCoverage::month);
+  if (found == filled.coverage.end()) return {0.0, kNeeded.front()};
+  KnownShare least{1.0, kNeeded.front()};
+  for (const std::size_t variable : kNeeded) {
+    const double share = found->measured[variable] + found->interpolated[variable];
+    if (share < least.share) least = {share, variable};
+  }
+  return least;
+}
+
 }  // namespace
 
 Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCalendar& calendar,
@@ -71,13 +89,11 @@ Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCa
 }
 
 double weather_coverage(const weather::FilledWeather& filled, metering::Month month) {
-  const auto found = std::ranges::find(filled.coverage, month, &weather::WeatherCoverage::month);
-  if (found == filled.coverage.end()) return 0.0;
-  double worst = 1.0;
-  for (const std::size_t variable : kNeeded) {
-    worst = std::min(worst, found->measured[variable] + found->interpolated[variable]);
-  }
-  return worst;
+  return least_known(filled, month).share;
+}
+
+std::string_view least_known_variable(const weather::FilledWeather& filled, metering::Month month) {
+  return weather::kWeatherVariables[least_known(filled, month).variable].name;
 }
 
 }  // namespace recald::daemon

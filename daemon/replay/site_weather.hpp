@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/metering/civil_time.hpp"
@@ -26,5 +27,9 @@ struct SiteWeather {
 /// Share of a month's hours in which the weather was measured or interpolated, worst of the
 /// variables that the models need; 0 for a month that the file does not touch.
 [[nodiscard]] double weather_coverage(const weather::FilledWeather& filled, metering::Month month);
+
+/// Column of the variable that `weather_coverage` speaks of: "ghi_W_m2".
+[[nodiscard]] std::string_view least_known_variable(const weather::FilledWeather& filled,
+                                                    metering::Month month);
 
 }  // namespace recald::daemon

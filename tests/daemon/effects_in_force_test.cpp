@@ -232,6 +232,9 @@ TEST_F(EffectsInForce, DesignVariesThemAndItsMetaModelHoldsThem) {
   const Outcome made = doe("design", "hourly");
   ASSERT_EQ(made.exit_code, kSuccess) << made.err;
   EXPECT_THAT(read_text(folder_ / "design/priors.csv"), HasSubstr(kShare));
+  const Outcome fitted = run({"metamodel", "--doe", path("design"), "--json"});
+  ASSERT_EQ(fitted.exit_code, kSuccess) << fitted.err;
+  EXPECT_THAT(Json::parse(fitted.out)["warnings"].dump(), HasSubstr("held at what was learnt"));
   const Outcome calibrated =
       run({"calibrate", "--doe", path("design"), "--json", "--parameters", "all", "--sampler",
            "dram", "--draws", "1400", "--burn-in", "400", "--chains", "2"});

@@ -260,8 +260,8 @@ TEST_F(EndToEnd, MonthWithoutWeatherIsLeftOutAndNamed) {
   const Json json = Json::parse(outcome.out);
   EXPECT_THAT(json["warnings"].get<std::vector<std::string>>(),
               ::testing::Contains(
-                  ::testing::MatchesRegex("2022-06 is left out: only [0-9]+ % of its weather is "
-                                          "known\\.")));
+                  ::testing::MatchesRegex("2022-06 is left out: only [0-9]+ % of its weather "
+                                          "\\(dry_bulb_C\\) is known\\.")));
   EXPECT_EQ(json["months"].size(), 35u);
 }
 

@@ -106,7 +106,15 @@ TEST_F(DetectabilityCommand, WhatIsNoFootprintOfTheSiteIsOneSentence) {
       {std::string(kHeader) +
            "2021-06-01T00:00:00Z,electricity,1,kW\n2021-06-01T01:00:00Z,electricity,1,kW\n"
            "2021-06-01T01:00:00Z,electricity,1,kW\n",
-       "interval 2021-06-01T01:00:00Z comes twice"},
+       "footprint.csv:4: meter 'electricity': interval 2021-06-01T01:00:00Z comes twice\n"},
+      {std::string(kHeader) +
+           "2021-06-01T00:00:00Z,electricity,1,kW\n2021-06-01T01:00:00Z,electricity,,kW\n",
+       "footprint.csv: meter 'electricity' has no value at 2021-06-01T01:00:00Z"},
+      {std::string(kHeader) +
+           "2021-06-01T00:00:00Z,electricity,1,kW\n2021-06-01T00:15:00Z,electricity,1,kW\n"
+           "2021-06-01T00:30:00Z,electricity,1,kW\n",
+       "footprint.csv: meter 'electricity' has rows for 45 of the 60 minutes from "
+       "2021-06-01T00:00:00Z"},
       {"when,what\n", "timestamp,meter,value,unit"}};
   for (const auto& [footprint, sentence] : mistakes) {
     const Outcome outcome = measure(footprint);

@@ -109,7 +109,7 @@ TEST_F(ModelCommand, ShowSaysWhatAnEffectWasAcceptedOn) {
                 "\n"
                 "Night set-back missing (night_setback_missing)\n"
                 "  theta_set,unocc = theta_set,occ - (1 - f) dT  [K]\n"
-                "  probability 93 %, evidence gain 14.3 nats\n"
+                "  probability 93.0\u00a0%, evidence gain 14.3 nats\n"
                 "  rival: damper_stuck_open 5 %\n"
                 "  rival: none 2 %\n"
                 "  share [-]: 0.8 ± 0.1, 90 % 0.65 to 0.95; prior uniform 0.5 ± 0.29\n"

@@ -120,11 +120,20 @@ TEST_F(DiagnosisFiles, GivesOtherModelsAnEntryOfTheirOwn) {
   const ModelGap epc{.model = "epc",
                      .outputs = {"steam_daily_kWh"},
                      .before = {{0.02, 0.12, -30.0, 0.5}},
-                     .after = {{0.01, 0.07, std::nan(""), 0.4}}};
+                     .after = {{0.01, 0.07, std::nan(""), 0.4}},
+                     .change = {{{3.0, 1.5}, {-0.02, 0.01}, {-0.09, -0.004}}}};
   const json gap = json_of(recald::testing::one_named(site_), {epc})["gap"];
   EXPECT_TRUE(gap.contains("hourly"));
   EXPECT_EQ(gap["epc"]["before"]["steam_daily_kWh"]["cvrmse"], 0.12);
   EXPECT_TRUE(gap["epc"]["after"]["steam_daily_kWh"]["log_score"].is_null());
+  const json& change = gap["epc"]["change"]["steam_daily_kWh"];
+  EXPECT_EQ(change["log_score"]["sum"], 3.0);
+  EXPECT_EQ(change["log_score"]["se"], 1.5);
+  EXPECT_EQ(change["nmbe_size"]["q95"], 0.01);
+  EXPECT_EQ(change["cvrmse"]["q05"], -0.09);
+  EXPECT_THAT(diagnosis_words(recald::testing::one_named(site_), site_, {epc}),
+              HasSubstr("Scatter of months in the monthly model: Steam 12.0 % before, 7.0 % after "
+                        "(90 % of the change: -9.0 to -0.4)."));
   EXPECT_TRUE(json_of(recald::testing::nothing_named(site_))["gap"].is_null());
   EXPECT_THAT(report::render_diagnosis(page_data(recald::testing::one_named(site_), {epc})),
               HasSubstr("epc: Steam daily kWh</th><td class=\"number\">12.0\u00a0%</td>"));
@@ -188,6 +197,25 @@ TEST_F(DiagnosisFiles, WordsOfNothingFoundAreHonest) {
   d.passes[0].located.clear();
   EXPECT_EQ(outcome_words(d, site_).headline,
             "The calibrated model follows the meters within what chance explains.");
+}
+
+TEST_F(DiagnosisFiles, NoPercentageOfNextToNothing) {
+  Diagnosis d = recald::testing::nothing_named(site_);
+  d.passes[0].located[0].share = 2.5e12;
+  d.passes[0].located[0].share_se = 4e11;
+  EXPECT_THAT(diagnosis_words(d, site_),
+              HasSubstr("Steam, working days 00-04 h: next to nothing is simulated, +2100 kWh"));
+}
+
+TEST_F(DiagnosisFiles, MonthsWithoutReadingsTaughtNothing) {
+  for (Eigen::Index i = 0; i < site_.day_parts.count(); ++i) {
+    if (site_.day_parts.parts[static_cast<std::size_t>(i)].month == 2) {
+      site_.measured_parts_kW.row(i) = std::nan("");
+    }
+  }
+  const auto next = next_version(recald::testing::one_named(site_), site_, {}, RunFacts{}, "");
+  EXPECT_EQ(next.effects[0].months_used.size(), 5u);
+  EXPECT_THAT(next.effects[0].months_used, Not(::testing::Contains(site_.drivers->months[2])));
 }
 
 TEST_F(DiagnosisFiles, WithoutMonthsKeptBackNothingIsCalledConfirmed) {

@@ -9,6 +9,7 @@
 #include "daemon/commands/open_site.hpp"
 #include "daemon/diagnose/site_problem.hpp"
 #include "tests/daemon/depot_year.hpp"
+#include "tests/daemon/modelled_readings.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -20,8 +21,7 @@ using recald::testing::edited;
 using recald::testing::sample_site;
 using recald::testing::write_text;
 
-/// The depot with a heat meter that says what the hourly model gives: these tests are of the
-/// machinery, never that an effect of a real building is found.
+/// The depot with meters that say what the hourly model gives.
 class EpcGapTest : public ::testing::Test {
  protected:
   EpcGapTest() {
@@ -59,26 +59,11 @@ class EpcGapTest : public ::testing::Test {
     throw std::logic_error("the depot has a heat meter");
   }
 
-  /// Writes the heat of the hourly model into the readings and opens the site again.
+  /// Writes what the hourly model gives into the readings and opens the site again.
   void heat_with(double leak_kW) {
     const Addition truth = trap_leak(leak_kW);
     const auto effect = diagnosis::alteration_of(truth.candidate, problem_->facts(), truth.eta);
-    diagnosis::Predictor predictor{*problem_};
-    predictor.parts_kW({}, effect.get());
-    std::string readings;
-    std::istringstream lines{recald::testing::read_text(folder_ / "readings.csv")};
-    Eigen::Index hour = 0;
-    for (std::string line; std::getline(lines, line);) {
-      if (line.find(",heat,") == std::string::npos) {
-        readings += line + "\n";
-        continue;
-      }
-      const double wiggle = 1.0 + 0.02 * std::sin(1.3 * static_cast<double>(hour));
-      readings += line.substr(0, line.find(",heat,")) + ",heat," +
-                  std::to_string(wiggle * predictor.hours_kW()(hour, 1)) + ",kWh\n";
-      ++hour;
-    }
-    write_text(folder_ / "readings.csv", readings);
+    recald::testing::write_modelled_readings(folder_.path(), *problem_, effect.get());
     open();
   }
 
@@ -103,9 +88,10 @@ TEST_F(EpcGapTest, AnEffectThatIsThereClosesTheGap) {
   EXPECT_LT(found->gap.after[1].cvrmse, found->gap.before[1].cvrmse);
   EXPECT_GT(found->gap.after[1].log_score, found->gap.before[1].log_score);
   EXPECT_GT(found->total.sum, 0.0);
+  EXPECT_TRUE(found->has_vote());
   EXPECT_TRUE(found->agrees());
-  EXPECT_LE(found->cvrmse_change[1].low, found->cvrmse_change[1].high);
-  EXPECT_LT(found->cvrmse_change[1].low, 0.0);
+  EXPECT_LE(found->gap.change[1].cvrmse.low, found->gap.change[1].cvrmse.high);
+  EXPECT_LT(found->gap.change[1].cvrmse.low, 0.0);
 }
 
 TEST_F(EpcGapTest, AnEffectThatIsNotThereDoesNot) {
@@ -122,6 +108,22 @@ TEST_F(EpcGapTest, WithoutAdditionsNothingChanges) {
   EXPECT_EQ(found->total.sum, 0.0);
   EXPECT_EQ(found->gap.after[1].cvrmse, found->gap.before[1].cvrmse);
   EXPECT_TRUE(std::isnan(found->gap.after[1].discrepancy_share));
+}
+
+// Silence is no consent: what has no figure to judge by says so.
+TEST_F(EpcGapTest, WithoutFiguresInTheMonthsShownItHasNoVote) {
+  for (MeterRecord& record : modelled_->recording.meters) {
+    for (std::size_t i = 0; i < problem_->month_roles.size(); ++i) {
+      if (problem_->month_roles[i] != diagnosis::Role::show) continue;
+      std::erase_if(record.figures, [&](const metering::MonthlyFigure& figure) {
+        return figure.month == problem_->drivers->months[i];
+      });
+    }
+  }
+  const auto found = gap({trap_leak(3.0)});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  EXPECT_FALSE(found->has_vote());
+  EXPECT_TRUE(std::isnan(found->gap.change[1].cvrmse.low));
 }
 
 TEST_F(EpcGapTest, SitesThatTheMonthlyModelCannotTellSaySo) {
