@@ -8,6 +8,9 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr int kDraws = 200;
+// Times that a search begins again, and nats that make it worth while.
+constexpr int kModeChangesMax = 2;
+constexpr double kWorthASearch = 2.0;
 
 using Alterations = std::vector<std::shared_ptr<const model::hourly::Alteration>>;
 
@@ -209,7 +212,6 @@ class Search {
     auto first = lay_ground(base, site_, errors());
     if (!first) return tl::unexpected(first.error());
     first_ = std::move(*first);
-    result_.parameters_before = beliefs_of(site_, first_.none);
     result_.base_fit = gaps_of(site_, first_, judge_of(site_, first_, first_.fit));
     if (!first_.none.converged) {
       result_.warnings.push_back(
@@ -249,12 +251,32 @@ class Search {
   Diagnosis end() && {
     result_.modelled_kW = now().none.parts_kW;
     result_.gaps = gaps_of(site_, now(), judge_of(site_, first_, first_.show));
+    result_.parameters_before = beliefs_of(site_, first_.none);
     result_.parameters_after = beliefs_of(site_, now().none);
     conclude(changes_, !options_.assumed.empty(), result_);
     return std::move(result_);
   }
 
  private:
+  /// A search that begins again where a rival has shown a better mode of the base model.
+  Result<Pass> search_from_best(Predictor& predictor, const std::vector<Candidate>& open,
+                                const NamingRules& rules, Rng& rng) {
+    for (int left = kModeChangesMax;; --left) {
+      auto pass =
+          search(predictor, site_, now(), judge_of(site_, first_, first_.show), open, rules, rng);
+      if (!pass) return pass;
+      const auto& better = pass->naming.better_none;
+      if (left == 0 || !better || better->log_evidence - now().none.log_evidence < kWorthASearch) {
+        return pass;
+      }
+      Ground& ground = latest_ ? *latest_ : first_;
+      ground.none = *better;
+      if (auto settled = settle(predictor, site_, errors(), ground); !settled) {
+        return tl::unexpected(settled.error());
+      }
+    }
+  }
+
   [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
 
   [[nodiscard]] ModelErrors errors() const {

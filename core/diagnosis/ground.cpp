@@ -211,14 +211,22 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelEr
     if (!last) set_spreads(site, ground, scales);
   }
   // Under the final noise the mode has moved once more.
+  if (auto settled = settle(predictor, site, errors, ground); !settled) {
+    return tl::unexpected(settled.error());
+  }
+  ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
+  ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
+  return ground;
+}
+
+Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
+                    Ground& ground) {
   const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
   auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
                           {.iterations_max = kLastIterations});
   if (!none) return tl::unexpected(none.error());
   ground.none = std::move(*none);
-  ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
-  ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
-  return ground;
+  return {};
 }
 
 Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground) {

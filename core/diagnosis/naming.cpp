@@ -252,25 +252,63 @@ void decide(Naming& naming, const NamingRules& rules) {
   naming.why = "no effect is supported strongly enough";
 }
 
+/// What a fit says by itself, against the base model alone.
+Explanation explanation_of(const Candidate& candidate, JointFit fit, const JointFit& none,
+                           const NamingRules& rules) {
+  Explanation e{};
+  e.evidence_gain = fit.log_evidence - none.log_evidence;
+  e.likelihood_gain = fit.log_likelihood - none.log_likelihood;
+  e.null_scale = scale_of(candidate, rules);
+  e.at_truncation = is_at_truncation(candidate, fit);
+  e.fit = std::move(fit);
+  e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
+  return e;
+}
+
 void sort_by_evidence(std::vector<Explanation>& explanations) {
   std::ranges::stable_sort(explanations, std::greater{},
                            [](const Explanation& e) { return e.evidence_gain / e.null_scale; });
 }
 
-/// By how much the base model alone gains when it starts where the best rivals have led its
-/// parameters: what a rival owes to a better mode of the base model is none of its own.
-Result<double> better_none(Predictor& predictor, const FitContext& context, const JointFit& none,
-                           const std::vector<Explanation>& explanations) {
-  constexpr std::size_t kRestarts = 3;
-  double best = none.log_evidence;
+constexpr std::size_t kRestarts = 3;
+
+/// The base model fitted again from where the best rivals have led its parameters: what a rival
+/// owes to a better mode of the base model is none of its own. Empty where no mode is better.
+Result<std::optional<JointFit>> better_none(Predictor& predictor, const FitContext& context,
+                                            const JointFit& none,
+                                            const std::vector<Explanation>& explanations) {
+  std::optional<JointFit> best;
   for (std::size_t i = 0; i < std::min(kRestarts, explanations.size()); ++i) {
     if (explanations[i].evidence_gain <= 0.0) break;
     const Eigen::VectorXd start = explanations[i].fit.scores.head(none.scores.size());
-    const auto again = fit_jointly(predictor, context, Candidate{}, start);
+    auto again = fit_jointly(predictor, context, Candidate{}, start);
     if (!again) return tl::unexpected(again.error());
-    best = std::max(best, again->log_evidence);
+    if (again->log_evidence > (best ? best->log_evidence : none.log_evidence)) {
+      best = std::move(*again);
+    }
   }
-  return best - none.log_evidence;
+  return best;
+}
+
+/// The best rivals fitted again from the better mode of the base model, each with the amount that
+/// it had: no less is tried for them than for none.
+Result<void> refit_from(const JointFit& better, Predictor& predictor, const FitContext& context,
+                        const std::vector<Candidate>& candidates, const JointFit& none,
+                        std::vector<Explanation>& explanations) {
+  const Eigen::Index q = none.scores.size();
+  for (std::size_t i = 0; i < std::min(kRestarts, explanations.size()); ++i) {
+    Explanation& e = explanations[i];
+    Eigen::VectorXd start = e.fit.scores;
+    start.head(q) = better.scores;
+    auto again = fit_jointly(predictor, context, candidates[e.candidate], start);
+    if (!again) return tl::unexpected(again.error());
+    if (again->log_evidence <= e.fit.log_evidence) continue;
+    e.fit = std::move(*again);
+    e.fit.jacobian.resize(0, 0);
+    e.evidence_gain = e.fit.log_evidence - none.log_evidence;
+    e.likelihood_gain = e.fit.log_likelihood - none.log_likelihood;
+  }
+  return {};
 }
 
 }  // namespace
@@ -280,45 +318,40 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
                            const NamingRules& rules) {
   Naming naming;
   naming.null_threshold = look.null_threshold;
-  const SiteProblem& site = data.fit.site;
-  const HeldJudge judge{site, data.fit.observations,
+  const HeldJudge judge{data.fit.site, data.fit.observations,
                         data.fit.grid[static_cast<std::size_t>(none.best_node)], data.select,
                         data.levels};
   const MonthScores base_scores = judge.scores(none, data.usual);
-
-  const Grounds grounds{none.converged, months_read(site)};
-  naming.unknown_gain = data.unknown_log_evidence - none.log_evidence;
-
   const std::vector<std::size_t> rivals =
       rules.only.empty() ? survivors_of(look, candidates, rules) : rules.only;
   for (const std::size_t i : rivals) {
-    const Candidate& candidate = candidates[i];
-    auto fit = fit_jointly(predictor, data.fit, candidate,
-                           start_at(none, candidate, look.candidates[i].best));
+    auto fit = fit_jointly(predictor, data.fit, candidates[i],
+                           start_at(none, candidates[i], look.candidates[i].best));
     if (!fit) return tl::unexpected(fit.error());
-    const ScoreGain gain = gain_over(judge.scores(*fit, data.usual), base_scores);
-    naming.explanations.push_back({.candidate = i,
-                                   .fit = std::move(*fit),
-                                   .evidence_gain = 0.0,
-                                   .selected_gain = gain.sum,
-                                   .selected_se = gain.se,
-                                   .null_scale = scale_of(candidate, rules),
-                                   .first_look = look.candidates[i].log_bayes_factor,
-                                   .at_truncation = false,
-                                   .objection = {}});
-    Explanation& e = naming.explanations.back();
-    e.evidence_gain = e.fit.log_evidence - none.log_evidence;
-    e.likelihood_gain = e.fit.log_likelihood - none.log_likelihood;
-    e.at_truncation = is_at_truncation(candidate, e.fit);
+    Explanation e = explanation_of(candidates[i], std::move(*fit), none, rules);
+    e.candidate = i;
+    e.first_look = look.candidates[i].log_bayes_factor;
+    const ScoreGain gain = gain_over(judge.scores(e.fit, data.usual), base_scores);
+    e.selected_gain = gain.sum;
+    e.selected_se = gain.se;
     e.move = largest_move(e.fit.parts_kW, predictor.parts_kW(e.fit.theta));
-    e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
+    naming.explanations.push_back(std::move(e));
   }
   sort_by_evidence(naming.explanations);
-  const auto better = better_none(predictor, data.fit, none, naming.explanations);
+  auto better = better_none(predictor, data.fit, none, naming.explanations);
   if (!better) return tl::unexpected(better.error());
-  naming.unknown_gain -= *better;
+  naming.better_none = std::move(*better);
+  if (naming.better_none) {
+    auto refitted =
+        refit_from(*naming.better_none, predictor, data.fit, candidates, none, naming.explanations);
+    if (!refitted) return tl::unexpected(refitted.error());
+  }
+  const double owed =
+      naming.better_none ? naming.better_none->log_evidence - none.log_evidence : 0.0;
+  naming.unknown_gain = data.unknown_log_evidence - none.log_evidence - owed;
+  const Grounds grounds{none.converged, months_read(data.fit.site)};
   for (Explanation& e : naming.explanations) {
-    e.evidence_gain -= *better;
+    e.evidence_gain -= owed;
     e.objection = objection(e, grounds, naming, rules);
   }
   sort_by_evidence(naming.explanations);
