@@ -25,7 +25,7 @@ struct NamingRules {
                                  ///< beyond two standard errors.
   double least_evidence = 10.0;  ///< (L_k - L_none) / null scale, or the null threshold if larger.
   int least_months = 10;         ///< With readings: in less, a season looks like an effect.
-  double least_move = 0.003;     ///< Of some meter's energy, sum of what it moves a four-hour part.
+  double least_move = 0.001;     ///< Of some meter's energy, sum of what it moves a four-hour part.
   double confusable_share = 0.1;  ///< Probability of each member of a confusable set.
   double unknown_probability = 0.5;
   std::size_t survivors_min = 8;

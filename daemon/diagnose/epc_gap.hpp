@@ -27,8 +27,10 @@ struct EpcGap {
   int figures_shown;  ///< Measured monthly figures in them, of all outputs.
   /// Whether there is anything to judge by.
   [[nodiscard]] bool has_vote() const { return figures_shown > 0; }
-  /// The months kept back do not speak against the effect in this model either. @pre has_vote()
-  [[nodiscard]] bool agrees() const { return total.sum >= 0.0; }
+  /// The months kept back do not speak against the effect in this model either: not by more than a
+  /// nat beyond two standard errors. What leaves monthly figures as they are, a clock, must not
+  /// fall for their noise. @pre has_vote()
+  [[nodiscard]] bool agrees() const { return total.sum >= -2.0 * total.se - 1.0; }
 };
 
 /// @param problem  Of the site, as the diagnosis had it: months and their roles are taken from it.
