@@ -216,7 +216,7 @@ Eigen::MatrixXd BlockNoise::whiten_transposed(const Eigen::MatrixXd& columns) co
   return product;
 }
 
-// By rows, each entry of Z meets all columns at once: four times as fast as column by column.
+// By rows, so that each entry of Z meets all columns at once.
 Eigen::MatrixXd BlockNoise::in_patterns(const Eigen::MatrixXd& columns) const {
   using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const ByRows rows = columns;

@@ -8,9 +8,6 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr int kDraws = 200;
-// Times that a search begins again, and nats that make it worth while.
-constexpr int kModeChangesMax = 2;
-constexpr double kWorthASearch = 2.0;
 
 using Alterations = std::vector<std::shared_ptr<const model::hourly::Alteration>>;
 
@@ -258,25 +255,6 @@ class Search {
   }
 
  private:
-  /// A search that begins again where a rival has shown a better mode of the base model.
-  Result<Pass> search_from_best(Predictor& predictor, const std::vector<Candidate>& open,
-                                const NamingRules& rules, Rng& rng) {
-    for (int left = kModeChangesMax;; --left) {
-      auto pass =
-          search(predictor, site_, now(), judge_of(site_, first_, first_.show), open, rules, rng);
-      if (!pass) return pass;
-      const auto& better = pass->naming.better_none;
-      if (left == 0 || !better || better->log_evidence - now().none.log_evidence < kWorthASearch) {
-        return pass;
-      }
-      Ground& ground = latest_ ? *latest_ : first_;
-      ground.none = *better;
-      if (auto settled = settle(predictor, site_, errors(), ground); !settled) {
-        return tl::unexpected(settled.error());
-      }
-    }
-  }
-
   [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
 
   [[nodiscard]] ModelErrors errors() const {

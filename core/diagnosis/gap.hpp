@@ -36,9 +36,8 @@ inline constexpr double kLeastConfirmation = 1.1;
                                  const Observations& held);
 
 /// @param ground  The model to be judged.
-/// @param judge   Of the first model, for all that are compared: a change of noise or of scale is
-/// no
-///                better model.
+/// @param judge   Of the first model, for all that are compared: a change of noise or of scale
+///                is no better model.
 [[nodiscard]] std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
                                             const HeldJudge& judge);
 

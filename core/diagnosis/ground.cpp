@@ -179,6 +179,17 @@ Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last
   return {};
 }
 
+/// Draws the usual errors where the mode stands, and fits the base model from there once more.
+Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
+                    Ground& ground) {
+  const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
+  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
+                          {.iterations_max = kLastIterations});
+  if (!none) return tl::unexpected(none.error());
+  ground.none = std::move(*none);
+  return {};
+}
+
 }  // namespace
 
 Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelErrors errors) {
@@ -217,16 +228,6 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelEr
   ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
   ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
   return ground;
-}
-
-Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
-                    Ground& ground) {
-  const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
-  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
-                          {.iterations_max = kLastIterations});
-  if (!none) return tl::unexpected(none.error());
-  ground.none = std::move(*none);
-  return {};
 }
 
 Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground) {

@@ -50,9 +50,4 @@ struct Ground {
 [[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
                                         ModelErrors errors = ModelErrors::usual);
 
-/// Draws the usual errors where `ground.none` stands, and fits the base model from there once more.
-/// @return or not_finite, not_positive_definite from the fit.
-[[nodiscard]] Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
-                                  Ground& ground);
-
 }  // namespace recald::diagnosis

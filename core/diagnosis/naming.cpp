@@ -340,14 +340,12 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   sort_by_evidence(naming.explanations);
   auto better = better_none(predictor, data.fit, none, naming.explanations);
   if (!better) return tl::unexpected(better.error());
-  naming.better_none = std::move(*better);
-  if (naming.better_none) {
+  if (*better) {
     auto refitted =
-        refit_from(*naming.better_none, predictor, data.fit, candidates, none, naming.explanations);
+        refit_from(**better, predictor, data.fit, candidates, none, naming.explanations);
     if (!refitted) return tl::unexpected(refitted.error());
   }
-  const double owed =
-      naming.better_none ? naming.better_none->log_evidence - none.log_evidence : 0.0;
+  const double owed = *better ? (*better)->log_evidence - none.log_evidence : 0.0;
   naming.unknown_gain = data.unknown_log_evidence - none.log_evidence - owed;
   const Grounds grounds{none.converged, months_read(data.fit.site)};
   for (Explanation& e : naming.explanations) {

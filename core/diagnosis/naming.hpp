@@ -63,10 +63,7 @@ struct Naming {
   std::vector<Explanation> explanations;       ///< Descending in evidence by null scale.
   std::optional<std::size_t> named;            ///< Index into explanations.
   std::vector<std::string> confusable;         ///< Ids of the set.
-  /// The base model at a better mode than the one that was given, where a rival led to one: all of
-  /// this is worth judging again from there.
-  std::optional<JointFit> better_none;
-  double unknown_gain = 0.0;  ///< L_U - L_none
+  double unknown_gain = 0.0;                   ///< L_U - L_none
   double null_threshold = 0.0;
   std::string why;  ///< Why this outcome, one sentence.
 };

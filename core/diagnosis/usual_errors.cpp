@@ -1,10 +1,10 @@
 #include "core/diagnosis/usual_errors.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/diagnosis/candidate_shapes.hpp"
+#include "core/diagnosis/learnt.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -12,13 +12,10 @@ namespace {
 /// Of an effect with many shapes a few stand for all.
 constexpr std::size_t kShapesMax = 6;
 
-struct UsualAmount {
-  std::string_view effect;
-  double sd;
-};
-
-constexpr double kAnyEffect = 0.3;
-constexpr auto kUsualAmounts = std::to_array<UsualAmount>({
+// Training population of seed 601, 50 buildings with nothing hidden: the sizes under which their
+// residuals are likeliest (expectation maximisation), at most 3.
+constexpr double kAnyEffect = 0.35;
+constexpr auto kUsualAmounts = std::to_array<Learnt>({
     {"after_hours", 0.08},
     {"chiller_part_load", 0.75},
     {"constant_flow_pumps", 2.95},
@@ -104,8 +101,7 @@ Eigen::MatrixXd UsualErrors::columns(const Observations& observations) const {
 }
 
 double usual_amount_sd(std::string_view effect) {
-  const auto found = std::ranges::find(kUsualAmounts, effect, &UsualAmount::effect);
-  return found == kUsualAmounts.end() ? kAnyEffect : found->sd;
+  return learnt_of(kUsualAmounts, effect, kAnyEffect);
 }
 
 }  // namespace recald::diagnosis
