@@ -257,6 +257,14 @@ double BlockNoise::marginal_log_density(const Eigen::VectorXd& residual) const {
          (static_cast<double>(points()) * log_two_pi + log_determinant_ + gram(residual)(0, 0));
 }
 
+double BlockNoise::student_log_density(const Eigen::VectorXd& residual, double freedom) const {
+  const auto n = static_cast<double>(points());
+  const double half = 0.5 * (freedom + n);
+  return std::lgamma(half) - std::lgamma(0.5 * freedom) -
+         0.5 * (n * (log_two_pi + std::log(0.5 * freedom)) + log_determinant_) -
+         half * std::log1p(gram(residual)(0, 0) / freedom);
+}
+
 Eigen::VectorXd BlockNoise::draw(Rng& rng) const {
   const auto standard_normals = [&rng](Eigen::Index size) {
     return Eigen::VectorXd::NullaryExpr(size, [&rng](Eigen::Index) { return rng.normal(); });

@@ -94,6 +94,11 @@ class BlockNoise {
   /// log N(r; 0, Sigma)
   [[nodiscard]] double marginal_log_density(const Eigen::VectorXd& residual) const;
 
+  /// log t_nu(r; 0, Sigma): Sigma known up to a factor that is itself inverse gamma, so that a
+  /// model that errs more than thought does not win or lose by the square of it.
+  /// @param freedom  nu > 0
+  [[nodiscard]] double student_log_density(const Eigen::VectorXd& residual, double freedom) const;
+
   /// A draw of N(0, Sigma) (n), from its definition: pattern + OU path + white.
   [[nodiscard]] Eigen::VectorXd draw(Rng& rng) const;
 

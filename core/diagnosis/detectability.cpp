@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/diagnosis/ground.hpp"
+#include "core/diagnosis/null_scale.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -171,9 +172,11 @@ Result<Detectability> FootprintGauge::measure(
                    "the footprint has a value that is not a finite number where its meter was "
                    "measured");
   }
+  const Visibility block = at_block(footprint);
   return Detectability{.month = at(month_, footprint),
                        .day = at(day_, footprint),
-                       .block = at_block(footprint),
+                       .block = block,
+                       .d_star = block.detectability / null_score_spread,
                        .meters = moves(parts_kW)};
 }
 

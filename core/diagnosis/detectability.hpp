@@ -3,8 +3,12 @@
 /// A simulator tells what an effect adds to each meter; the meters without the effect, its twin,
 /// tell what the model gets wrong anyway and what its parameters could imitate. With Sigma and the
 /// Jacobian J of the base model calibrated to the twin, and s the footprint on the meters' scales,
-///     d* = sqrt(s' M s),  M = (Sigma + J J')^-1   (parameters as standard normal scores).
-/// @see discrepancy.md, 2.1.
+///     d = sqrt(s' M s),  M = (Sigma + J J')^-1   (parameters as standard normal scores),
+/// usual errors among the parameters. The scores of effects that are not there would vary by 1 if
+/// that were all that models get wrong; they vary by `null_score_spread`. So
+///     d* = d / null_score_spread
+/// is what the same signal would show against noise that is known.
+/// @see discrepancy.md, 2.1, whose d* is this d.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -20,7 +24,7 @@ namespace recald::diagnosis {
 
 /// What one grain of the data shows of a footprint. Pure numbers.
 struct Visibility {
-  double detectability;   ///< d* = sqrt(s' M s)
+  double detectability;   ///< d = sqrt(s' M s)
   double unprojected;     ///< sqrt(s' Sigma^-1 s): as if the base parameters were known.
   double absorbed_share;  ///< 1 - s' M s / s' Sigma^-1 s; 0 where nothing shows at all.
 };
@@ -34,7 +38,8 @@ struct MeterMove {
 struct Detectability {
   Visibility month;  ///< Means of the measured parts of each month.
   Visibility day;
-  Visibility block;               ///< Four-hour parts: this one is meant by d*.
+  Visibility block;               ///< Four-hour parts: what a diagnosis reads.
+  double d_star;                  ///< Of these parts, in units of what null scores vary by.
   std::vector<MeterMove> meters;  ///< (m)
 };
 

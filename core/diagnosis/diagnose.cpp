@@ -8,6 +8,7 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr int kDraws = 200;
+constexpr double kMuchBetter = 20.0;  // nats
 
 using Alterations = std::vector<std::shared_ptr<const model::hourly::Alteration>>;
 
@@ -164,30 +165,35 @@ void keep_first(std::size_t count, Diagnosis& result) {
   result.gaps = result.passes[count].gaps;
 }
 
+/// What the months kept back say of one addition.
+struct Shown {
+  MonthScores change;
+  bool confirmed;
+};
+
 /// The verdict of the first pass, unless the months kept back do not bear out what was added: then
 /// the most that they do bear out.
-/// @param changes  Of each addition with all before it, against the drawings alone.
-void conclude(const std::vector<GapChange>& changes, bool assumed, Diagnosis& result) {
+/// @param shown  Of each addition; empty where no month was kept back.
+void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) {
   const Naming& verdict = result.passes.front().naming;
   result.outcome = verdict.outcome;
   result.why = verdict.why;
   if (result.added.empty()) return;
-  if (changes.empty()) {
+  if (shown.empty()) {
     take_back(
         "no reading lies in the months kept back, so nothing confirms what was named and it "
         "was taken back",
         result);
     return;
   }
-  std::size_t confirmed = changes.size();
-  while (confirmed > 0 && !changes[confirmed - 1].confirmed) --confirmed;
-  if (assumed || confirmed == changes.size()) {
-    result.gap = changes.back();
-  } else if (confirmed > 0) {
-    result.gap = changes[confirmed - 1];
-    keep_first(confirmed, result);
-  } else {
-    result.gap = changes.back();
+  const auto doubtful = std::ranges::find_if(shown, [](const Shown& s) { return !s.confirmed; });
+  const auto confirmed = static_cast<std::size_t>(doubtful - shown.begin());
+  if (!assumed && confirmed > 0 && confirmed < shown.size()) keep_first(confirmed, result);
+  std::vector<MonthScores> changes;
+  for (std::size_t i = 0; i < result.added.size(); ++i) changes.push_back(shown[i].change);
+  result.gap = change_of(result.passes.front().gaps, result.gaps, changes);
+  result.gap->confirmed = confirmed >= result.added.size();
+  if (!assumed && confirmed == 0) {
     take_back(
         "what was named does not foretell the months that were kept back, so it was taken "
         "back",
@@ -232,16 +238,21 @@ class Search {
       if (!meant) return tl::unexpected(meant.error());
       rules.only = std::move(*meant);
     }
-    auto pass =
-        search(predictor, site_, now(), judge_of(site_, first_, first_.show), open, rules, rng);
+    auto pass = search_again(predictor, open, rules, rng);
     if (!pass) return tl::unexpected(pass.error());
     if (assumed) take_as_named(pass->naming);
     const bool named = pass->naming.outcome == Outcome::named && may_add(count);
-    if (named) result_.added.push_back(addition_of(predictor, site_, open, pass->naming, rng));
+    if (named) {
+      result_.added.push_back(addition_of(predictor, site_, open, pass->naming, rng));
+      if (first_.show.count() > 0) shown_.push_back(show(pass->naming));
+    }
+    pass->naming.better_base.reset();  // large, and of no more use
     result_.passes.push_back(std::move(*pass));
     result_.model_runs += predictor.runs();
     if (!named) return false;
-    if (auto added = take_up(result_.added.back()); !added) return tl::unexpected(added.error());
+    const Naming& naming = result_.passes.back().naming;
+    auto added = take_up(result_.added.back(), naming.explanations[*naming.named].fit);
+    if (!added) return tl::unexpected(added.error());
     return true;
   }
 
@@ -250,12 +261,30 @@ class Search {
     result_.gaps = gaps_of(site_, now(), judge_of(site_, first_, first_.show));
     result_.parameters_before = beliefs_of(site_, first_.none);
     result_.parameters_after = beliefs_of(site_, now().none);
-    conclude(changes_, !options_.assumed.empty(), result_);
+    conclude(shown_, !options_.assumed.empty(), result_);
     return std::move(result_);
   }
 
  private:
   [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
+  [[nodiscard]] Ground& now() { return latest_ ? *latest_ : first_; }
+
+  /// Where the rivals show a much better mode of the base model, the first look stood on the wrong
+  /// hill: once more from there.
+  Result<Pass> search_again(Predictor& predictor, const std::vector<Candidate>& open,
+                            const NamingRules& rules, Rng& rng) {
+    const auto once = [&] {
+      return search(predictor, site_, now(), judge_of(site_, first_, first_.show), open, rules,
+                    rng);
+    };
+    auto pass = once();
+    if (!pass || !pass->naming.better_base) return pass;
+    JointFit& better = *pass->naming.better_base;
+    if (better.log_evidence - now().none.log_evidence < kMuchBetter) return pass;
+    auto moved = move_ground(predictor, site_, std::move(better), now(), errors());
+    if (!moved) return tl::unexpected(moved.error());
+    return once();
+  }
 
   [[nodiscard]] ModelErrors errors() const {
     return options_.rules.errs_as_learnt ? ModelErrors::usual : ModelErrors::none;
@@ -266,18 +295,25 @@ class Search {
                                              : options_.assumed.size());
   }
 
-  /// The model with one more effect, and what it does to the months kept back.
-  Result<void> take_up(const Addition& addition) {
+  /// What the months kept back say of the effect just named, on the ground where it was found.
+  [[nodiscard]] Shown show(const Naming& naming) const {
+    const Explanation& e = naming.explanations[*naming.named];
+    const HeldJudge judge = judge_of(site_, now(), now().show);
+    const JointFit& base = naming.better_base ? *naming.better_base : now().none;
+    MonthScores change = difference(judge.scores(e.fit, *now().usual),  //
+                                    judge.scores(base, *now().usual));
+    const bool confirmed = is_confirmed(change, e.null_scale);
+    return {std::move(change), confirmed};
+  }
+
+  /// The model with one more effect. @param found  The base parameters fitted together with it.
+  Result<void> take_up(const Addition& addition, const JointFit& found) {
     accepted_.push_back(alteration_of(addition.candidate, site_.facts(), addition.eta));
     Predictor altered{site_, accepted_};
-    auto next = lay_ground(altered, site_, errors());
+    auto next = lay_next_ground(altered, site_, now(), found, errors());
     if (!next) return tl::unexpected(next.error());
     latest_ = std::move(*next);
     result_.model_runs += altered.runs();
-    largest_scale_ = std::max(largest_scale_, addition.null_scale);
-    if (first_.show.count() > 0) {
-      changes_.push_back(change_of(site_, first_, *latest_, largest_scale_));
-    }
     return {};
   }
 
@@ -287,8 +323,7 @@ class Search {
   Alterations accepted_;
   Ground first_;
   std::optional<Ground> latest_;  ///< Of the model with what was added.
-  std::vector<GapChange> changes_;
-  double largest_scale_ = 1.0;
+  std::vector<Shown> shown_;
   Diagnosis result_;
 };
 

@@ -75,19 +75,24 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
   return gaps;
 }
 
-GapChange change_of(const SiteProblem& site, const Ground& before, const Ground& after,
-                    double null_scale) {
-  const HeldJudge judge = judge_of(site, before, before.show);
-  const MonthScores old_scores = judge.scores(before.none, *before.usual);
-  const MonthScores new_scores = judge.scores(after.none, *after.usual);
-  GapChange change{.before = gaps_of(site, before, judge),
-                   .after = gaps_of(site, after, judge),
-                   .log_score_change = gain_by_meter(new_scores, old_scores)};
-  const bool worse = std::ranges::any_of(change.log_score_change, [](const ScoreGain& meter) {
+bool is_confirmed(const MonthScores& change, double null_scale) {
+  const bool worse = std::ranges::any_of(gain_by_meter(change), [](const ScoreGain& meter) {
     return meter.sum < -2.0 * meter.se - 1.0;
   });
-  const ScoreGain all = gain_over(new_scores, old_scores);
-  change.confirmed = all.sum > kLeastConfirmation * null_scale && !worse;
+  return gain_over(change).sum > kLeastConfirmation * null_scale && !worse;
+}
+
+GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,
+                    std::span<const MonthScores> changes) {
+  const MonthScores sum = sum_of(changes);
+  GapChange change{.before = std::move(before),
+                   .after = std::move(after),
+                   .log_score_change = gain_by_meter(sum)};
+  for (std::size_t g = 0; g < sum.size(); ++g) {
+    const double gain = change.log_score_change[g].sum;
+    change.after[g].log_score =
+        change.before[g].log_score + gain / static_cast<double>(sum[g].size());
+  }
   return change;
 }
 

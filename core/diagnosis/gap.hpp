@@ -2,6 +2,7 @@
 /// @see discrepancy.md, 3.4
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/diagnosis/ground.hpp"
@@ -21,10 +22,8 @@ struct MeterGap {
 struct GapChange {
   std::vector<MeterGap> before;             ///< (m)
   std::vector<MeterGap> after;              ///< (m)
-  std::vector<ScoreGain> log_score_change;  ///< (m) after - before, summed over the shown months.
-  /// Better by `kLeastConfirmation` in units of the effects' null scale, and no meter worse by two
-  /// standard errors and a nat.
-  bool confirmed = false;
+  std::vector<ScoreGain> log_score_change;  ///< (m) summed over the shown months.
+  bool confirmed = false;                   ///< Every effect that was added is.
 };
 
 /// Three to one: what months that chose nothing must say for an effect.
@@ -41,9 +40,15 @@ inline constexpr double kLeastConfirmation = 1.1;
 [[nodiscard]] std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
                                             const HeldJudge& judge);
 
-/// On the months that `before` keeps back, by its own judge.
-/// @param null_scale  Of the effects that were added, the largest.
-[[nodiscard]] GapChange change_of(const SiteProblem& site, const Ground& before,
-                                  const Ground& after, double null_scale);
+/// Better by `kLeastConfirmation` in units of the effect's null scale, and no meter worse by two
+/// standard errors and a nat.
+/// @param change  Of the scores of months that chose nothing: the effect and the base parameters
+///                fitted together, over the base parameters fitted alone on the same ground. Two
+///                models that were searched for apart would differ by their hills as well.
+[[nodiscard]] bool is_confirmed(const MonthScores& change, double null_scale);
+
+/// @param changes  One for each effect that was added.
+[[nodiscard]] GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,
+                                  std::span<const MonthScores> changes);
 
 }  // namespace recald::diagnosis

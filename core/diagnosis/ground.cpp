@@ -17,6 +17,9 @@ constexpr double kGenerousErrors = 3.0;  // and its errors in the ways that the 
 constexpr int kFirstIterations = 25;     // from the middle of the priors
 constexpr int kIterations = 8;
 constexpr int kLastIterations = 30;  // the mode that everything is compared with
+constexpr int kHops = 4;
+constexpr int kLastHops = 10;
+constexpr double kLeastNodeWeight = 1e-6;  // of the likeliest: what weighs less has no say
 // What the anonymous patterns may be, in units of a meter's mean; the likeliest is taken.
 constexpr std::array kPatternShares{0.02, 0.06, 0.15};
 
@@ -116,15 +119,30 @@ void set_spreads(const SiteProblem& site, const Ground& ground, std::vector<Mete
   }
 }
 
+/// Under nearly white noise and without usual errors: first the parameters explain all they can.
+Ground plain_ground(const SiteProblem& site) {
+  Ground ground;
+  ground.fit = observe(site, parts_of(site, {Role::fit}),
+                       std::vector<MeterScale>(site.meters.size()), Patterns::modest);
+  ground.errors = UsualErrors{}.columns(ground.fit);
+  ground.levels = first_levels(ground.fit);
+  ground.grid = noise_grid(ground.fit, ground.levels, false);
+  return ground;
+}
+
+Result<JointFit> plain_fit(Predictor& predictor, const SiteProblem& site, const Ground& plain,
+                           const Eigen::VectorXd& start) {
+  return fit_jointly(predictor, plain.context(site), Candidate{}, start,
+                     {.iterations_max = kFirstIterations});
+}
+
 /// The base model from the middle of the priors and from the site's second start: the likelier.
-Result<JointFit> first_fit(Predictor& predictor, const SiteProblem& site, const Ground& ground) {
-  const FitContext context = ground.context(site);
-  const FitOptions options{.iterations_max = kFirstIterations, .damped = true};
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(site.parameters.size()));
-  auto best = fit_jointly(predictor, context, Candidate{}, start, options);
+Result<JointFit> first_fit(Predictor& predictor, const SiteProblem& site, const Ground& plain) {
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(std::ssize(site.parameters));
+  auto best = plain_fit(predictor, site, plain, start);
   if (!best || site.second_start.size() == 0) return best;
   start.head(site.second_start.size()) = site.second_start;
-  auto other = fit_jointly(predictor, context, Candidate{}, start, options);
+  auto other = plain_fit(predictor, site, plain, start);
   if (!other) return other;
   return other->log_density > best->log_density ? std::move(other) : std::move(best);
 }
@@ -176,7 +194,20 @@ Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last
   ground.levels = std::move(*levels);
   set_gates(ground.fit, left, ground.levels);
   ground.grid = noise_grid(ground.fit, ground.levels, last);
+  ground.reference_node = ground.grid.size() / 2;
   return {};
+}
+
+/// Goes on with the nodes that have a say, by the likeliest of them.
+void keep_likely_nodes(Ground& ground) {
+  const Eigen::VectorXd& weights = ground.none.node_weights;
+  std::vector<NoiseNode> likely;
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    if (weights[i] < kLeastNodeWeight * weights.maxCoeff()) continue;
+    if (i == ground.none.best_node) ground.reference_node = likely.size();
+    likely.push_back(std::move(ground.grid[static_cast<std::size_t>(i)]));
+  }
+  ground.grid = std::move(likely);
 }
 
 /// Draws the usual errors where the mode stands, and fits the base model from there once more.
@@ -184,7 +215,19 @@ Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors e
                     Ground& ground) {
   const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
   auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
-                          {.iterations_max = kLastIterations});
+                          {.iterations_max = kLastIterations, .hops = kLastHops});
+  if (!none) return tl::unexpected(none.error());
+  ground.none = std::move(*none);
+  return {};
+}
+
+/// Usual errors, noise and mode once, in this order.
+Result<void> learn(Predictor& predictor, const SiteProblem& site, ModelErrors errors, bool last,
+                   Ground& ground) {
+  const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
+  if (auto learnt = learn_noise(ground, start, last); !learnt) return learnt;
+  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
+                          {.iterations_max = kIterations, .hops = kHops});
   if (!none) return tl::unexpected(none.error());
   ground.none = std::move(*none);
   return {};
@@ -193,34 +236,25 @@ Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors e
 }  // namespace
 
 Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelErrors errors) {
-  Ground ground;
-  std::vector<MeterScale> scales(site.meters.size());
-  const auto fit_parts = parts_of(site, {Role::fit});
-  ground.fit = observe(site, fit_parts, scales, Patterns::modest);
+  Ground ground = plain_ground(site);
   if (auto enough = require_parts(site, ground.fit); !enough) {
     return tl::unexpected(enough.error());
   }
-  ground.errors = UsualErrors{}.columns(ground.fit);  // first the parameters explain all they can
-  ground.levels = first_levels(ground.fit);
-  ground.grid = noise_grid(ground.fit, ground.levels, false);
   auto plain = first_fit(predictor, site, ground);
   if (!plain) return tl::unexpected(plain.error());
   ground.none = std::move(*plain);
   ground.plain_kW = ground.none.parts_kW;
+  std::vector<MeterScale> scales(site.meters.size());
   set_levels_scale(ground, scales);
 
   for (const bool last : {false, true}) {
-    ground.fit = observe(site, fit_parts, scales, Patterns::modest);
-    const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
-    if (auto learnt = learn_noise(ground, start, last); !learnt) {
+    ground.fit = observe(site, parts_of(site, {Role::fit}), scales, Patterns::modest);
+    if (auto learnt = learn(predictor, site, errors, last, ground); !learnt) {
       return tl::unexpected(learnt.error());
     }
-    auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
-                            {.iterations_max = kIterations});
-    if (!none) return tl::unexpected(none.error());
-    ground.none = std::move(*none);
     if (!last) set_spreads(site, ground, scales);
   }
+  keep_likely_nodes(ground);
   // Under the final noise the mode has moved once more.
   if (auto settled = settle(predictor, site, errors, ground); !settled) {
     return tl::unexpected(settled.error());
@@ -228,6 +262,32 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelEr
   ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
   ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
   return ground;
+}
+
+Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site, const Ground& before,
+                               const JointFit& found, ModelErrors errors) {
+  const auto q = std::ssize(site.parameters);
+  const auto plain =
+      plain_fit(predictor, site, plain_ground(site), Eigen::VectorXd(found.scores.head(q)));
+  if (!plain) return tl::unexpected(plain.error());
+  Ground ground = before;
+  ground.plain_kW = plain->parts_kW;
+  ground.none = found;
+  ground.none.scores.conservativeResize(q + found.usual.size());
+  if (auto learnt = learn(predictor, site, errors, true, ground); !learnt) {
+    return tl::unexpected(learnt.error());
+  }
+  keep_likely_nodes(ground);
+  if (auto settled = settle(predictor, site, errors, ground); !settled) {
+    return tl::unexpected(settled.error());
+  }
+  return ground;
+}
+
+Result<void> move_ground(Predictor& predictor, const SiteProblem& site, JointFit mode,
+                         Ground& ground, ModelErrors errors) {
+  ground.none = std::move(mode);
+  return settle(predictor, site, errors, ground);
 }
 
 Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground) {

@@ -27,14 +27,15 @@ struct Ground {
   std::shared_ptr<const UsualErrors> usual;  ///< Drawn at a mode near the last one.
   Eigen::MatrixXd errors;                    ///< E of the months to fit.
   std::vector<NoiseLevel> levels;            ///< (m) as fitted to what the base model leaves.
-  std::vector<NoiseNode> grid;
+  std::vector<NoiseNode> grid;               ///< Nodes that the base model leaves any weight.
+  std::size_t reference_node = 0;
   JointFit none;  ///< Base parameters alone, at their mode.
   /// (parts x m) kW: the base model alone, fitted by nearly white noise. What the anonymous terms
   /// may take up in `none` is the model's own gap here.
   Eigen::ArrayXXd plain_kW;
 
   [[nodiscard]] FitContext context(const SiteProblem& site) const {
-    return {site, fit, errors, grid, grid.size() / 2};
+    return {site, fit, errors, grid, reference_node};
   }
 };
 
@@ -49,5 +50,17 @@ struct Ground {
 ///         not_finite, not_positive_definite from the fits.
 [[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
                                         ModelErrors errors = ModelErrors::usual);
+
+/// The ground of a model with one effect more, from where that effect was found: same scales, noise
+/// and mode anew. What differs between two grounds is then the effect, not another hill.
+/// @param predictor  With the effect.
+/// @param found      The base parameters fitted together with it, on `before`.
+[[nodiscard]] Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site,
+                                             const Ground& before, const JointFit& found,
+                                             ModelErrors errors = ModelErrors::usual);
+
+/// Goes over to a better mode of the same model. @param mode  Base parameters alone.
+[[nodiscard]] Result<void> move_ground(Predictor& predictor, const SiteProblem& site, JointFit mode,
+                                       Ground& ground, ModelErrors errors = ModelErrors::usual);
 
 }  // namespace recald::diagnosis

@@ -8,8 +8,10 @@ namespace {
 
 // Of the sd of a pattern after two years have taught it: about a third.
 constexpr double kPatternsLeftOpen = 0.3;
+// Of the size of a held month's noise: known within a factor of two or so.
+constexpr double kFreedom = 4.0;
 
-ScoreGain sum_of(const std::vector<double>& differences) {
+ScoreGain gain_of(const std::vector<double>& differences) {
   const auto n = static_cast<double>(differences.size());
   double sum = 0.0;
   double squares = 0.0;
@@ -70,33 +72,50 @@ MonthScores HeldJudge::scores(const JointFit& model, const UsualErrors& usual) c
                         meter.design.drifts};
       const Eigen::VectorXd expected = month.patterns * patterns;
       leave_open(month, open_errors.middleRows(meter.offset + first, n) / level.pattern_sd);
-      scores[g][month_at(begin)] = BlockNoise{month, level}.marginal_log_density(
-          residual.segment(meter.offset + first, n) - expected);
+      scores[g][month_at(begin)] = BlockNoise{month, level}.student_log_density(
+          residual.segment(meter.offset + first, n) - expected, kFreedom);
     }
   }
   return scores;
 }
 
-std::vector<ScoreGain> gain_by_meter(const MonthScores& with, const MonthScores& without) {
-  std::vector<ScoreGain> gains;
+MonthScores difference(const MonthScores& with, const MonthScores& without) {
+  MonthScores change = with;
   for (std::size_t g = 0; g < with.size(); ++g) {
-    std::vector<double> differences;
-    for (const auto& [month, score] : without[g]) {
-      differences.push_back(with[g].at(month) - score);
+    for (auto& [month, score] : change[g]) score -= without[g].at(month);
+  }
+  return change;
+}
+
+MonthScores sum_of(std::span<const MonthScores> changes) {
+  MonthScores sum;
+  for (const MonthScores& change : changes) {
+    sum.resize(change.size());
+    for (std::size_t g = 0; g < change.size(); ++g) {
+      for (const auto& [month, score] : change[g]) sum[g][month] += score;
     }
-    gains.push_back(sum_of(differences));
+  }
+  return sum;
+}
+
+std::vector<ScoreGain> gain_by_meter(const MonthScores& change) {
+  std::vector<ScoreGain> gains;
+  for (const auto& months : change) {
+    std::vector<double> differences;
+    for (const auto& [month, score] : months) differences.push_back(score);
+    gains.push_back(gain_of(differences));
   }
   return gains;
 }
 
-ScoreGain gain_over(const MonthScores& with, const MonthScores& without) {
+ScoreGain gain_over(const MonthScores& change) {
   std::map<int, double> months;
-  for (std::size_t g = 0; g < with.size(); ++g) {
-    for (const auto& [month, score] : without[g]) months[month] += with[g].at(month) - score;
+  for (const auto& meter : change) {
+    for (const auto& [month, score] : meter) months[month] += score;
   }
   std::vector<double> differences;
-  for (const auto& [month, difference] : months) differences.push_back(difference);
-  return sum_of(differences);
+  for (const auto& [month, score] : months) differences.push_back(score);
+  return gain_of(differences);
 }
 
 }  // namespace recald::diagnosis

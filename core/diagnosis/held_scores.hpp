@@ -10,7 +10,9 @@
 
 namespace recald::diagnosis {
 
-/// Log density of each held month by its index, meter by meter (m). No month knows its neighbours'
+/// Log density of each held month by its index, meter by meter (m): a Student t, since the size of
+/// that month's noise is not known to the digit and months that go wrong altogether must not decide
+/// by the square of it. No month knows its neighbours'
 /// slow structure, or the answer would leak across the split.
 using MonthScores = std::vector<std::map<int, double>>;
 
@@ -34,10 +36,14 @@ struct ScoreGain {
   double se = 0.0;  ///< 0 where there are fewer than two months.
 };
 
-/// @return of each meter (m): with - without.
-[[nodiscard]] std::vector<ScoreGain> gain_by_meter(const MonthScores& with,
-                                                   const MonthScores& without);
+/// with - without, month by month.
+[[nodiscard]] MonthScores difference(const MonthScores& with, const MonthScores& without);
+/// Of several differences of the same months.
+[[nodiscard]] MonthScores sum_of(std::span<const MonthScores> changes);
+
+/// Of each meter (m). @param change  A difference.
+[[nodiscard]] std::vector<ScoreGain> gain_by_meter(const MonthScores& change);
 /// Of all meters together, month by month.
-[[nodiscard]] ScoreGain gain_over(const MonthScores& with, const MonthScores& without);
+[[nodiscard]] ScoreGain gain_over(const MonthScores& change);
 
 }  // namespace recald::diagnosis

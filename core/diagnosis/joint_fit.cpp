@@ -3,20 +3,36 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <cstdint>
+
+#include "core/random/rng.hpp"
 
 namespace recald::diagnosis {
 namespace {
 
-constexpr double kScoreStep = 0.1;
+// Slopes are taken over steps as long as what the data leave open of a score, or a little longer:
+// the model has a kink wherever a thermostat or a valve changes its mind.
+constexpr double kScoreStep = 0.03;
+constexpr double kEffectStep = 0.1;
 // A day moved by its tenth of a score would jump a month; two days are still many parts.
 constexpr double kDayStep_d = 2.0;
 constexpr double kScoreLimit = 5.0;
 constexpr int kTrialsMax = 6;
-// Precision of the damped steps, in units of the priors': first, and from one to the next.
-constexpr double kFirstDamping = 3.0;
-constexpr double kDampingStep = 8.0;
+// Precision of the damped steps, in units of the priors': the least, and factors after a step that
+// failed and after one that helped at once.
+constexpr double kLeastDamping = 3.0;
+constexpr double kMoreDamping = 8.0;
+constexpr double kLessDamping = 0.1;
+constexpr double kNoDamping = 0.05;
+// A hop goes so far in each score, climbs so often, and is given up so far below.
+constexpr double kHop = 0.4;
+constexpr int kHopIterations = 6;
+constexpr int kHopTrial = 3;
+constexpr double kHopSmallGain = 0.5;
+constexpr double kHopHopeless = 60.0;
+constexpr std::uint64_t kHopSeed = 1;
 
-/// Runs the model at scores and stacks the result.
+/// Runs the model at own scores v = [theta | eta] (q + r) and stacks the result.
 class ScoredModel {
  public:
   ScoredModel(Predictor& predictor, const FitContext& context, const Candidate& candidate)
@@ -30,55 +46,44 @@ class ScoredModel {
   [[nodiscard]] Eigen::Index theta_count() const {
     return static_cast<Eigen::Index>(theta_priors_.size());
   }
-  [[nodiscard]] Eigen::Index error_count() const { return context_.errors.cols(); }
-  [[nodiscard]] Eigen::Index eta_begin() const { return theta_count() + error_count(); }
-  [[nodiscard]] Eigen::Index count() const {
-    return eta_begin() + static_cast<Eigen::Index>(eta_priors_.size());
+  [[nodiscard]] Eigen::Index eta_count() const {
+    return static_cast<Eigen::Index>(eta_priors_.size());
   }
-  [[nodiscard]] std::vector<double> theta(const Eigen::VectorXd& scores) const {
-    return values_at(theta_priors_, scores.head(theta_count()));
+  [[nodiscard]] Eigen::Index count() const { return theta_count() + eta_count(); }
+  [[nodiscard]] std::vector<double> theta(const Eigen::VectorXd& own) const {
+    return values_at(theta_priors_, own.head(theta_count()));
   }
-  [[nodiscard]] std::vector<double> eta(const Eigen::VectorXd& scores) const {
-    return values_at(eta_priors_, scores.tail(count() - eta_begin()));
+  [[nodiscard]] std::vector<double> eta(const Eigen::VectorXd& own) const {
+    return values_at(eta_priors_, own.tail(eta_count()));
   }
-  [[nodiscard]] Eigen::VectorXd usual(const Eigen::VectorXd& scores) const {
-    return scores.segment(theta_count(), error_count());
-  }
-  const Eigen::ArrayXXd& run(const Eigen::VectorXd& scores) {
-    const std::vector<double> values = theta(scores);
+  const Eigen::ArrayXXd& run(const Eigen::VectorXd& own) {
+    const std::vector<double> values = theta(own);
     if (candidate_.effect == nullptr) return predictor_.parts_kW(values);
-    const auto alteration = alteration_of(candidate_, facts_, eta(scores));
+    const auto alteration = alteration_of(candidate_, facts_, eta(own));
     return predictor_.parts_kW(values, alteration.get());
   }
-  /// Model and usual errors together.
-  Eigen::VectorXd stacked(const Eigen::VectorXd& scores) {
-    return context_.observations.stack(run(scores)) + context_.errors * usual(scores);
+  Eigen::VectorXd stacked(const Eigen::VectorXd& own) {
+    return context_.observations.stack(run(own));
   }
 
-  /// What is chosen, never fitted.
-  [[nodiscard]] bool is_choice(Eigen::Index j) const {
-    return j >= eta_begin() &&
-           candidate_.parameters[static_cast<std::size_t>(j - eta_begin())].choice;
-  }
-  [[nodiscard]] bool is_day(Eigen::Index j) const {
-    return j >= eta_begin() &&
-           candidate_.parameters[static_cast<std::size_t>(j - eta_begin())].unit == "day";
-  }
+  /// What is chosen, never fitted. @param j  Index into eta.
+  [[nodiscard]] bool is_choice(Eigen::Index j) const { return parameter(j).choice; }
+  [[nodiscard]] bool is_day(Eigen::Index j) const { return parameter(j).unit == "day"; }
   [[nodiscard]] bool has_days() const { return candidate_.begins; }
   [[nodiscard]] Eigen::MatrixXd with_days_held(Eigen::MatrixXd jacobian) const {
-    for (Eigen::Index j = eta_begin(); j < count(); ++j) {
-      if (is_day(j)) jacobian.col(j).setZero();
+    for (Eigen::Index j = 0; j < eta_count(); ++j) {
+      if (is_day(j)) jacobian.col(theta_count() + j).setZero();
     }
     return jacobian;
   }
-  /// A choice is as it is.
-  void hold_choices(GaussianPosterior& posterior) const {
+  /// A choice is as it is. @param eta_begin  Of the posterior.
+  void hold_choices(Eigen::Index eta_begin, GaussianPosterior& posterior) const {
     constexpr double kNothing = 1e-12;
-    for (Eigen::Index j = eta_begin(); j < count(); ++j) {
+    for (Eigen::Index j = 0; j < eta_count(); ++j) {
       if (!is_choice(j)) continue;
-      posterior.covariance.row(j).setZero();
-      posterior.covariance.col(j).setZero();
-      posterior.covariance(j, j) = kNothing;
+      posterior.covariance.row(eta_begin + j).setZero();
+      posterior.covariance.col(eta_begin + j).setZero();
+      posterior.covariance(eta_begin + j, eta_begin + j) = kNothing;
     }
   }
   /// Log of how many ways there were to choose: what one of them pays in evidence.
@@ -90,33 +95,34 @@ class ScoredModel {
     return logs;
   }
 
-  /// Columns of choices are zero.
-  Eigen::MatrixXd jacobian(const Eigen::VectorXd& scores, const Eigen::VectorXd& here) {
+  /// (n x (q + r)); columns of choices are zero.
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& own, const Eigen::VectorXd& here) {
     Eigen::MatrixXd columns(here.size(), count());
-    columns.middleCols(theta_count(), error_count()) = context_.errors;
-    Eigen::VectorXd moved = scores;
+    Eigen::VectorXd moved = own;
     for (Eigen::Index j = 0; j < count(); ++j) {
-      if (j >= theta_count() && j < eta_begin()) continue;
-      if (is_choice(j)) {
+      if (j >= theta_count() && is_choice(j - theta_count())) {
         columns.col(j).setZero();
         continue;
       }
       // Towards the middle of the prior: the step never leaves what is plausible.
-      const double step = (scores[j] > 0.0 ? -1.0 : 1.0) * step_of(j, scores[j]);
-      moved[j] = scores[j] + step;
+      const double step = (own[j] > 0.0 ? -1.0 : 1.0) * step_of(j, own[j]);
+      moved[j] = own[j] + step;
       columns.col(j) = (stacked(moved) - here) / step;
-      moved[j] = scores[j];
+      moved[j] = own[j];
     }
     return columns;
   }
 
  private:
+  [[nodiscard]] const EffectParameter& parameter(Eigen::Index j) const {
+    return candidate_.parameters[static_cast<std::size_t>(j)];
+  }
   [[nodiscard]] double step_of(Eigen::Index j, double score) const {
     if (j < theta_count()) return kScoreStep;
-    const auto k = static_cast<std::size_t>(j - eta_begin());
-    if (!is_day(j)) return kScoreStep;
-    const double days_per_score = std::abs(eta_priors_[k].at_score(score).derivative);
-    return std::clamp(kDayStep_d / std::max(days_per_score, 1e-6), 1e-4, kScoreStep);
+    if (!is_day(j - theta_count())) return kEffectStep;
+    const Prior& prior = eta_priors_[static_cast<std::size_t>(j - theta_count())];
+    const double days_per_score = std::abs(prior.at_score(score).derivative);
+    return std::clamp(kDayStep_d / std::max(days_per_score, 1e-6), 1e-4, kEffectStep);
   }
 
   Predictor& predictor_;
@@ -135,84 +141,175 @@ Eigen::MatrixXd beside(const Eigen::VectorXd& residual, const Eigen::MatrixXd& j
 
 Eigen::MatrixXd unit_precision(Eigen::Index q) { return Eigen::MatrixXd::Identity(q, q); }
 
-/// Log posterior density of the scores, but for constants of the node.
-double log_posterior(const NoiseNode& node, const Observations& observations,
-                     const Eigen::VectorXd& residual, const Eigen::VectorXd& scores) {
-  const GramSystem system = node.gram(observations, residual);
-  return -0.5 * system.gram(0, 0) - 0.5 * scores.squaredNorm();
-}
+/// Noise and usual errors together, Sigma + E E': the errors are linear, so they are integrated out
+/// once for all steps, and a step moves only what the model depends on.
+class NoiseAndErrors {
+ public:
+  static Result<NoiseAndErrors> make(const NoiseNode& node, const FitContext& context) {
+    NoiseAndErrors joined{node, context};
+    const Eigen::Index k = context.errors.cols();
+    joined.factor_.compute(Eigen::MatrixXd::Identity(k, k) +
+                           context.errors.transpose() * joined.solved_);
+    if (joined.factor_.info() != Eigen::Success || !joined.factor_.matrixLLT().allFinite()) {
+      return failure(ErrorCode::not_positive_definite,
+                     "a usual error of the model is not a finite number");
+    }
+    return joined;
+  }
 
-/// Gauss-Newton towards the mode, at the context's reference node.
+  /// X' (Sigma + E E')^-1 X. @param columns  X (n x k)
+  [[nodiscard]] GramSystem gram(const Eigen::MatrixXd& columns) const {
+    GramSystem system = node_.gram(observations_, columns);
+    const Eigen::MatrixXd imitated =
+        factor_.matrixL().solve(Eigen::MatrixXd(solved_.transpose() * columns));
+    system.gram -= imitated.transpose() * imitated;
+    return system;
+  }
+  /// E[b | r] (k).
+  [[nodiscard]] Eigen::VectorXd amounts(const Eigen::VectorXd& residual) const {
+    return factor_.solve(Eigen::VectorXd(solved_.transpose() * residual));
+  }
+  /// log N(r; 0, Sigma + E E') but for what depends on the noise alone.
+  [[nodiscard]] double log_density(const Eigen::VectorXd& residual) const {
+    return -0.5 * gram(residual).gram(0, 0);
+  }
+
+ private:
+  NoiseAndErrors(const NoiseNode& node, const FitContext& context)
+      : node_(node),
+        observations_(context.observations),
+        solved_(node.solve(context.observations, context.errors)) {}
+
+  const NoiseNode& node_;
+  const Observations& observations_;
+  Eigen::MatrixXd solved_;              ///< Sigma^-1 E (n x k)
+  Eigen::LLT<Eigen::MatrixXd> factor_;  ///< I + E' Sigma^-1 E
+};
+
+/// Where a search stands.
+struct Place {
+  Eigen::VectorXd own;       ///< (q + r)
+  Eigen::VectorXd residual;  ///< (n) measured - modelled, the usual errors still in it.
+  Eigen::MatrixXd jacobian;  ///< (n x (q + r)) of the model, at `own` or one step before.
+  double log_density = 0.0;  ///< Posterior, the usual errors at their best.
+  double damping = 0.0;
+};
+
+/// Climbs towards the mode with damped Gauss-Newton steps, at the context's reference node.
 class ModeSearch {
  public:
-  ModeSearch(ScoredModel& model, const FitContext& context, const Eigen::VectorXd& start,
-             const FitOptions& options)
-      : model_(model),
-        observations_(context.observations),
-        node_(context.grid[context.reference_node]),
-        damped_(options.damped) {
-    fit.scores = start;
-    modelled_ = model_.stacked(start);
-    fit.residual = observations_.measured - modelled_;
-    fit.log_density = log_posterior(node_, observations_, fit.residual, start);
+  ModeSearch(ScoredModel& model, const FitContext& context, const NoiseAndErrors& noise,
+             const Eigen::VectorXd& start)
+      : model_(model), measured_(context.observations.measured), noise_(noise) {
+    move_to(start);
+  }
+
+  /// @return whether it came to an end
+  Result<bool> climb(int iterations_max, double small_gain) {
+    for (int i = 0; i < iterations_max; ++i) {
+      const auto gain = iterate();
+      if (!gain) return tl::unexpected(gain.error());
+      if (*gain < small_gain) return true;
+    }
+    return false;
+  }
+
+  /// From places nearby, in case the hill is not the highest. Days and choices stay.
+  /// @return whether one led higher
+  Result<bool> hop(int hops) {
+    Rng rng{kHopSeed};
+    bool higher = false;
+    for (int i = 0; i < hops; ++i) {
+      const Place here = place;
+      Eigen::VectorXd start = here.own;
+      for (Eigen::Index j = 0; j < model_.theta_count(); ++j) start[j] += kHop * rng.normal();
+      move_to(start.cwiseMax(-kScoreLimit).cwiseMin(kScoreLimit));
+      auto ended = climb(kHopTrial, kHopSmallGain);
+      if (ended && !*ended && place.log_density > here.log_density - kHopHopeless) {
+        ended = climb(kHopIterations - kHopTrial, kHopSmallGain);
+      }
+      if (!ended) return tl::unexpected(ended.error());
+      if (place.log_density > here.log_density) {
+        higher = true;
+      } else {
+        place = here;
+      }
+    }
+    return higher;
+  }
+
+  Place place;
+  int iterations = 0;
+
+ private:
+  void move_to(const Eigen::VectorXd& own) {
+    place.own = own;
+    place.residual = measured_ - model_.stacked(own);
+    place.log_density = noise_.log_density(place.residual) - 0.5 * own.squaredNorm();
+    place.damping = 0.0;
   }
 
   /// Linearises and steps. @return what the step gained, 0 where none helped
   Result<double> iterate() {
-    if (!std::isfinite(fit.log_density)) {
+    if (!std::isfinite(place.log_density)) {
       return failure(ErrorCode::not_finite,
                      "the hourly model gives no finite power at some values of its parameters");
     }
-    fit.jacobian = model_.jacobian(fit.scores, modelled_);
-    auto gain = step_by(fit.jacobian);
+    ++iterations;
+    place.jacobian = model_.jacobian(place.own, measured_ - place.residual);
+    auto gain = step_by(place.jacobian);
     if (!gain || *gain > 0.0 || !model_.has_days()) return gain;
     // A day moves the meters by jerks, and a step that trusts its slope may help nothing else.
-    return step_by(model_.with_days_held(fit.jacobian));
+    place.damping = 0.0;
+    return step_by(model_.with_days_held(place.jacobian));
   }
 
-  JointFit fit;  ///< Scores, residual and Jacobian as found so far.
-
- private:
   Result<double> step_by(const Eigen::MatrixXd& jacobian) {
-    const Eigen::VectorXd linear = fit.residual + jacobian * fit.scores;
-    const GramSystem system = node_.gram(observations_, beside(linear, jacobian));
+    const Eigen::VectorXd linear = place.residual + jacobian * place.own;
+    const GramSystem system = noise_.gram(beside(linear, jacobian));
     const auto moves = jacobian.colwise().squaredNorm().transpose().array() > 0.0;
-    double damping = 0.0;
-    double share = 1.0;
     for (int trial = 0; trial < kTrialsMax; ++trial) {
-      const auto target = posterior(system, (1.0 + damping) * unit_precision(model_.count()));
+      const auto target = posterior(system, (1.0 + place.damping) * unit_precision(model_.count()));
       if (!target) return tl::unexpected(target.error());
       // The damping is a further prior about the present scores; what moves nothing stays.
-      const Eigen::VectorXd aim = target->mean + damping * (target->covariance * fit.scores);
-      const Eigen::VectorXd tried = (fit.scores + share * moves.select(aim - fit.scores, 0.0))
+      const Eigen::VectorXd aim = target->mean + place.damping * (target->covariance * place.own);
+      const Eigen::VectorXd tried = (place.own + moves.select(aim - place.own, 0.0))
                                         .cwiseMax(-kScoreLimit)
                                         .cwiseMin(kScoreLimit);
-      const Eigen::VectorXd modelled = model_.stacked(tried);
-      const Eigen::VectorXd residual = observations_.measured - modelled;
-      const double density = log_posterior(node_, observations_, residual, tried);
-      if (density > fit.log_density) {
-        const double gain = density - fit.log_density;
-        fit.scores = tried;
-        modelled_ = modelled;
-        fit.residual = residual;
-        fit.log_density = density;
+      const Eigen::VectorXd residual = measured_ - model_.stacked(tried);
+      const double density = noise_.log_density(residual) - 0.5 * tried.squaredNorm();
+      if (density > place.log_density) {
+        const double gain = density - place.log_density;
+        place.own = tried;
+        place.residual = residual;
+        place.log_density = density;
+        if (trial == 0) place.damping *= kLessDamping;
+        if (place.damping < kNoDamping) place.damping = 0.0;
         return gain;
       }
-      if (damped_) {
-        damping = std::max(kDampingStep * damping, kFirstDamping);
-      } else {
-        share *= 0.5;
-      }
+      place.damping = std::max(kMoreDamping * place.damping, kLeastDamping);
     }
     return 0.0;
   }
 
   ScoredModel& model_;
-  const Observations& observations_;
-  const NoiseNode& node_;
-  Eigen::VectorXd modelled_;  ///< With the usual errors, stacked.
-  bool damped_;
+  const Eigen::VectorXd& measured_;
+  const NoiseAndErrors& noise_;
 };
+
+/// The three kinds of scores in their order: (q + k + r).
+Eigen::VectorXd all_scores(const Eigen::VectorXd& own, const Eigen::VectorXd& usual,
+                           Eigen::Index q) {
+  Eigen::VectorXd scores(own.size() + usual.size());
+  scores << own.head(q), usual, own.tail(own.size() - q);
+  return scores;
+}
+
+Eigen::VectorXd own_scores(const Eigen::VectorXd& scores, Eigen::Index q, Eigen::Index r) {
+  Eigen::VectorXd own(q + r);
+  own << scores.head(q), scores.tail(r);
+  return own;
+}
 
 }  // namespace
 
@@ -269,33 +366,48 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
                              const FitOptions& options) {
   ScoredModel model{predictor, context, candidate};
   const Observations& observations = context.observations;
-  ModeSearch search{model, context, start, options};
-  JointFit& fit = search.fit;
-  for (fit.iterations = 0; fit.iterations < options.iterations_max && !fit.converged;
-       ++fit.iterations) {
-    const auto gain = search.iterate();
-    if (!gain) return tl::unexpected(gain.error());
-    fit.converged = *gain < options.small_gain;
+  const Eigen::Index q = model.theta_count();
+  const Eigen::Index k = context.errors.cols();
+  const Eigen::Index r = model.eta_count();
+  const auto noise = NoiseAndErrors::make(context.grid[context.reference_node], context);
+  if (!noise) return tl::unexpected(noise.error());
+  ModeSearch search{model, context, *noise, own_scores(start, q, r)};
+  auto ended = search.climb(options.iterations_max, options.small_gain);
+  if (!ended) return tl::unexpected(ended.error());
+  if (options.hops > 0) {
+    const auto higher = search.hop(options.hops);
+    if (!higher) return tl::unexpected(higher.error());
+    if (*higher) ended = search.climb(options.iterations_max, options.small_gain);
+    if (!ended) return tl::unexpected(ended.error());
   }
-  fit.parts_kW = model.run(fit.scores);
+
+  const Place& place = search.place;
+  JointFit fit;
+  fit.converged = *ended;
+  fit.iterations = search.iterations;
+  fit.log_density = place.log_density;
+  fit.theta = model.theta(place.own);
+  fit.usual = noise->amounts(place.residual);
+  fit.eta = model.eta(place.own);
+  fit.scores = all_scores(place.own, fit.usual, q);
+  fit.residual = place.residual - context.errors * fit.usual;
+  fit.jacobian.resize(observations.count(), q + k + r);
+  fit.jacobian << place.jacobian.leftCols(q), context.errors, place.jacobian.rightCols(r);
+  fit.parts_kW = model.run(place.own);
   const auto evidence =
       evidence_over(context.grid, observations, fit.linear_residual(), fit.jacobian);
   if (!evidence) return tl::unexpected(evidence.error());
   fit.log_evidence = evidence->log_evidence - model.log_choices();
   fit.node_weights = evidence->node_weights;
   fit.best_node = evidence->best_node;
-  fit.log_likelihood =
-      context.grid[static_cast<std::size_t>(fit.best_node)].log_density(observations, fit.residual);
-  const auto spread = posterior(context.grid[static_cast<std::size_t>(fit.best_node)].gram(
-                                    observations, beside(fit.linear_residual(), fit.jacobian)),
-                                unit_precision(model.count()));
+  const NoiseNode& best = context.grid[static_cast<std::size_t>(fit.best_node)];
+  fit.log_likelihood = best.log_density(observations, fit.residual);
+  auto spread = posterior(best.gram(observations, beside(fit.linear_residual(), fit.jacobian)),
+                          unit_precision(q + k + r));
   if (!spread) return tl::unexpected(spread.error());
-  fit.posterior = *spread;
-  model.hold_choices(fit.posterior);
-  fit.theta = model.theta(fit.scores);
-  fit.usual = model.usual(fit.scores);
-  fit.eta = model.eta(fit.scores);
-  return std::move(fit);
+  fit.posterior = std::move(*spread);
+  model.hold_choices(q + k, fit.posterior);
+  return fit;
 }
 
 }  // namespace recald::diagnosis

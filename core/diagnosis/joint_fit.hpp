@@ -2,8 +2,8 @@
 ///
 /// Everything is a standard normal score: value = prior.at_score(u), so the prior of all scores is
 /// N(0, I) and no value ever leaves its prior. What models usually err by has amounts of the same
-/// prior, fitted with the rest. Gauss-Newton finds the mode; the evidence is Laplace's, at every
-/// node of the noise grid with the model linearised at that mode.
+/// prior, integrated out on the way. Damped Gauss-Newton steps find the mode; the evidence is
+/// Laplace's, at every node of the noise grid with the model linearised at that mode.
 /// @see discrepancy.md, 3.2, stage B (i).
 #pragma once
 
@@ -20,10 +20,10 @@ namespace recald::diagnosis {
 
 struct FitOptions {
   int iterations_max = 8;
-  /// Failing steps turn towards steepest ascent instead of being halved: slower, and surer from
-  /// afar.
-  bool damped = false;
   double small_gain = 0.05;  ///< Stop when an iteration gains less log posterior density.
+  /// From the mode found to places nearby, climbing again from each: a model with thermostats has
+  /// many hills beside each other.
+  int hops = 0;
 };
 
 /// A model linearised at its mode.

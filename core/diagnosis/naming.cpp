@@ -252,16 +252,19 @@ void decide(Naming& naming, const NamingRules& rules) {
   naming.why = "no effect is supported strongly enough";
 }
 
+void take_fit(JointFit fit, const JointFit& none, Explanation& e) {
+  e.fit = std::move(fit);
+  e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
+  e.evidence_gain = e.fit.log_evidence - none.log_evidence;
+  e.likelihood_gain = e.fit.log_likelihood - none.log_likelihood;
+}
+
 /// What a fit says by itself, against the base model alone.
 Explanation explanation_of(const Candidate& candidate, JointFit fit, const JointFit& none,
                            const NamingRules& rules) {
   Explanation e{};
-  e.evidence_gain = fit.log_evidence - none.log_evidence;
-  e.likelihood_gain = fit.log_likelihood - none.log_likelihood;
   e.null_scale = scale_of(candidate, rules);
-  e.at_truncation = is_at_truncation(candidate, fit);
-  e.fit = std::move(fit);
-  e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
+  take_fit(std::move(fit), none, e);
   return e;
 }
 
@@ -270,46 +273,71 @@ void sort_by_evidence(std::vector<Explanation>& explanations) {
                            [](const Explanation& e) { return e.evidence_gain / e.null_scale; });
 }
 
+// So many of the best rivals are looked into, if they have half of the evidence that a name needs.
 constexpr std::size_t kRestarts = 3;
+constexpr double kWorthRestarts = 0.5;
+const FitOptions kRestart{.hops = 3};
 
-/// The base model fitted again from where the best rivals have led its parameters: what a rival
-/// owes to a better mode of the base model is none of its own. Empty where no mode is better.
-Result<std::optional<JointFit>> better_none(Predictor& predictor, const FitContext& context,
-                                            const JointFit& none,
-                                            const std::vector<Explanation>& explanations) {
-  std::optional<JointFit> best;
-  for (std::size_t i = 0; i < std::min(kRestarts, explanations.size()); ++i) {
-    if (explanations[i].evidence_gain <= 0.0) break;
-    const Eigen::VectorXd start = explanations[i].fit.scores.head(none.scores.size());
-    auto again = fit_jointly(predictor, context, Candidate{}, start);
-    if (!again) return tl::unexpected(again.error());
-    if (again->log_evidence > (best ? best->log_evidence : none.log_evidence)) {
-      best = std::move(*again);
+bool is_worth_restarts(const std::vector<Explanation>& sorted, const NamingRules& rules) {
+  return !sorted.empty() &&
+         (!rules.only.empty() || sorted.front().evidence_gain / sorted.front().null_scale >
+                                     kWorthRestarts * rules.least_evidence);
+}
+
+/// Rivals near the first, and the base model, searched for alike: what a rival owes to a better
+/// mode of the base model is none of its own, and no less is tried for it than for none.
+class Restarts {
+ public:
+  Restarts(Predictor& predictor, const FitContext& context,
+           const std::vector<Candidate>& candidates, const JointFit& none,
+           std::vector<Explanation>& explanations)
+      : predictor_(predictor),
+        context_(context),
+        candidates_(candidates),
+        none_(none),
+        explanations_(explanations),
+        count_(std::min(kRestarts, explanations.size())) {}
+
+  /// @return a better mode of the base model, if there is one
+  Result<std::optional<JointFit>> run() {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (auto again = refit(i, explanations_[i].fit.scores); !again) {
+        return tl::unexpected(again.error());
+      }
     }
+    std::optional<JointFit> better;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Eigen::VectorXd start = explanations_[i].fit.scores.head(none_.scores.size());
+      auto again = fit_jointly(predictor_, context_, Candidate{}, start, kRestart);
+      if (!again) return tl::unexpected(again.error());
+      if (again->log_evidence > (better ? better->log_evidence : none_.log_evidence)) {
+        better = std::move(*again);
+      }
+    }
+    for (std::size_t i = 0; better && i < count_; ++i) {
+      Eigen::VectorXd start = explanations_[i].fit.scores;
+      start.head(none_.scores.size()) = better->scores;
+      if (auto again = refit(i, start); !again) return tl::unexpected(again.error());
+    }
+    return better;
   }
-  return best;
-}
 
-/// The best rivals fitted again from the better mode of the base model, each with the amount that
-/// it had: no less is tried for them than for none.
-Result<void> refit_from(const JointFit& better, Predictor& predictor, const FitContext& context,
-                        const std::vector<Candidate>& candidates, const JointFit& none,
-                        std::vector<Explanation>& explanations) {
-  const Eigen::Index q = none.scores.size();
-  for (std::size_t i = 0; i < std::min(kRestarts, explanations.size()); ++i) {
-    Explanation& e = explanations[i];
-    Eigen::VectorXd start = e.fit.scores;
-    start.head(q) = better.scores;
-    auto again = fit_jointly(predictor, context, candidates[e.candidate], start);
+ private:
+  Result<void> refit(std::size_t i, const Eigen::VectorXd& start) {
+    Explanation& e = explanations_[i];
+    auto again = fit_jointly(predictor_, context_, candidates_[e.candidate], start, kRestart);
     if (!again) return tl::unexpected(again.error());
-    if (again->log_evidence <= e.fit.log_evidence) continue;
-    e.fit = std::move(*again);
-    e.fit.jacobian.resize(0, 0);
-    e.evidence_gain = e.fit.log_evidence - none.log_evidence;
-    e.likelihood_gain = e.fit.log_likelihood - none.log_likelihood;
+    if (again->log_evidence > e.fit.log_evidence) take_fit(std::move(*again), none_, e);
+    return {};
   }
-  return {};
-}
+
+  Predictor& predictor_;
+  const FitContext& context_;
+  const std::vector<Candidate>& candidates_;
+  const JointFit& none_;
+  std::vector<Explanation>& explanations_;
+  std::size_t count_;
+};
 
 }  // namespace
 
@@ -321,7 +349,6 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   const HeldJudge judge{data.fit.site, data.fit.observations,
                         data.fit.grid[static_cast<std::size_t>(none.best_node)], data.select,
                         data.levels};
-  const MonthScores base_scores = judge.scores(none, data.usual);
   const std::vector<std::size_t> rivals =
       rules.only.empty() ? survivors_of(look, candidates, rules) : rules.only;
   for (const std::size_t i : rivals) {
@@ -331,25 +358,26 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     Explanation e = explanation_of(candidates[i], std::move(*fit), none, rules);
     e.candidate = i;
     e.first_look = look.candidates[i].log_bayes_factor;
-    const ScoreGain gain = gain_over(judge.scores(e.fit, data.usual), base_scores);
-    e.selected_gain = gain.sum;
-    e.selected_se = gain.se;
-    e.move = largest_move(e.fit.parts_kW, predictor.parts_kW(e.fit.theta));
     naming.explanations.push_back(std::move(e));
   }
   sort_by_evidence(naming.explanations);
-  auto better = better_none(predictor, data.fit, none, naming.explanations);
-  if (!better) return tl::unexpected(better.error());
-  if (*better) {
-    auto refitted =
-        refit_from(**better, predictor, data.fit, candidates, none, naming.explanations);
-    if (!refitted) return tl::unexpected(refitted.error());
+  if (is_worth_restarts(naming.explanations, rules)) {
+    auto better = Restarts{predictor, data.fit, candidates, none, naming.explanations}.run();
+    if (!better) return tl::unexpected(better.error());
+    naming.better_base = std::move(*better);
   }
-  const double owed = *better ? (*better)->log_evidence - none.log_evidence : 0.0;
+  const JointFit& base = naming.better_base ? *naming.better_base : none;
+  const MonthScores base_scores = judge.scores(base, data.usual);
+  const double owed = base.log_evidence - none.log_evidence;
   naming.unknown_gain = data.unknown_log_evidence - none.log_evidence - owed;
   const Grounds grounds{none.converged, months_read(data.fit.site)};
   for (Explanation& e : naming.explanations) {
     e.evidence_gain -= owed;
+    const ScoreGain gain = gain_over(difference(judge.scores(e.fit, data.usual), base_scores));
+    e.selected_gain = gain.sum;
+    e.selected_se = gain.se;
+    e.move = largest_move(e.fit.parts_kW, predictor.parts_kW(e.fit.theta));
+    e.at_truncation = is_at_truncation(candidates[e.candidate], e.fit);
     e.objection = objection(e, grounds, naming, rules);
   }
   sort_by_evidence(naming.explanations);

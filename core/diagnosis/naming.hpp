@@ -65,6 +65,9 @@ struct Naming {
   std::vector<std::string> confusable;         ///< Ids of the set.
   double unknown_gain = 0.0;                   ///< L_U - L_none
   double null_threshold = 0.0;
+  /// The base model at a better mode than the one that all was measured by, where the rivals have
+  /// shown one. What they owe to it is taken off already.
+  std::optional<JointFit> better_base;
   std::string why;  ///< Why this outcome, one sentence.
 };
 

@@ -13,4 +13,8 @@ namespace recald::diagnosis {
 /// @see README.md for the population that taught it.
 [[nodiscard]] double null_scale(std::string_view effect);
 
+/// Root mean square of the scores of effects in such buildings; 1 if models erred by chance and by
+/// their usual errors alone.
+inline constexpr double null_score_spread = 3.8;
+
 }  // namespace recald::diagnosis

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/write_file.hpp"
+#include "core/diagnosis/null_scale.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/diagnose/footprint.hpp"
@@ -28,7 +29,7 @@ std::string detectability_json(const diagnosis::Detectability& seen,
     meters[site.meters[g].id] = {{"net_share", seen.meters[g].net_share},
                                  {"moved_share", seen.meters[g].moved_share}};
   }
-  const Json json = {{"detectability", seen.block.detectability},
+  const Json json = {{"detectability", seen.d_star},
                      {"grains",
                       {{"month", visibility_json(seen.month)},
                        {"day", visibility_json(seen.day)},
@@ -42,11 +43,14 @@ std::string detectability_json(const diagnosis::Detectability& seen,
 
 void print_words(const diagnosis::Detectability& seen, const diagnosis::SiteProblem& site,
                  const Console& console) {
-  console.out << fmt::format("detectability d* = {:.3g} on four-hour data\n",
-                             seen.block.detectability);
+  console.out << fmt::format(
+      "detectability d* = {:.3g}: on four-hour data, in units of what the scores of effects that "
+      "are "
+      "not there vary by ({:g})\n",
+      seen.d_star, diagnosis::null_score_spread);
   const auto grain = [&](const char* name, const diagnosis::Visibility& one) {
     console.out << fmt::format(
-        "  {:<11} d* {:>8.3g}   with the base parameters known {:>8.3g}   they can imitate {:.0f} "
+        "  {:<11} d {:>8.3g}   with the base parameters known {:>8.3g}   they can imitate {:.0f} "
         "% of it\n",
         name, one.detectability, one.unprojected, 100.0 * one.absorbed_share);
   };

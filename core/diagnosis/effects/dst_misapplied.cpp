@@ -69,9 +69,11 @@ class DstMisapplied final : public model::hourly::Alteration {
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "summer_offset",
            .unit = "h",
-           .prior = UniformPrior{.min = -1.0, .max = 1.0},
+           // Half an hour of summer time exists nowhere but on Lord Howe Island.
+           .prior = UniformPrior{.min = -1.5, .max = 1.5},
            .neutral = 0.0,
-           .scan = {-1.0, 1.0}}};
+           .scan = {-1.0, 1.0},
+           .choice = true}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,

@@ -42,8 +42,8 @@ Result<double> TwinGauge::repeatable(const std::vector<std::vector<double>>& one
   if (!common) return tl::unexpected(common.error());
   const auto jitter = gauge_.measure(0.5 * (one - other));
   if (!jitter) return tl::unexpected(jitter.error());
-  const double common_d = common->block.detectability;
-  const double jitter_d = jitter->block.detectability;
+  const double common_d = common->d_star;
+  const double jitter_d = jitter->d_star;
   return std::sqrt(std::max(common_d * common_d - jitter_d * jitter_d, 0.0));
 }
 

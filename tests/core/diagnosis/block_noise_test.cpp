@@ -89,6 +89,29 @@ TEST(BlockNoise, AgreesWithTheDenseCovarianceUnderGapsAndGates) {
   }
 }
 
+// t_nu(r; 0, Sigma) = integral of N(r; 0, w Sigma) over w ~ inverse gamma(nu / 2, nu / 2).
+TEST(BlockNoise, StudentDensityIsTheNormalOneAveragedOverTheSizeOfTheNoise) {
+  Rng rng(11);
+  const BlockDesign design = random_design(40, rng);
+  const BlockNoise noise(design, random_level(rng));
+  constexpr double kFreedom = 4.0;
+  constexpr double kStep = 0.001;  // of log w
+  for (const double size : {0.3, 1.0, 4.0}) {
+    SCOPED_TRACE(size);
+    const Eigen::VectorXd residual = size * noise.draw(rng);
+    const double squares = noise.gram(residual)(0, 0);
+    const double normal = noise.marginal_log_density(residual);
+    double sum = 0.0;
+    for (double log_w = -8.0; log_w < 12.0; log_w += kStep) {
+      const double w = std::exp(log_w);
+      const double half = 0.5 * kFreedom;
+      const double log_prior = half * std::log(half) - std::lgamma(half) - half * log_w - half / w;
+      sum += kStep * std::exp(log_prior + 0.5 * squares * (1.0 - 1.0 / w) - 20.0 * log_w);
+    }
+    EXPECT_NEAR(noise.student_log_density(residual, kFreedom), normal + std::log(sum), 1e-6);
+  }
+}
+
 // W is what turns u + e into white noise of unit variance, and it is causal.
 TEST(BlockNoise, WhiteningMakesTheCovarianceTheIdentity) {
   Rng rng(5);

@@ -47,17 +47,17 @@ TEST(LayGround, ASecondStartIsTriedAndDoesNoHarm) {
 TEST(ScoreGain, AddsMonthsAndKnowsTheirSpread) {
   const MonthScores without{{{3, -10.0}, {7, -12.0}}, {{3, -1.0}, {7, -1.0}}};
   const MonthScores with{{{3, -8.0}, {7, -11.0}}, {{3, -1.5}, {7, -1.0}}};
-  const auto meters = gain_by_meter(with, without);
+  const auto meters = gain_by_meter(difference(with, without));
   EXPECT_DOUBLE_EQ(meters[0].sum, 3.0);
   EXPECT_DOUBLE_EQ(meters[0].se, 1.0);  // differences 2 and 1: sd 1/sqrt(2), of a sum of two
   EXPECT_DOUBLE_EQ(meters[1].sum, -0.5);
-  const ScoreGain all = gain_over(with, without);
+  const ScoreGain all = gain_over(difference(with, without));
   EXPECT_DOUBLE_EQ(all.sum, 2.5);
   EXPECT_DOUBLE_EQ(all.se, 0.5);  // 1.5 and 1
 }
 
 TEST(ScoreGain, OneMonthHasNoSpread) {
-  const ScoreGain gain = gain_over({{{0, 2.0}}}, {{{0, 1.5}}});
+  const ScoreGain gain = gain_over(difference({{{0, 2.0}}}, {{{0, 1.5}}}));
   EXPECT_DOUBLE_EQ(gain.sum, 0.5);
   EXPECT_EQ(gain.se, 0.0);
 }
@@ -83,8 +83,8 @@ TEST(HeldJudge, ForgivesWhatTheFittedMonthsHaveTaught) {
     always_kW(i, 1) += step_kW;
     if (site.roles[part] == Role::show) late_kW(i, 1) += step_kW;
   }
-  const double always = gain_over(scores_of(always_kW), plain).sum;
-  const double late = gain_over(scores_of(late_kW), plain).sum;
+  const double always = gain_over(difference(scores_of(always_kW), plain)).sum;
+  const double late = gain_over(difference(scores_of(late_kW), plain)).sum;
   EXPECT_LT(late, -20.0);
   EXPECT_GT(always, 0.3 * late);
 }
@@ -107,9 +107,32 @@ TEST(Gap, IsUnknownWhereAMeterHasNoHeldReading) {
 TEST(Gap, AModelIsNotConfirmedAgainstItself) {
   const SiteProblem site = noisy_site();
   const Ground ground = ground_of(site);
-  const GapChange change = change_of(site, ground, ground, 1.0);
-  EXPECT_FALSE(change.confirmed);
-  for (const ScoreGain& meter : change.log_score_change) EXPECT_EQ(meter.sum, 0.0);
+  const HeldJudge judge = judge_of(site, ground, ground.show);
+  const MonthScores scores = judge.scores(ground.none, *ground.usual);
+  const MonthScores change = difference(scores, scores);
+  EXPECT_FALSE(is_confirmed(change, 1.0));
+  const auto gaps = gaps_of(site, ground, judge);
+  const GapChange gap = change_of(gaps, gaps, std::span{&change, 1});
+  for (const ScoreGain& meter : gap.log_score_change) EXPECT_EQ(meter.sum, 0.0);
+  EXPECT_EQ(gap.after[0].log_score, gap.before[0].log_score);
+}
+
+// Two effects, one month each way: the second one's month counts against the sum.
+TEST(Gap, ScoresOfSeveralAdditionsAddUpMonthByMonth) {
+  const std::vector<MeterGap> gaps(1, MeterGap{.log_score = -10.0});
+  const std::vector<MonthScores> changes{{{{3, 8.0}, {7, 6.0}}}, {{{3, 1.0}, {7, -2.0}}}};
+  const GapChange gap = change_of(gaps, gaps, changes);
+  EXPECT_DOUBLE_EQ(gap.log_score_change[0].sum, 13.0);
+  EXPECT_DOUBLE_EQ(gap.log_score_change[0].se, 5.0);  // 9 and 4
+  EXPECT_DOUBLE_EQ(gap.after[0].log_score, -3.5);
+}
+
+TEST(Gap, IsConfirmedByWhatAllMonthsSayInUnitsOfTheNullScaleAndByNoMetersHarm) {
+  const MonthScores better{{{3, 8.0}, {7, 6.0}}, {{3, 0.0}, {7, -1.0}}};
+  EXPECT_TRUE(is_confirmed(better, 10.0));
+  EXPECT_FALSE(is_confirmed(better, 12.0));  // 13 nats are not 1.1 times 12
+  const MonthScores harmful{{{3, 8.0}, {7, 6.0}}, {{3, -2.0}, {7, -2.0}}};
+  EXPECT_FALSE(is_confirmed(harmful, 1.0));  // surely 4 nats worse on the second meter
 }
 
 TEST(Ground, NamesTheMeterThatHasTooFewReadings) {

@@ -64,6 +64,65 @@ TEST(FitJointly, AChoiceIsNeverFitted) {
   EXPECT_GT(right.fit.log_evidence, right.none_evidence + 20.0);
 }
 
+/// The sample building at other parameters, 3 % of noise, and a ground for it without usual errors.
+struct NoisyFit {
+  SiteProblem site = testing::sample_problem(kParameters, 14);
+  std::unique_ptr<Predictor> predictor;
+  Ground ground;
+
+  NoisyFit() {
+    predictor = std::make_unique<Predictor>(site);
+    std::vector<double> theta;
+    for (const Parameter& p : site.parameters) theta.push_back(p.prior.quantile(0.3));
+    site.measured_parts_kW = predictor->parts_kW(theta);
+    Rng rng{7};
+    for (double& value : site.measured_parts_kW.reshaped()) value *= 1.0 + 0.03 * rng.normal();
+    auto laid = lay_ground(*predictor, site, ModelErrors::none);
+    EXPECT_TRUE(laid.has_value());
+    ground = std::move(*laid);
+  }
+};
+
+// The usual errors are integrated out while the parameters climb. Their amounts must nevertheless
+// be where the density of all scores is highest: its slope in b, E' Sigma^-1 (r - E b) - b, is
+// zero.
+TEST(FitJointly, UsualErrorsEndWhereAllScoresHaveTheirMode) {
+  NoisyFit noisy;
+  const Eigen::Index n = noisy.ground.fit.count();
+  noisy.ground.errors.resize(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    noisy.ground.errors(i, 0) = noisy.ground.fit.measured[i] * 0.05;
+    noisy.ground.errors(i, 1) = i % 7 == 0 ? noisy.ground.fit.measured[i] * 0.02 : 0.0;
+  }
+  const FitContext context = noisy.ground.context(noisy.site);
+  auto fit = fit_jointly(*noisy.predictor, context, Candidate{}, Eigen::VectorXd::Zero(4),
+                         {.iterations_max = 30, .small_gain = 1e-6});
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_TRUE(fit->converged);
+  const NoiseNode& node = context.grid[context.reference_node];
+  const Eigen::VectorXd slope =
+      context.errors.transpose() * node.solve(context.observations, fit->residual) - fit->usual;
+  EXPECT_LT(slope.cwiseAbs().maxCoeff(), 1e-6 * std::max(1.0, fit->usual.cwiseAbs().maxCoeff()));
+  const double density = -0.5 * node.gram(context.observations, fit->residual).gram(0, 0) -
+                         0.5 * fit->scores.squaredNorm();
+  EXPECT_NEAR(fit->log_density, density, 1e-6 * std::abs(density));
+}
+
+TEST(FitJointly, HopsNeverLeadLower) {
+  NoisyFit noisy;
+  const FitContext context = noisy.ground.context(noisy.site);
+  const Eigen::VectorXd far = Eigen::VectorXd::Constant(2, -2.5);
+  const auto once = fit_jointly(*noisy.predictor, context, Candidate{}, far, {.iterations_max = 1});
+  const auto hopped =
+      fit_jointly(*noisy.predictor, context, Candidate{}, far, {.iterations_max = 1, .hops = 4});
+  ASSERT_TRUE(once && hopped);
+  EXPECT_GT(hopped->log_density, once->log_density + 1.0);
+  const auto settled = fit_jointly(*noisy.predictor, context, Candidate{}, hopped->scores,
+                                   {.iterations_max = 30, .hops = 4});
+  ASSERT_TRUE(settled.has_value());
+  EXPECT_GE(settled->log_density, hopped->log_density);
+}
+
 // What is known to be there is added, and nothing else is asked.
 TEST(Diagnose, AddsWhatIsAssumed) {
   const SiteProblem site = testing::sample_problem(kParameters, 14);

@@ -73,7 +73,9 @@ TEST_F(DetectabilityCommand, MeasuresEitherSignAndLeavesOtherMetersAlone) {
   EXPECT_GT(more["detectability"], 1.0);
   EXPECT_NEAR(less["detectability"], more["detectability"],
               0.2 * more["detectability"].get<double>());
-  EXPECT_EQ(more["detectability"], more["grains"]["block"]["detectability"]);
+  // What scores of absent effects vary by divides it.
+  EXPECT_LT(more["detectability"].get<double>(),
+            more["grains"]["block"]["detectability"].get<double>() / 2.0);
   EXPECT_GT(more["grains"]["block"]["detectability"], more["grains"]["month"]["detectability"]);
   EXPECT_GT(more["meters"]["electricity"]["net_share"], 0.0);
   EXPECT_NEAR(more["meters"]["electricity"]["net_share"],
