@@ -225,7 +225,7 @@ class Search {
     return {};
   }
 
-  /// One pass, and the next model where it named something. @return whether it did
+  /// One pass, and the next model where it named something. @return whether to go on
   Result<bool> turn() {
     const std::size_t count = result_.passes.size();
     Rng rng{options_.seed, static_cast<std::uint64_t>(count)};
@@ -253,7 +253,8 @@ class Search {
     const Naming& naming = result_.passes.back().naming;
     auto added = take_up(result_.added.back(), naming.explanations[*naming.named].fit);
     if (!added) return tl::unexpected(added.error());
-    return true;
+    // What the months kept back do not bear out will be taken back, and all that would follow it.
+    return assumed || (!shown_.empty() && shown_.back().confirmed);
   }
 
   Diagnosis end() && {
@@ -339,9 +340,9 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   if (auto begun = search.begin(); !begun) return tl::unexpected(begun.error());
   for (int turn = 0;; ++turn) {
     if (!go_on("looking for disagreement", 0.2 + 0.15 * turn)) return tl::unexpected(cancelled());
-    const auto named = search.turn();
-    if (!named) return tl::unexpected(named.error());
-    if (!*named) break;
+    const auto more = search.turn();
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) break;
   }
   if (!go_on("showing", 0.95)) return tl::unexpected(cancelled());
   return std::move(search).end();

@@ -17,8 +17,8 @@ constexpr double kGenerousErrors = 3.0;  // and its errors in the ways that the 
 constexpr int kFirstIterations = 25;     // from the middle of the priors
 constexpr int kIterations = 8;
 constexpr int kLastIterations = 30;  // the mode that everything is compared with
-constexpr int kHops = 4;
-constexpr int kLastHops = 10;
+constexpr int kHops = 2;
+constexpr int kLastHops = 6;
 constexpr double kLeastNodeWeight = 1e-6;  // of the likeliest: what weighs less has no say
 // What the anonymous patterns may be, in units of a meter's mean; the likeliest is taken.
 constexpr std::array kPatternShares{0.02, 0.06, 0.15};

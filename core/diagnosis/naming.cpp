@@ -276,7 +276,7 @@ void sort_by_evidence(std::vector<Explanation>& explanations) {
 // So many of the best rivals are looked into, if they have half of the evidence that a name needs.
 constexpr std::size_t kRestarts = 3;
 constexpr double kWorthRestarts = 0.5;
-const FitOptions kRestart{.hops = 3};
+const FitOptions kRestart{.hops = 2};
 
 bool is_worth_restarts(const std::vector<Explanation>& sorted, const NamingRules& rules) {
   return !sorted.empty() &&
@@ -301,7 +301,7 @@ class Restarts {
   /// @return a better mode of the base model, if there is one
   Result<std::optional<JointFit>> run() {
     for (std::size_t i = 0; i < count_; ++i) {
-      if (auto again = refit(i, explanations_[i].fit.scores); !again) {
+      if (auto again = refit(i, explanations_[i].fit.scores, kRestart); !again) {
         return tl::unexpected(again.error());
       }
     }
@@ -317,15 +317,15 @@ class Restarts {
     for (std::size_t i = 0; better && i < count_; ++i) {
       Eigen::VectorXd start = explanations_[i].fit.scores;
       start.head(none_.scores.size()) = better->scores;
-      if (auto again = refit(i, start); !again) return tl::unexpected(again.error());
+      if (auto again = refit(i, start, {}); !again) return tl::unexpected(again.error());
     }
     return better;
   }
 
  private:
-  Result<void> refit(std::size_t i, const Eigen::VectorXd& start) {
+  Result<void> refit(std::size_t i, const Eigen::VectorXd& start, const FitOptions& options) {
     Explanation& e = explanations_[i];
-    auto again = fit_jointly(predictor_, context_, candidates_[e.candidate], start, kRestart);
+    auto again = fit_jointly(predictor_, context_, candidates_[e.candidate], start, options);
     if (!again) return tl::unexpected(again.error());
     if (again->log_evidence > e.fit.log_evidence) take_fit(std::move(*again), none_, e);
     return {};

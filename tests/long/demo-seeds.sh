@@ -1,5 +1,5 @@
 #!/bin/sh
-# Twenty buildings of the demo, truth drawn by seed, one site file: fit before and after, coverage.
+# Twenty campus laboratories with nothing wrong in them, truth drawn by seed, one site file: fit before and after, coverage.
 # Takes about ten minutes on two cores. Argument: the build folder.
 set -eu
 build=$1

@@ -59,6 +59,7 @@ class Smoke : public ::testing::Test {
   void recald_measures_the_detectability_that_the_answer_states();
   void same_seed_same_bytes_even_in_pieces();
   void refuses_in_one_sentence();
+  void is_diagnosed_and_scored();
 
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
@@ -187,13 +188,38 @@ void Smoke::refuses_in_one_sentence() {
   EXPECT_THAT(again.err, HasSubstr("is sealed already"));
 }
 
-TEST_F(Smoke, IsSealedRepeatableAndTakenByRecald) {
+// The whole way, from readings to scores: what a name is worth only the large populations tell.
+void Smoke::is_diagnosed_and_scored() {
+  const std::string results = (*folder_ / "results.jsonl").string();
+  const Ran ran = run(*folder_, std::string(BLIND_RUN_PROGRAM) + " --population " +
+                                    whole().string() + " --results " + results +
+                                    " --jobs 2 --limit-s 900 --recald " + RECALD_PROGRAM);
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("12 of 12 cases have a line")) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("; 0 of the new without a diagnosis")) << ran.out;
+  const Ran scored = run(*folder_, std::string(BLIND_SCORE_PROGRAM) + " open --answers " +
+                                       (whole() / "answers").string() + " --results " + results +
+                                       " --out " + (*folder_ / "scores.json").string());
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const Json scores = Json::parse(read_text(*folder_ / "scores.json"));
+  EXPECT_FALSE(scores.empty());
+  std::istringstream lines(read_text(results));
+  for (std::string text; std::getline(lines, text);) {
+    const Json line = Json::parse(text);
+    const std::string id = line["case"];
+    const Json answer = Json::parse(read_text(whole() / "answers" / (id + ".json")));
+    if (answer["block"] == "no_effect") EXPECT_EQ(line["named"], Json::array()) << id;
+  }
+}
+
+TEST_F(Smoke, IsSealedRepeatableTakenByRecaldAndScored) {
   is_sealed_before_anybody_reads_a_case();
   every_case_is_one_that_recald_takes();
   a_twin_has_the_same_weather_and_site_and_a_footprint_where_something_is_hidden();
   recald_measures_the_detectability_that_the_answer_states();
   same_seed_same_bytes_even_in_pieces();
   refuses_in_one_sentence();
+  is_diagnosed_and_scored();
 }
 
 }  // namespace
