@@ -1,5 +1,5 @@
 #!/bin/sh
-# The main job from nothing: builds recald, invents a laboratory building with three years of
+# The main job from nothing: builds recald, invents an office building with three years of
 # 15-minute meters and one thing wrong in it that its drawings do not tell, calibrates its energy
 # model on two years, checks it on the third, and finds what is wrong.
 #
@@ -10,7 +10,7 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 dir=${1:-$root/.demo}
 seed=${SEED:-1}
-effect=${EFFECT:-early_start}
+effect=${EFFECT:-weekend_operation}
 
 . "$root/daemon/packages.sh"
 # shellcheck disable=SC2086  # lists of words
@@ -31,10 +31,10 @@ sim=$root/.build/demo/simulators/recald-sim
 mkdir -p "$dir"
 dir=$(cd "$dir" && pwd)
 
-echo "Making three years of feeds of a laboratory building (seed $seed) …"
+echo "Making three years of feeds of an office building (seed $seed) …"
 {
   echo '[building]'
-  echo 'use = "laboratory"'
+  echo 'use = "office"'
   if [ "$effect" != none ]; then
     echo '[[effect]]'
     echo "name = \"$effect\""

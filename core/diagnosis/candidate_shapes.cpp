@@ -1,5 +1,6 @@
 #include "core/diagnosis/candidate_shapes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -38,6 +39,17 @@ AmountPrior amount_prior(const Candidate& candidate) {
     if (is_amount(parameter)) return factor_prior(parameter);
   }
   return {AmountPriorKind::half_normal, 1.0};  // nothing but shapes: there or not
+}
+
+std::vector<double> with_amount(const Candidate& candidate, std::vector<double> values,
+                                double factor) {
+  for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+    const EffectParameter& parameter = candidate.parameters[j];
+    if (!is_amount(parameter)) continue;
+    values[j] = std::clamp(parameter.neutral + factor * (values[j] - parameter.neutral),
+                           parameter.prior.min(), parameter.prior.max());
+  }
+  return values;
 }
 
 std::vector<std::vector<double>> own_shapes(const Candidate& candidate) {

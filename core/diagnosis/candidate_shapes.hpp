@@ -16,6 +16,10 @@ namespace recald::diagnosis {
 /// half-normal of scale 1 where it has nothing but shapes.
 [[nodiscard]] AmountPrior amount_prior(const Candidate& candidate);
 
+/// The values with all amounts at `factor` times their deviation from neutral, within their priors.
+[[nodiscard]] std::vector<double> with_amount(const Candidate& candidate,
+                                              std::vector<double> values, double factor);
+
 /// Combinations of the scanned values of the effect's own parameters, amounts at typical values.
 /// Days that a candidate begins or ends on are not among them.
 [[nodiscard]] std::vector<std::vector<double>> own_shapes(const Candidate& candidate);

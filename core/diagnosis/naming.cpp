@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/diagnosis/candidate_shapes.hpp"
 #include "core/diagnosis/held_scores.hpp"
 #include "core/diagnosis/null_scale.hpp"
 
@@ -91,13 +92,18 @@ std::vector<std::size_t> survivors_of(const FirstLook& look,
   return kept;
 }
 
+/// The base model's mode, and of the effect as much as the first look would have, were it linear.
 Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const Look& look) {
+  constexpr double kLeast = 0.05;  // of typical: from nothing there is no slope to a shape
+  constexpr double kMost = 3.0;
+  const double factor = look.detectability > 0.0 ? look.score / look.detectability : 1.0;
+  const double taken = std::copysign(std::clamp(std::abs(factor), kLeast, kMost), factor);
+  const std::vector<double> values = with_amount(candidate, look.values, taken);
   const auto q = none.scores.size();
   Eigen::VectorXd start(q + static_cast<Eigen::Index>(candidate.parameters.size()));
   start.head(q) = none.scores;
   for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
-    start[q + static_cast<Eigen::Index>(j)] =
-        score_of(candidate.parameters[j].prior, look.values[j]);
+    start[q + static_cast<Eigen::Index>(j)] = score_of(candidate.parameters[j].prior, values[j]);
   }
   return start;
 }
@@ -142,7 +148,7 @@ namespace {
 
 /// Probabilities of all names, none and unknown, at the rules' temperature.
 ///
-/// An effect's evidence counts in units of what the same effect shows where nothing is hidden: as
+/// An effect's support counts in units of what the same effect shows where nothing is hidden: as
 /// if every model had, along with its other errors, one of this effect's own shape.
 std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& explanations,
                                               const std::vector<Candidate>& candidates,
@@ -154,8 +160,7 @@ std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& ex
   for (std::size_t i = 0; i < explanations.size(); ++i) {
     const Explanation& e = explanations[i];
     const Name name = name_of(candidates[e.candidate]);
-    const double weight =
-        priors[e.candidate] + e.evidence_gain / (e.null_scale * rules.temperature);
+    const double weight = priors[e.candidate] + e.support / (e.null_scale * rules.temperature);
     const auto found = std::ranges::find_if(list, [&](const NameProbability& p) {
       return p.effect == name.first && p.meter == name.second;
     });
@@ -196,7 +201,7 @@ int months_read(const SiteProblem& site) {
 std::string objection(const Explanation& e, const Grounds& grounds, const Naming& naming,
                       const NamingRules& rules) {
   const double least = std::max(rules.least_evidence, naming.null_threshold);
-  if (e.evidence_gain / e.null_scale < least) {
+  if (e.support / e.null_scale < least) {
     return "its evidence is no stronger than where nothing is hidden";
   }
   if (grounds.months < rules.least_months) {
@@ -252,6 +257,11 @@ void decide(Naming& naming, const NamingRules& rules) {
   naming.why = "no effect is supported strongly enough";
 }
 
+/// @param rules  Whether the model errs.
+void settle_support(const NamingRules& rules, Explanation& e) {
+  e.support = rules.errs_as_learnt ? std::min(e.evidence_gain, e.first_look) : e.evidence_gain;
+}
+
 void take_fit(JointFit fit, const JointFit& none, Explanation& e) {
   e.fit = std::move(fit);
   e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
@@ -268,19 +278,19 @@ Explanation explanation_of(const Candidate& candidate, JointFit fit, const Joint
   return e;
 }
 
-void sort_by_evidence(std::vector<Explanation>& explanations) {
+void sort_by_support(std::vector<Explanation>& explanations) {
   std::ranges::stable_sort(explanations, std::greater{},
-                           [](const Explanation& e) { return e.evidence_gain / e.null_scale; });
+                           [](const Explanation& e) { return e.support / e.null_scale; });
 }
 
-// So many of the best rivals are looked into, if they have half of the evidence that a name needs.
+// So many of the best rivals are looked into, if they have half of the support that a name needs.
 constexpr std::size_t kRestarts = 3;
 constexpr double kWorthRestarts = 0.5;
 const FitOptions kRestart{.hops = 2};
 
 bool is_worth_restarts(const std::vector<Explanation>& sorted, const NamingRules& rules) {
   return !sorted.empty() &&
-         (!rules.only.empty() || sorted.front().evidence_gain / sorted.front().null_scale >
+         (!rules.only.empty() || sorted.front().support / sorted.front().null_scale >
                                      kWorthRestarts * rules.least_evidence);
 }
 
@@ -358,9 +368,10 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     Explanation e = explanation_of(candidates[i], std::move(*fit), none, rules);
     e.candidate = i;
     e.first_look = look.candidates[i].log_bayes_factor;
+    settle_support(rules, e);
     naming.explanations.push_back(std::move(e));
   }
-  sort_by_evidence(naming.explanations);
+  sort_by_support(naming.explanations);
   if (is_worth_restarts(naming.explanations, rules)) {
     auto better = Restarts{predictor, data.fit, candidates, none, naming.explanations}.run();
     if (!better) return tl::unexpected(better.error());
@@ -373,6 +384,7 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   const Grounds grounds{none.converged, months_read(data.fit.site)};
   for (Explanation& e : naming.explanations) {
     e.evidence_gain -= owed;
+    settle_support(rules, e);
     const ScoreGain gain = gain_over(difference(judge.scores(e.fit, data.usual), base_scores));
     e.selected_gain = gain.sum;
     e.selected_se = gain.se;
@@ -380,7 +392,7 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     e.at_truncation = is_at_truncation(candidates[e.candidate], e.fit);
     e.objection = objection(e, grounds, naming, rules);
   }
-  sort_by_evidence(naming.explanations);
+  sort_by_support(naming.explanations);
   naming.probabilities =
       probabilities_of(naming.explanations, candidates, naming.unknown_gain, rules);
   decide(naming, rules);

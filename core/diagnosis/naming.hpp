@@ -17,13 +17,13 @@ enum class Outcome { named, confusable, unknown, none };
 
 /// What was fixed on the training population and is published with every result.
 struct NamingRules {
-  double temperature = 1.0;  ///< T >= 1: evidences, in units of their null scales, divided by it.
+  double temperature = 1.0;     ///< T >= 1: supports, in units of their null scales, divided by it.
   double unknown_scale = 20.0;  ///< The unknown model's evidence is divided by it.
   bool errs_as_learnt = true;   ///< False: the model is exact and every null scale 1 (tests).
   double least_probability = 0.8;
   double most_against = 1.0;     ///< Nats in units of the null scale, on the months to choose by,
                                  ///< beyond two standard errors.
-  double least_evidence = 15.0;  ///< (L_k - L_none) / null scale, or the null threshold if larger.
+  double least_evidence = 20.0;  ///< Support / null scale, or the null threshold if larger.
   int least_months = 10;         ///< With readings: in less, a season looks like an effect.
   double least_move = 0.001;     ///< Of some meter's energy, sum of what it moves a four-hour part.
   double confusable_share = 0.1;  ///< Probability of each member of a confusable set.
@@ -37,9 +37,13 @@ struct NamingRules {
 
 /// A rival explanation after its fit.
 struct Explanation {
-  std::size_t candidate;         ///< Index into the list.
-  JointFit fit;                  ///< Without its Jacobian.
-  double evidence_gain;          ///< L_k - L_none, nats.
+  std::size_t candidate;  ///< Index into the list.
+  JointFit fit;           ///< Without its Jacobian.
+  double evidence_gain;   ///< L_k - L_none, nats.
+  /// Of the fit and of the first look the lesser, nats: what an effect gains only by leading the
+  /// base parameters to quite another place speaks for the place. The fit's where the model is
+  /// exact.
+  double support;
   double likelihood_gain = 0.0;  ///< Log likelihood at the mode above none's, nats.
   double selected_gain;          ///< Log score on the months to choose by, above none's.
   double selected_se;            ///< Of that, by month.
@@ -60,7 +64,7 @@ struct NameProbability {
 struct Naming {
   Outcome outcome = Outcome::none;
   std::vector<NameProbability> probabilities;  ///< Descending.
-  std::vector<Explanation> explanations;       ///< Descending in evidence by null scale.
+  std::vector<Explanation> explanations;       ///< Descending in support by null scale.
   std::optional<std::size_t> named;            ///< Index into explanations.
   std::vector<std::string> confusable;         ///< Ids of the set.
   double unknown_gain = 0.0;                   ///< L_U - L_none

@@ -5,10 +5,10 @@
 
 namespace recald::diagnosis {
 
-/// By what an effect's evidence is inflated in buildings without any hidden effect: one plus the
-/// mean of its positive log evidence there. It would hardly exceed 1 if models erred by chance
-/// and by their usual errors alone. What they otherwise do wrong some effects can mimic (a server
-/// room much, missing holidays not at all), so their evidence counts by so much less.
+/// By what an effect's support is inflated in buildings without any hidden effect: one plus the
+/// mean of its positive support there. It would hardly exceed 1 if models erred by chance and by
+/// their usual errors alone. What they otherwise do wrong some effects can mimic (a server room
+/// much, missing holidays not at all), so their evidence counts by so much less.
 /// @return the mean over all effects for one that was not visible when this was learnt.
 /// @see README.md for the population that taught it.
 [[nodiscard]] double null_scale(std::string_view effect);

@@ -70,6 +70,7 @@ void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosi
   entry["evidence_gain"] = number(e.evidence_gain);
   entry["log_likelihood_gain"] = number(e.likelihood_gain);
   entry["first_look"] = number(e.first_look);
+  entry["support"] = number(e.support);
   entry["selected_gain"] = number(e.selected_gain);
   entry["selected_se"] = number(e.selected_se);
   entry["null_scale"] = number(e.null_scale);

@@ -33,9 +33,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
        .neutral = 0.0},
       {.name = "held_humidity_ratio",
        .unit = "kg/kg",
-       .prior = TruncatedNormalPrior{.location = 0.006, .sd = 0.001, .min = 0.002, .max = 0.010},
+       .prior = TruncatedNormalPrior{.location = 0.0055, .sd = 0.0015, .min = 0.002, .max = 0.010},
        .neutral = std::numeric_limits<double>::quiet_NaN(),
-       .scan = {0.005, 0.006, 0.007}}};
+       .scan = {0.004, 0.005, 0.006, 0.007}}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,

@@ -208,7 +208,9 @@ void Smoke::is_diagnosed_and_scored() {
     const Json line = Json::parse(text);
     const std::string id = line["case"];
     const Json answer = Json::parse(read_text(whole() / "answers" / (id + ".json")));
-    if (answer["block"] == "no_effect") EXPECT_EQ(line["named"], Json::array()) << id;
+    if (answer["block"] == "no_effect") {
+      EXPECT_EQ(line["named"], Json::array()) << id;
+    }
   }
 }
 

@@ -70,7 +70,7 @@ TemporaryFolder* DetectabilityCommand::folder_ = nullptr;
 TEST_F(DetectabilityCommand, MeasuresEitherSignAndLeavesOtherMetersAlone) {
   const Json more = measured(early_hours("electricity", 6.0));
   const Json less = measured(early_hours("electricity", -6.0));
-  EXPECT_GT(more["detectability"], 1.0);
+  EXPECT_GT(more["grains"]["block"]["detectability"], 1.0);
   EXPECT_NEAR(less["detectability"], more["detectability"],
               0.2 * more["detectability"].get<double>());
   // What scores of absent effects vary by divides it.
