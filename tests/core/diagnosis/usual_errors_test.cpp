@@ -139,5 +139,20 @@ TEST(Spread, DividesWhatIsStacked) {
   EXPECT_EQ(spread.measured.tail(plain.size() - n), plain.tail(plain.size() - n));
 }
 
+// A fit begins at the amount that the first look saw; what is scanned, a humidity, is no amount.
+TEST(CandidateShapes, AnAmountIsScaledFromNeutralWithinItsPriorAndAShapeStays) {
+  const SiteProblem site = testing::sample_problem(kParameters, 12);
+  const auto candidates = list_candidates(site).candidates;
+  const auto humidifier = std::ranges::find_if(
+      candidates, [](const Candidate& c) { return c.effect->id == "humidifier" && !c.begins; });
+  ASSERT_NE(humidifier, candidates.end());
+  const std::vector<double> typical = own_shapes(*humidifier).front();
+  const auto half = with_amount(*humidifier, typical, 0.5);
+  EXPECT_DOUBLE_EQ(half[0], 0.5 * typical[0]);
+  EXPECT_EQ(half[1], typical[1]);
+  EXPECT_DOUBLE_EQ(with_amount(*humidifier, typical, 100.0)[0], 1.0);  // all of the outdoor air
+  EXPECT_DOUBLE_EQ(with_amount(*humidifier, typical, -1.0)[0], 0.0);   // one-sided
+}
+
 }  // namespace
 }  // namespace recald::diagnosis
