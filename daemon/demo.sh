@@ -5,7 +5,8 @@
 #
 #   sh daemon/demo.sh [DIR]     results in DIR, by default .demo/ beside the sources
 #   SEED=7 sh daemon/demo.sh    another building
-#   EFFECT=NAME                 something else is wrong (recald-sim building --list-effects), or none
+#   EFFECT=NAME                 something else is wrong, or none: an effect without a date, of those
+#                               that recald-sim building --list-effects explains
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 dir=${1:-$root/.demo}

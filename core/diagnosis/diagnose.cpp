@@ -151,10 +151,18 @@ void take_back(const char* why, Diagnosis& result) {
   result.not_confirmed = true;
   result.outcome = Outcome::unknown;
   result.why = why;
+  result.parameters_after = result.parameters_before;
 }
 
+/// What the months kept back say of one addition, and the base parameters with it and those before.
+struct Shown {
+  MonthScores change;
+  bool confirmed;
+  std::vector<ParameterBelief> parameters = {};
+};
+
 /// Keeps the first `count` additions, as if the search had ended there.
-void keep_first(std::size_t count, Diagnosis& result) {
+void keep_first(std::size_t count, const std::vector<Shown>& shown, Diagnosis& result) {
   for (std::size_t i = count; i < result.added.size(); ++i) {
     result.warnings.push_back("'" + std::string{result.added[i].candidate.effect->title} +
                               "' was named after the others and taken back: the months kept back "
@@ -163,13 +171,8 @@ void keep_first(std::size_t count, Diagnosis& result) {
   result.added.resize(count);
   result.modelled_kW = result.passes[count].modelled_kW;
   result.gaps = result.passes[count].gaps;
+  result.parameters_after = shown[count - 1].parameters;
 }
-
-/// What the months kept back say of one addition.
-struct Shown {
-  MonthScores change;
-  bool confirmed;
-};
 
 /// The verdict of the first pass, unless the months kept back do not bear out what was added: then
 /// the most that they do bear out.
@@ -188,7 +191,7 @@ void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) 
   }
   const auto doubtful = std::ranges::find_if(shown, [](const Shown& s) { return !s.confirmed; });
   const auto confirmed = static_cast<std::size_t>(doubtful - shown.begin());
-  if (!assumed && confirmed > 0 && confirmed < shown.size()) keep_first(confirmed, result);
+  if (!assumed && confirmed > 0 && confirmed < shown.size()) keep_first(confirmed, shown, result);
   std::vector<MonthScores> changes;
   for (std::size_t i = 0; i < result.added.size(); ++i) changes.push_back(shown[i].change);
   result.gap = change_of(result.passes.front().gaps, result.gaps, changes);
@@ -215,12 +218,6 @@ class Search {
     auto first = lay_ground(base, site_, errors());
     if (!first) return tl::unexpected(first.error());
     first_ = std::move(*first);
-    result_.base_fit = gaps_of(site_, first_, judge_of(site_, first_, first_.fit));
-    if (!first_.none.converged) {
-      result_.warnings.push_back(
-          "The base calibration of the hourly model did not settle, so nothing is named: compare "
-          "[building] with the drawings and look for a meter in a wrong unit.");
-    }
     result_.model_runs += base.runs();
     return {};
   }
@@ -260,6 +257,13 @@ class Search {
   Diagnosis end() && {
     result_.modelled_kW = now().none.parts_kW;
     result_.gaps = gaps_of(site_, now(), judge_of(site_, first_, first_.show));
+    // Rivals may have shown a better mode of the drawings' model on the way: only now it stands.
+    result_.base_fit = gaps_of(site_, first_, judge_of(site_, first_, first_.fit));
+    if (!first_.none.converged) {
+      result_.warnings.push_back(
+          "The base calibration of the hourly model did not settle, so nothing is named: compare "
+          "[building] with the drawings and look for a meter in a wrong unit.");
+    }
     result_.parameters_before = beliefs_of(site_, first_.none);
     result_.parameters_after = beliefs_of(site_, now().none);
     conclude(shown_, !options_.assumed.empty(), result_);
@@ -314,6 +318,7 @@ class Search {
     auto next = lay_next_ground(altered, site_, now(), found, errors());
     if (!next) return tl::unexpected(next.error());
     latest_ = std::move(*next);
+    if (!shown_.empty()) shown_.back().parameters = beliefs_of(site_, latest_->none);
     result_.model_runs += altered.runs();
     return {};
   }

@@ -66,7 +66,7 @@ struct Diagnosis {
   bool not_confirmed = false;      ///< Effects were named, and the shown months did not agree.
   std::vector<MeterGap> base_fit;  ///< (m) the base model on the fitted months.
   std::vector<ParameterBelief> parameters_before;  ///< (q) of the drawings alone.
-  std::vector<ParameterBelief> parameters_after;   ///< (q) with what was added.
+  std::vector<ParameterBelief> parameters_after;   ///< (q) with what stands added.
   std::vector<std::string> warnings;
   int model_runs = 0;
 };

@@ -44,9 +44,8 @@ std::string detectability_json(const diagnosis::Detectability& seen,
 void print_words(const diagnosis::Detectability& seen, const diagnosis::SiteProblem& site,
                  const Console& console) {
   console.out << fmt::format(
-      "detectability d* = {:.3g}: on four-hour data, in units of what the scores of effects that "
-      "are "
-      "not there vary by ({:g})\n",
+      "detectability d* = {:.3g}, on four-hour data\n"
+      "in units of {:g}, by which the scores of effects that are not there vary\n",
       seen.d_star, diagnosis::null_score_spread);
   const auto grain = [&](const char* name, const diagnosis::Visibility& one) {
     console.out << fmt::format(
