@@ -53,7 +53,7 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
       const DayPart& part = site.day_parts.parts[static_cast<std::size_t>(row)];
       measured += part.hours * site.measured_parts_kW(row, column);
       difference +=
-          part.hours * (ground.plain_kW(row, column) - site.measured_parts_kW(row, column));
+          part.hours * (ground.none.parts_kW(row, column) - site.measured_parts_kW(row, column));
     }
     double log_score = 0.0;
     for (const auto& [month, score] : scores[g]) log_score += score;
@@ -63,9 +63,9 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
         fit.residual.segment(fitted.offset, n), fit.jacobian.middleRows(fitted.offset, n),
         fit.posterior.covariance);
     gaps.push_back({.nmbe_sim_minus_meas = measured > 0.0 ? difference / measured : kNothing,
-                    .cvrmse_daily = cvrmse_by(site, rows, column, ground.plain_kW,
+                    .cvrmse_daily = cvrmse_by(site, rows, column, ground.none.parts_kW,
                                               [](const DayPart& p) { return p.day_index; }),
-                    .cvrmse_monthly = cvrmse_by(site, rows, column, ground.plain_kW,
+                    .cvrmse_monthly = cvrmse_by(site, rows, column, ground.none.parts_kW,
                                                 [](const DayPart& p) { return p.month; }),
                     .log_score = scores[g].empty()
                                      ? kNothing

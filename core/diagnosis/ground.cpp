@@ -78,18 +78,24 @@ Result<std::vector<NoiseLevel>> levels_of(const Observations& observations,
   return levels;
 }
 
-/// First levels before any residual is known. Nearly white: with much slow structure a poor start
-/// would pass for the meters' own ways.
-std::vector<NoiseLevel> first_levels(const Observations& observations) {
+/// Nearly white: with much slow structure a poor start would pass for the meters' own ways.
+/// @param residual  (n) that the white noise shall be as strong as; empty: 10 % of each mean.
+NoiseNode search_noise(const Observations& observations, const Eigen::VectorXd& residual) {
+  constexpr double kFirst = 0.1;
+  constexpr double kLeast = 0.01;
   std::vector<NoiseLevel> levels;
   for (const MeterRows& meter : observations.meters) {
     const double mean = std::max(meter.mean_kW, 1e-6);
+    const auto n = static_cast<Eigen::Index>(meter.rows.size());
+    const double white = residual.size() == 0 || n == 0
+                             ? kFirst * mean
+                             : residual.segment(meter.offset, n).norm() / std::sqrt(n);
     levels.push_back({.structure_sd = 0.02 * mean,
                       .correlation_h = 48.0,
-                      .white_sd = 0.1 * mean,
+                      .white_sd = std::max(white, kLeast * mean),
                       .pattern_sd = 0.005 * mean});
   }
-  return levels;
+  return std::move(noise_grid(observations, levels, false).front());
 }
 
 void set_gates(Observations& observations, const Eigen::VectorXd& residual,
@@ -125,8 +131,8 @@ Ground plain_ground(const SiteProblem& site) {
   ground.fit = observe(site, parts_of(site, {Role::fit}),
                        std::vector<MeterScale>(site.meters.size()), Patterns::modest);
   ground.errors = UsualErrors{}.columns(ground.fit);
-  ground.levels = first_levels(ground.fit);
-  ground.grid = noise_grid(ground.fit, ground.levels, false);
+  ground.search = search_noise(ground.fit, {});
+  ground.grid = {ground.search};
   return ground;
 }
 
@@ -185,10 +191,11 @@ Eigen::VectorXd draw_errors(Predictor& predictor, const SiteProblem& site, Model
   return start;
 }
 
-/// Noise of what the present mode leaves. @param last  Near the levels known, and a whole grid.
+/// Noise of what the present mode leaves, to search under and to judge by. @param last  Near the levels known, and a whole grid.
 Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last) {
-  const Eigen::VectorXd left = ground.fit.measured - ground.fit.stack(ground.none.parts_kW) -
-                               ground.errors * start.tail(ground.errors.cols());
+  const Eigen::VectorXd gap = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
+  ground.search = search_noise(ground.fit, gap);
+  const Eigen::VectorXd left = gap - ground.errors * start.tail(ground.errors.cols());
   auto levels = levels_of(ground.fit, left, last ? ground.levels : std::vector<NoiseLevel>{});
   if (!levels) return tl::unexpected(levels.error());
   ground.levels = std::move(*levels);
@@ -243,7 +250,6 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelEr
   auto plain = first_fit(predictor, site, ground);
   if (!plain) return tl::unexpected(plain.error());
   ground.none = std::move(*plain);
-  ground.plain_kW = ground.none.parts_kW;
   std::vector<MeterScale> scales(site.meters.size());
   set_levels_scale(ground, scales);
 
@@ -267,11 +273,7 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelEr
 Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site, const Ground& before,
                                const JointFit& found, ModelErrors errors) {
   const auto q = std::ssize(site.parameters);
-  const auto plain =
-      plain_fit(predictor, site, plain_ground(site), Eigen::VectorXd(found.scores.head(q)));
-  if (!plain) return tl::unexpected(plain.error());
   Ground ground = before;
-  ground.plain_kW = plain->parts_kW;
   ground.none = found;
   ground.none.scores.conservativeResize(q + found.usual.size());
   if (auto learnt = learn(predictor, site, errors, true, ground); !learnt) {

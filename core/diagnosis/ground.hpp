@@ -29,13 +29,11 @@ struct Ground {
   std::vector<NoiseLevel> levels;            ///< (m) as fitted to what the base model leaves.
   std::vector<NoiseNode> grid;               ///< Nodes that the base model leaves any weight.
   std::size_t reference_node = 0;
-  JointFit none;  ///< Base parameters alone, at their mode.
-  /// (parts x m) kW: the base model alone, fitted by nearly white noise. What the anonymous terms
-  /// may take up in `none` is the model's own gap here.
-  Eigen::ArrayXXd plain_kW;
+  NoiseNode search;  ///< Nearly white, as strong as what the base model leaves of each meter.
+  JointFit none;     ///< Base parameters alone, at their mode.
 
   [[nodiscard]] FitContext context(const SiteProblem& site) const {
-    return {site, fit, errors, grid, reference_node};
+    return {site, fit, errors, grid, reference_node, search};
   }
 };
 

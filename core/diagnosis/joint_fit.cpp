@@ -141,66 +141,20 @@ Eigen::MatrixXd beside(const Eigen::VectorXd& residual, const Eigen::MatrixXd& j
 
 Eigen::MatrixXd unit_precision(Eigen::Index q) { return Eigen::MatrixXd::Identity(q, q); }
 
-/// Noise and usual errors together, Sigma + E E': the errors are linear, so they are integrated out
-/// once for all steps, and a step moves only what the model depends on.
-class NoiseAndErrors {
- public:
-  static Result<NoiseAndErrors> make(const NoiseNode& node, const FitContext& context) {
-    NoiseAndErrors joined{node, context};
-    const Eigen::Index k = context.errors.cols();
-    joined.factor_.compute(Eigen::MatrixXd::Identity(k, k) +
-                           context.errors.transpose() * joined.solved_);
-    if (joined.factor_.info() != Eigen::Success || !joined.factor_.matrixLLT().allFinite()) {
-      return failure(ErrorCode::not_positive_definite,
-                     "a usual error of the model is not a finite number");
-    }
-    return joined;
-  }
-
-  /// X' (Sigma + E E')^-1 X. @param columns  X (n x k)
-  [[nodiscard]] GramSystem gram(const Eigen::MatrixXd& columns) const {
-    GramSystem system = node_.gram(observations_, columns);
-    const Eigen::MatrixXd imitated =
-        factor_.matrixL().solve(Eigen::MatrixXd(solved_.transpose() * columns));
-    system.gram -= imitated.transpose() * imitated;
-    return system;
-  }
-  /// E[b | r] (k).
-  [[nodiscard]] Eigen::VectorXd amounts(const Eigen::VectorXd& residual) const {
-    return factor_.solve(Eigen::VectorXd(solved_.transpose() * residual));
-  }
-  /// log N(r; 0, Sigma + E E') but for what depends on the noise alone.
-  [[nodiscard]] double log_density(const Eigen::VectorXd& residual) const {
-    return -0.5 * gram(residual).gram(0, 0);
-  }
-
- private:
-  NoiseAndErrors(const NoiseNode& node, const FitContext& context)
-      : node_(node),
-        observations_(context.observations),
-        solved_(node.solve(context.observations, context.errors)) {}
-
-  const NoiseNode& node_;
-  const Observations& observations_;
-  Eigen::MatrixXd solved_;              ///< Sigma^-1 E (n x k)
-  Eigen::LLT<Eigen::MatrixXd> factor_;  ///< I + E' Sigma^-1 E
-};
-
 /// Where a search stands.
 struct Place {
   Eigen::VectorXd own;       ///< (q + r)
-  Eigen::VectorXd residual;  ///< (n) measured - modelled, the usual errors still in it.
+  Eigen::VectorXd residual;  ///< (n) measured - modelled
   Eigen::MatrixXd jacobian;  ///< (n x (q + r)) of the model, at `own` or one step before.
-  double log_density = 0.0;  ///< Posterior, the usual errors at their best.
+  double log_density = 0.0;  ///< Posterior under the search's noise, but a constant.
   double damping = 0.0;
 };
 
-/// Climbs towards the mode with damped Gauss-Newton steps, at the context's reference node.
+/// Climbs towards the mode with damped Gauss-Newton steps, under the context's noise for it.
 class ModeSearch {
  public:
-  ModeSearch(ScoredModel& model, const FitContext& context, const NoiseAndErrors& noise,
-             const Eigen::VectorXd& start)
-      : model_(model), measured_(context.observations.measured), noise_(noise) {
+  ModeSearch(ScoredModel& model, const FitContext& context, const Eigen::VectorXd& start)
+      : model_(model), observations_(context.observations), noise_(context.search) {
     move_to(start);
   }
 
@@ -244,9 +198,14 @@ class ModeSearch {
  private:
   void move_to(const Eigen::VectorXd& own) {
     place.own = own;
-    place.residual = measured_ - model_.stacked(own);
-    place.log_density = noise_.log_density(place.residual) - 0.5 * own.squaredNorm();
+    place.residual = observations_.measured - model_.stacked(own);
+    place.log_density = log_density(place.residual, own);
     place.damping = 0.0;
+  }
+
+  [[nodiscard]] double log_density(const Eigen::VectorXd& residual,
+                                   const Eigen::VectorXd& own) const {
+    return -0.5 * (noise_.squared_norms(observations_, residual)[0] + own.squaredNorm());
   }
 
   /// Linearises and steps. @return what the step gained, 0 where none helped
@@ -256,7 +215,7 @@ class ModeSearch {
                      "the hourly model gives no finite power at some values of its parameters");
     }
     ++iterations;
-    place.jacobian = model_.jacobian(place.own, measured_ - place.residual);
+    place.jacobian = model_.jacobian(place.own, observations_.measured - place.residual);
     auto gain = step_by(place.jacobian);
     if (!gain || *gain > 0.0 || !model_.has_days()) return gain;
     // A day moves the meters by jerks, and a step that trusts its slope may help nothing else.
@@ -266,7 +225,7 @@ class ModeSearch {
 
   Result<double> step_by(const Eigen::MatrixXd& jacobian) {
     const Eigen::VectorXd linear = place.residual + jacobian * place.own;
-    const GramSystem system = noise_.gram(beside(linear, jacobian));
+    const GramSystem system = noise_.gram(observations_, beside(linear, jacobian));
     const auto moves = jacobian.colwise().squaredNorm().transpose().array() > 0.0;
     for (int trial = 0; trial < kTrialsMax; ++trial) {
       const auto target = posterior(system, (1.0 + place.damping) * unit_precision(model_.count()));
@@ -276,8 +235,8 @@ class ModeSearch {
       const Eigen::VectorXd tried = (place.own + moves.select(aim - place.own, 0.0))
                                         .cwiseMax(-kScoreLimit)
                                         .cwiseMin(kScoreLimit);
-      const Eigen::VectorXd residual = measured_ - model_.stacked(tried);
-      const double density = noise_.log_density(residual) - 0.5 * tried.squaredNorm();
+      const Eigen::VectorXd residual = observations_.measured - model_.stacked(tried);
+      const double density = log_density(residual, tried);
       if (density > place.log_density) {
         const double gain = density - place.log_density;
         place.own = tried;
@@ -293,8 +252,8 @@ class ModeSearch {
   }
 
   ScoredModel& model_;
-  const Eigen::VectorXd& measured_;
-  const NoiseAndErrors& noise_;
+  const Observations& observations_;
+  const NoiseNode& noise_;
 };
 
 /// The three kinds of scores in their order: (q + k + r).
@@ -369,9 +328,7 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   const Eigen::Index q = model.theta_count();
   const Eigen::Index k = context.errors.cols();
   const Eigen::Index r = model.eta_count();
-  const auto noise = NoiseAndErrors::make(context.grid[context.reference_node], context);
-  if (!noise) return tl::unexpected(noise.error());
-  ModeSearch search{model, context, *noise, own_scores(start, q, r)};
+  ModeSearch search{model, context, own_scores(start, q, r)};
   auto ended = search.climb(options.iterations_max, options.small_gain);
   if (!ended) return tl::unexpected(ended.error());
   if (options.hops > 0) {
@@ -387,7 +344,11 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   fit.iterations = search.iterations;
   fit.log_density = place.log_density;
   fit.theta = model.theta(place.own);
-  fit.usual = noise->amounts(place.residual);
+  const NoiseNode& reference = context.grid[context.reference_node];
+  const auto usual = posterior(reference.gram(observations, beside(place.residual, context.errors)),
+                               unit_precision(k));
+  if (!usual) return tl::unexpected(usual.error());
+  fit.usual = usual->mean;
   fit.eta = model.eta(place.own);
   fit.scores = all_scores(place.own, fit.usual, q);
   fit.residual = place.residual - context.errors * fit.usual;

@@ -1,9 +1,10 @@
 /// Base parameters and one candidate effect fitted together, from their original priors.
 ///
 /// Everything is a standard normal score: value = prior.at_score(u), so the prior of all scores is
-/// N(0, I) and no value ever leaves its prior. What models usually err by has amounts of the same
-/// prior, integrated out on the way. Damped Gauss-Newton steps find the mode; the evidence is
-/// Laplace's, at every node of the noise grid with the model linearised at that mode.
+/// N(0, I) and no value ever leaves its prior. Damped Gauss-Newton steps find the mode under nearly
+/// white noise: recurring patterns and usual errors could stand in for the building, and would
+/// leave the parameters where no footprint is true. There the model is linearised, and the evidence
+/// is that of the linear model under all that a model may err by, at every node of the noise grid.
 /// @see discrepancy.md, 3.2, stage B (i).
 #pragma once
 
@@ -26,7 +27,7 @@ struct FitOptions {
   int hops = 0;
 };
 
-/// A model linearised at its mode.
+/// A model linearised at its mode; usual errors as they are likeliest there.
 struct JointFit {
   Eigen::VectorXd scores;        ///< (q + k + r) at the mode: theta, usual errors, eta.
   std::vector<double> theta;     ///< (q)
@@ -35,7 +36,7 @@ struct JointFit {
   Eigen::VectorXd residual;      ///< (n) measured - modelled - E b, on the scale.
   Eigen::MatrixXd jacobian;      ///< (n x (q + k + r)) with respect to the scores.
   Eigen::ArrayXXd parts_kW;      ///< (parts x m) the model at the mode, whole period, without E b.
-  double log_density = 0.0;      ///< Posterior of the scores at the reference node, but a constant.
+  double log_density = 0.0;      ///< Of theta and eta under the noise of the search, but a constant.
   double log_evidence = 0.0;     ///< Over the grid.
   double log_likelihood = 0.0;   ///< Of all scores at the mode, at the best node.
   Eigen::VectorXd node_weights;  ///< (nodes) posterior.
@@ -54,7 +55,8 @@ struct FitContext {
   const Observations& observations;
   const Eigen::MatrixXd& errors;  ///< E (n x k), usual errors of these observations; k may be 0.
   const std::vector<NoiseNode>& grid;
-  std::size_t reference_node;  ///< Gauss-Newton goes by this one.
+  std::size_t reference_node;  ///< The likeliest amounts of the usual errors are this one's.
+  const NoiseNode& search;     ///< Nearly white: under this noise the mode is found.
 };
 
 /// @param candidate  effect == nullptr: the base model alone.
