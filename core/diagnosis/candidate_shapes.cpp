@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <utility>
 
 namespace recald::diagnosis {
@@ -24,6 +26,40 @@ AmountPrior factor_prior(const EffectParameter& parameter) {
   // Of a half-normal: its second moment about the neutral value is the scale squared.
   const double shift = prior.mean() - parameter.neutral;
   return {AmountPriorKind::half_normal, std::sqrt(prior.variance() + shift * shift) / typical};
+}
+
+/// Without the days that it begins or ends on.
+std::span<const EffectParameter> own_parameters(const Candidate& candidate) {
+  const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
+  return {candidate.parameters.data(), candidate.parameters.size() - days};
+}
+
+constexpr std::ptrdiff_t kAllAmounts = -1;
+
+/// All combinations of what is scanned, amounts typical.
+/// @param only  Of the amounts, the only one that is there; the others are neutral.
+std::vector<std::vector<double>> shapes_with(std::span<const EffectParameter> parameters,
+                                             std::ptrdiff_t only) {
+  std::vector<std::vector<double>> shapes{{}};
+  std::ptrdiff_t amount = 0;
+  for (const EffectParameter& parameter : parameters) {
+    std::vector<double> values = parameter.scan;
+    if (is_amount(parameter)) {
+      const bool there = only == kAllAmounts || only == amount++;
+      values.push_back(there ? typical_value(parameter) : parameter.neutral);
+    } else if (values.empty()) {
+      values.push_back(parameter.prior.mean());
+    }
+    std::vector<std::vector<double>> longer;
+    for (const auto& shape : shapes) {
+      for (const double value : values) {
+        longer.push_back(shape);
+        longer.back().push_back(value);
+      }
+    }
+    shapes = std::move(longer);
+  }
+  return shapes;
 }
 
 }  // namespace
@@ -53,22 +89,16 @@ std::vector<double> with_amount(const Candidate& candidate, std::vector<double> 
 }
 
 std::vector<std::vector<double>> own_shapes(const Candidate& candidate) {
-  const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
-  std::vector<std::vector<double>> shapes{{}};
-  for (std::size_t j = 0; j + days < candidate.parameters.size(); ++j) {
-    const EffectParameter& parameter = candidate.parameters[j];
-    std::vector<double> values = parameter.scan;
-    if (values.empty()) {
-      values.push_back(is_amount(parameter) ? typical_value(parameter) : parameter.prior.mean());
-    }
-    std::vector<std::vector<double>> longer;
-    for (const auto& shape : shapes) {
-      for (const double value : values) {
-        longer.push_back(shape);
-        longer.back().push_back(value);
-      }
-    }
-    shapes = std::move(longer);
+  return shapes_with(own_parameters(candidate), kAllAmounts);
+}
+
+std::vector<std::vector<double>> shapes_to_try(const Candidate& candidate) {
+  const auto own = own_parameters(candidate);
+  const auto amounts = std::ranges::count_if(own, is_amount);
+  std::vector<std::vector<double>> shapes = own_shapes(candidate);
+  for (std::ptrdiff_t only = 0; amounts > 1 && only < amounts; ++only) {
+    const auto more = shapes_with(own, only);
+    shapes.insert(shapes.end(), more.begin(), more.end());
   }
   return shapes;
 }

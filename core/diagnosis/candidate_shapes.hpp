@@ -24,4 +24,8 @@ namespace recald::diagnosis {
 /// Days that a candidate begins or ends on are not among them.
 [[nodiscard]] std::vector<std::vector<double>> own_shapes(const Candidate& candidate);
 
+/// The same, and of several amounts also each alone, the others neutral: a building may be open on
+/// Saturdays and shut on Sundays.
+[[nodiscard]] std::vector<std::vector<double>> shapes_to_try(const Candidate& candidate);
+
 }  // namespace recald::diagnosis

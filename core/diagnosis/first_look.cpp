@@ -125,7 +125,7 @@ Footprints footprints_of(Predictor& predictor, const FitContext& context, const 
   // Undated first: days are cut out of one run.
   Candidate undated = candidate;
   undated.begins = undated.ends = false;
-  for (const std::vector<double>& shape : own_shapes(candidate)) {
+  for (const std::vector<double>& shape : shapes_to_try(candidate)) {
     const auto alteration = alteration_of(undated, facts, shape);
     const Eigen::VectorXd footprint =
         context.observations.stack(predictor.parts_kW(none.theta, alteration.get())) - base;

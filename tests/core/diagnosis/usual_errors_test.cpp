@@ -154,5 +154,22 @@ TEST(CandidateShapes, AnAmountIsScaledFromNeutralWithinItsPriorAndAShapeStays) {
   EXPECT_DOUBLE_EQ(with_amount(*humidifier, typical, -1.0)[0], 0.0);   // one-sided
 }
 
+TEST(CandidateShapes, OfSeveralAmountsEachIsTriedAlone) {
+  const SiteProblem site = testing::sample_problem(kParameters, 12);
+  const auto candidates = list_candidates(site).candidates;
+  const auto weekends = std::ranges::find_if(candidates, [](const Candidate& c) {
+    return c.effect->id == "weekend_operation" && !c.begins;
+  });
+  ASSERT_NE(weekends, candidates.end());
+  const auto both = own_shapes(*weekends);
+  ASSERT_EQ(both.size(), 1U);
+  const double saturday = both.front()[0];
+  const double sunday = both.front()[1];
+  EXPECT_GT(saturday, 0.0);
+  EXPECT_GT(sunday, 0.0);
+  const std::vector<std::vector<double>> tried{{saturday, sunday}, {saturday, 0.0}, {0.0, sunday}};
+  EXPECT_EQ(shapes_to_try(*weekends), tried);
+}
+
 }  // namespace
 }  // namespace recald::diagnosis
