@@ -13,6 +13,7 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr double kConfusable = 0.7;
+constexpr double kSameSignal = 0.9;
 // Of the prior's range: so near its upper end a value is taken to run against it.
 constexpr double kNearEnd = 0.05;
 
@@ -60,20 +61,34 @@ std::vector<double> log_priors(const std::vector<Candidate>& candidates, const N
   return priors;
 }
 
-double scale_of(const Candidate& candidate, const NamingRules& rules) {
-  return rules.errs_as_learnt ? null_scale(candidate.effect->id) : 1.0;
+/// What each candidate's evidence counts in units of: the least null scale of all whose footprints
+/// are here the same. What models seldom do by chance they do as seldom under another name.
+std::vector<double> scales_of(const FirstLook& look, const std::vector<Candidate>& candidates,
+                              const NamingRules& rules) {
+  std::vector<double> scales(candidates.size(), 1.0);
+  if (!rules.errs_as_learnt) return scales;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    scales[i] = null_scale(candidates[i].effect->id);
+    for (std::size_t j = 0; j < candidates.size(); ++j) {
+      const double alike =
+          std::abs(look.confusability(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+      if (alike > kSameSignal) {
+        scales[i] = std::min(scales[i], null_scale(candidates[j].effect->id));
+      }
+    }
+  }
+  return scales;
 }
 
 /// Who is worth a fit: the best by evidence in units of its null scale, and whoever is like the
 /// best one.
-std::vector<std::size_t> survivors_of(const FirstLook& look,
-                                      const std::vector<Candidate>& candidates,
+std::vector<std::size_t> survivors_of(const FirstLook& look, const std::vector<double>& scales,
                                       const NamingRules& rules) {
   const auto evidence = [&](std::size_t i) {
-    return look.candidates[i].log_bayes_factor / scale_of(candidates[i], rules);
+    return look.candidates[i].log_bayes_factor / scales[i];
   };
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
+  for (std::size_t i = 0; i < look.candidates.size(); ++i) {
     if (look.candidates[i].visible) order.push_back(i);
   }
   std::ranges::stable_sort(order, std::greater{}, evidence);
@@ -270,10 +285,9 @@ void take_fit(JointFit fit, const JointFit& none, Explanation& e) {
 }
 
 /// What a fit says by itself, against the base model alone.
-Explanation explanation_of(const Candidate& candidate, JointFit fit, const JointFit& none,
-                           const NamingRules& rules) {
+Explanation explanation_of(JointFit fit, const JointFit& none, double null_scale) {
   Explanation e{};
-  e.null_scale = scale_of(candidate, rules);
+  e.null_scale = null_scale;
   take_fit(std::move(fit), none, e);
   return e;
 }
@@ -359,13 +373,14 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   const HeldJudge judge{data.fit.site, data.fit.observations,
                         data.fit.grid[static_cast<std::size_t>(none.best_node)], data.select,
                         data.levels};
+  const std::vector<double> scales = scales_of(look, candidates, rules);
   const std::vector<std::size_t> rivals =
-      rules.only.empty() ? survivors_of(look, candidates, rules) : rules.only;
+      rules.only.empty() ? survivors_of(look, scales, rules) : rules.only;
   for (const std::size_t i : rivals) {
     auto fit = fit_jointly(predictor, data.fit, candidates[i],
                            start_at(none, candidates[i], look.candidates[i].best));
     if (!fit) return tl::unexpected(fit.error());
-    Explanation e = explanation_of(candidates[i], std::move(*fit), none, rules);
+    Explanation e = explanation_of(std::move(*fit), none, scales[i]);
     e.candidate = i;
     e.first_look = look.candidates[i].log_bayes_factor;
     settle_support(rules, e);

@@ -23,7 +23,7 @@ struct NamingRules {
   double least_probability = 0.8;
   double most_against = 1.0;     ///< Nats in units of the null scale, on the months to choose by,
                                  ///< beyond two standard errors.
-  double least_evidence = 20.0;  ///< Support / null scale, or the null threshold if larger.
+  double least_evidence = 15.0;  ///< Support / null scale, or the null threshold if larger.
   int least_months = 10;         ///< With readings: in less, a season looks like an effect.
   double least_move = 0.001;     ///< Of some meter's energy, sum of what it moves a four-hour part.
   double confusable_share = 0.1;  ///< Probability of each member of a confusable set.

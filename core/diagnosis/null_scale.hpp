@@ -15,6 +15,6 @@ namespace recald::diagnosis {
 
 /// Root mean square of the scores of effects in such buildings; 1 if models erred by chance and by
 /// their usual errors alone.
-inline constexpr double null_score_spread = 3.8;
+inline constexpr double null_score_spread = 3.1;
 
 }  // namespace recald::diagnosis
