@@ -267,10 +267,23 @@ class Search {
     result_.parameters_before = beliefs_of(site_, first_.none);
     result_.parameters_after = beliefs_of(site_, now().none);
     conclude(shown_, !options_.assumed.empty(), result_);
+    warn_of_harm();
     return std::move(result_);
   }
 
  private:
+  void warn_of_harm() {
+    if (!result_.gap || result_.not_confirmed) return;
+    for (std::size_t g = 0; g < site_.meters.size(); ++g) {
+      const ScoreGain& change = result_.gap->log_score_change[g];
+      if (!is_worse(change)) continue;
+      result_.warnings.push_back(
+          "Meter '" + site_.meters[g].id + "': what was added foretells it worse than before (" +
+          std::to_string(std::lround(-change.sum)) +
+          " nats over the months kept back); the model " + "has the effect's echo there wrong.");
+    }
+  }
+
   [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
   [[nodiscard]] Ground& now() { return latest_ ? *latest_ : first_; }
 

@@ -8,6 +8,9 @@
 namespace recald::diagnosis {
 namespace {
 
+// Of what other meters gain.
+constexpr double kMostHarm = 0.25;
+
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Root mean square error over groups of parts (days, months), of the mean of the groups.
@@ -75,11 +78,16 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
   return gaps;
 }
 
+bool is_worse(const ScoreGain& meter) { return meter.sum < -2.0 * meter.se - 1.0; }
+
 bool is_confirmed(const MonthScores& change, double null_scale) {
-  const bool worse = std::ranges::any_of(gain_by_meter(change), [](const ScoreGain& meter) {
-    return meter.sum < -2.0 * meter.se - 1.0;
-  });
-  return gain_over(change).sum > kLeastConfirmation * null_scale && !worse;
+  double gained = 0.0;
+  double lost = 0.0;
+  for (const ScoreGain& meter : gain_by_meter(change)) {
+    gained += std::max(meter.sum, 0.0);
+    if (is_worse(meter)) lost -= meter.sum;
+  }
+  return gain_over(change).sum > kLeastConfirmation * null_scale && lost < kMostHarm * gained;
 }
 
 GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,

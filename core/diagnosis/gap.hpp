@@ -40,8 +40,12 @@ inline constexpr double kLeastConfirmation = 1.1;
 [[nodiscard]] std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
                                             const HeldJudge& judge);
 
-/// Better by `kLeastConfirmation` in units of the effect's null scale, and no meter worse by two
-/// standard errors and a nat.
+/// By more than two standard errors and a nat.
+[[nodiscard]] bool is_worse(const ScoreGain& meter);
+
+/// Better by `kLeastConfirmation` in units of the effect's null scale, and meters that are worse
+/// lose less than a quarter of what the others gain: an effect that is surely there may have an
+/// echo that the model gets wrong.
 /// @param change  Of the scores of months that chose nothing: the effect and the base parameters
 ///                fitted together, over the base parameters fitted alone on the same ground. Two
 ///                models that were searched for apart would differ by their hills as well.

@@ -133,6 +133,8 @@ TEST(Gap, IsConfirmedByWhatAllMonthsSayInUnitsOfTheNullScaleAndByNoMetersHarm) {
   EXPECT_FALSE(is_confirmed(better, 12.0));  // 13 nats are not 1.1 times 12
   const MonthScores harmful{{{3, 8.0}, {7, 6.0}}, {{3, -2.0}, {7, -2.0}}};
   EXPECT_FALSE(is_confirmed(harmful, 1.0));  // surely 4 nats worse on the second meter
+  const MonthScores echo{{{3, 80.0}, {7, 60.0}}, {{3, -2.0}, {7, -2.0}}};
+  EXPECT_TRUE(is_confirmed(echo, 1.0));  // 4 nats beside 140
 }
 
 TEST(Ground, NamesTheMeterThatHasTooFewReadings) {
