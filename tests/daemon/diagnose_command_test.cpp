@@ -190,18 +190,18 @@ TEST_F(DiagnoseCommand, AWriteThatFailsLosesNothing) {
   EXPECT_THAT(run({"model", "list", site()}).out, StartsWith("* drawings"));
 }
 
-/// Ten months of the depot whose lights and plugs are as the hourly model has them, but for a phase
-/// of the electricity meter that is lost in April.
-class DepotOfTwoPhases : public DiagnoseCommand {
+/// Ten months of the depot whose lights and plugs are as the hourly model has them, but for two
+/// phases of the electricity meter that are lost in April.
+class DepotOfOnePhase : public DiagnoseCommand {
  protected:
-  DepotOfTwoPhases() {
+  DepotOfOnePhase() {
     const std::string heat = lines_of(read_text(folder_ / "readings.csv"), is_of_heat, as_it_is);
     write_electricity_of_model();
     edit_file("readings.csv", std::not_fn(is_of_heat), [](const std::string& line) {
       const std::size_t at = line.find(kElectricity);
       if (at == std::string::npos || line < "2021-04-12") return line;
       const double kW = std::stod(line.substr(at + kElectricity.size()));
-      return line.substr(0, at) + std::string{kElectricity} + std::to_string(2.0 / 3.0 * kW) +
+      return line.substr(0, at) + std::string{kElectricity} + std::to_string(kW / 3.0) +
              ",kW";
     });
     const std::string header = "timestamp,meter,value,unit\n";
@@ -244,7 +244,7 @@ class DepotOfTwoPhases : public DiagnoseCommand {
   static constexpr std::string_view kElectricity = ",electricity,";
 };
 
-TEST_F(DepotOfTwoPhases, WhatIsNamedIsInForceUntilItIsReverted) {
+TEST_F(DepotOfOnePhase, WhatIsNamedIsInForceUntilItIsReverted) {
   const Json before = calibrate();
   use(one_meter_site());
   const Outcome found = diagnose("found", {"--apply"});
