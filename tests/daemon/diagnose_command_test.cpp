@@ -201,8 +201,7 @@ class DepotOfOnePhase : public DiagnoseCommand {
       const std::size_t at = line.find(kElectricity);
       if (at == std::string::npos || line < "2021-04-12") return line;
       const double kW = std::stod(line.substr(at + kElectricity.size()));
-      return line.substr(0, at) + std::string{kElectricity} + std::to_string(kW / 3.0) +
-             ",kW";
+      return line.substr(0, at) + std::string{kElectricity} + std::to_string(kW / 3.0) + ",kW";
     });
     const std::string header = "timestamp,meter,value,unit\n";
     write_text(folder_ / "readings.csv",
