@@ -191,7 +191,8 @@ Eigen::VectorXd draw_errors(Predictor& predictor, const SiteProblem& site, Model
   return start;
 }
 
-/// Noise of what the present mode leaves, to search under and to judge by. @param last  Near the levels known, and a whole grid.
+/// Noise of what the present mode leaves, to search under and to judge by.
+/// @param last  Near the levels known, and a whole grid.
 Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last) {
   const Eigen::VectorXd gap = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
   ground.search = search_noise(ground.fit, gap);

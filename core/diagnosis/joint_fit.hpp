@@ -36,7 +36,7 @@ struct JointFit {
   Eigen::VectorXd residual;      ///< (n) measured - modelled - E b, on the scale.
   Eigen::MatrixXd jacobian;      ///< (n x (q + k + r)) with respect to the scores.
   Eigen::ArrayXXd parts_kW;      ///< (parts x m) the model at the mode, whole period, without E b.
-  double log_density = 0.0;      ///< Of theta and eta under the noise of the search, but a constant.
+  double log_density = 0.0;      ///< Of theta and eta under the search's noise, but a constant.
   double log_evidence = 0.0;     ///< Over the grid.
   double log_likelihood = 0.0;   ///< Of all scores at the mode, at the best node.
   Eigen::VectorXd node_weights;  ///< (nodes) posterior.
