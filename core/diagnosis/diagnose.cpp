@@ -275,12 +275,10 @@ class Search {
   void warn_of_harm() {
     if (!result_.gap || result_.not_confirmed) return;
     for (std::size_t g = 0; g < site_.meters.size(); ++g) {
-      const ScoreGain& change = result_.gap->log_score_change[g];
-      if (!is_worse(change)) continue;
-      result_.warnings.push_back(
-          "Meter '" + site_.meters[g].id + "': what was added foretells it worse than before (" +
-          std::to_string(std::lround(-change.sum)) +
-          " nats over the months kept back); the model " + "has the effect's echo there wrong.");
+      if (!is_worse(result_.gap->log_score_change[g])) continue;
+      result_.warnings.push_back("Meter '" + site_.meters[g].id +
+                                 "' is foretold worse than before on the months kept " +
+                                 "back: the model has the echo of what was added wrong there.");
     }
   }
 
