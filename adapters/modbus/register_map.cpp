@@ -1,0 +1,95 @@
+#include "adapters/modbus/register_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace recald::modbus {
+namespace {
+
+/// Fields that must come in one read, and the registers they span.
+struct Group {
+  std::vector<std::size_t> fields;
+  int begin;
+  int end;
+};
+
+void take_in(Group& group, const Group& other) {
+  group.fields.insert(group.fields.end(), other.fields.begin(), other.fields.end());
+  group.begin = std::min(group.begin, other.begin);
+  group.end = std::max(group.end, other.end);
+}
+
+/// A field and its scale factor have one key: the factor's name.
+std::vector<Group> group_by_scale_factor(const std::vector<RegisterField>& fields) {
+  std::vector<Group> groups;
+  std::vector<std::string> keys;  // of each group
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const RegisterField& field = fields[i];
+    const std::string& key = field.scale_factor ? *field.scale_factor : field.name;
+    const Group alone{{i}, field.address, field.end()};
+    const auto known = std::ranges::find(keys, key);
+    if (known == keys.end()) {
+      groups.push_back(alone);
+      keys.push_back(key);
+    } else {
+      take_in(groups[static_cast<std::size_t>(known - keys.begin())], alone);
+    }
+  }
+  return groups;
+}
+
+PlannedRead read_of(Group group, Function function, const std::vector<RegisterField>& fields) {
+  std::ranges::sort(group.fields, {}, [&](std::size_t i) { return fields[i].address; });
+  return {function, static_cast<std::uint16_t>(group.begin),
+          static_cast<std::uint16_t>(group.end - group.begin), std::move(group.fields)};
+}
+
+}  // namespace
+
+const RegisterField* RegisterMap::find(std::string_view field_name) const {
+  const auto found = std::ranges::find(fields, field_name, &RegisterField::name);
+  return found == fields.end() ? nullptr : &*found;
+}
+
+Result<std::vector<PlannedRead>> plan_reads(const std::vector<RegisterField>& fields,
+                                            Function function, const ReadLimits& limits) {
+  assert(limits.registers_max >= 1 && limits.registers_max <= kRegistersMax);
+  std::vector<Group> groups = group_by_scale_factor(fields);
+  std::ranges::stable_sort(groups, {}, &Group::begin);
+
+  std::vector<PlannedRead> reads;
+  std::optional<Group> open;
+  for (const Group& group : groups) {
+    if (group.end - group.begin > limits.registers_max) {
+      return failure(
+          ErrorCode::unsupported,
+          fmt::format("fields '{}' to '{}' must be read together and span {} registers; "
+                      "the device gives {} a read",
+                      fields[group.fields.front()].name, fields[group.fields.back()].name,
+                      group.end - group.begin, limits.registers_max));
+    }
+    const bool joins = open && !limits.one_request_per_field &&
+                       group.begin - open->end <= limits.gap_max &&
+                       std::max(group.end, open->end) - open->begin <= limits.registers_max;
+    if (joins) {
+      take_in(*open, group);
+      continue;
+    }
+    if (open) reads.push_back(read_of(std::move(*open), function, fields));
+    open = group;
+  }
+  if (open) reads.push_back(read_of(std::move(*open), function, fields));
+  return reads;
+}
+
+std::span<const std::uint16_t> field_words(const RegisterField& field, const PlannedRead& read,
+                                           std::span<const std::uint16_t> words) {
+  assert(field.address >= read.address && field.end() <= read.address + read.count);
+  assert(words.size() == read.count);
+  return words.subspan(static_cast<std::size_t>(field.address - read.address),
+                       static_cast<std::size_t>(field.words()));
+}
+
+}  // namespace recald::modbus

@@ -1,0 +1,75 @@
+/// From register words to a value: type, word order, absent values, scale.
+///
+/// libmodbus has decoders of its own, which differ between its releases in what "abcd" means; these
+/// are tested byte by byte. Plain functions, as in frame.hpp.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "core/result.hpp"
+
+namespace recald::modbus {
+
+enum class RegisterType : std::uint8_t {
+  u16,
+  i16,
+  u32,
+  i32,
+  u64,
+  i64,
+  f32,
+  f64,
+  bcd16,  ///< Four decimal digits, one in each half byte.
+  bcd32,  ///< Eight.
+};
+
+/// Where the bytes of a value lie, A the highest. For 64 bits the pattern goes on: ABCD is
+/// ABCDEFGH, CDAB is GHEFCDAB (lowest word first), BADC is BADCFEHG (bytes swapped within words),
+/// DCBA is HGFEDCBA.
+enum class WordOrder : std::uint8_t { ABCD, CDAB, BADC, DCBA };
+
+[[nodiscard]] Result<RegisterType> parse_register_type(std::string_view text);
+[[nodiscard]] Result<WordOrder> parse_word_order(std::string_view text);
+[[nodiscard]] std::string_view to_string(RegisterType type);
+[[nodiscard]] std::string_view to_string(WordOrder order);
+
+/// Registers that a value of this type takes: 1, 2 or 4.
+[[nodiscard]] int word_count(RegisterType type);
+
+struct ValueFormat {
+  RegisterType type = RegisterType::u16;
+  WordOrder order = WordOrder::ABCD;
+  double scale = 1.0;  ///< Value = raw · scale + offset, in the field's unit.
+  double offset = 0.0;
+  std::optional<std::uint64_t> mask;  ///< Unsigned types: bits that belong to the value.
+  /// Raw bits that mean "no value", as wide as the type: 0x8000 of an i16.
+  std::optional<std::uint64_t> absent;
+};
+
+/// Why words are no value.
+enum class ValueFault : std::uint8_t {
+  absent,      ///< The register's sentinel: the device has no value.
+  not_finite,  ///< A NaN or an infinity.
+  not_bcd,     ///< A half byte above 9.
+};
+
+struct DecodedValue {
+  double value;  ///< In the field's unit.
+  /// The step from this raw value to the next one that the type can hold, scaled: 0.01 kWh of an
+  /// integer in 0.01 kWh, 0.0625 kWh of a float32 at a million.
+  double resolution;
+};
+
+/// @pre words.size() == word_count(format.type).
+[[nodiscard]] tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> words,
+                                                            const ValueFormat& format);
+
+/// The 16, 32 or 64 bits of a value, lowest last, as `absent` and `mask` see them.
+[[nodiscard]] std::uint64_t raw_bits(std::span<const std::uint16_t> words, WordOrder order);
+
+}  // namespace recald::modbus
