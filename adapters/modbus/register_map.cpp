@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace recald::modbus {
 namespace {
@@ -38,6 +39,15 @@ std::vector<Group> group_by_scale_factor(const std::vector<RegisterField>& field
     }
   }
   return groups;
+}
+
+/// The words of one field out of a read that covers it.
+std::span<const std::uint16_t> field_words(const RegisterField& field, const PlannedRead& read,
+                                           std::span<const std::uint16_t> words) {
+  assert(field.address >= read.address && field.end() <= read.address + read.count);
+  assert(words.size() == read.count);
+  return words.subspan(static_cast<std::size_t>(field.address - read.address),
+                       static_cast<std::size_t>(field.words()));
 }
 
 PlannedRead read_of(Group group, Function function, const std::vector<RegisterField>& fields) {
@@ -84,12 +94,26 @@ Result<std::vector<PlannedRead>> plan_reads(const std::vector<RegisterField>& fi
   return reads;
 }
 
-std::span<const std::uint16_t> field_words(const RegisterField& field, const PlannedRead& read,
-                                           std::span<const std::uint16_t> words) {
-  assert(field.address >= read.address && field.end() <= read.address + read.count);
-  assert(words.size() == read.count);
-  return words.subspan(static_cast<std::size_t>(field.address - read.address),
-                       static_cast<std::size_t>(field.words()));
+std::vector<FieldValue> decode_read(const std::vector<RegisterField>& fields,
+                                    const PlannedRead& read, std::span<const std::uint16_t> words) {
+  std::vector<FieldValue> values;
+  for (const std::size_t i : read.fields) {
+    values.push_back({i, decode(field_words(fields[i], read, words), fields[i].format)});
+  }
+  for (FieldValue& scaled : values) {
+    const std::optional<std::string>& name = fields[scaled.field].scale_factor;
+    if (!name || !scaled.value) continue;
+    const auto factor = std::ranges::find_if(
+        values, [&](const FieldValue& other) { return fields[other.field].name == *name; });
+    if (factor == values.end() || !factor->value) {
+      scaled.value = tl::unexpected(ValueFault::absent);
+      continue;
+    }
+    const double power_of_ten = std::pow(10.0, factor->value->value);
+    scaled.value->value *= power_of_ten;
+    scaled.value->resolution *= power_of_ten;
+  }
+  return values;
 }
 
 }  // namespace recald::modbus

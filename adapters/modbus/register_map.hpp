@@ -16,7 +16,7 @@ struct RegisterField {
   std::uint16_t address = 0;  ///< On the wire: the map's base is taken off already.
   ValueFormat format;
   std::string unit;                         ///< "kWh", "W"; "" for an identity or a power of ten.
-  std::optional<double> modulus;            ///< Where a counter wraps, in `unit`.
+  std::optional<double> modulus;            ///< Where a counter wraps, in `unit` before its factor.
   std::optional<std::string> scale_factor;  ///< The field that holds the power of ten.
 
   [[nodiscard]] int words() const { return word_count(format.type); }
@@ -69,9 +69,16 @@ struct PlannedRead {
                                                           Function function,
                                                           const ReadLimits& limits);
 
-/// The words of one field out of a read that covers it.
-[[nodiscard]] std::span<const std::uint16_t> field_words(const RegisterField& field,
-                                                         const PlannedRead& read,
-                                                         std::span<const std::uint16_t> words);
+struct FieldValue {
+  std::size_t field;  ///< Index, as in `PlannedRead::fields`.
+  tl::expected<DecodedValue, ValueFault> value;
+};
+
+/// All fields of a read, with their scale factors applied. A value whose factor is absent is
+/// absent.
+/// @pre words.size() == read.count, and the read was planned over `fields`.
+[[nodiscard]] std::vector<FieldValue> decode_read(const std::vector<RegisterField>& fields,
+                                                  const PlannedRead& read,
+                                                  std::span<const std::uint16_t> words);
 
 }  // namespace recald::modbus

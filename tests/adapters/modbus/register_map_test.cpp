@@ -104,13 +104,27 @@ TEST(ReadPlan, OverlappingFieldsShareARead) {
   EXPECT_EQ(reads[0].count, 4);
 }
 
-TEST(ReadPlan, WordsOfAField) {
+TEST(ReadPlan, DecodesEachFieldWhereItStands) {
   const std::vector<RegisterField> fields{field("a", 10, RegisterType::u16),
                                           field("b", 12, RegisterType::u32)};
-  const auto reads = planned(fields);
-  const Words words{1, 2, 3, 4};
-  EXPECT_THAT(field_words(fields[0], reads[0], words), ElementsAre(1));
-  EXPECT_THAT(field_words(fields[1], reads[0], words), ElementsAre(3, 4));
+  const auto values = decode_read(fields, planned(fields)[0], Words{1, 2, 3, 4});
+  ASSERT_THAT(values, SizeIs(2));
+  EXPECT_EQ(values[0].value->value, 1.0);
+  EXPECT_EQ(values[1].value->value, 3.0 * 65'536.0 + 4.0);
+}
+
+TEST(ReadPlan, PowersOfTenMayChangeFromReadToRead) {
+  std::vector<RegisterField> fields{field("energy", 0, RegisterType::u16),
+                                    field("factor", 1, RegisterType::i16)};
+  fields[0].scale_factor = "factor";
+  fields[1].format.absent = 0x8000;
+  const PlannedRead read = planned(fields)[0];
+  const auto energy = [&](const Words& words) { return decode_read(fields, read, words)[0].value; };
+  EXPECT_DOUBLE_EQ(energy({1234, 2})->value, 123'400.0);
+  EXPECT_DOUBLE_EQ(energy({1234, 2})->resolution, 100.0);
+  EXPECT_DOUBLE_EQ(energy({12340, 1})->value, 123'400.0);
+  EXPECT_DOUBLE_EQ(energy({1234, 0xFFFF})->value, 123.4);
+  EXPECT_EQ(energy({1234, 0x8000}).error(), ValueFault::absent);
 }
 
 }  // namespace
