@@ -1,0 +1,229 @@
+#include "adapters/modbus/connection.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <modbus/modbus.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <thread>
+
+namespace recald::modbus {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::steady_clock;
+
+/// libmodbus selects on its sockets, and FD_SET beyond 1024 is undefined; the rest of the process
+/// needs descriptors too.
+constexpr int kDescriptorMax = 900;
+constexpr milliseconds kSilenceAfterTimeout{50};
+
+/// The number that the next descriptor would get.
+int next_descriptor() {
+  const int descriptor = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (descriptor >= 0) ::close(descriptor);
+  return descriptor;
+}
+
+std::string words_of(int error) { return modbus_strerror(error); }
+
+tl::unexpected<ReadFailure> failed(ReadFault fault, std::string what) {
+  return tl::unexpected(ReadFailure{fault, 0, std::move(what)});
+}
+
+void set_timeout(modbus_t* context, milliseconds timeout) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout);
+  const microseconds rest = timeout - seconds;
+  modbus_set_response_timeout(context, static_cast<std::uint32_t>(seconds.count()),
+                              static_cast<std::uint32_t>(rest.count()));
+}
+
+int unread_bytes(int descriptor) {
+  int bytes = 0;
+  return ::ioctl(descriptor, FIONREAD, &bytes) == 0 ? bytes : 0;
+}
+
+}  // namespace
+
+struct Connection::Context {
+  modbus_t* modbus = nullptr;
+  ~Context() {
+    if (modbus == nullptr) return;
+    modbus_close(modbus);
+    modbus_free(modbus);
+  }
+};
+
+std::string to_string(const Endpoint& endpoint) {
+  if (const auto* tcp = std::get_if<TcpEndpoint>(&endpoint)) {
+    return fmt::format("{}:{}", tcp->host, tcp->port);
+  }
+  return std::get<SerialPort>(endpoint).device;
+}
+
+microseconds line_time(const SerialPort& port, int characters) {
+  const int bits = 1 + port.data_bits + (port.parity == Parity::none ? 0 : 1) + port.stop_bits;
+  return microseconds{static_cast<std::int64_t>(characters) * bits * 1'000'000 / port.baud};
+}
+
+Connection::Connection(Endpoint endpoint) : endpoint_(std::move(endpoint)) {}
+Connection::~Connection() = default;
+
+bool Connection::is_open() const { return context_ != nullptr; }
+
+void Connection::close() { context_.reset(); }
+
+std::optional<ReadFailure> Connection::connect() {
+  const std::string where = to_string(endpoint_);
+  if (next_descriptor() < 0 || next_descriptor() >= kDescriptorMax) {
+    return ReadFailure{ReadFault::refused, 0,
+                       fmt::format("{}: more than {} files and sockets are open in this process; "
+                                   "spread the buses over several gateways",
+                                   where, kDescriptorMax)};
+  }
+  auto context = std::make_unique<Context>();
+  if (const auto* tcp = std::get_if<TcpEndpoint>(&endpoint_)) {
+    context->modbus = modbus_new_tcp_pi(tcp->host.c_str(), std::to_string(tcp->port).c_str());
+  } else {
+    const auto& serial = std::get<SerialPort>(endpoint_);
+    context->modbus =
+        modbus_new_rtu(serial.device.c_str(), serial.baud, static_cast<char>(serial.parity),
+                       serial.data_bits, serial.stop_bits);
+  }
+  if (context->modbus == nullptr) {
+    return ReadFailure{ReadFault::refused, 0, fmt::format("{}: {}", where, words_of(errno))};
+  }
+  if (const auto* tcp = std::get_if<TcpEndpoint>(&endpoint_)) {
+    set_timeout(context->modbus, tcp->connect_timeout);  // libmodbus connects within it
+  }
+  if (modbus_connect(context->modbus) != 0) {
+    const int error = errno;
+    modbus_free(std::exchange(context->modbus, nullptr));  // nothing is open that could be closed
+    return ReadFailure{ReadFault::refused, 0,
+                       fmt::format("{}: no connection ({})", where, words_of(error))};
+  }
+  // Then the response timeout is a deadline for the whole reply.
+  modbus_set_byte_timeout(context->modbus, 0, 0);
+  context_ = std::move(context);
+  ++connects_;
+  if (const auto* tcp = std::get_if<TcpEndpoint>(&endpoint_)) {
+    std::this_thread::sleep_for(tcp->connect_delay);
+  }
+  return {};
+}
+
+/// Between two frames on a serial line there are 3.5 silent characters.
+void Connection::wait_for_silence() {
+  if (!is_serial()) return;
+  std::this_thread::sleep_until(line_free_);
+  // What stands in the buffer answers nobody.
+  modbus_flush(context_->modbus);
+}
+
+/// Discards what still arrives until the line has been silent for a while.
+void Connection::drain() {
+  const auto& port = std::get<SerialPort>(endpoint_);
+  const microseconds silence =
+      std::max<microseconds>(line_time(port, 4), microseconds{kSilenceAfterTimeout});
+  // A line that never falls silent is noise: the next request will say so.
+  for (int rounds = 0; rounds < 20; ++rounds) {
+    std::this_thread::sleep_for(silence);
+    if (unread_bytes(modbus_get_socket(context_->modbus)) == 0) break;
+    modbus_flush(context_->modbus);
+  }
+}
+
+ReadResult Connection::receive(const ReadRequest& request) {
+  std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> frame{};
+  const int received = modbus_receive_confirmation(context_->modbus, frame.data());
+  if (received < 0) {
+    switch (errno) {
+      case ETIMEDOUT:
+        return failed(ReadFault::timeout, "no complete reply before the deadline");
+      case EMBBADCRC:
+        return failed(ReadFault::crc, "the frame's check sum does not fit its bytes");
+      case EMBBADDATA:
+      case EMBMDATA:
+        return failed(ReadFault::mismatch, "a reply longer than any frame may be");
+      default:
+        return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
+    }
+  }
+  // libmodbus says 0 for a frame of another unit on a serial line.
+  if (received == 0) return failed(ReadFault::mismatch, "another unit answered");
+  if (unread_bytes(modbus_get_socket(context_->modbus)) != 0) {
+    return failed(ReadFault::mismatch, "more bytes than one reply came");
+  }
+  const std::span<const std::uint8_t> bytes{frame.data(), static_cast<std::size_t>(received)};
+  // The raw interface of libmodbus sends transaction 0 with every request.
+  return is_serial() ? check_rtu_reply(bytes, request) : check_tcp_reply(bytes, request, 0);
+}
+
+ReadResult Connection::exchange(const ReadRequest& request, milliseconds timeout) {
+  wait_for_silence();
+  modbus_set_slave(context_->modbus, request.unit);
+  set_timeout(context_->modbus, timeout);
+  const auto bytes = encode_request(request);
+  if (modbus_send_raw_request(context_->modbus, bytes.data(), bytes.size()) < 0) {
+    return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
+  }
+  ReadResult result = receive(request);
+  if (const auto* serial = std::get_if<SerialPort>(&endpoint_)) {
+    line_free_ = steady_clock::now() + line_time(*serial, 7) / 2;
+  }
+  return result;
+}
+
+void Connection::recover_from(const ReadFailure& failure, const ReadRequest& request) {
+  if (failure.fault == ReadFault::exception) return;
+  if (!is_serial() || failure.fault == ReadFault::closed) {
+    close();
+    return;
+  }
+  drain();
+  if (failure.fault == ReadFault::timeout) timed_out_ = request;
+}
+
+ReadResult Connection::read(const ReadRequest& request, milliseconds timeout) {
+  // What came unasked would pass for the reply.
+  if (is_open() && !is_serial() && unread_bytes(modbus_get_socket(context_->modbus)) != 0) close();
+  const bool was_open = is_open();
+  if (!was_open) {
+    if (auto refusal = connect()) return tl::unexpected(std::move(*refusal));
+  }
+  ReadResult result = ask(request, timeout);
+  // Many devices close a connection that was idle for a while, which shows only when it is used.
+  const bool was_stale = !result && was_open && result.error().fault == ReadFault::closed;
+  return was_stale ? read(request, timeout) : result;
+}
+
+ReadResult Connection::ask(const ReadRequest& request, milliseconds timeout) {
+  // A serial frame names neither the address nor the request that it answers: a late reply of the
+  // same length to another request would pass for this one. One register more tells them apart.
+  const std::optional<ReadRequest> before = std::exchange(timed_out_, std::nullopt);
+  const bool could_be_swapped = before && before->unit == request.unit &&
+                                before->count == request.count && *before != request;
+  const bool may_ask_more =
+      request.count < kRegistersMax && request.address + request.count < 0x10000;
+  if (could_be_swapped && may_ask_more) {
+    ReadRequest longer = request;
+    ++longer.count;
+    ReadResult result = exchange(longer, timeout);
+    if (result) {
+      result->pop_back();
+      return result;
+    }
+    recover_from(result.error(), longer);
+    // An exception came in time for this request: the unit has no such register, the line is clear.
+    if (result.error().fault != ReadFault::exception) return result;
+  }
+  ReadResult result = exchange(request, timeout);
+  if (!result) recover_from(result.error(), request);
+  return result;
+}
+
+}  // namespace recald::modbus
