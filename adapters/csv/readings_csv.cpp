@@ -10,6 +10,7 @@
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/line_reader.hpp"
+#include "core/metering/interval_book.hpp"
 
 namespace recald::csv {
 namespace {

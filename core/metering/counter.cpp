@@ -177,56 +177,6 @@ class Transition {
   double rise_max_kWh_ = 0.0;
 };
 
-/// What the bookings of one register say about one interval.
-class IntervalEnergy {
- public:
-  void add(const CounterBooking& booking, const TimeSpan& interval) {
-    const Instant begin = std::max(booking.span.begin, interval.begin);
-    const Instant end = std::min(booking.span.end, interval.end);
-    if (end <= begin) return;
-    reasons_ |= booking.reasons;
-    covered_ += end - begin;
-    missing_ = missing_ || booking.validity == Validity::missing;
-    estimated_ = estimated_ || booking.validity == Validity::scaled ||
-                 booking.span.length() > interval.length();
-    energy_kWh_ += booking.energy_kWh * hours(end - begin) / hours(booking.span.length());
-  }
-
-  [[nodiscard]] Reading reading(std::uint32_t meter, const TimeSpan& interval) const {
-    Reading reading{meter, interval.begin, std::numeric_limits<double>::quiet_NaN(),
-                    Validity::missing, reasons_};
-    if (missing_ || covered_ < interval.length()) return reading;
-    reading.mean_kW = energy_kWh_ / hours(interval.length());
-    reading.validity = estimated_ ? Validity::scaled : Validity::ok;
-    return reading;
-  }
-
- private:
-  double energy_kWh_ = 0.0;
-  seconds covered_{0};
-  bool missing_ = false;
-  bool estimated_ = false;
-  Reason reasons_ = Reason::none;
-};
-
-std::vector<CounterBooking> book_all(std::span<const RegisterSample> samples,
-                                     const CounterSettings& settings) {
-  std::vector<CounterBooking> bookings;
-  CounterState state;
-  for (const RegisterSample& sample : samples) {
-    CounterStep step = advance(std::move(state), sample, settings);
-    state = std::move(step.state);
-    for (const CounterBooking& booking : step.bookings) {
-      while (booking.supersedes && !bookings.empty() &&
-             bookings.back().span.begin >= booking.span.begin) {
-        bookings.pop_back();
-      }
-      bookings.push_back(booking);
-    }
-  }
-  return bookings;
-}
-
 }  // namespace
 
 CounterStep advance(CounterState state, const RegisterSample& sample,
@@ -237,26 +187,5 @@ CounterStep advance(CounterState state, const RegisterSample& sample,
 }
 
 CounterStep swap_meter(CounterState) { return {{}, {}, CounterEvent::swapped}; }
-
-std::vector<Reading> readings_from_register(std::uint32_t meter,
-                                            std::span<const RegisterSample> samples,
-                                            seconds interval, const CounterSettings& settings) {
-  std::vector<Reading> readings;
-  if (samples.size() < 2) return readings;
-  const std::vector<CounterBooking> bookings = book_all(samples, settings);
-  const seconds past = samples.front().time.time_since_epoch() % interval;
-  Instant start = samples.front().time - past + (past == seconds{0} ? seconds{0} : interval);
-  std::size_t first = 0;
-  for (; start + interval <= samples.back().time; start += interval) {
-    const TimeSpan slot{start, start + interval};
-    while (first < bookings.size() && bookings[first].span.end <= slot.begin) ++first;
-    IntervalEnergy energy;
-    for (std::size_t i = first; i < bookings.size() && bookings[i].span.begin < slot.end; ++i) {
-      energy.add(bookings[i], slot);
-    }
-    readings.push_back(energy.reading(meter, slot));
-  }
-  return readings;
-}
 
 }  // namespace recald::metering

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/metering/reading.hpp"
@@ -77,14 +76,5 @@ struct CounterStep {
 
 /// The device was exchanged (another serial): the next sample is a new baseline.
 [[nodiscard]] CounterStep swap_meter(CounterState state);
-
-/// A recorded register as readings, one for each interval that starts within [first, last) sample.
-/// Energy booked over several intervals is spread evenly over them and `scaled`; what the state
-/// machine leaves open is missing, with the reason.
-/// @param samples  in time order, off-grid times allowed. @pre interval divides a day.
-[[nodiscard]] std::vector<Reading> readings_from_register(std::uint32_t meter,
-                                                          std::span<const RegisterSample> samples,
-                                                          std::chrono::seconds interval,
-                                                          const CounterSettings& settings);
 
 }  // namespace recald::metering

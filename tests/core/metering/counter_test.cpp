@@ -11,8 +11,6 @@ namespace {
 
 using std::chrono::minutes;
 using std::chrono::seconds;
-using testing::kHour;
-using testing::kQuarter;
 using testing::utc;
 
 const Instant kStart = utc(2016, 3, 1);
@@ -156,64 +154,6 @@ TEST(Counter, AnExchangedMeterStartsAnew) {
   trace.state = std::move(step.state);
   EXPECT_EQ(trace.read(1, 7.0), 0.0);
   EXPECT_TRUE(trace.at(CounterPhase::run, 7.0, 1));
-}
-
-std::vector<RegisterSample> hourly_register(int count, double step_kWh) {
-  std::vector<RegisterSample> samples;
-  for (int i = 0; i < count; ++i) samples.push_back({kStart + i * kHour, 100.0 + i * step_kWh});
-  return samples;
-}
-
-TEST(CounterReadings, SamplesOnTheGridAreItsIntervals) {
-  const auto readings = readings_from_register(3, hourly_register(25, 50.0), kHour, kSettings);
-  ASSERT_EQ(readings.size(), 24u);
-  for (const Reading& reading : readings) {
-    EXPECT_EQ(reading.meter, 3u);
-    EXPECT_NEAR(reading.mean_kW, 50.0, 1e-9);
-    EXPECT_EQ(reading.validity, Validity::ok);
-  }
-  EXPECT_EQ(readings[0].start, kStart);
-}
-
-TEST(CounterReadings, AHoleIsSpreadAndItsSumIsTrue) {
-  auto samples = hourly_register(25, 50.0);
-  samples.erase(samples.begin() + 5, samples.begin() + 9);
-  samples[3].value_kWh = testing::kBlank;
-  const auto readings = readings_from_register(0, samples, kHour, kSettings);
-  ASSERT_EQ(readings.size(), 24u);
-  double sum_kWh = 0.0;
-  for (const Reading& reading : readings) sum_kWh += reading.mean_kW;
-  EXPECT_NEAR(sum_kWh, 24 * 50.0, 1e-9);
-  EXPECT_EQ(readings[1].validity, Validity::ok);
-  EXPECT_EQ(readings[2].validity, Validity::scaled);
-  EXPECT_EQ(readings[6].validity, Validity::scaled);
-  EXPECT_EQ(readings[9].validity, Validity::ok);
-}
-
-TEST(CounterReadings, AResetLeavesItsIntervalMissing) {
-  auto samples = hourly_register(25, 50.0);
-  for (std::size_t i = 10; i < samples.size(); ++i) samples[i].value_kWh -= 590.0;
-  const auto readings = readings_from_register(0, samples, kHour, kSettings);
-  EXPECT_EQ(readings[9].validity, Validity::missing);
-  EXPECT_TRUE(has(readings[9].reasons, Reason::reset));
-  EXPECT_TRUE(std::isnan(readings[9].mean_kW));
-  EXPECT_NEAR(readings[8].mean_kW, 50.0, 1e-9);
-  EXPECT_NEAR(readings[12].mean_kW, 50.0, 1e-9);
-}
-
-// Five-minute samples that miss the boundary by two minutes: the register there is interpolated.
-TEST(CounterReadings, BoundariesBetweenSamplesAreInterpolated) {
-  std::vector<RegisterSample> samples;
-  for (int i = 0; i < 40; ++i) {
-    samples.push_back({kStart + minutes{2 + 5 * i}, 100.0 + 5.0 * i});  // 60 kW
-  }
-  const auto readings = readings_from_register(0, samples, kQuarter, kSettings);
-  ASSERT_FALSE(readings.empty());
-  EXPECT_EQ(readings.front().start, kStart + minutes{15});
-  for (const Reading& reading : readings) {
-    EXPECT_NEAR(reading.mean_kW, 60.0, 1e-9);
-    EXPECT_EQ(reading.validity, Validity::ok);
-  }
 }
 
 }  // namespace

@@ -1,0 +1,141 @@
+#include "core/metering/interval_book.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace recald::metering {
+namespace {
+
+using std::chrono::seconds;
+
+double hours(seconds span) { return static_cast<double>(span.count()) / 3600.0; }
+
+Instant interval_start(Instant t, seconds interval) {
+  const seconds past = t.time_since_epoch() % interval;
+  return t - past;
+}
+
+/// A booking cut at the interval boundaries; energies follow the shape and add up to the booking's.
+std::vector<CounterBooking> cut(const CounterBooking& booking, const BookingRules& rules,
+                                const LoadShape& shape) {
+  std::vector<CounterBooking> pieces;
+  std::vector<double> weights;
+  double whole = 0.0;
+  for (Instant begin = booking.span.begin; begin < booking.span.end;) {
+    const Instant slot = interval_start(begin, rules.interval);
+    const Instant end = std::min(slot + rules.interval, booking.span.end);
+    CounterBooking piece = booking;
+    piece.span = {begin, end};
+    pieces.push_back(piece);
+    const double expected_kW = shape ? std::max(0.0, shape(slot)) : 1.0;
+    weights.push_back(expected_kW * hours(end - begin));
+    whole += weights.back();
+    begin = end;
+  }
+  // Between close samples the load is taken as constant; a hole is an estimate.
+  const bool is_hole = pieces.size() > 1 && booking.span.length() > rules.sample_gap_max;
+  const bool by_shape = is_hole && std::isfinite(whole) && whole > 0.0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    CounterBooking& piece = pieces[i];
+    const double share =
+        by_shape ? weights[i] / whole : hours(piece.span.length()) / hours(booking.span.length());
+    piece.energy_kWh = booking.energy_kWh * share;
+    if (is_hole && piece.validity == Validity::ok) piece.validity = Validity::scaled;
+  }
+  return pieces;
+}
+
+Reading reading_of(std::span<const CounterBooking> pieces, std::uint32_t meter,
+                   const TimeSpan& interval) {
+  Reading reading{meter, interval.begin, std::numeric_limits<double>::quiet_NaN(),
+                  Validity::missing};
+  seconds covered{0};
+  double energy_kWh = 0.0;
+  bool is_missing = false;
+  bool is_estimated = false;
+  for (const CounterBooking& piece : pieces) {
+    reading.reasons |= piece.reasons;
+    covered += piece.span.length();
+    is_missing = is_missing || piece.validity == Validity::missing;
+    is_estimated = is_estimated || piece.validity == Validity::scaled;
+    energy_kWh += piece.energy_kWh;
+  }
+  if (is_missing || covered < interval.length()) return reading;
+  reading.mean_kW = energy_kWh / hours(interval.length());
+  reading.validity = is_estimated ? Validity::scaled : Validity::ok;
+  return reading;
+}
+
+/// Takes out what a booking puts right, so that its intervals are made again.
+void withdraw(IntervalBook& book, const CounterBooking& booking, seconds interval) {
+  std::erase_if(book.pieces, [&](const CounterBooking& piece) {
+    return piece.span.begin >= booking.span.begin;
+  });
+  if (book.next) book.next = std::min(*book.next, interval_start(booking.span.begin, interval));
+}
+
+/// Forgets what is handed out, but for the beginning of an interval that may still be withdrawn.
+void forget(IntervalBook& book, const CounterState& counter, seconds interval) {
+  const auto may_return = [&](const CounterBooking& piece) {
+    if (!counter.previous) return false;
+    const Instant given_up = counter.previous->sample.time;
+    return piece.span.begin >= interval_start(given_up, interval) && piece.span.end <= given_up;
+  };
+  std::erase_if(book.pieces, [&](const CounterBooking& piece) {
+    return piece.span.end <= *book.next && !may_return(piece);
+  });
+}
+
+}  // namespace
+
+std::vector<BookedInterval> book_intervals(IntervalBook& book, std::uint32_t meter,
+                                           const CounterStep& step, const BookingRules& rules,
+                                           const LoadShape& shape) {
+  std::vector<BookedInterval> intervals;
+  for (const CounterBooking& booking : step.bookings) {
+    if (booking.supersedes) withdraw(book, booking, rules.interval);
+    if (!book.next) {
+      const Instant start = interval_start(booking.span.begin, rules.interval);
+      // The interval in which the first sample lies cannot become complete.
+      book.next = start == booking.span.begin ? start : start + rules.interval;
+    }
+    const std::vector<CounterBooking> pieces = cut(booking, rules, shape);
+    book.pieces.insert(book.pieces.end(), pieces.begin(), pieces.end());
+    auto first = book.pieces.begin();
+    for (; *book.next + rules.interval <= booking.span.end; *book.next += rules.interval) {
+      const TimeSpan interval{*book.next, *book.next + rules.interval};
+      const auto lies_before = [&](Instant t) {
+        return [t](const CounterBooking& piece) { return piece.span.begin < t; };
+      };
+      first = std::partition_point(first, book.pieces.end(), lies_before(interval.begin));
+      const auto last = std::partition_point(first, book.pieces.end(), lies_before(interval.end));
+      intervals.push_back({reading_of({first, last}, meter, interval), booking.supersedes});
+    }
+  }
+  if (book.next) forget(book, step.state, rules.interval);
+  return intervals;
+}
+
+std::vector<Reading> readings_from_register(std::uint32_t meter,
+                                            std::span<const RegisterSample> samples,
+                                            seconds interval, const CounterSettings& settings) {
+  const BookingRules rules{.interval = interval, .sample_gap_max = interval};
+  std::vector<Reading> readings;
+  CounterStep step;
+  IntervalBook book;
+  for (const RegisterSample& sample : samples) {
+    step = advance(std::move(step.state), sample, settings);
+    for (const BookedInterval& booked : book_intervals(book, meter, step, rules)) {
+      while (booked.supersedes && !readings.empty() &&
+             readings.back().start >= booked.reading.start) {
+        readings.pop_back();
+      }
+      readings.push_back(booked.reading);
+    }
+  }
+  return readings;
+}
+
+}  // namespace recald::metering
