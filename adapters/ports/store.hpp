@@ -1,0 +1,116 @@
+/// What outlives the process: readings, counters, months, results, jobs, events.
+///
+/// A port. Whatever a call has returned without an error survives a kill and a power cut; whatever
+/// it refused has left no trace. Failures are io_failed (full disk, I/O error: try again later) or
+/// malformed (damage).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/metering/interval_book.hpp"
+#include "core/metering/monthly_figure.hpp"
+#include "core/metering/reading.hpp"
+#include "core/result.hpp"
+
+namespace recald {
+
+/// A reading as it is stored, with how often it was put right.
+struct StoredInterval {
+  metering::Reading reading;
+  int revision = 0;
+};
+
+/// One register of one meter between two samples: all that must survive a restart.
+struct RegisterState {
+  std::string field;  ///< Name in the register map.
+  metering::CounterState counter;
+  metering::IntervalBook book;
+  metering::CounterSettings settings;  ///< Under which the state was reached.
+  std::string identity;                ///< Serial number as read; empty: the map has none.
+};
+
+/// A register as it was read, before anything was made of it.
+struct RawSample {
+  std::uint32_t meter;
+  std::string field;
+  metering::Instant time;
+  double value;  ///< In the field's unit; NaN: the register's "no value".
+};
+
+enum class Severity : std::uint8_t { info, warning, error };
+
+/// Something that happened and that people may ask about.
+struct StoreEvent {
+  metering::Instant time;
+  Severity severity = Severity::info;
+  std::string kind;     ///< "counter_reset"
+  std::string subject;  ///< Id of a meter, bus or model; empty: the site.
+  std::string text;     ///< A sentence.
+};
+
+/// What one commit contains: intervals together with the states that explain them.
+struct StoreBatch {
+  struct Interval {
+    metering::Reading reading;
+    bool supersedes = false;
+  };
+  struct Register {
+    std::uint32_t meter;
+    RegisterState state;
+  };
+  std::vector<Interval> intervals;
+  std::vector<Register> registers;
+  std::vector<RawSample> samples;
+  std::vector<StoreEvent> events;
+
+  [[nodiscard]] bool empty() const {
+    return intervals.empty() && registers.empty() && samples.empty() && events.empty();
+  }
+};
+
+/// What a commit did with its intervals.
+struct CommitCounts {
+  int taken = 0;       ///< First of their interval, or better than what was there.
+  int duplicates = 0;  ///< Said what was known.
+  int weaker = 0;      ///< Known better already.
+  std::vector<metering::Reading> conflicts;  ///< As good, with another value; the first stays.
+};
+
+class Store {
+ public:
+  virtual ~Store() = default;
+
+  /// The number that stands for a meter in this store; a new one for an id never seen.
+  /// @return or unsupported when the meter is known with another interval.
+  virtual Result<std::uint32_t> meter_number(const std::string& id,
+                                             std::chrono::seconds interval) = 0;
+
+  /// All of it or nothing. Intervals are placed by `metering::place`; meters are store numbers.
+  virtual Result<CommitCounts> commit(const StoreBatch& batch) = 0;
+
+  /// The latest revision of each interval that starts in the span, in order of time.
+  virtual Result<void> for_each_interval(
+      std::uint32_t meter, const metering::TimeSpan& span,
+      const std::function<void(const StoredInterval&)>& visit) = 0;
+
+  /// First start and last start, if there is any.
+  virtual Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) = 0;
+
+  virtual Result<std::vector<RegisterState>> registers(std::uint32_t meter) = 0;
+
+  /// A month's figure, as revision 0 or one more than the last. @return the revision.
+  virtual Result<int> put_month(std::uint32_t meter, const metering::MonthlyFigure& figure,
+                                const std::string& time_zone_release, metering::Instant now) = 0;
+
+  /// The latest revision of each month, ascending.
+  virtual Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) = 0;
+
+  /// The newest events first.
+  virtual Result<std::vector<StoreEvent>> events(int limit) = 0;
+};
+
+}  // namespace recald

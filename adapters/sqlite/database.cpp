@@ -1,0 +1,228 @@
+#include "adapters/sqlite/database.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace recald::sqlite {
+namespace {
+
+constexpr int kBusyTimeout_ms = 5000;
+constexpr int kBackupPages = 256;  // a step: a megabyte
+
+struct CloseDatabase {
+  void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+};
+struct FinalizeStatement {
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+using DatabaseHandle = std::unique_ptr<sqlite3, CloseDatabase>;
+using StatementHandle = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
+
+ErrorCode code_of(int result) {
+  switch (result & 0xFF) {
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+    case SQLITE_FORMAT:
+      return ErrorCode::malformed;
+    case SQLITE_CONSTRAINT:
+    case SQLITE_MISMATCH:
+    case SQLITE_TOOBIG:
+      return ErrorCode::invalid_value;
+    default:
+      return ErrorCode::io_failed;
+  }
+}
+
+tl::unexpected<Error> failed(int result, sqlite3* database, std::string_view file) {
+  const char* words = database != nullptr ? sqlite3_errmsg(database) : sqlite3_errstr(result);
+  return failure(code_of(result), fmt::format("store '{}': {} (SQLite {})", file, words, result));
+}
+
+/// Moves a file over another, as a finished copy does.
+Result<void> rename_over(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (!error) return {};
+  return failure(ErrorCode::io_failed, fmt::format("'{}' cannot become '{}': {}", from.string(),
+                                                   to.string(), error.message()));
+}
+
+}  // namespace
+
+struct Statement::Impl {
+  StatementHandle handle;
+  std::string file;
+};
+
+struct Database::Impl {
+  DatabaseHandle handle;
+  std::string file;
+};
+
+Statement::Statement(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Statement::~Statement() = default;
+Statement::Statement(Statement&&) noexcept = default;
+Statement& Statement::operator=(Statement&&) noexcept = default;
+
+Statement& Statement::bind(int parameter, std::int64_t value) {
+  [[maybe_unused]] const int result = sqlite3_bind_int64(impl_->handle.get(), parameter + 1, value);
+  assert(result == SQLITE_OK && "the statement has this parameter");
+  return *this;
+}
+
+Statement& Statement::bind(int parameter, double value) {
+  [[maybe_unused]] const int result =
+      sqlite3_bind_double(impl_->handle.get(), parameter + 1, value);
+  assert(result == SQLITE_OK && "the statement has this parameter");
+  return *this;
+}
+
+Statement& Statement::bind(int parameter, std::string_view text) {
+  [[maybe_unused]] const int result = sqlite3_bind_text64(
+      impl_->handle.get(), parameter + 1, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+  assert(result == SQLITE_OK && "the statement has this parameter");
+  return *this;
+}
+
+Statement& Statement::bind_null(int parameter) {
+  [[maybe_unused]] const int result = sqlite3_bind_null(impl_->handle.get(), parameter + 1);
+  assert(result == SQLITE_OK && "the statement has this parameter");
+  return *this;
+}
+
+Result<bool> Statement::step() {
+  const int result = sqlite3_step(impl_->handle.get());
+  if (result == SQLITE_ROW) return true;
+  if (result == SQLITE_DONE) {
+    reset();
+    return false;
+  }
+  auto failure_ = failed(result, sqlite3_db_handle(impl_->handle.get()), impl_->file);
+  reset();
+  return failure_;
+}
+
+Result<void> Statement::run() {
+  for (;;) {
+    const auto row = step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return {};
+  }
+}
+
+void Statement::reset() { sqlite3_reset(impl_->handle.get()); }
+
+std::int64_t Statement::integer(int column) const {
+  return sqlite3_column_int64(impl_->handle.get(), column);
+}
+
+double Statement::real(int column) const {
+  return is_null(column) ? std::numeric_limits<double>::quiet_NaN()
+                         : sqlite3_column_double(impl_->handle.get(), column);
+}
+
+std::string Statement::text(int column) const {
+  const auto* bytes = sqlite3_column_text(impl_->handle.get(), column);
+  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(impl_->handle.get(), column));
+  return bytes == nullptr ? std::string{} : std::string{reinterpret_cast<const char*>(bytes), size};
+}
+
+bool Statement::is_null(int column) const {
+  return sqlite3_column_type(impl_->handle.get(), column) == SQLITE_NULL;
+}
+
+Database::Database(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Database::~Database() = default;
+Database::Database(Database&&) noexcept = default;
+Database& Database::operator=(Database&&) noexcept = default;
+
+Result<Database> Database::open(const std::filesystem::path& file, const Options& options) {
+  const bool writes = options.access == Access::read_write;
+  const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
+                    (writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
+  sqlite3* raw = nullptr;
+  const int result = sqlite3_open_v2(file.c_str(), &raw, flags,
+                                     options.vfs.empty() ? nullptr : options.vfs.c_str());
+  Database database{std::make_unique<Impl>(Impl{DatabaseHandle{raw}, file.string()})};
+  if (result != SQLITE_OK) return failed(result, raw, file.string());
+  sqlite3_busy_timeout(raw, kBusyTimeout_ms);
+  // Reading the first page, so that a file that is no database is told here.
+  const std::string pragmas =
+      writes ? "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;"
+             : "PRAGMA wal_autocheckpoint=0; PRAGMA query_only=ON; SELECT count(*) FROM "
+               "sqlite_schema;";
+  if (auto set = database.execute(pragmas); !set) return tl::unexpected(set.error());
+  return database;
+}
+
+Result<void> Database::execute(const std::string& sql) {
+  const int result = sqlite3_exec(impl_->handle.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  if (result != SQLITE_OK) return failed(result, impl_->handle.get(), impl_->file);
+  return {};
+}
+
+Result<Statement> Database::prepare(std::string_view sql) {
+  sqlite3_stmt* raw = nullptr;
+  const int result =
+      sqlite3_prepare_v3(impl_->handle.get(), sql.data(), static_cast<int>(sql.size()),
+                         SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
+  assert((result & 0xFF) != SQLITE_ERROR && "our own SQL is right");
+  if (result != SQLITE_OK) return failed(result, impl_->handle.get(), impl_->file);
+  return Statement{
+      std::make_unique<Statement::Impl>(Statement::Impl{StatementHandle{raw}, impl_->file})};
+}
+
+void Database::roll_back() {
+  // Some failures (a full disk) have rolled back already; then there is nothing left to do.
+  if (sqlite3_get_autocommit(impl_->handle.get()) == 0) (void)execute("ROLLBACK");
+}
+
+Result<void> Database::back_up_to(const std::filesystem::path& file) {
+  const std::filesystem::path unfinished = file.string() + ".part";
+  std::error_code ignored;
+  std::filesystem::remove(unfinished, ignored);
+  const auto copied = copy_to(unfinished);
+  if (!copied) {
+    std::filesystem::remove(unfinished, ignored);
+    return copied;
+  }
+  return rename_over(unfinished, file);
+}
+
+Result<void> Database::copy_to(const std::filesystem::path& file) {
+  sqlite3* raw = nullptr;
+  const int opened =
+      sqlite3_open_v2(file.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  const DatabaseHandle copy{raw};
+  if (opened != SQLITE_OK) return failed(opened, raw, file.string());
+  sqlite3_backup* backup = sqlite3_backup_init(raw, "main", impl_->handle.get(), "main");
+  if (backup == nullptr) return failed(sqlite3_errcode(raw), raw, file.string());
+  // What this connection writes meanwhile goes into the copy too, so no lock is held between steps.
+  int result = SQLITE_OK;
+  while (result == SQLITE_OK) result = sqlite3_backup_step(backup, kBackupPages);
+  sqlite3_backup_finish(backup);
+  if (result != SQLITE_DONE) return failed(result, raw, file.string());
+  return {};
+}
+
+Result<std::string> Database::quick_check() {
+  auto statement = prepare("PRAGMA quick_check(20)");
+  if (!statement) return tl::unexpected(statement.error());
+  std::string damage;
+  for (;;) {
+    const auto row = statement->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return damage;
+    const std::string line = statement->text(0);
+    if (line == "ok") continue;
+    if (!damage.empty()) damage += "; ";
+    damage += line;
+  }
+}
+
+}  // namespace recald::sqlite

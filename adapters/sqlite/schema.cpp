@@ -1,0 +1,122 @@
+#include "adapters/sqlite/schema.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace recald::sqlite {
+namespace {
+
+constexpr std::int64_t kApplicationId = 0x52434C44;  // "RCLD", in the file's header
+
+/// One text a version: from the version before to this one.
+constexpr std::array<const char*, kSchemaVersion> kUpgrades{
+    R"sql(
+CREATE TABLE meter (
+  number     INTEGER PRIMARY KEY,
+  id         TEXT    NOT NULL UNIQUE,
+  interval_s INTEGER NOT NULL CHECK (interval_s > 0)
+) STRICT;
+
+CREATE TABLE interval (
+  meter    INTEGER NOT NULL REFERENCES meter (number),
+  t_start  INTEGER NOT NULL CHECK (t_start % 60 = 0),
+  revision INTEGER NOT NULL CHECK (revision >= 0),
+  mean_kW  REAL,
+  validity INTEGER NOT NULL CHECK (validity BETWEEN 0 AND 4),
+  late     INTEGER NOT NULL CHECK (late IN (0, 1)),
+  reasons  INTEGER NOT NULL,
+  PRIMARY KEY (meter, t_start, revision)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE register (
+  meter INTEGER NOT NULL REFERENCES meter (number),
+  field TEXT    NOT NULL,
+  state TEXT    NOT NULL,
+  PRIMARY KEY (meter, field)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE sample (
+  meter INTEGER NOT NULL REFERENCES meter (number),
+  t     INTEGER NOT NULL,
+  field TEXT    NOT NULL,
+  value REAL,
+  PRIMARY KEY (meter, t, field)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE month (
+  meter                      INTEGER NOT NULL REFERENCES meter (number),
+  month                      TEXT    NOT NULL,
+  revision                   INTEGER NOT NULL CHECK (revision >= 0),
+  closed_at                  INTEGER NOT NULL,
+  tzdata                     TEXT    NOT NULL,
+  daily_average_kWh          REAL,
+  daily_average_variance     REAL,
+  peak_kW                    REAL,
+  peak_at                    INTEGER,
+  peak_could_be_exceeded     INTEGER,
+  peak_window_s              INTEGER NOT NULL,
+  coverage                   REAL    NOT NULL,
+  filled_share               REAL    NOT NULL,
+  slots_ok                   INTEGER NOT NULL,
+  slots_missing              INTEGER NOT NULL,
+  slots_filled               INTEGER NOT NULL,
+  slots_scaled               INTEGER NOT NULL,
+  slots_suspect              INTEGER NOT NULL,
+  slots                      INTEGER NOT NULL,
+  unusable_because           TEXT,
+  reasons                    INTEGER NOT NULL,
+  PRIMARY KEY (meter, month, revision)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE event (
+  number   INTEGER PRIMARY KEY,
+  t        INTEGER NOT NULL,
+  severity INTEGER NOT NULL CHECK (severity BETWEEN 0 AND 2),
+  kind     TEXT    NOT NULL,
+  subject  TEXT    NOT NULL,
+  text     TEXT    NOT NULL
+) STRICT;
+CREATE INDEX event_by_time ON event (t);
+)sql"};
+
+Result<std::int64_t> ask(Database& database, std::string_view sql) {
+  auto statement = database.prepare(sql);
+  if (!statement) return tl::unexpected(statement.error());
+  const auto row = statement->step();
+  if (!row) return tl::unexpected(row.error());
+  const std::int64_t value = *row ? statement->integer(0) : 0;
+  statement->reset();
+  return value;
+}
+
+}  // namespace
+
+Result<void> bring_up_to_date(Database& database) {
+  const auto version = ask(database, "PRAGMA user_version");
+  if (!version) return tl::unexpected(version.error());
+  const auto application = ask(database, "PRAGMA application_id");
+  if (!application) return tl::unexpected(application.error());
+  const auto tables = ask(database, "SELECT count(*) FROM sqlite_schema");
+  if (!tables) return tl::unexpected(tables.error());
+  if (*tables > 0 && *application != kApplicationId) {
+    return failure(ErrorCode::malformed,
+                   "the store file is a database of another program; name another file");
+  }
+  if (*version > kSchemaVersion) {
+    return failure(
+        ErrorCode::unsupported,
+        fmt::format("the store file has schema version {}, this recald knows {}; use the "
+                    "newer recald that wrote it, or a backup from before",
+                    *version, kSchemaVersion));
+  }
+  for (auto next = static_cast<std::size_t>(*version); next < kUpgrades.size(); ++next) {
+    const std::string text = fmt::format("{}PRAGMA application_id={};PRAGMA user_version={};",
+                                         kUpgrades[next], kApplicationId, next + 1);
+    const auto upgraded = database.transaction([&] { return database.execute(text); });
+    if (!upgraded) return upgraded;
+  }
+  return {};
+}
+
+}  // namespace recald::sqlite
