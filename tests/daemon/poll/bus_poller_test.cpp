@@ -298,9 +298,11 @@ TEST(BusPoller, ADeviceThatAlwaysClosesIsGivenRest) {
 
 TEST(BusPoller, AUnitThatIsBackIsPolledAtOnce) {
   bool alive = false;
-  VirtualBus bus{{unit(1, minutes{10}, 2)},
+  PolledUnit rarely = unit(1, hours{1}, 2);
+  rarely.interval = hours{1};
+  VirtualBus bus{{rarely},
                  [&](const BusOrder&, const Moment&) { return alive ? Reply{} : silence(); }};
-  bus.run(minutes{45});
+  bus.run(minutes{121});  // three polls: at the start, and at two full hours
   ASSERT_EQ(bus.poller.state(0), UnitState::down);
   alive = true;
   bus.made.clear();
