@@ -1,0 +1,24 @@
+/// A bus of meters: one read at a time, answered later.
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include "adapters/modbus/frame.hpp"
+
+namespace recald {
+
+class Bus {
+ public:
+  /// @param duration  From request to outcome.
+  using Done = std::function<void(modbus::ReadResult result, std::chrono::milliseconds duration)>;
+
+  virtual ~Bus() = default;
+
+  /// Begins a read and calls `done` once, on the loop's thread, when it has ended.
+  /// @pre no read is under way.
+  virtual void read(const modbus::ReadRequest& request, std::chrono::milliseconds timeout,
+                    Done done) = 0;
+};
+
+}  // namespace recald

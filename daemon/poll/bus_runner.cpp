@@ -1,0 +1,43 @@
+#include "daemon/poll/bus_runner.hpp"
+
+#include <utility>
+
+namespace recald::daemon {
+
+using std::chrono::milliseconds;
+
+BusRunner::BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnRead on_read)
+    : loop_(loop),
+      bus_(std::move(bus)),
+      poller_(std::move(poller)),
+      on_read_(std::move(on_read)),
+      self_(std::make_shared<BusRunner*>(this)) {}
+
+void BusRunner::start() { step(); }
+
+void BusRunner::step() {
+  const Moment now = loop_.now();
+  const std::weak_ptr<BusRunner*> weak = self_;
+  const auto order = poller_.next(now);
+  if (!order) {
+    loop_.after(poller_.wait(now), [weak] {
+      if (const auto self = weak.lock()) (*self)->step();
+    });
+    return;
+  }
+  const milliseconds lateness = now.wall - order->due;
+  bus_->read(order->request, order->timeout,
+             [weak, order = *order, lateness](modbus::ReadResult result, milliseconds duration) {
+               const auto self = weak.lock();
+               if (!self) return;
+               BusRunner& runner = **self;
+               const Moment at = runner.loop_.now();
+               runner.poller_.answered(order, result, duration, at);
+               // Whoever is told may end this bus, and with it what it was told by.
+               const OnRead tell = runner.on_read_;
+               tell({order, std::move(result), lateness, duration, at});
+               if (self.use_count() > 1) runner.step();
+             });
+}
+
+}  // namespace recald::daemon
