@@ -1,0 +1,90 @@
+/// One live meter: from what its registers said to what is stored.
+///
+/// Knows no bus and no store. It is given the outcome of each read and answers with what must be
+/// committed together: intervals, the state that explains them, samples worth keeping, events.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/modbus/register_map.hpp"
+#include "adapters/ports/store.hpp"
+#include "core/metering/usual_day.hpp"
+
+namespace recald::daemon {
+
+struct TrackedMeter {
+  std::uint32_t number = 0;  ///< In the store.
+  std::string id;
+  modbus::RegisterMap map;            ///< Its `energy`, `power` and `identity` are what is read.
+  double multiplier = 1.0;            ///< Of a current transformer that the meter does not know.
+  metering::CounterSettings counter;  ///< Resolution and modulus 0 and infinite: as the map says.
+  metering::BookingRules booking;
+};
+
+/// What the meter shows now.
+struct LiveValues {
+  std::optional<double> power_kW;
+  std::optional<double> register_kWh;
+  std::optional<metering::Instant> read_at;  ///< Of the last good read.
+};
+
+class MeterTrack {
+ public:
+  /// The map's fields that are read, in the order of `PlannedRead::fields`.
+  [[nodiscard]] static std::vector<modbus::RegisterField> fields_of(const modbus::RegisterMap& map);
+
+  /// @param restored  As it was stored; nothing for a meter never seen.
+  MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
+             const std::optional<RegisterState>& restored);
+
+  /// Teaches the usual day, as after a restart from stored intervals.
+  void remember(const metering::Reading& reading) { usual_.observe(reading); }
+
+  /// The outcome of one read.
+  /// @param poll  Tells the polls apart: its due time. Registers that are summed must be of one.
+  [[nodiscard]] StoreBatch take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
+                                std::chrono::sys_time<std::chrono::milliseconds> poll,
+                                metering::Instant at);
+
+  /// Somebody set the clock: what the register did meanwhile belongs to no interval.
+  void clock_was_set();
+
+  [[nodiscard]] const TrackedMeter& meter() const { return meter_; }
+  [[nodiscard]] const LiveValues& live() const { return live_; }
+  [[nodiscard]] const RegisterState& state() const { return state_; }
+
+ private:
+  struct FieldReading {
+    double value;  ///< In the field's unit, scaled.
+    double resolution;
+    std::chrono::sys_time<std::chrono::milliseconds> poll;
+  };
+
+  void note_failure(const modbus::ReadFailure& failure);
+  void note_fault(const modbus::RegisterField& field, modbus::ValueFault fault);
+  void update_power();
+  void take_identity(StoreBatch& batch, std::chrono::sys_time<std::chrono::milliseconds> poll,
+                     metering::Instant at);
+  void take_energy(StoreBatch& batch, std::chrono::sys_time<std::chrono::milliseconds> poll,
+                   metering::Instant at);
+  void take_sample(StoreBatch& batch, const metering::RegisterSample& sample);
+  [[nodiscard]] StoreEvent event_of(metering::CounterEvent event,
+                                    const metering::RegisterSample& sample,
+                                    const metering::CounterState& before) const;
+  [[nodiscard]] bool is_worth_keeping(const metering::RegisterSample& sample) const;
+
+  TrackedMeter meter_;
+  std::vector<modbus::RegisterField> fields_;
+  metering::UsualDay usual_;
+  RegisterState state_;
+  LiveValues live_;
+  std::map<std::string, FieldReading> latest_;
+  metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads failed since.
+  bool clock_was_set_ = false;
+  std::optional<std::string> other_identity_;  ///< Read once, not yet confirmed.
+};
+
+}  // namespace recald::daemon
