@@ -313,9 +313,12 @@ register.t2 = { at = 100, type = "u32", unit = "Wh" }
     return modbus::Words{Live::high(bits), Live::low(bits)};
   };
   for (int minute = 0; minute <= 15; ++minute) {
-    meter.take(minutes{minute}, words(1'000'000 + 500 * minute), 0);
-    if (minute == 5) continue;  // its second read failed
-    meter.take(minutes{minute}, words(2'000'000 + 500 * minute), 1);
+    // Of the fifth poll the second read failed, of the sixth the first.
+    if (minute != 6) meter.take(minutes{minute}, words(1'000'000 + 500 * minute), 0);
+    if (minute != 5) meter.take(minutes{minute}, words(2'000'000 + 500 * minute), 1);
+    if (minute == 6) {
+      EXPECT_NEAR(*meter.track.live().register_kWh, 3004.0, 1e-9);
+    }
   }
   EXPECT_NEAR(meter.quarter(0).mean_kW, 60.0, 1e-9);
   EXPECT_EQ(meter.quarter(0).validity, Validity::ok);
