@@ -63,6 +63,24 @@ const RegisterField* RegisterMap::find(std::string_view field_name) const {
   return found == fields.end() ? nullptr : &*found;
 }
 
+std::vector<RegisterField> metered_fields(const RegisterMap& map) {
+  std::vector<RegisterField> fields;
+  const auto add = [&](const std::string& name) {
+    const RegisterField* field = map.find(name);
+    assert(field != nullptr && "a checked map has the fields it names");
+    const auto known = std::ranges::find(fields, name, &RegisterField::name);
+    if (known == fields.end()) fields.push_back(*field);
+    return field->scale_factor;
+  };
+  std::vector<std::string> names = map.energy;
+  if (map.power) names.push_back(*map.power);
+  names.insert(names.end(), map.identity.begin(), map.identity.end());
+  for (const std::string& name : names) {
+    if (const auto factor = add(name)) (void)add(*factor);
+  }
+  return fields;
+}
+
 Result<std::vector<PlannedRead>> plan_reads(const std::vector<RegisterField>& fields,
                                             Function function, const ReadLimits& limits) {
   assert(limits.registers_max >= 1 && limits.registers_max <= kRegistersMax);

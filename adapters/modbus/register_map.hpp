@@ -52,6 +52,9 @@ struct RegisterMap {
   [[nodiscard]] const RegisterField* find(std::string_view field_name) const;
 };
 
+/// The fields that are the meter: its energy, power and identity, with their scale factors.
+[[nodiscard]] std::vector<RegisterField> metered_fields(const RegisterMap& map);
+
 /// One read, and which of the fields it brings.
 struct PlannedRead {
   Function function;

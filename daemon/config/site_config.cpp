@@ -155,19 +155,26 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
     table.problem_at("id",
                      fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", meter.id));
   }
-  (void)table.word("source", {"csv"});
+  const bool is_live = table.word("source", {"csv", "modbus"}) == "modbus";
   const std::string utility_name = table.required_text("utility");
   if (const auto utility = metering::parse_utility(utility_name)) {
     meter.utility = *utility;
   } else if (!utility_name.empty()) {
     table.problem_at("utility", utility.error().message);
   }
-  config.file = resolve(site.file, table.required_text("file"), table);
-  config.name_in_file = table.text_or("name_in_file", meter.id);
-  config.stamps = read_stamps(table);
+  if (is_live) {
+    config.live = read_live_meter(table, site.file.parent_path());
+  } else {
+    config.file = resolve(site.file, table.required_text("file"), table);
+    config.name_in_file = table.text_or("name_in_file", meter.id);
+    config.stamps = read_stamps(table);
+  }
   config.interval = read_interval(table, "interval");
   meter.interval = config.interval.value_or(site.interval);
   meter.rated_kW = table.number("rated_kW", kPositive);
+  if (is_live && !table.has("rated_kW")) {
+    table.problem("a live counter needs 'rated_kW': it tells a jump from a load");
+  }
   meter.zero_run_max = table.duration("zero_run_max");
   // Two hours without a single watt is a dead transformer, not a building; other utilities rest.
   if (!meter.zero_run_max && meter.utility == metering::Utility::electricity) {
@@ -185,6 +192,27 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
   config.end_uses = read_end_uses(table);
   table.finish();
   return config;
+}
+
+/// A live meter's bus is described, and no other meter answers to its address there.
+void require_bus(TomlReader& table, const SiteConfig& site) {
+  const MeterConfig& meter = site.meters.back();
+  if (!meter.live || meter.live->bus.empty()) return;
+  const auto known = std::ranges::find(site.buses, meter.live->bus, &BusConfig::name);
+  if (known == site.buses.end()) {
+    table.problem_at("bus",
+                     fmt::format("'bus' names '{0}', but there is no [bus.{0}]", meter.live->bus));
+  }
+  for (const MeterConfig& other : site.meters) {
+    const bool is_same = &other != &meter && other.live && other.live->bus == meter.live->bus &&
+                         other.live->unit == meter.live->unit &&
+                         other.live->map.energy == meter.live->map.energy;
+    if (!is_same) continue;
+    table.problem_at(
+        "unit", fmt::format("meters '{}' and '{}' are the same registers of unit {} "
+                            "on bus '{}'",
+                            other.meter.id, meter.meter.id, meter.live->unit, meter.live->bus));
+  }
 }
 
 std::optional<metering::MonthRange> read_range(TomlReader table) {
@@ -284,9 +312,15 @@ void read_root(TomlReader root, SiteConfig& config) {
     root.problem("[site] is missing");
   }
   if (auto weather = root.table("weather")) config.weather = read_weather(*weather, config.file);
+  if (auto buses = root.table("bus")) {
+    for (const std::string& name : buses->keys()) {
+      if (auto bus = buses->table(name)) config.buses.push_back(read_bus(*bus, name));
+    }
+  }
   std::set<std::string> ids;
   for (TomlReader& meter : root.tables("meter")) {
     config.meters.push_back(read_meter(meter, config));
+    require_bus(meter, config);
     const std::string& id = config.meters.back().meter.id;
     if (!id.empty() && !ids.insert(id).second)
       meter.problem(fmt::format("a second meter has the id '{}'", id));

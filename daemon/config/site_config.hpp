@@ -17,6 +17,7 @@
 #include "core/model/parameter.hpp"
 #include "core/result.hpp"
 #include "core/weather/sun.hpp"
+#include "daemon/config/bus_config.hpp"
 
 namespace recald::daemon {
 
@@ -30,6 +31,7 @@ struct MeterConfig {
   metering::UnitFactors units;
   std::optional<metering::CounterSettings> counter;
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
+  std::optional<LiveMeterConfig> live;      ///< source = "modbus"; then `file` is empty.
 };
 
 enum class WeatherFormat { csv, epw };
@@ -66,6 +68,7 @@ struct SiteConfig {
   std::optional<weather::Location> location;
   model::Holidays holidays;
   metering::CloserOptions closing;
+  std::vector<BusConfig> buses;
   std::vector<MeterConfig> meters;
   std::optional<WeatherConfig> weather;
   std::optional<PeriodConfig> period;

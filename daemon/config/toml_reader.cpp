@@ -97,6 +97,22 @@ std::optional<std::chrono::seconds> TomlReader::duration(std::string_view key) {
   return {};
 }
 
+std::optional<std::chrono::milliseconds> TomlReader::milliseconds(std::string_view key) {
+  const auto value = text(key);
+  if (!value) return {};
+  if (const auto length = parse_duration(*value)) return length;
+  if (value->ends_with("ms")) {
+    // "200ms" is "200s" by a thousand.
+    const std::string_view count = std::string_view{*value}.substr(0, value->size() - 2);
+    if (const auto length = parse_duration(std::string{count} + "s")) {
+      return std::chrono::milliseconds{length->count()};
+    }
+  }
+  problem_at(key,
+             fmt::format("'{}' is \"{}\"; write a wait such as \"200ms\" or \"5s\"", key, *value));
+  return {};
+}
+
 std::optional<metering::Month> TomlReader::month(std::string_view key) {
   const auto value = text(key);
   if (!value) return {};

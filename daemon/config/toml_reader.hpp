@@ -37,6 +37,8 @@ class TomlReader {
   [[nodiscard]] std::optional<bool> boolean(std::string_view key);
   /// "15m", "72h", "20s", "5d".
   [[nodiscard]] std::optional<std::chrono::seconds> duration(std::string_view key);
+  /// "200ms" or as `duration`: for waits that are shorter than a second.
+  [[nodiscard]] std::optional<std::chrono::milliseconds> milliseconds(std::string_view key);
   [[nodiscard]] std::optional<metering::Month> month(std::string_view key);
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count,
                                                            NumberRange range = {});

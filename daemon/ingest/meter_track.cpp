@@ -82,28 +82,10 @@ std::string_view kind_of(CounterEvent event) {
 
 }  // namespace
 
-std::vector<RegisterField> MeterTrack::fields_of(const modbus::RegisterMap& map) {
-  std::vector<RegisterField> fields;
-  const auto add = [&](const std::string& name) {
-    const RegisterField* field = map.find(name);
-    assert(field != nullptr && "a checked map has the fields it names");
-    const auto known = std::ranges::find(fields, name, &RegisterField::name);
-    if (known == fields.end()) fields.push_back(*field);
-    return field->scale_factor;
-  };
-  std::vector<std::string> names = map.energy;
-  if (map.power) names.push_back(*map.power);
-  names.insert(names.end(), map.identity.begin(), map.identity.end());
-  for (const std::string& name : names) {
-    if (const auto factor = add(name)) (void)add(*factor);
-  }
-  return fields;
-}
-
 MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
                        const std::optional<RegisterState>& restored)
     : meter_(std::move(meter)),
-      fields_(fields_of(meter_.map)),
+      fields_(metered_fields(meter_.map)),
       usual_(std::move(calendar), meter_.booking.interval) {
   if (restored) state_ = *restored;
   state_.field = "energy";

@@ -33,9 +33,6 @@ struct LiveValues {
 
 class MeterTrack {
  public:
-  /// The map's fields that are read, in the order of `PlannedRead::fields`.
-  [[nodiscard]] static std::vector<modbus::RegisterField> fields_of(const modbus::RegisterMap& map);
-
   /// @param restored  As it was stored; nothing for a meter never seen.
   MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
              const std::optional<RegisterState>& restored);
@@ -43,7 +40,7 @@ class MeterTrack {
   /// Teaches the usual day, as after a restart from stored intervals.
   void remember(const metering::Reading& reading) { usual_.observe(reading); }
 
-  /// The outcome of one read.
+  /// The outcome of one read, planned over `modbus::metered_fields`.
   /// @param poll  Tells the polls apart: its due time. Registers that are summed must be of one.
   [[nodiscard]] StoreBatch take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                                 std::chrono::sys_time<std::chrono::milliseconds> poll,

@@ -57,7 +57,7 @@ class Live {
                .multiplier = multiplier,
                .counter = {.rated_kW = 400.0},
                .booking = {.interval = kQuarter, .sample_gap_max = seconds{120}}},
-        fields_{MeterTrack::fields_of(meter_.map)},
+        fields_{metered_fields(meter_.map)},
         reads_{*plan_reads(fields_, meter_.map.function, meter_.map.limits)},
         track{meter_, calendar(), {}} {}
 

@@ -1,0 +1,58 @@
+/// A store that refuses when a test says so, in front of a real one.
+#pragma once
+
+#include "adapters/ports/store.hpp"
+
+namespace recald::testing {
+
+class FailingStore final : public Store {
+ public:
+  explicit FailingStore(Store& behind) : behind_(behind) {}
+
+  bool refuses = false;
+
+  Result<std::uint32_t> meter_number(const std::string& id,
+                                     std::chrono::seconds interval) override {
+    if (refuses) return refusal();
+    return behind_.meter_number(id, interval);
+  }
+  Result<CommitCounts> commit(const StoreBatch& batch) override {
+    if (refuses) return refusal();
+    return behind_.commit(batch);
+  }
+  Result<void> for_each_interval(std::uint32_t meter, const metering::TimeSpan& span,
+                                 const std::function<void(const StoredInterval&)>& visit) override {
+    if (refuses) return refusal();
+    return behind_.for_each_interval(meter, span, visit);
+  }
+  Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) override {
+    if (refuses) return refusal();
+    return behind_.interval_extent(meter);
+  }
+  Result<std::vector<RegisterState>> registers(std::uint32_t meter) override {
+    if (refuses) return refusal();
+    return behind_.registers(meter);
+  }
+  Result<int> put_month(std::uint32_t meter, const metering::MonthlyFigure& figure,
+                        const std::string& time_zone_release, metering::Instant now) override {
+    if (refuses) return refusal();
+    return behind_.put_month(meter, figure, time_zone_release, now);
+  }
+  Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) override {
+    if (refuses) return refusal();
+    return behind_.months(meter);
+  }
+  Result<std::vector<StoreEvent>> events(int limit) override {
+    if (refuses) return refusal();
+    return behind_.events(limit);
+  }
+
+ private:
+  static tl::unexpected<Error> refusal() {
+    return failure(ErrorCode::io_failed, "database or disk is full");
+  }
+
+  Store& behind_;
+};
+
+}  // namespace recald::testing
