@@ -126,6 +126,14 @@ bool is_site_different(const Recording& recording, metering::Month month) {
 Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                 const ReplayOptions& options, VirtualClock& clock,
                                 const OnMonthClosed& on_month_closed) {
+  for (const MeterConfig& config : site.meters) {
+    if (!config.live) continue;
+    return failure(
+        ErrorCode::unsupported,
+        fmt::format("meter '{}' is read live and has no file to replay; give it source = "
+                    "\"csv\" and a file of recorded readings",
+                    config.meter.id));
+  }
   Recording recording;
   Recorder recorder{site, recording};
   std::vector<metering::Meter> meters;

@@ -80,6 +80,16 @@ words = ["a", "b"])"};
   EXPECT_THAT(r.problems, IsEmpty());
 }
 
+TEST(TomlReader, ShortWaitsAreInMilliseconds) {
+  Reading r{"a = \"200ms\"\nb = \"5s\"\nc = \"ms\"\nd = \"1.5ms\"\ne = \"-1ms\"\n"};
+  EXPECT_EQ(r.reader.milliseconds("a"), std::chrono::milliseconds{200});
+  EXPECT_EQ(r.reader.milliseconds("b"), std::chrono::seconds{5});
+  for (const std::string_view key : {"c", "d", "e", "f"}) {
+    EXPECT_EQ(r.reader.milliseconds(key), std::nullopt) << key;
+  }
+  EXPECT_EQ(r.problems.size(), 3u);
+}
+
 TEST(TomlReader, WrongTypesNameLineAndKey) {
   Reading r{"a = 1\nb = \"1\"\nc = 1\nd = [\"a\", 2]\ne = [1, \"b\"]\nf = 1\ng = 1\n"};
   (void)r.reader.text("a");
