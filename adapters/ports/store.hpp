@@ -52,6 +52,13 @@ struct StoreEvent {
   std::string text;     ///< A sentence.
 };
 
+struct MeterMonth {
+  std::uint32_t meter;
+  metering::Month month;
+
+  bool operator==(const MeterMonth&) const = default;
+};
+
 /// What one commit contains: intervals together with the states that explain them.
 struct StoreBatch {
   struct Interval {
@@ -66,9 +73,11 @@ struct StoreBatch {
   std::vector<Register> registers;
   std::vector<RawSample> samples;
   std::vector<StoreEvent> events;
+  std::vector<MeterMonth> reopened;  ///< Closed months that the intervals change.
 
   [[nodiscard]] bool empty() const {
-    return intervals.empty() && registers.empty() && samples.empty() && events.empty();
+    return intervals.empty() && registers.empty() && samples.empty() && events.empty() &&
+           reopened.empty();
   }
 };
 
@@ -101,6 +110,9 @@ class Store {
   virtual Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) = 0;
 
   virtual Result<std::vector<RegisterState>> registers(std::uint32_t meter) = 0;
+
+  /// Months that were closed and have changed since, until they are put again.
+  virtual Result<std::vector<MeterMonth>> reopened() = 0;
 
   /// A month's figure, as revision 0 or one more than the last. @return the revision.
   virtual Result<int> put_month(std::uint32_t meter, const metering::MonthlyFigure& figure,

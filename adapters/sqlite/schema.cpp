@@ -69,6 +69,12 @@ CREATE TABLE month (
   PRIMARY KEY (meter, month, revision)
 ) STRICT, WITHOUT ROWID;
 
+CREATE TABLE reopened (
+  meter INTEGER NOT NULL REFERENCES meter (number),
+  month TEXT    NOT NULL,
+  PRIMARY KEY (meter, month)
+) STRICT, WITHOUT ROWID;
+
 CREATE TABLE event (
   number   INTEGER PRIMARY KEY,
   t        INTEGER NOT NULL,

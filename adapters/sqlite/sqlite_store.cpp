@@ -103,6 +103,7 @@ struct SqliteStore::Statements {
   Statement put_register;
   Statement insert_sample;
   Statement insert_event;
+  Statement reopen_month;
 };
 
 SqliteStore::SqliteStore(Database database, std::unique_ptr<Statements> statements)
@@ -128,10 +129,12 @@ Result<SqliteStore> SqliteStore::open(const std::filesystem::path& file,
   if (!sample) return tl::unexpected(sample.error());
   auto event = database->prepare("INSERT INTO event VALUES (NULL, ?, ?, ?, ?, ?)");
   if (!event) return tl::unexpected(event.error());
+  auto reopen = database->prepare("INSERT OR IGNORE INTO reopened VALUES (?, ?)");
+  if (!reopen) return tl::unexpected(reopen.error());
   return SqliteStore{std::move(*database),
                      std::make_unique<Statements>(
                          Statements{std::move(*latest), std::move(*interval), std::move(*state),
-                                    std::move(*sample), std::move(*event)})};
+                                    std::move(*sample), std::move(*event), std::move(*reopen)})};
 }
 
 Result<std::uint32_t> SqliteStore::meter_number(const std::string& id,
@@ -233,6 +236,12 @@ Result<CommitCounts> SqliteStore::commit(const StoreBatch& batch) {
                            .run();
       if (!put) return tl::unexpected(put.error());
     }
+    for (const MeterMonth& changed : batch.reopened) {
+      const auto put = statements_->reopen_month.bind(0, std::int64_t{changed.meter})
+                           .bind(1, std::string_view{metering::to_string(changed.month)})
+                           .run();
+      if (!put) return tl::unexpected(put.error());
+    }
     return counts;
   });
 }
@@ -284,6 +293,20 @@ Result<std::vector<RegisterState>> SqliteStore::registers(std::uint32_t meter) {
   }
 }
 
+Result<std::vector<MeterMonth>> SqliteStore::reopened() {
+  auto query = database_.prepare("SELECT meter, month FROM reopened ORDER BY meter, month");
+  if (!query) return tl::unexpected(query.error());
+  std::vector<MeterMonth> months;
+  for (;;) {
+    const auto row = query->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return months;
+    const auto month = metering::parse_month(query->text(1));
+    if (!month) return tl::unexpected(month.error());
+    months.push_back({static_cast<std::uint32_t>(query->integer(0)), *month});
+  }
+}
+
 Result<int> SqliteStore::put_month(std::uint32_t meter, const MonthlyFigure& figure,
                                    const std::string& time_zone_release, Instant now) {
   return database_.transaction([&]() -> Result<int> {
@@ -301,6 +324,11 @@ Result<int> SqliteStore::put_month(std::uint32_t meter, const MonthlyFigure& fig
     if (!insert) return tl::unexpected(insert.error());
     bind_month(*insert, meter, figure, revision, time_zone_release, now);
     if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    auto settled = database_.prepare("DELETE FROM reopened WHERE meter = ? AND month = ?");
+    if (!settled) return tl::unexpected(settled.error());
+    settled->bind(0, std::int64_t{meter})
+        .bind(1, std::string_view{metering::to_string(figure.month)});
+    if (auto done = settled->run(); !done) return tl::unexpected(done.error());
     return revision;
   });
 }

@@ -22,6 +22,7 @@ class SqliteStore final : public Store {
                                  const std::function<void(const StoredInterval&)>& visit) override;
   Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) override;
   Result<std::vector<RegisterState>> registers(std::uint32_t meter) override;
+  Result<std::vector<MeterMonth>> reopened() override;
   Result<int> put_month(std::uint32_t meter, const metering::MonthlyFigure& figure,
                         const std::string& time_zone_release, metering::Instant now) override;
   Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) override;

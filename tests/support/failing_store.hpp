@@ -33,6 +33,10 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.registers(meter);
   }
+  Result<std::vector<MeterMonth>> reopened() override {
+    if (refuses) return refusal();
+    return behind_.reopened();
+  }
   Result<int> put_month(std::uint32_t meter, const metering::MonthlyFigure& figure,
                         const std::string& time_zone_release, metering::Instant now) override {
     if (refuses) return refusal();

@@ -308,6 +308,19 @@ TEST_F(StoreFile, MonthsHaveRevisions) {
   EXPECT_TRUE(std::isnan(months->at(2).daily_average_kWh));
 }
 
+TEST_F(StoreFile, AReopenedMonthWaitsUntilItIsPutAgain) {
+  const std::uint32_t main = meter("main");
+  const MeterMonth march{main, std::chrono::year{2024} / 3};
+  const MeterMonth april{main, std::chrono::year{2024} / 4};
+  EXPECT_THAT(*store_->reopened(), IsEmpty());
+  (void)commit({.reopened = {april, march}});
+  (void)commit({.reopened = {march}});
+  reopen();
+  EXPECT_THAT(*store_->reopened(), ElementsAre(march, april));
+  EXPECT_EQ(*store_->put_month(main, figure(3, 100.0), "2025b", kStart), 0);
+  EXPECT_THAT(*store_->reopened(), ElementsAre(april));
+}
+
 TEST_F(StoreFile, EventsComeNewestFirst) {
   (void)meter("main");
   (void)commit({.events = {{kStart, Severity::warning, "counter_reset", "main", "It fell to 0."},
