@@ -1,0 +1,51 @@
+/// Closes months out of the store when they are due, and again when late readings changed them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adapters/ports/store.hpp"
+#include "core/metering/month_closer.hpp"
+
+namespace recald::daemon {
+
+/// A meter and the number that stands for it in the store.
+struct StoredMeter {
+  std::uint32_t number;
+  metering::Meter meter;
+};
+
+struct ClosedFigure {
+  std::uint32_t number;
+  metering::MonthlyFigure figure;  ///< With the revision that it has in the store.
+};
+
+/// Nothing is kept in memory between two calls: a restart in the middle loses nothing and repeats
+/// nothing, and a figure is made of what is stored, by the rules of a replay.
+class MonthKeeper {
+ public:
+  MonthKeeper(Store& store, metering::LocalCalendar calendar, metering::CloserOptions options,
+              std::string time_zone_release);
+
+  /// Closes the months of each meter that ended a watermark ago, from its first reading on, and
+  /// those that were reopened.
+  /// @return the new figures in order of meter and month, or the store's failure; what was closed
+  ///         before it stays closed.
+  [[nodiscard]] Result<std::vector<ClosedFigure>> close_due(std::span<const StoredMeter> meters,
+                                                            metering::Instant now);
+
+ private:
+  [[nodiscard]] Result<std::vector<metering::Month>> due(const StoredMeter& meter,
+                                                         std::span<const MeterMonth> reopened,
+                                                         metering::Instant now) const;
+  [[nodiscard]] Result<metering::MonthlyFigure> figure(const StoredMeter& meter,
+                                                       metering::Month month) const;
+
+  Store& store_;
+  metering::LocalCalendar calendar_;
+  metering::CloserOptions options_;
+  std::string time_zone_release_;
+};
+
+}  // namespace recald::daemon
