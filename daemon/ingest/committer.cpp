@@ -50,6 +50,7 @@ void Committer::add(StoreBatch batch) {
   append(waiting_.intervals, std::move(batch.intervals));
   append(waiting_.samples, std::move(batch.samples));
   append(waiting_.events, std::move(batch.events));
+  append(waiting_.reopened, std::move(batch.reopened));
   for (const StoreBatch::Register& entry : batch.registers) put_state(entry);
   give_up_what_is_too_much();
   if (health_.is_degraded) return;  // the retry is scheduled

@@ -134,6 +134,23 @@ TEST_F(CommitterTest, WhatIsKeptIsBoundedAndTheLossIsCounted) {
   EXPECT_EQ((*disk_.interval_extent(meter_))->begin, kStart + 7 * kQuarter);
 }
 
+TEST_F(CommitterTest, EveryPartOfABatchArrives) {
+  Committer committer = this->committer();
+  committer.add({.intervals = {{{meter_, kStart, 10.0}}},
+                 .registers = {{meter_, {.field = "energy", .settings = {.rated_kW = 1.0}}}},
+                 .samples = {{meter_, "energy", kStart, 1.0}},
+                 .events = {{kStart, Severity::info, "kind", "main", "A sentence."}},
+                 .reopened = {{meter_, std::chrono::year{2024} / 3}}});
+  ASSERT_TRUE(committer.flush().has_value());
+  EXPECT_EQ(stored(), 1);
+  EXPECT_THAT(*disk_.registers(meter_), SizeIs(1));
+  EXPECT_THAT(*disk_.events(10), SizeIs(1));
+  EXPECT_THAT(*disk_.reopened(), SizeIs(1));
+  auto samples = disk_.database().prepare("SELECT count(*) FROM sample");
+  ASSERT_TRUE(samples->step().value());
+  EXPECT_EQ(samples->integer(0), 1);
+}
+
 TEST_F(CommitterTest, MayEndWhileSomethingWaits) {
   {
     Committer committer = this->committer();
