@@ -146,6 +146,7 @@ std::string misuse_of(const CalibrateArguments& arguments) {
 /// What every command was given on the command line; only one of them is run.
 struct Arguments {
   SiteArguments check;
+  SiteArguments run;
   ReplayArguments replay;
   ProfileArguments profile;
   CalibrateArguments calibrate;
@@ -167,6 +168,10 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* check = app.add_subcommand("check", "Explain what a site file gets wrong");
   add_site(*check, given.check);
   verbs.push_back({check, [&](const Console& console) { return run_check(given.check, console); }});
+
+  CLI::App* run = app.add_subcommand("run", "Poll the meters, until told to end");
+  run->add_option("site", given.run.site, "Site file (TOML)")->required();
+  verbs.push_back({run, [&](const Console& console) { return run_run(given.run, console); }});
 
   CLI::App* replay =
       app.add_subcommand("replay", "Recorded readings to monthly figures, on a virtual clock");

@@ -4,7 +4,8 @@
 # there already in another version than Debian's, which a plain install would fight with.
 
 BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnant-date-dev tzdata
-  libexpected-dev libmodbus-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libsqlite3-dev libssl-dev"
+  libexpected-dev libmodbus-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+  libspdlog-dev libsqlite3-dev libssl-dev"
 TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r-cran-posterior"
 
 is_installed() {

@@ -10,19 +10,58 @@ namespace recald::daemon {
 namespace {
 
 std::string duration_words(std::chrono::seconds length) {
-  return length.count() % 3600 == 0 ? fmt::format("{} h", length.count() / 3600)
-                                    : fmt::format("{} min", length.count() / 60);
+  if (length.count() % 3600 == 0) return fmt::format("{} h", length.count() / 3600);
+  if (length.count() % 60 == 0) return fmt::format("{} min", length.count() / 60);
+  return fmt::format("{} s", length.count());
 }
 
 void print_meters(const SiteConfig& site, const Console& console) {
   for (const MeterConfig& config : site.meters) {
     const metering::Meter& meter = config.meter;
+    if (config.live) {
+      console.out << fmt::format("  meter {:<16} {:<14} unit {} on bus '{}', {}, every {}\n",
+                                 meter.id, metering::to_string(meter.utility), config.live->unit,
+                                 config.live->bus, config.live->map.title,
+                                 duration_words(config.live->poll));
+      continue;
+    }
     console.out << fmt::format(
         "  meter {:<16} {:<14} {} ('{}', {}-stamped, interval {})\n", meter.id,
         metering::to_string(meter.utility), config.file.string(), config.name_in_file,
         config.stamps == csv::Stamps::end ? "end" : "start",
         config.interval ? duration_words(*config.interval) : "as the file shows");
   }
+}
+
+/// How much of its time each bus is busy if all goes well. Beyond all of it reads queue without
+/// end.
+std::vector<std::string> check_buses(const SiteConfig& site, const Console& console, bool json) {
+  constexpr double kCrowded = 0.7;
+  std::vector<std::string> problems;
+  for (const BusConfig& bus : site.buses) {
+    double busy = 0.0;
+    for (const MeterConfig& meter : site.meters) {
+      if (!meter.live || meter.live->bus != bus.name) continue;
+      const std::chrono::duration<double> length = poll_time(bus, *meter.live);
+      busy += length / meter.live->poll;
+    }
+    if (!json) {
+      console.out << fmt::format("  bus {:<18} {}, busy {:.0f} % of its time\n", bus.name,
+                                 modbus::to_string(bus.endpoint), 100.0 * busy);
+    }
+    if (busy > 1.0) {
+      problems.push_back(
+          fmt::format("{}: bus '{}' would need {:.0f} % of its time; poll less often, "
+                      "raise the baud rate or spread the meters over more buses",
+                      site.file.filename().string(), bus.name, 100.0 * busy));
+    } else if (busy > kCrowded) {
+      console.err << fmt::format(
+          "recald: bus '{}' is busy {:.0f} % of its time; retries and silent "
+          "devices leave little room\n",
+          bus.name, 100.0 * busy);
+    }
+  }
+  return problems;
 }
 
 /// Problems that only show once several tables are seen together.
@@ -52,6 +91,7 @@ std::vector<std::string> check_files(const SiteConfig& site) {
                                    what, file.string()));
   };
   for (const MeterConfig& config : site.meters) {
+    if (config.live) continue;
     require(config.file, fmt::format("the file of meter '{}',", config.meter.id));
   }
   if (site.weather) require(site.weather->file, "the weather file");
@@ -66,6 +106,10 @@ int run_check(const SiteArguments& arguments, const Console& console) {
   if (site && !arguments.json) {
     console.out << fmt::format("{} ({}), {}\n", site->name, site->id, site->timezone);
     print_meters(*site, console);
+  }
+  if (site) {
+    const auto more = check_buses(*site, console, arguments.json);
+    problems.insert(problems.end(), more.begin(), more.end());
   }
   if (site && site->model) {
     const auto more = check_model(*site, console, arguments.json);

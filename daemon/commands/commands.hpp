@@ -15,6 +15,9 @@ struct SiteArguments {
   bool json = false;
 };
 
+/// The daemon.
+[[nodiscard]] int run_run(const SiteArguments& arguments, const Console& console);
+
 struct ReplayArguments : SiteArguments {
   std::string from;  ///< Local day, or empty.
   std::string to;

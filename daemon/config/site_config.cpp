@@ -312,6 +312,12 @@ void read_root(TomlReader root, SiteConfig& config) {
     root.problem("[site] is missing");
   }
   if (auto weather = root.table("weather")) config.weather = read_weather(*weather, config.file);
+  config.store.file = std::filesystem::path{config.file}.replace_extension(".db");
+  if (auto store = root.table("store")) {
+    if (const auto file = store->text("file"))
+      config.store.file = resolve(config.file, *file, *store);
+    store->finish();
+  }
   if (auto buses = root.table("bus")) {
     for (const std::string& name : buses->keys()) {
       if (auto bus = buses->table(name)) config.buses.push_back(read_bus(*bus, name));

@@ -59,6 +59,10 @@ struct ModelConfig {
   std::vector<ParameterConfig> parameters;
 };
 
+struct StoreConfig {
+  std::filesystem::path file;  ///< Default: the site file with the ending .db.
+};
+
 struct SiteConfig {
   std::filesystem::path file;
   std::string id;
@@ -68,6 +72,7 @@ struct SiteConfig {
   std::optional<weather::Location> location;
   model::Holidays holidays;
   metering::CloserOptions closing;
+  StoreConfig store;
   std::vector<BusConfig> buses;
   std::vector<MeterConfig> meters;
   std::optional<WeatherConfig> weather;
