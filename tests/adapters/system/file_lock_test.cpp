@@ -1,0 +1,33 @@
+#include "adapters/system/file_lock.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::system {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(FileLock, OneHolderAtATime) {
+  const recald::testing::TemporaryFolder folder;
+  {
+    const auto first = FileLock::take(folder / "a.lock");
+    ASSERT_TRUE(first.has_value()) << first.error().message;
+    const auto second = FileLock::take(folder / "a.lock");
+    ASSERT_FALSE(second.has_value());
+    EXPECT_THAT(second.error().message, HasSubstr("held by another recald"));
+    EXPECT_TRUE(FileLock::take(folder / "b.lock").has_value());
+  }
+  EXPECT_TRUE(FileLock::take(folder / "a.lock").has_value());
+}
+
+TEST(FileLock, NowhereToMakeIt) {
+  const recald::testing::TemporaryFolder folder;
+  const auto lock = FileLock::take(folder / "no" / "a.lock");
+  ASSERT_FALSE(lock.has_value());
+  EXPECT_EQ(lock.error().code, ErrorCode::io_failed);
+}
+
+}  // namespace
+}  // namespace recald::system

@@ -1,0 +1,128 @@
+/// The real program against real sockets: it polls, is killed, goes on, and ends when it is told
+/// to.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "adapters/sqlite/database.hpp"
+#include "tests/support/background_process.hpp"
+#include "tests/support/scripted_device.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using namespace std::chrono_literals;
+using recald::testing::BackgroundProcess;
+using recald::testing::Bytes;
+using recald::testing::eventually;
+using recald::testing::Piece;
+using recald::testing::ScriptedServer;
+using recald::testing::TemporaryFolder;
+using ::testing::HasSubstr;
+
+/// A counter in Wh that rises by one with every read, as a u32 at address 0.
+std::vector<Piece> counting(const Bytes& request, int number) {
+  const auto wh = static_cast<std::uint32_t>(1'000'000 + number);
+  const auto byte = [&](int shift) { return static_cast<std::uint8_t>(wh >> shift & 0xFF); };
+  return {{0ms,
+           {request[0], request[1], 0, 0, 0, 7, request[6], 0x03, 4, byte(24), byte(16), byte(8),
+            byte(0)}}};
+}
+
+class RunCommand : public ::testing::Test {
+ protected:
+  RunCommand() : server_{counting} {
+    recald::testing::write_text(folder_ / "counter.toml", R"(
+source = "the test"
+base = 0
+energy = ["energy"]
+register.energy = { at = 0, type = "u32", unit = "Wh" }
+)");
+    recald::testing::write_text(folder_ / "site.toml", R"([site]
+id = "tower"
+timezone = "America/Chicago"
+interval = "1m"
+
+[bus.plant]
+type = "tcp"
+host = "127.0.0.1"
+port = )" + std::to_string(server_.port()) + R"(
+
+[[meter]]
+id = "main"
+source = "modbus"
+utility = "electricity"
+bus = "plant"
+unit = 1
+map = "counter.toml"
+rated_kW = 400
+poll = "1s"
+)");
+  }
+
+  [[nodiscard]] std::vector<std::string> command(const std::string& verb) const {
+    return {RECALD_PROGRAM, verb, (folder_ / "site.toml").string()};
+  }
+  [[nodiscard]] std::filesystem::path said() const { return folder_ / "said.txt"; }
+  [[nodiscard]] std::string what_was_said() const { return recald::testing::read_text(said()); }
+
+  /// Samples in the store, as a reader beside the daemon sees them; 0 while there is no store.
+  [[nodiscard]] std::int64_t samples() const {
+    if (!std::filesystem::exists(folder_ / "site.db")) return 0;
+    auto store = sqlite::Database::open(folder_ / "site.db",
+                                        {.access = sqlite::Database::Access::read_only});
+    if (!store) return 0;
+    auto count = store->execute("SELECT 1 FROM sample LIMIT 1");
+    if (!count) return 0;
+    auto query = store->prepare("SELECT count(DISTINCT value) FROM sample");
+    return query && query->step().value_or(false) ? query->integer(0) : 0;
+  }
+
+  TemporaryFolder folder_;
+  ScriptedServer server_;
+};
+
+TEST_F(RunCommand, PollsIsKilledGoesOnAndEnds) {
+  std::int64_t before = 0;
+  {
+    BackgroundProcess daemon{command("run"), said()};
+    ASSERT_TRUE(eventually([&] { return samples() >= 3; })) << what_was_said();
+    EXPECT_EQ(daemon.end(SIGKILL), -SIGKILL);
+    before = samples();
+  }
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return samples() >= before + 3; })) << what_was_said();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
+  EXPECT_THAT(what_was_said(), HasSubstr("event=started site=tower"));
+  EXPECT_THAT(what_was_said(), HasSubstr("event=ended"));
+}
+
+TEST_F(RunCommand, OneAtATimeRunsOnAStore) {
+  BackgroundProcess first{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return samples() >= 1; })) << what_was_said();
+  BackgroundProcess second{command("run"), folder_ / "second.txt"};
+  EXPECT_EQ(second.wait(), 1);
+  EXPECT_THAT(recald::testing::read_text(folder_ / "second.txt"),
+              HasSubstr("site.db.lock' is held by another recald"));
+  EXPECT_EQ(first.end(SIGINT), 0);
+}
+
+TEST_F(RunCommand, ASiteWithNothingToPollIsTold) {
+  recald::testing::write_text(folder_ / "site.toml",
+                              "[site]\nid = \"x\"\ntimezone = \"UTC\"\n[[meter]]\nid = \"m\"\n"
+                              "utility = \"electricity\"\nfile = \"m.csv\"\n");
+  BackgroundProcess daemon{command("run"), said()};
+  EXPECT_EQ(daemon.wait(), 1);
+  EXPECT_THAT(what_was_said(), HasSubstr("no [[meter]] has source = \"modbus\""));
+}
+
+TEST_F(RunCommand, CheckTellsHowBusyTheBusIs) {
+  BackgroundProcess check{command("check"), said()};
+  EXPECT_EQ(check.wait(), 0) << what_was_said();
+  EXPECT_THAT(what_was_said(), HasSubstr("busy 2 % of its time"));
+  EXPECT_THAT(what_was_said(), HasSubstr("unit 1 on bus 'plant'"));
+}
+
+}  // namespace
+}  // namespace recald::daemon
