@@ -51,6 +51,7 @@ void BusPoller::notice_clock(const Moment& now) {
   if (!is_first && !was_set) return;
   for (std::size_t i = 0; i < units_.size(); ++i) {
     states_[i].to_read.clear();
+    states_[i].is_asked = false;
     // What runs already shows its values at once; the schedule follows.
     states_[i].due = is_first ? now.wall : due_after(i, now.wall);
   }
@@ -59,15 +60,16 @@ void BusPoller::notice_clock(const Moment& now) {
 void BusPoller::begin_due_polls(const Moment& now) {
   for (std::size_t i = 0; i < units_.size(); ++i) {
     UnitPolling& polling = states_[i];
-    if (polling.due > now.wall) continue;
-    const bool is_begun = !polling.to_read.empty();
-    if (!is_begun) polling.since = polling.due;
+    // A poll of which something was read keeps its due time: it says which reads belong together.
+    if (polling.due > now.wall || polling.is_asked) continue;
+    const bool is_waiting = !polling.to_read.empty();
+    if (!is_waiting) polling.since = polling.due;
     for (WallTime later = due_after(i, polling.due); later <= now.wall;
          later = due_after(i, polling.due)) {
       polling.due = later;
       ++polling.skipped;
     }
-    if (is_begun) continue;
+    if (is_waiting) continue;
     for (std::size_t read = units_[i].reads.size(); read-- > 0;) {
       if (!polling.off[read]) polling.to_read.push_back(read);
     }
@@ -113,7 +115,8 @@ std::optional<std::size_t> BusPoller::choose(const Moment& now) const {
 
 BusOrder BusPoller::order_for(std::size_t unit, bool is_probe, const Moment& now) {
   const PolledUnit& polled = units_[unit];
-  const UnitPolling& polling = states_[unit];
+  UnitPolling& polling = states_[unit];
+  if (!is_probe) polling.is_asked = true;
   const std::size_t read = is_probe ? 0 : polling.to_read.back();
   const modbus::PlannedRead& planned = polled.reads[read];
   under_way_ = true;
@@ -185,6 +188,7 @@ milliseconds BusPoller::wait(const Moment& now) const {
 void BusPoller::end_poll(std::size_t unit) {
   UnitPolling& polling = states_[unit];
   polling.to_read.clear();
+  polling.is_asked = false;
   polling.busy = 0;
   polling.not_before = milliseconds{0};
   polling.due = due_after(unit, polling.due);
@@ -250,6 +254,7 @@ void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result
   if (order.is_probe) {
     polling.due = now.wall;  // back again: the whole poll at once
     polling.to_read.clear();
+    polling.is_asked = false;
     return;
   }
   if (is_stale) return;

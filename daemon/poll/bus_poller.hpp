@@ -97,6 +97,7 @@ class BusPoller {
     WallTime due{};                    ///< Of the poll under way, else of the next one.
     WallTime since{};                  ///< First due time that was not served.
     std::vector<std::size_t> to_read;  ///< What the poll under way has left, last first.
+    bool is_asked = false;             ///< The poll under way has made its first read.
     std::chrono::milliseconds not_before{0};
     int busy = 0;               ///< Busy answers to this read.
     bool has_answered = false;  ///< Ever.

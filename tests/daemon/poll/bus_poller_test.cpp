@@ -333,6 +333,22 @@ TEST(BusPoller, AnOverloadedBusSkipsPollsAndNeverQueues) {
   }
 }
 
+// Reads of one poll have one due time, however long the poll takes: by it they are summed.
+TEST(BusPoller, TheReadsOfAPollBelongTogether) {
+  std::vector<PolledUnit> units{unit(1, seconds{10}, 3), unit(2, seconds{10}, 3)};
+  for (PolledUnit& polled : units) polled.timeout = seconds{20};
+  VirtualBus bus{units, [](const BusOrder&, const Moment&) { return Reply{seconds{7}}; }};
+  bus.run(minutes{30});
+  std::map<std::pair<std::size_t, WallTime>, std::vector<std::size_t>> reads;
+  for (const auto& one : bus.made) reads[{one.order.unit, one.order.due}].push_back(one.order.read);
+  ASSERT_GE(reads.size(), 20u);
+  int whole = 0;
+  for (const auto& [poll, read] : reads) {
+    whole += static_cast<int>(read == std::vector<std::size_t>{0, 1, 2});
+  }
+  EXPECT_GE(whole, static_cast<int>(reads.size()) - 1);  // the last one may be under way
+}
+
 TEST(BusPoller, ASlowDeviceIsLearned) {
   std::vector<PolledUnit> units{unit(1, seconds{10})};
   VirtualBus bus{units, [](const BusOrder&, const Moment&) { return Reply{milliseconds{600}}; }};
