@@ -113,6 +113,9 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   StoreBatch batch;
   if (!result) {
     note_failure(result.error());
+    // What was not read is not what it was.
+    for (const std::size_t i : read.fields) latest_.erase(fields_[i].name);
+    update_power();
     return batch;
   }
   live_.read_at = at;

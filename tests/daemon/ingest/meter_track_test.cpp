@@ -119,6 +119,15 @@ TEST(MeterTrack, RegistersBecomeIntervals) {
   EXPECT_THAT(meter.events, IsEmpty());
 }
 
+TEST(MeterTrack, AFailedReadIsNotTheLastValue) {
+  Live meter;
+  meter.read(seconds{0}, 1000.0, 60'000.0);
+  EXPECT_TRUE(meter.track.live().power_kW.has_value());
+  meter.fail(minutes{1}, ReadFault::timeout);
+  EXPECT_FALSE(meter.track.live().power_kW.has_value());
+  EXPECT_EQ(meter.track.live().read_at, kStart);
+}
+
 TEST(MeterTrack, ACurrentTransformerMultiplies) {
   Live meter{kMeter, 40.0};
   for (int minute = 0; minute <= 15; ++minute)
