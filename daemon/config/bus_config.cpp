@@ -106,6 +106,13 @@ LiveMeterConfig read_live_meter(TomlReader& table, const std::filesystem::path& 
   if (const std::string name = table.required_text("map"); !name.empty()) {
     if (auto map = find_register_map(name, folder)) {
       meter.map = std::move(*map);
+      if (!meter.map.sunspec_models.empty()) {
+        table.problem_at("map",
+                         fmt::format("map '{}' needs the device's SunSpec models to be found "
+                                     "first, which this version does not do; write a map with "
+                                     "the addresses on the wire",
+                                     name));
+      }
     } else {
       for (const std::string& problem : map.error()) table.problem_at("map", problem);
     }

@@ -148,6 +148,7 @@ TEST(BusConfig, EveryMistakeHasItsSentence) {
       {"map = \"siemens-pac3200\"\n", "", "'map' is missing"},
       {"map = \"siemens-pac3200\"", "map = \"siemens-pac\"", "no register map is called"},
       {"map = \"siemens-pac3200\"", "map = \"our.toml\"", "our.toml' cannot be read"},
+      {"map = \"siemens-pac3200\"", "map = \"sunspec-meter\"", "needs the device's SunSpec models"},
       {"rated_kW = 400\n", "", "a live counter needs 'rated_kW'"},
       {"poll = \"10s\"", "poll = \"0s\"", "'poll' must lie between \"1s\" and \"15m\""},
       {"poll = \"10s\"", "poll = \"20m\"", "'poll' must lie between \"1s\" and \"15m\""},
