@@ -1,0 +1,52 @@
+/// What stands in a device's registers: its makers' layouts, written down a second time.
+///
+/// The daemon's maps and decoders are not used here: a wrong address or a swapped word must not
+/// meet its mirror image.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace recald::simulators {
+
+/// What a meter counts and measures at one moment.
+struct MeterReadout {
+  double energy_kWh;
+  double power_kW;
+  std::uint32_t serial;
+};
+
+enum class Encoding : std::uint8_t { i16, i32, u32, i64, u64, f32, f64 };
+
+/// One value of a layout.
+struct LayoutValue {
+  enum class What : std::uint8_t { energy, power, serial, nothing };
+  What what;
+  std::uint16_t address;  ///< On the wire.
+  Encoding encoding;
+  double per_unit;  ///< Raw steps a kWh or a kW; rounded down where it is an integer.
+  bool low_word_first = false;
+};
+
+/// The devices that the farm can play.
+struct DeviceLayout {
+  std::string_view name;
+  std::uint8_t function;  ///< 3 or 4: what it answers to.
+  std::vector<LayoutValue> values;
+};
+
+/// "abb-b23", "schneider-iem3000", "siemens-pac3200", "carlo-gavazzi-em24-din", "eastron-sdm630",
+/// "belimo-energy-valve"; nothing for another name.
+[[nodiscard]] const DeviceLayout* find_layout(std::string_view name);
+[[nodiscard]] std::span<const DeviceLayout> layouts();
+
+/// The contents of `count` registers from `address` on; registers between values are 0.
+/// @return nothing when some of them lie outside the device's, as exception 2 says.
+[[nodiscard]] std::optional<std::vector<std::uint16_t>> registers_of(const DeviceLayout& layout,
+                                                                     const MeterReadout& readout,
+                                                                     int address, int count);
+
+}  // namespace recald::simulators
