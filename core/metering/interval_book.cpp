@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace recald::metering {
 namespace {
@@ -17,32 +18,46 @@ Instant interval_start(Instant t, seconds interval) {
   return t - past;
 }
 
+std::vector<double> lengths_h(std::span<const CounterBooking> pieces) {
+  std::vector<double> lengths;
+  for (const CounterBooking& piece : pieces) lengths.push_back(hours(piece.span.length()));
+  return lengths;
+}
+
+/// Expected energies of the pieces, kWh.
+std::vector<double> shaped_by(const LoadShape& shape, std::span<const CounterBooking> pieces,
+                              seconds interval) {
+  std::vector<double> expected = lengths_h(pieces);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    expected[i] *= std::max(0.0, shape(interval_start(pieces[i].span.begin, interval)));
+  }
+  return expected;
+}
+
 /// A booking cut at the interval boundaries; energies follow the shape and add up to the booking's.
 std::vector<CounterBooking> cut(const CounterBooking& booking, const BookingRules& rules,
                                 const LoadShape& shape) {
   std::vector<CounterBooking> pieces;
-  std::vector<double> weights;
-  double whole = 0.0;
   for (Instant begin = booking.span.begin; begin < booking.span.end;) {
     const Instant slot = interval_start(begin, rules.interval);
     const Instant end = std::min(slot + rules.interval, booking.span.end);
     CounterBooking piece = booking;
     piece.span = {begin, end};
     pieces.push_back(piece);
-    const double expected_kW = shape ? std::max(0.0, shape(slot)) : 1.0;
-    weights.push_back(expected_kW * hours(end - begin));
-    whole += weights.back();
     begin = end;
   }
   // Between close samples the load is taken as constant; a hole is an estimate.
   const bool is_hole = pieces.size() > 1 && booking.span.length() > rules.sample_gap_max;
-  const bool by_shape = is_hole && std::isfinite(whole) && whole > 0.0;
+  std::vector<double> weights = lengths_h(pieces);
+  if (is_hole && shape) {
+    const std::vector<double> shaped = shaped_by(shape, pieces, rules.interval);
+    const double sum = std::accumulate(shaped.begin(), shaped.end(), 0.0);
+    if (std::isfinite(sum) && sum > 0.0) weights = shaped;
+  }
+  const double whole = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    CounterBooking& piece = pieces[i];
-    const double share =
-        by_shape ? weights[i] / whole : hours(piece.span.length()) / hours(booking.span.length());
-    piece.energy_kWh = booking.energy_kWh * share;
-    if (is_hole && piece.validity == Validity::ok) piece.validity = Validity::scaled;
+    pieces[i].energy_kWh = booking.energy_kWh * weights[i] / whole;
+    if (is_hole && pieces[i].validity == Validity::ok) pieces[i].validity = Validity::scaled;
   }
   return pieces;
 }

@@ -131,6 +131,8 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   take_identity(batch, poll, at);
   update_power();
   take_energy(batch, poll, at);
+  // What is committed stands with the state that explains it.
+  if (!batch.empty()) batch.registers.push_back({meter_.number, state_});
   return batch;
 }
 
@@ -234,10 +236,6 @@ void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
   }
   if (step.event != CounterEvent::none || is_worth_keeping(sample)) {
     batch.samples.push_back({meter_.number, state_.field, sample.time, sample.value_kWh});
-  }
-  // The state must be there for whatever is committed with it, and once an interval otherwise.
-  if (!batch.intervals.empty() || !batch.samples.empty() || !batch.events.empty()) {
-    batch.registers.push_back({meter_.number, state_});
   }
 }
 
