@@ -44,6 +44,12 @@ class ScriptedDevice {
   [[nodiscard]] int requests() const { return requests_; }
   [[nodiscard]] int connections() const { return connections_; }
 
+  /// Waits until the script of that many requests has been played to its end: all is sent, and
+  /// closed where it closes.
+  void wait_until_played(int requests) const {
+    for (int played = played_; played < requests; played = played_) played_.wait(played);
+  }
+
  protected:
   ~ScriptedDevice() = default;
 
@@ -56,7 +62,11 @@ class ScriptedDevice {
       const auto count = ::read(descriptor, request.data(), request.size());
       if (count <= 0) return;
       request.resize(static_cast<std::size_t>(count));
-      if (!answer(descriptor, request)) return;
+      const bool goes_on = answer(descriptor, request);
+      if (!goes_on) ::shutdown(descriptor, SHUT_RDWR);
+      ++played_;
+      played_.notify_all();
+      if (!goes_on) return;
     }
   }
 
@@ -84,6 +94,7 @@ class ScriptedDevice {
   Script script_;
   std::atomic<int> requests_{0};
   std::atomic<int> connections_{0};
+  std::atomic<int> played_{0};
 };
 
 /// On a free loopback port.

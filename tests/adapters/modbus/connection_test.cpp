@@ -170,7 +170,7 @@ TEST(ModbusTcp, ReplyToNobody) {
   }};
   Connection connection = to(server);
   expect_value(connection.read(kTwoRegisters, 1s), 0);
-  std::this_thread::sleep_for(100ms);
+  server.wait_until_played(1);
   expect_value(connection.read(kTwoRegisters, 1s), 1);
   EXPECT_EQ(server.connections(), 2);
 }
@@ -197,7 +197,7 @@ TEST(ModbusTcp, AConnectionThatWentStaleIsMadeAnew) {
   }};
   Connection connection = to(server);
   expect_value(connection.read(kTwoRegisters, 1s), 0);
-  std::this_thread::sleep_for(50ms);
+  server.wait_until_played(1);
   expect_value(connection.read(kTwoRegisters, 1s), 1);
   EXPECT_EQ(connection.connects(), 2);
 }
@@ -247,7 +247,7 @@ TEST(ModbusRtu, ReadsAndSurvivesALateReply) {
   expect_value(connection.read(kTwoRegisters, 1s), 0);
   expect_fault(connection.read(kTwoRegisters, 60ms), ReadFault::timeout);
   EXPECT_TRUE(connection.is_open());
-  std::this_thread::sleep_for(300ms);
+  line.wait_until_played(2);
   expect_value(connection.read(kTwoRegisters, 1s), 2);
 }
 
@@ -268,7 +268,7 @@ TEST(ModbusRtu, ALateReplyOfTheSameLengthIsNotAnotherRegistersValue) {
   } else {
     EXPECT_EQ(swapped.error().fault, ReadFault::mismatch);
   }
-  std::this_thread::sleep_for(100ms);
+  line.wait_until_played(2);
   expect_value(connection.read(kTwoRegisters, 1s), 2);
 }
 

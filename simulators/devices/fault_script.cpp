@@ -1,4 +1,4 @@
-#include "simulators/farm/fault_script.hpp"
+#include "simulators/devices/fault_script.hpp"
 
 #include <fmt/format.h>
 
@@ -123,7 +123,7 @@ Result<ScriptedFault> parse_line(const std::string& line) {
     }
     return fault;
   }
-  return wrong(fmt::format("'{}' is no disturbance that the farm knows", name));
+  return wrong(fmt::format("'{}' is no disturbance that is known", name));
 }
 
 }  // namespace

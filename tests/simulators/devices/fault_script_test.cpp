@@ -1,4 +1,4 @@
-#include "simulators/farm/fault_script.hpp"
+#include "simulators/devices/fault_script.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
-/// The farm's devices against the daemon's maps: two descriptions of the same documents, written
+/// Simulated devices against the daemon's maps: two descriptions of the same documents, written
 /// apart, must agree.
-#include "simulators/farm/device_registers.hpp"
+#include "simulators/devices/device_registers.hpp"
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// What the daemon reads from a device of the farm: its energy and its power, in the maps' units.
+/// What the daemon reads from a simulated device: its energy and its power, in the maps' units.
 std::map<std::string, double> read_by_map(const DeviceLayout& layout, const MeterReadout& readout) {
   const auto map = daemon::find_register_map(std::string{layout.name}, ".");
   EXPECT_TRUE(map.has_value());
@@ -32,7 +32,7 @@ std::map<std::string, double> read_by_map(const DeviceLayout& layout, const Mete
   return values;
 }
 
-TEST(FarmDevices, AreReadByTheMapsOfTheirNames) {
+TEST(SimulatedDevices, AreReadByTheMapsOfTheirNames) {
   EXPECT_EQ(layouts().size(), 6u);
   for (const DeviceLayout& layout : layouts()) {
     SCOPED_TRACE(std::string{layout.name});
@@ -45,12 +45,12 @@ TEST(FarmDevices, AreReadByTheMapsOfTheirNames) {
   }
 }
 
-TEST(FarmDevices, SignedPowerIsSigned) {
+TEST(SimulatedDevices, SignedPowerIsSigned) {
   const auto values = read_by_map(*find_layout("abb-b23"), {0.0, -2.0, 1});
   EXPECT_NEAR(values.at("power"), -2.0, 1e-6);
 }
 
-TEST(FarmDevices, OutsideItsRegistersThereIsNothing) {
+TEST(SimulatedDevices, OutsideItsRegistersThereIsNothing) {
   const DeviceLayout& device = *find_layout("abb-b23");
   EXPECT_THAT(*registers_of(device, {1000.0, 0.0, 1}, 0x5000, 4), ElementsAre(0, 0, 1, 0x86A0));
   EXPECT_FALSE(registers_of(device, {}, 0x4FFF, 4).has_value());

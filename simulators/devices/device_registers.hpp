@@ -31,7 +31,7 @@ struct LayoutValue {
   bool low_word_first = false;
 };
 
-/// The devices that the farm can play.
+/// A kind of device that can be played.
 struct DeviceLayout {
   std::string_view name;
   std::uint8_t function;  ///< 3 or 4: what it answers to.

@@ -1,4 +1,4 @@
-/// What goes wrong on a farm of meters, and when: a short text file that names its disturbance.
+/// What goes wrong with simulated meters, and when: a short text file that names its disturbance.
 ///
 ///     # gateway_one_unit_dead
 ///     1m..5m   unit 2  silent            # no answer
@@ -40,7 +40,7 @@ enum class FaultKind : std::uint8_t {
 };
 
 struct ScriptedFault {
-  std::chrono::milliseconds begin;  ///< Since the farm began.
+  std::chrono::milliseconds begin;  ///< Since the simulation began.
   std::chrono::milliseconds end;    ///< Not included; of a reset the end of time.
   std::optional<int> unit;          ///< None: all of them.
   FaultKind kind;

@@ -1,4 +1,4 @@
-#include "simulators/farm/device_registers.hpp"
+#include "simulators/devices/device_registers.hpp"
 
 #include <algorithm>
 #include <bit>
