@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/metering/interval_book.hpp"
@@ -51,6 +52,28 @@ struct StoreEvent {
   std::string subject;  ///< Id of a meter, bus or model; empty: the site.
   std::string text;     ///< A sentence.
 };
+
+enum class JobKind : std::uint8_t { calibration, diagnosis };
+enum class JobState : std::uint8_t { waiting, running, done, failed, cancelled };
+
+/// Long work that was asked for and, once done, its result.
+struct StoredJob {
+  std::int64_t number = 0;  ///< Given by the store; 1, 2, 3 …
+  JobKind kind = JobKind::calibration;
+  JobState state = JobState::waiting;
+  std::string asked_by;  ///< "month", "schedule", "api", "signal"
+  metering::Instant asked;
+  std::optional<metering::Instant> started;
+  std::optional<metering::Instant> ended;
+  bool accepted = false;  ///< Passed its gates: the latest such result is the one in use.
+  std::string message;    ///< Why it failed, or was not accepted; else empty.
+  std::string folder;     ///< With its files, beside the store; empty: none.
+  std::string result;     ///< JSON as calibration.json or diagnosis.json; empty until done.
+};
+
+/// "calibration", "running" and so on, as files and people read them.
+[[nodiscard]] std::string_view name_of(JobKind kind);
+[[nodiscard]] std::string_view name_of(JobState state);
 
 struct MeterMonth {
   std::uint32_t meter;
@@ -123,6 +146,23 @@ class Store {
 
   /// The newest events first.
   virtual Result<std::vector<StoreEvent>> events(int limit) = 0;
+
+  /// A new job, whatever number it has. @return its number.
+  virtual Result<std::int64_t> add_job(const StoredJob& job) = 0;
+
+  /// What has become of a job. @return not_found for a number that was never given.
+  virtual Result<void> put_job(const StoredJob& job) = 0;
+
+  virtual Result<std::optional<StoredJob>> job(std::int64_t number) = 0;
+
+  /// The newest first, without their results.
+  virtual Result<std::vector<StoredJob>> jobs(JobKind kind, int limit) = 0;
+
+  /// The newest that was accepted, with its result.
+  virtual Result<std::optional<StoredJob>> last_accepted(JobKind kind) = 0;
+
+  /// Waiting or running, the oldest first.
+  virtual Result<std::vector<StoredJob>> unfinished_jobs() = 0;
 };
 
 }  // namespace recald

@@ -84,6 +84,22 @@ CREATE TABLE event (
   text     TEXT    NOT NULL
 ) STRICT;
 CREATE INDEX event_by_time ON event (t);
+)sql",
+    R"sql(
+CREATE TABLE job (
+  number   INTEGER PRIMARY KEY AUTOINCREMENT,
+  kind     INTEGER NOT NULL CHECK (kind BETWEEN 0 AND 1),
+  state    INTEGER NOT NULL CHECK (state BETWEEN 0 AND 4),
+  asked_by TEXT    NOT NULL,
+  asked    INTEGER NOT NULL,
+  started  INTEGER,
+  ended    INTEGER,
+  accepted INTEGER NOT NULL CHECK (accepted IN (0, 1)),
+  message  TEXT    NOT NULL,
+  folder   TEXT    NOT NULL,
+  result   TEXT    NOT NULL
+) STRICT;
+CREATE INDEX job_by_state ON job (state);
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {

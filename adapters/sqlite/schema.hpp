@@ -5,7 +5,7 @@
 
 namespace recald::sqlite {
 
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
 /// Creates the tables in a new file, upgrades an older one, each version in a transaction.
 /// @return unsupported when the file was written by a newer version; malformed when it is another

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "adapters/sqlite/job_table.hpp"
 #include "adapters/sqlite/register_json.hpp"
 #include "adapters/sqlite/schema.hpp"
 #include "core/metering/placement.hpp"
@@ -363,6 +364,28 @@ Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
     events.push_back({instant_of(query->integer(0)), static_cast<Severity>(query->integer(1)),
                       query->text(2), query->text(3), query->text(4)});
   }
+}
+
+Result<std::int64_t> SqliteStore::add_job(const StoredJob& job) {
+  return insert_job(database_, job);
+}
+
+Result<void> SqliteStore::put_job(const StoredJob& job) { return update_job(database_, job); }
+
+Result<std::optional<StoredJob>> SqliteStore::job(std::int64_t number) {
+  return find_job(database_, number);
+}
+
+Result<std::vector<StoredJob>> SqliteStore::jobs(JobKind kind, int limit) {
+  return newest_jobs(database_, kind, limit);
+}
+
+Result<std::optional<StoredJob>> SqliteStore::last_accepted(JobKind kind) {
+  return last_accepted_job(database_, kind);
+}
+
+Result<std::vector<StoredJob>> SqliteStore::unfinished_jobs() {
+  return sqlite::unfinished_jobs(database_);
 }
 
 }  // namespace recald::sqlite

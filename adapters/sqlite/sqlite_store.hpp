@@ -27,6 +27,12 @@ class SqliteStore final : public Store {
                         const std::string& time_zone_release, metering::Instant now) override;
   Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) override;
   Result<std::vector<StoreEvent>> events(int limit) override;
+  Result<std::int64_t> add_job(const StoredJob& job) override;
+  Result<void> put_job(const StoredJob& job) override;
+  Result<std::optional<StoredJob>> job(std::int64_t number) override;
+  Result<std::vector<StoredJob>> jobs(JobKind kind, int limit) override;
+  Result<std::optional<StoredJob>> last_accepted(JobKind kind) override;
+  Result<std::vector<StoredJob>> unfinished_jobs() override;
 
   [[nodiscard]] Database& database() { return database_; }
 

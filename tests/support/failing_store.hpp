@@ -50,6 +50,30 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.events(limit);
   }
+  Result<std::int64_t> add_job(const StoredJob& job) override {
+    if (refuses) return refusal();
+    return behind_.add_job(job);
+  }
+  Result<void> put_job(const StoredJob& job) override {
+    if (refuses) return refusal();
+    return behind_.put_job(job);
+  }
+  Result<std::optional<StoredJob>> job(std::int64_t number) override {
+    if (refuses) return refusal();
+    return behind_.job(number);
+  }
+  Result<std::vector<StoredJob>> jobs(JobKind kind, int limit) override {
+    if (refuses) return refusal();
+    return behind_.jobs(kind, limit);
+  }
+  Result<std::optional<StoredJob>> last_accepted(JobKind kind) override {
+    if (refuses) return refusal();
+    return behind_.last_accepted(kind);
+  }
+  Result<std::vector<StoredJob>> unfinished_jobs() override {
+    if (refuses) return refusal();
+    return behind_.unfinished_jobs();
+  }
 
  private:
   static tl::unexpected<Error> refusal() {

@@ -1,0 +1,141 @@
+#include "adapters/sqlite/job_table.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace recald::sqlite {
+namespace {
+
+using metering::Instant;
+
+constexpr auto kColumns =
+    "number, kind, state, asked_by, asked, started, ended, accepted, message, folder";
+
+void bind_instant(Statement& statement, int parameter, const std::optional<Instant>& t) {
+  if (t) {
+    statement.bind(parameter, std::int64_t{t->time_since_epoch().count()});
+  } else {
+    statement.bind_null(parameter);
+  }
+}
+
+std::optional<Instant> instant_at(const Statement& row, int column) {
+  if (row.is_null(column)) return {};
+  return Instant{std::chrono::seconds{row.integer(column)}};
+}
+
+/// Parameters 0 to 9: all that a job has but its number.
+void bind_job(Statement& statement, const StoredJob& job) {
+  statement.bind(0, static_cast<std::int64_t>(job.kind))
+      .bind(1, static_cast<std::int64_t>(job.state))
+      .bind(2, std::string_view{job.asked_by})
+      .bind(3, std::int64_t{job.asked.time_since_epoch().count()});
+  bind_instant(statement, 4, job.started);
+  bind_instant(statement, 5, job.ended);
+  statement.bind(6, std::int64_t{job.accepted})
+      .bind(7, std::string_view{job.message})
+      .bind(8, std::string_view{job.folder})
+      .bind(9, std::string_view{job.result});
+}
+
+/// Columns as in `kColumns`.
+StoredJob read_job(const Statement& row) {
+  StoredJob job{.number = row.integer(0),
+                .kind = static_cast<JobKind>(row.integer(1)),
+                .state = static_cast<JobState>(row.integer(2)),
+                .asked_by = row.text(3),
+                .asked = Instant{std::chrono::seconds{row.integer(4)}},
+                .started = instant_at(row, 5),
+                .ended = instant_at(row, 6)};
+  job.accepted = row.integer(7) != 0;
+  job.message = row.text(8);
+  job.folder = row.text(9);
+  return job;
+}
+
+Result<std::vector<StoredJob>> read_jobs(Statement& query) {
+  std::vector<StoredJob> jobs;
+  for (;;) {
+    const auto row = query.step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return jobs;
+    jobs.push_back(read_job(query));
+  }
+}
+
+/// Of a query for `kColumns` and the result.
+Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
+  const auto row = query.step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) return std::optional<StoredJob>{};
+  StoredJob job = read_job(query);
+  job.result = query.text(10);
+  query.reset();
+  return std::optional{std::move(job)};
+}
+
+}  // namespace
+
+Result<std::int64_t> insert_job(Database& database, const StoredJob& job) {
+  auto insert = database.prepare(
+      "INSERT INTO job (kind, state, asked_by, asked, started, ended, accepted, message, folder, "
+      "result) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING number");
+  if (!insert) return tl::unexpected(insert.error());
+  bind_job(*insert, job);
+  const auto row = insert->step();
+  if (!row) return tl::unexpected(row.error());
+  const std::int64_t number = insert->integer(0);
+  if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+  return number;
+}
+
+Result<void> update_job(Database& database, const StoredJob& job) {
+  auto update = database.prepare(
+      "UPDATE job SET kind = ?, state = ?, asked_by = ?, asked = ?, started = ?, ended = ?, "
+      "accepted = ?, message = ?, folder = ?, result = ? WHERE number = ? RETURNING number");
+  if (!update) return tl::unexpected(update.error());
+  bind_job(*update, job);
+  const auto row = update->bind(10, job.number).step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) {
+    return failure(ErrorCode::not_found, fmt::format("there is no job {}", job.number));
+  }
+  return update->run();
+}
+
+Result<std::optional<StoredJob>> find_job(Database& database, std::int64_t number) {
+  auto query =
+      database.prepare(fmt::format("SELECT {}, result FROM job WHERE number = ?", kColumns));
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, number);
+  return read_whole_job(*query);
+}
+
+Result<std::vector<StoredJob>> newest_jobs(Database& database, JobKind kind, int limit) {
+  auto query = database.prepare(
+      fmt::format("SELECT {} FROM job WHERE kind = ? ORDER BY number DESC LIMIT ?", kColumns));
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{limit});
+  return read_jobs(*query);
+}
+
+Result<std::optional<StoredJob>> last_accepted_job(Database& database, JobKind kind) {
+  auto query =
+      database.prepare(fmt::format("SELECT {}, result FROM job WHERE kind = ? AND accepted = 1 "
+                                   "ORDER BY number DESC LIMIT 1",
+                                   kColumns));
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, static_cast<std::int64_t>(kind));
+  return read_whole_job(*query);
+}
+
+Result<std::vector<StoredJob>> unfinished_jobs(Database& database) {
+  auto query = database.prepare(
+      fmt::format("SELECT {} FROM job WHERE state IN ({}, {}) ORDER BY number", kColumns,
+                  static_cast<int>(JobState::waiting), static_cast<int>(JobState::running)));
+  if (!query) return tl::unexpected(query.error());
+  return read_jobs(*query);
+}
+
+}  // namespace recald::sqlite

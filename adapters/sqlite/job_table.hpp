@@ -1,0 +1,23 @@
+/// Calibrations and diagnoses that were asked for, in the store's `job` table.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "adapters/ports/store.hpp"
+#include "adapters/sqlite/database.hpp"
+
+namespace recald::sqlite {
+
+/// The job's number is given by the table and returned; errors are the database's.
+[[nodiscard]] Result<std::int64_t> insert_job(Database& database, const StoredJob& job);
+/// @return not_found when no job has this number.
+[[nodiscard]] Result<void> update_job(Database& database, const StoredJob& job);
+[[nodiscard]] Result<std::optional<StoredJob>> find_job(Database& database, std::int64_t number);
+[[nodiscard]] Result<std::vector<StoredJob>> newest_jobs(Database& database, JobKind kind,
+                                                         int limit);
+[[nodiscard]] Result<std::optional<StoredJob>> last_accepted_job(Database& database, JobKind kind);
+[[nodiscard]] Result<std::vector<StoredJob>> unfinished_jobs(Database& database);
+
+}  // namespace recald::sqlite
