@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <modbus/modbus.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -40,6 +41,33 @@ void set_timeout(modbus_t* context, milliseconds timeout) {
   const microseconds rest = timeout - seconds;
   modbus_set_response_timeout(context, static_cast<std::uint32_t>(seconds.count()),
                               static_cast<std::uint32_t>(rest.count()));
+}
+
+/// The PDU of a reply of any function, once it is whole; empty: more bytes are to come.
+tl::expected<std::vector<std::uint8_t>, ReadFailure> whole_pdu(
+    const std::vector<std::uint8_t>& frame, std::uint8_t unit, bool is_serial) {
+  constexpr std::size_t kHeader = 7;
+  // A serial frame does not say how long it is: it is whole when its check sum fits.
+  const std::size_t head = is_serial ? 1 : kHeader;
+  const std::size_t tail = is_serial ? 2 : 0;
+  if (frame.size() < head + 2 + tail) return {};
+  if (is_serial) {
+    const std::span<const std::uint8_t> body{frame.data(), frame.size() - tail};
+    const unsigned stated = static_cast<unsigned>(frame.back()) << 8 | frame[frame.size() - 2];
+    if (crc16(body) != stated) return {};
+  } else {
+    const std::size_t length = static_cast<std::size_t>(frame[4] << 8 | frame[5]);
+    if (frame.size() < length + kHeader - 1) return {};
+    if (frame[2] != 0 || frame[3] != 0 || frame.size() != length + kHeader - 1) {
+      return failed(ReadFault::mismatch, "the frame's header contradicts its bytes");
+    }
+  }
+  if (frame[head - 1] != unit) {
+    return failed(ReadFault::mismatch,
+                  fmt::format("unit {} answered for unit {}", frame[head - 1], unit));
+  }
+  return std::vector<std::uint8_t>(frame.begin() + static_cast<std::ptrdiff_t>(head),
+                                   frame.end() - static_cast<std::ptrdiff_t>(tail));
 }
 
 int unread_bytes(int descriptor) {
@@ -199,6 +227,69 @@ ReadResult Connection::read(const ReadRequest& request, milliseconds timeout) {
   // Many devices close a connection that was idle for a while, which shows only when it is used.
   const bool was_stale = !result && was_open && result.error().fault == ReadFault::closed;
   return was_stale ? read(request, timeout) : result;
+}
+
+/// libmodbus does not know how long such a reply is, so its bytes are taken from the descriptor.
+tl::expected<std::vector<std::uint8_t>, ReadFailure> Connection::receive_pdu(std::uint8_t unit,
+                                                                             milliseconds timeout) {
+  const int descriptor = modbus_get_socket(context_->modbus);
+  const auto deadline = steady_clock::now() + timeout;
+  std::vector<std::uint8_t> frame;
+  for (;;) {
+    const auto whole = whole_pdu(frame, unit, is_serial());
+    if (!whole) return tl::unexpected(whole.error());
+    if (!whole->empty()) return *whole;
+    const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
+    pollfd waiting{descriptor, POLLIN, 0};
+    if (left <= milliseconds{0} || ::poll(&waiting, 1, static_cast<int>(left.count())) <= 0) {
+      return failed(ReadFault::timeout, "no complete reply before the deadline");
+    }
+    std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
+    const auto received = ::read(descriptor, bytes.data(), bytes.size());
+    if (received <= 0) return failed(ReadFault::closed, "connection lost");
+    frame.insert(frame.end(), bytes.begin(), bytes.begin() + received);
+    if (frame.size() > MODBUS_MAX_ADU_LENGTH) {
+      return failed(ReadFault::mismatch, "a reply longer than any frame may be");
+    }
+  }
+}
+
+tl::expected<IdentityPart, ReadFailure> Connection::identify_from(std::uint8_t unit,
+                                                                  std::uint8_t first_object,
+                                                                  milliseconds timeout) {
+  if (!is_open()) {
+    if (auto refusal = connect()) return tl::unexpected(std::move(*refusal));
+  }
+  wait_for_silence();
+  modbus_set_slave(context_->modbus, unit);
+  const auto bytes = encode_identity_request(unit, first_object);
+  if (modbus_send_raw_request(context_->modbus, bytes.data(), bytes.size()) < 0) {
+    return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
+  }
+  const auto pdu = receive_pdu(unit, timeout);
+  if (const auto* serial = std::get_if<SerialPort>(&endpoint_)) {
+    line_free_ = steady_clock::now() + line_time(*serial, 7) / 2;
+  }
+  if (!pdu) return tl::unexpected(pdu.error());
+  return parse_identity_reply(*pdu);
+}
+
+IdentityResult Connection::identify(std::uint8_t unit, milliseconds timeout) {
+  constexpr int kPartsMax = 4;  // three objects; a device that always says "more" is not believed
+  std::map<std::uint8_t, std::string> objects;
+  std::uint8_t next = 0;
+  for (int parts = 0; parts < kPartsMax; ++parts) {
+    const auto part = identify_from(unit, next, timeout);
+    if (!part) {
+      if (is_open()) recover_from(part.error(), {});
+      timed_out_.reset();  // a late reply to this is no reply to a read
+      return tl::unexpected(part.error());
+    }
+    objects.insert(part->objects.begin(), part->objects.end());
+    next = part->next_object;
+    if (next == 0) break;
+  }
+  return DeviceIdentity{objects[0], objects[1], objects[2]};
 }
 
 ReadResult Connection::ask(const ReadRequest& request, milliseconds timeout) {

@@ -14,6 +14,7 @@
 #include <string>
 #include <variant>
 
+#include "adapters/modbus/device_identification.hpp"
 #include "adapters/modbus/frame.hpp"
 
 namespace recald::modbus {
@@ -66,6 +67,10 @@ class Connection {
   ///                    connection open.
   [[nodiscard]] ReadResult read(const ReadRequest& request, milliseconds timeout);
 
+  /// Asks what the device is; failures as with `read`. Few devices answer, and some are confused by
+  /// the question, so that only `recald scan` asks it.
+  [[nodiscard]] IdentityResult identify(std::uint8_t unit, milliseconds timeout);
+
   void close();
   [[nodiscard]] bool is_open() const;
   /// How often a connection was made: more than once means that the other end is restless.
@@ -78,6 +83,11 @@ class Connection {
   [[nodiscard]] ReadResult ask(const ReadRequest& request, milliseconds timeout);
   [[nodiscard]] ReadResult exchange(const ReadRequest& request, milliseconds timeout);
   [[nodiscard]] ReadResult receive(const ReadRequest& request);
+  [[nodiscard]] tl::expected<IdentityPart, ReadFailure> identify_from(std::uint8_t unit,
+                                                                      std::uint8_t first_object,
+                                                                      milliseconds timeout);
+  [[nodiscard]] tl::expected<std::vector<std::uint8_t>, ReadFailure> receive_pdu(
+      std::uint8_t unit, milliseconds timeout);
   void recover_from(const ReadFailure& failure, const ReadRequest& request);
   [[nodiscard]] bool is_serial() const { return std::holds_alternative<SerialPort>(endpoint_); }
   void wait_for_silence();

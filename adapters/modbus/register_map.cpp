@@ -116,7 +116,8 @@ std::vector<FieldValue> decode_read(const std::vector<RegisterField>& fields,
                                     const PlannedRead& read, std::span<const std::uint16_t> words) {
   std::vector<FieldValue> values;
   for (const std::size_t i : read.fields) {
-    values.push_back({i, decode(field_words(fields[i], read, words), fields[i].format)});
+    values.push_back(
+        {.field = i, .value = decode(field_words(fields[i], read, words), fields[i].format)});
   }
   for (FieldValue& scaled : values) {
     const std::optional<std::string>& name = fields[scaled.field].scale_factor;
@@ -130,6 +131,10 @@ std::vector<FieldValue> decode_read(const std::vector<RegisterField>& fields,
     const double power_of_ten = std::pow(10.0, factor->value->value);
     scaled.value->value *= power_of_ten;
     scaled.value->resolution *= power_of_ten;
+    if (!std::isfinite(scaled.value->value) || !std::isfinite(scaled.value->resolution)) {
+      scaled.value = tl::unexpected(ValueFault::not_finite);
+    }
+    scaled.power_of_ten = power_of_ten;
   }
   return values;
 }

@@ -75,6 +75,7 @@ struct PlannedRead {
 struct FieldValue {
   std::size_t field;  ///< Index, as in `PlannedRead::fields`.
   tl::expected<DecodedValue, ValueFault> value;
+  double power_of_ten = 1.0;  ///< By which its scale factor has scaled it, in this read.
 };
 
 /// All fields of a read, with their scale factors applied. A value whose factor is absent is

@@ -209,6 +209,39 @@ TEST(ModbusTcp, ADeviceThatAlwaysClosesIsToldAsClosed) {
   EXPECT_EQ(server.requests(), 1);
 }
 
+// half_open_connection: the peer lost power, so nothing comes and no connection ends. Our own
+// deadline finds it, and the next read has a connection of its own.
+TEST(ModbusTcp, HalfOpenConnection) {
+  ScriptedServer server{[](const Bytes& request, int number) -> std::vector<Piece> {
+    if (number == 1) return {};
+    return {{0ms, tcp_reply(request, static_cast<std::uint8_t>(number))}};
+  }};
+  Connection connection = to(server);
+  expect_value(connection.read(kTwoRegisters, 1s), 0);
+  expect_fault(connection.read(kTwoRegisters, 200ms), ReadFault::timeout);
+  EXPECT_FALSE(connection.is_open());
+  expect_value(connection.read(kTwoRegisters, 1s), 2);
+  EXPECT_EQ(connection.connects(), 2);
+}
+
+// single_connection_device: while one connection lives no other is served. All units behind an
+// endpoint share ours, and it is closed before another one is made.
+TEST(ModbusTcp, SingleConnectionDevice) {
+  ScriptedServer server{[](const Bytes& request, int number) -> std::vector<Piece> {
+    if (number == 2) return {};
+    return {{0ms, tcp_reply(request, static_cast<std::uint8_t>(number))}};
+  }};
+  Connection connection = to(server);
+  ReadRequest neighbour = kTwoRegisters;
+  neighbour.unit = 8;
+  expect_value(connection.read(kTwoRegisters, 1s), 0);
+  expect_value(connection.read(neighbour, 1s), 1);
+  EXPECT_EQ(server.connections(), 1);
+  expect_fault(connection.read(kTwoRegisters, 200ms), ReadFault::timeout);
+  expect_value(connection.read(neighbour, 5s), 3);
+  EXPECT_EQ(server.connections(), 2);
+}
+
 TEST(ModbusTcp, NobodyListens) {
   std::uint16_t port = 0;
   {

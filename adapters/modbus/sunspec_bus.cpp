@@ -1,0 +1,89 @@
+#include "adapters/modbus/sunspec_bus.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace recald::modbus {
+
+using std::chrono::milliseconds;
+
+SunSpecBus::SunSpecBus(std::unique_ptr<Bus> bus,
+                       std::map<std::uint8_t, std::vector<std::uint16_t>> wanted)
+    : bus_(std::move(bus)),
+      wanted_(std::move(wanted)),
+      self_(std::make_shared<SunSpecBus*>(this)) {}
+
+void SunSpecBus::read(const ReadRequest& request, milliseconds timeout, Done done) {
+  const auto wanted = wanted_.find(request.unit);
+  if (wanted == wanted_.end()) {
+    bus_->read(request, timeout, std::move(done));
+    return;
+  }
+  const auto order = std::make_shared<Order>(
+      Order{request, timeout, std::move(done), {request.unit, wanted->second}});
+  if (places_.contains(request.unit)) {
+    ask(order);
+  } else {
+    begin_walk(order);
+  }
+}
+
+void SunSpecBus::read_below(const ReadRequest& request, const OrderPtr& order,
+                            void (SunSpecBus::*take)(const OrderPtr&, ReadResult, milliseconds)) {
+  bus_->read(request, order->timeout,
+             [weak = std::weak_ptr{self_}, order, take](ReadResult result, milliseconds duration) {
+               if (const auto self = weak.lock()) {
+                 ((*self)->*take)(order, std::move(result), duration);
+               }
+             });
+}
+
+void SunSpecBus::begin_walk(const OrderPtr& order) {
+  order->has_walked = true;
+  read_below(*order->walk.next(), order, &SunSpecBus::take_step);
+}
+
+void SunSpecBus::take_step(const OrderPtr& order, ReadResult result, milliseconds duration) {
+  order->walk.take(result);
+  if (const auto next = order->walk.next()) {
+    read_below(*next, order, &SunSpecBus::take_step);
+  } else if (const auto model = order->walk.found()) {
+    places_.insert_or_assign(order->request.unit, *model);
+    ask(order);
+  } else {
+    order->done(tl::unexpected(order->walk.failure()), duration);
+  }
+}
+
+void SunSpecBus::ask(const OrderPtr& order) {
+  const SunSpecModel model = places_.at(order->request.unit);
+  ReadRequest placed = order->request;
+  if (const int end = placed.address + placed.count; end > SunSpecWalk::kHeader + model.length) {
+    // Beyond it the next model's registers would pass for this one's.
+    order->done(
+        tl::unexpected(ReadFailure{
+            ReadFault::mismatch, 0,
+            fmt::format("SunSpec model {} of the device has {} registers; the map goes to {}",
+                        model.id, SunSpecWalk::kHeader + model.length, end)}),
+        milliseconds{0});
+    return;
+  }
+  placed.address = static_cast<std::uint16_t>(model.address + placed.address);
+  read_below(placed, order, &SunSpecBus::take_answer);
+}
+
+void SunSpecBus::take_answer(const OrderPtr& order, ReadResult result, milliseconds duration) {
+  if (!result) places_.erase(order->request.unit);
+  // The chain may have moved under a connection that lasts: look once more before it is believed
+  // that the device has no such register.
+  const bool may_have_moved =
+      !result && result.error().fault == ReadFault::exception && result.error().exception_code == 2;
+  if (may_have_moved && !order->has_walked) {
+    begin_walk(order);
+  } else {
+    order->done(std::move(result), duration);
+  }
+}
+
+}  // namespace recald::modbus
