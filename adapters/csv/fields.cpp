@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/text/printable.hpp"
+
 namespace recald::csv {
 namespace {
 
@@ -30,7 +32,7 @@ bool has(std::string_view text, std::size_t at, char c) {
 }
 
 Error bad_stamp(std::string_view text, std::string_view what) {
-  return {ErrorCode::malformed, "timestamp '" + std::string{text} + "' " + std::string{what}};
+  return {ErrorCode::malformed, "timestamp " + in_quotes(text) + " " + std::string{what}};
 }
 
 /// "Z", "+01:00", "-0800", "+05": local minus UTC; none if it is neither.
@@ -110,7 +112,7 @@ constexpr std::array<double, 16> kPowersOfTen{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  
 
 std::string in_quotes(std::string_view text) {
   std::string quoted{"'"};
-  quoted += text;
+  quoted += printable(text);
   quoted += '\'';
   return quoted;
 }
@@ -161,8 +163,8 @@ std::string number_problem(std::string_view name, std::string_view text) {
              dotted;
     }
   }
-  return std::string{name} + " '" + std::string{text} +
-         "' is not a finite number; leave the field blank where nothing was measured";
+  return std::string{name} + " " + in_quotes(text) +
+         " is not a finite number; leave the field blank where nothing was measured";
 }
 
 Result<Instant> parse_timestamp(std::string_view text) {

@@ -36,7 +36,7 @@ class FieldSplitter {
   return text;
 }
 
-/// 'text', as messages show what they found.
+/// 'text', as messages show what they found; control characters are written out.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// A finite decimal number that is the whole text, with a dot; none otherwise.

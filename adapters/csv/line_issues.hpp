@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "core/text/printable.hpp"
 
 namespace recald::csv {
 
@@ -18,9 +21,10 @@ struct LineIssues {
   std::uint64_t total = 0;
   std::size_t listed_max = 100;
 
-  void add(std::uint64_t line, std::string reason) {
+  void add(std::uint64_t line, std::string_view reason) {
     ++total;
-    if (listed.size() < listed_max) listed.push_back({line, std::move(reason)});
+    // Reasons quote what stands in the file, whatever that is.
+    if (listed.size() < listed_max) listed.push_back({line, printable(reason)});
   }
 };
 

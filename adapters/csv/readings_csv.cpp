@@ -27,6 +27,7 @@ constexpr std::size_t kRequiredColumns = 4;
 constexpr std::size_t kHeadRows = 64;  // what an interval is inferred from
 constexpr seconds kIntervalMin{60};
 constexpr seconds kIntervalMax{3600};
+constexpr double kValueMax = 1e18;   // so that no unit and no multiplier makes it infinite
 constexpr seconds kOffsetGrid{900};  // all zones' offsets since 1971 are multiples of it
 
 /// One row, its interval not yet applied.
@@ -324,6 +325,9 @@ class ReadingsReader {
       bad(row.line, number_problem("value", text));
       return false;
     }
+    if (std::abs(*value) > kValueMax) {
+      return refuse(row, "value " + in_quotes(text) + " is more than any meter counts");
+    }
     row.value = *value;
     return true;
   }
@@ -518,9 +522,9 @@ class ReadingsReader {
     }
   }
 
-  void bad(std::uint64_t line, std::string reason) { report_.issues.add(line, std::move(reason)); }
-  bool refuse(const Row& row, std::string reason) {
-    bad(row.line, std::move(reason));
+  void bad(std::uint64_t line, std::string_view reason) { report_.issues.add(line, reason); }
+  bool refuse(const Row& row, std::string_view reason) {
+    bad(row.line, reason);
     return false;
   }
 

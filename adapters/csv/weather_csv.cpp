@@ -86,7 +86,7 @@ class WeatherReader {
       const auto known = std::find_if(kWeatherVariables.begin(), kWeatherVariables.end(),
                                       [&](const auto& v) { return v.name == column; });
       if (known == kWeatherVariables.end()) {
-        csv_.ignored_columns.emplace_back(column);
+        csv_.ignored_columns.push_back(printable(column));
         continue;
       }
       auto& place = columns_[static_cast<std::size_t>(known - kWeatherVariables.begin())];
@@ -171,7 +171,7 @@ class WeatherReader {
     return std::move(csv_);
   }
 
-  void bad(std::uint64_t line, std::string reason) { csv_.issues.add(line, std::move(reason)); }
+  void bad(std::uint64_t line, std::string_view reason) { csv_.issues.add(line, reason); }
 
   LineReader lines_;
   std::string name_;

@@ -1,5 +1,6 @@
 #include "adapters/csv/readings_csv.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -285,6 +286,22 @@ TEST(ReadingsCsvBadInput, NotANumberAndNotFinite) {
               "5: value '" + std::string{value} +
                   "' is not a finite number; leave the field blank where nothing was measured");
   }
+}
+
+// Finite in the file and infinite in kW.
+TEST(ReadingsCsvBadInput, MoreThanAnyMeterCounts) {
+  EXPECT_EQ(issue(kHead + kThreeRows + "2016-03-01T00:45:00Z,main,1e307,GWh\n"),
+            "5: value '1e307' is more than any meter counts");
+  EXPECT_EQ(issue(kHead + kThreeRows + "2016-03-01T00:45:00Z,main,-1e19,kWh\n"),
+            "5: value '-1e19' is more than any meter counts");
+}
+
+// What a file contains moves no cursor and begins no line of its own.
+TEST(ReadingsCsvBadInput, ControlCharactersAreWrittenOut) {
+  EXPECT_EQ(issue(kHead + kThreeRows + "2016-03-01T00:45:00Z,\x1B[2J,1,kWh\n"),
+            "5: meter '\\x1B[2J' is not configured");
+  EXPECT_THAT(read("timestamp;\a\n").report.error().message,
+              ::testing::HasSubstr("'timestamp;\\x07'"));
 }
 
 TEST(ReadingsCsvBadInput, UnsortedAndDuplicateRowsAreReportedAndHandedOn) {

@@ -1,0 +1,20 @@
+#include "core/text/printable.hpp"
+
+#include <gtest/gtest.h>
+
+namespace recald {
+namespace {
+
+TEST(Printable, WritesControlCharactersOut) {
+  EXPECT_EQ(printable("kWh\nerror: none"), "kWh\\x0Aerror: none");
+  EXPECT_EQ(printable("\x1B[2J\t\x7F"), "\\x1B[2J\\x09\\x7F");
+  EXPECT_EQ(printable(std::string_view{"\0", 1}), "\\x00");
+}
+
+TEST(Printable, LeavesEverythingElse) {
+  EXPECT_EQ(printable(""), "");
+  EXPECT_EQ(printable("São Paulo, 21.5 °C ~"), "São Paulo, 21.5 °C ~");
+}
+
+}  // namespace
+}  // namespace recald
