@@ -51,15 +51,13 @@ std::optional<double> as_bcd(std::uint64_t bits) {
   return value;
 }
 
-double step_of(float value) {
-  const float size = std::abs(value);
-  return static_cast<double>(std::nextafter(size, std::numeric_limits<float>::infinity())) -
-         static_cast<double>(size);
-}
-
-double step_of(double value) {
-  const double size = std::abs(value);
-  return std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+/// To the next value away from zero; of the largest one to the next below.
+template <class Float>
+double step_of(Float value) {
+  const Float size = std::abs(value);
+  constexpr Float kLargest = std::numeric_limits<Float>::max();
+  const Float neighbour = std::nextafter(size, size < kLargest ? kLargest : Float{0});
+  return std::abs(static_cast<double>(neighbour) - static_cast<double>(size));
 }
 
 struct Raw {

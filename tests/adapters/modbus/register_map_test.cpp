@@ -125,6 +125,9 @@ TEST(ReadPlan, PowersOfTenMayChangeFromReadToRead) {
   EXPECT_DOUBLE_EQ(energy({12340, 1})->value, 123'400.0);
   EXPECT_DOUBLE_EQ(energy({1234, 0xFFFF})->value, 123.4);
   EXPECT_EQ(energy({1234, 0x8000}).error(), ValueFault::absent);
+  // A factor that no meter means: neither infinite energy nor 0 times infinity.
+  EXPECT_EQ(energy({1234, 0x7FFF}).error(), ValueFault::not_finite);
+  EXPECT_EQ(energy({0, 0x7FFF}).error(), ValueFault::not_finite);
 }
 
 }  // namespace

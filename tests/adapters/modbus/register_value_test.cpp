@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 namespace recald::modbus {
@@ -144,6 +145,14 @@ TEST(RegisterValue, NanInfinityAndNoDigitsAreNoValues) {
   const std::array<std::uint16_t, 4> huge{0x7FEF, 0xFFFF, 0xFFFF, 0xFFFF};
   EXPECT_EQ(decode(huge, {.type = RegisterType::f64, .scale = 1000.0}).error(),
             ValueFault::not_finite);
+}
+
+// Beyond the largest value there is no step, below it there is.
+TEST(RegisterValue, TheLargestFloatHasAResolution) {
+  const std::array<std::uint16_t, 2> largest{0x7F7F, 0xFFFF};
+  EXPECT_EQ(decode(largest, {.type = RegisterType::f32})->resolution, std::ldexp(1.0, 104));
+  const std::array<std::uint16_t, 4> largest64{0x7FEF, 0xFFFF, 0xFFFF, 0xFFFF};
+  EXPECT_EQ(decode(largest64, {.type = RegisterType::f64})->resolution, std::ldexp(1.0, 971));
 }
 
 TEST(RegisterValue, NamesOfTypesAndOrders) {
