@@ -1,7 +1,9 @@
 #!/bin/sh
 # All tests, from nothing: installs what is missing, builds, runs. Ends with ctest's own summary.
 #
-#   sh tests/run.sh              everything that fits 35 minutes on two cores
+#   sh tests/run.sh              all but the longer studies: fuzz targets for ten seconds each, what
+#                                leads from registers to months under the sanitizers, and all tests
+#   sh tests/run.sh --plain      all tests, without fuzzing and sanitizers
 #   sh tests/run.sh --long NAME  one of the longer studies; without NAME: which there are
 #   RECALD_DATA=DIR              measured data of others; tests that need it skip where it is absent
 set -eu
@@ -32,13 +34,31 @@ if [ "${1:-}" = "--long" ]; then
     for file in "$root"/tests/long/*.sh; do echo "  $(basename "$file" .sh)" >&2; done
     exit 2
   fi
-  stage "build (release)"
-  cmake --preset release >/dev/null
-  cmake --build --preset release --target recald recald-sim
+  if [ "$2" != fuzz ]; then  # which builds what it needs, with another compiler
+    stage "build (release)"
+    cmake --preset release >/dev/null
+    cmake --build --preset release --target recald recald-sim
+  fi
   stage "$2"
   sh "$study" "$root/.build/release"
   stage ""
   exit 0
+fi
+
+failed=
+# instrumented PRESET: what leads from registers to months, built with a sanitizer and run.
+instrumented() {
+  stage "$1"
+  cmake --preset "$1" >/dev/null
+  cmake --build --preset "$1" --target ingestion_tests
+  ctest --preset "$1" -j 2 || failed="$failed $1"
+}
+
+if [ "${1:-}" != "--plain" ]; then
+  stage "fuzz (10 s each)"
+  sh "$root/tests/fuzz/run.sh" 10 || failed="$failed fuzz"
+  instrumented asan
+  instrumented tsan
 fi
 
 stage "build (dev: optimised, assertions on, warnings are errors)"
@@ -46,5 +66,10 @@ cmake --preset dev >/dev/null
 cmake --build --preset dev
 stage ""
 echo "--- tests, after $(($(date +%s) - begin)) s for all of the above"
-# Two at a time: several tests use threads of their own. ctest's own summary is the last word.
-exec ctest --preset dev -j 2
+# Two at a time: several tests use threads of their own. ctest's own summary is the last word, unless
+# something failed before.
+ctest --preset dev -j 2 || failed="$failed tests"
+[ -z "$failed" ] || {
+  echo "Failed:$failed" >&2
+  exit 1
+}

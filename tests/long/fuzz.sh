@@ -1,0 +1,3 @@
+#!/bin/sh
+# Each fuzz target for a minute.
+exec sh "$(dirname "$0")/../fuzz/run.sh" 60
