@@ -14,6 +14,7 @@
 
 #include "core/metering/interval_book.hpp"
 #include "core/metering/monthly_figure.hpp"
+#include "core/metering/power_book.hpp"
 #include "core/metering/reading.hpp"
 #include "core/result.hpp"
 
@@ -30,6 +31,7 @@ struct RegisterState {
   std::string field;  ///< Name in the register map.
   metering::CounterState counter;
   metering::IntervalBook book;
+  metering::PowerBook power;            ///< In the place of both, of a meter that counts nothing.
   metering::CounterSettings settings;  ///< Under which the state was reached.
   std::string identity;                ///< Serial number as read; empty: the map has none.
 };
@@ -97,6 +99,7 @@ struct StoreBatch {
   std::vector<RawSample> samples;
   std::vector<StoreEvent> events;
   std::vector<MeterMonth> reopened;  ///< Closed months that the intervals change.
+  std::optional<std::int64_t> edit;  ///< The edit by hand that the intervals belong to.
 
   [[nodiscard]] bool empty() const {
     return intervals.empty() && registers.empty() && samples.empty() && events.empty() &&

@@ -94,6 +94,32 @@ CounterState counter_of(const Json& json) {
   return counter;
 }
 
+Json json_of(const metering::PowerBook& power) {
+  return {{"next", power.next ? json_of(*power.next) : Json{}},
+          {"until", json_of(power.until)},
+          {"kW", power.power_kW ? Json(*power.power_kW) : Json{}},
+          {"kWh", power.energy_kWh},
+          {"covered_s", power.covered.count()},
+          {"hole_longest_s", power.hole_longest.count()},
+          {"reasons", to_string(power.reasons)}};
+}
+
+metering::PowerBook power_of(const Json& json) {
+  const auto reasons = metering::parse_reasons(json.at("reasons").get<std::string>());
+  if (!reasons) throw std::invalid_argument(reasons.error().message);
+  const auto seconds_of = [&](const char* key) {
+    return std::chrono::seconds{json.at(key).get<long long>()};
+  };
+  metering::PowerBook power{.until = instant_of(json.at("until")),
+                            .energy_kWh = json.at("kWh").get<double>(),
+                            .covered = seconds_of("covered_s"),
+                            .hole_longest = seconds_of("hole_longest_s"),
+                            .reasons = *reasons};
+  if (!json.at("next").is_null()) power.next = instant_of(json.at("next"));
+  if (!json.at("kW").is_null()) power.power_kW = json.at("kW").get<double>();
+  return power;
+}
+
 }  // namespace
 
 std::string to_json(const RegisterState& state) {
@@ -107,6 +133,7 @@ std::string to_json(const RegisterState& state) {
             {"rated_kW", state.settings.rated_kW},
             {"resolution_kWh", state.settings.resolution_kWh},
             {"modulus_kWh", state.settings.modulus_kWh}};
+  if (state.power.next) json["power"] = json_of(state.power);
   return json.dump();
 }
 
@@ -121,6 +148,7 @@ Result<RegisterState> register_from_json(std::string_view text) {
     if (!json.at("next").is_null()) state.book.next = instant_of(json.at("next"));
     state.settings = {json.at("rated_kW").get<double>(), json.at("resolution_kWh").get<double>(),
                       number_or(json.at("modulus_kWh"), std::numeric_limits<double>::infinity())};
+    if (json.contains("power")) state.power = power_of(json.at("power"));
     return state;
   } catch (const std::exception& error) {
     return failure(ErrorCode::malformed,

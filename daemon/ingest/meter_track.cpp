@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "core/metering/units.hpp"
 
@@ -19,6 +20,8 @@ using PollTime = std::chrono::sys_time<std::chrono::milliseconds>;
 
 /// Two samples around each interval boundary are kept as read; so are all that the counter doubts.
 constexpr std::chrono::seconds kNearBoundary{60};
+/// The open interval of a power-only meter is stored this often: a restart costs no more of it.
+constexpr std::chrono::seconds kKeepPowerEvery{60};
 
 Reason reason_of(const modbus::ReadFailure& failure) {
   switch (failure.fault) {
@@ -60,6 +63,10 @@ Severity severity_of(CounterEvent event) {
   return Severity::info;
 }
 
+metering::PowerRules power_rules(const metering::BookingRules& booking) {
+  return {.interval = booking.interval, .sample_gap_max = booking.sample_gap_max};
+}
+
 std::string_view kind_of(CounterEvent event) {
   switch (event) {
     case CounterEvent::none:
@@ -88,14 +95,19 @@ MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
       fields_(metered_fields(meter_.map)),
       usual_(std::move(calendar), meter_.booking.interval) {
   if (restored) state_ = *restored;
-  state_.field = "energy";
+  state_.field = meter_.map.energy.empty() ? "power" : "energy";
   // What the site file says now holds; the state was reached under what it said then.
   state_.settings = meter_.counter;
+  if (!meter_.map.energy.empty() && meter_.map.power) {
+    watch_.emplace(meter_.number, meter_.id, power_rules(meter_.booking));
+  }
 }
 
 void MeterTrack::clock_was_set() {
   clock_was_set_ = true;
   latest_.clear();
+  metering::forget_power(state_.power);
+  if (watch_) watch_->clock_was_set();
 }
 
 void MeterTrack::note_failure(const modbus::ReadFailure& failure) {
@@ -104,7 +116,8 @@ void MeterTrack::note_failure(const modbus::ReadFailure& failure) {
 
 void MeterTrack::note_fault(const RegisterField& field, modbus::ValueFault fault) {
   const bool counts = std::ranges::find(meter_.map.energy, field.name) != meter_.map.energy.end();
-  if (!counts) return;
+  const bool is_averaged = meter_.map.energy.empty() && meter_.map.power == field.name;
+  if (!counts && !is_averaged) return;
   since_sample_ |= fault == modbus::ValueFault::absent ? Reason::sentinel : Reason::nan;
 }
 
@@ -122,7 +135,7 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   for (const modbus::FieldValue& found : decode_read(fields_, read, *result)) {
     const RegisterField& field = fields_[found.field];
     if (found.value) {
-      latest_[field.name] = {found.value->value, found.value->resolution, poll};
+      latest_[field.name] = {found.value->value, found.value->resolution, found.power_of_ten, poll};
     } else {
       latest_.erase(field.name);
       note_fault(field, found.value.error());
@@ -130,9 +143,16 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   }
   take_identity(batch, poll, at);
   update_power();
-  take_energy(batch, poll, at);
+  const auto power_kW = new_power_kW(read);
+  if (meter_.map.energy.empty()) {
+    if (power_kW) take_power(batch, *power_kW, at);
+  } else {
+    if (power_kW && watch_) watch_->take_power({at, *power_kW});
+    take_energy(batch, poll, at);
+    if (watch_) watch_->judge(batch, state_.settings, at);
+  }
   // What is committed stands with the state that explains it.
-  if (!batch.empty()) batch.registers.push_back({meter_.number, state_});
+  if (!batch.empty() && batch.registers.empty()) batch.registers.push_back({meter_.number, state_});
   return batch;
 }
 
@@ -175,7 +195,6 @@ void MeterTrack::take_identity(StoreBatch& batch, PollTime poll, Instant at) {
 }
 
 void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
-  if (meter_.map.energy.empty()) return;
   double energy_kWh = 0.0;
   double resolution_kWh = 0.0;
   for (const std::string& name : meter_.map.energy) {
@@ -186,13 +205,33 @@ void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
     energy_kWh += found->second.value * factor;
     resolution_kWh += found->second.resolution * factor;
     if (field->modulus && meter_.map.energy.size() == 1) {
-      state_.settings.modulus_kWh = std::min(meter_.counter.modulus_kWh, *field->modulus * factor);
+      state_.settings.modulus_kWh = std::min(meter_.counter.modulus_kWh,
+                                             *field->modulus * found->second.power_of_ten * factor);
     }
   }
   state_.settings.resolution_kWh = std::max(meter_.counter.resolution_kWh, resolution_kWh);
   for (const std::string& name : meter_.map.energy) latest_.erase(name);
   live_.register_kWh = energy_kWh;
   take_sample(batch, {at, energy_kWh});
+}
+
+std::optional<double> MeterTrack::new_power_kW(const modbus::PlannedRead& read) const {
+  const bool is_new = std::ranges::any_of(
+      read.fields, [&](std::size_t i) { return meter_.map.power == fields_[i].name; });
+  return is_new ? live_.power_kW : std::nullopt;
+}
+
+void MeterTrack::take_power(StoreBatch& batch, double power_kW, Instant at) {
+  if (std::exchange(clock_was_set_, false)) since_sample_ |= Reason::clock;
+  for (const metering::Reading& reading : book_power(state_.power, meter_.number, {at, power_kW},
+                                                     since_sample_, power_rules(meter_.booking))) {
+    batch.intervals.push_back({reading, false});
+    usual_.observe(reading);
+  }
+  since_sample_ = Reason::none;
+  if (batch.empty() && at - power_kept_ < kKeepPowerEvery) return;
+  batch.registers.push_back({meter_.number, state_});
+  power_kept_ = at;
 }
 
 bool MeterTrack::is_worth_keeping(const RegisterSample& sample) const {
@@ -229,6 +268,7 @@ void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
   for (const metering::BookedInterval& interval : booked) {
     batch.intervals.push_back({interval.reading, interval.supersedes});
     usual_.observe(interval.reading);
+    if (watch_) watch_->take_interval(interval.reading);
   }
   if (!step.bookings.empty()) since_sample_ = Reason::none;
   if (step.event != CounterEvent::none) {

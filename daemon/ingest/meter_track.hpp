@@ -12,13 +12,16 @@
 #include "adapters/modbus/register_map.hpp"
 #include "adapters/ports/store.hpp"
 #include "core/metering/usual_day.hpp"
+#include "daemon/ingest/power_watch.hpp"
 
 namespace recald::daemon {
 
 struct TrackedMeter {
   std::uint32_t number = 0;  ///< In the store.
   std::string id;
-  modbus::RegisterMap map;            ///< Its `energy`, `power` and `identity` are what is read.
+  /// Its `energy`, `power` and `identity` are what is read. Without `energy`, intervals are means
+  /// of the power.
+  modbus::RegisterMap map;
   double multiplier = 1.0;            ///< Of a current transformer that the meter does not know.
   metering::CounterSettings counter;  ///< Resolution and modulus 0 and infinite: as the map says.
   metering::BookingRules booking;
@@ -57,6 +60,7 @@ class MeterTrack {
   struct FieldReading {
     double value;  ///< In the field's unit, scaled.
     double resolution;
+    double power_of_ten;  ///< Of its scale factor; 1 without one.
     std::chrono::sys_time<std::chrono::milliseconds> poll;
   };
 
@@ -68,6 +72,9 @@ class MeterTrack {
   void take_energy(StoreBatch& batch, std::chrono::sys_time<std::chrono::milliseconds> poll,
                    metering::Instant at);
   void take_sample(StoreBatch& batch, const metering::RegisterSample& sample);
+  /// The power that this very read brought.
+  [[nodiscard]] std::optional<double> new_power_kW(const modbus::PlannedRead& read) const;
+  void take_power(StoreBatch& batch, double power_kW, metering::Instant at);
   [[nodiscard]] StoreEvent event_of(metering::CounterEvent event,
                                     const metering::RegisterSample& sample,
                                     const metering::CounterState& before) const;
@@ -79,8 +86,10 @@ class MeterTrack {
   RegisterState state_;
   LiveValues live_;
   std::map<std::string, FieldReading> latest_;
+  std::optional<PowerWatch> watch_;  ///< Where the meter has both a counter and a power.
   metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads failed since.
   bool clock_was_set_ = false;
+  metering::Instant power_kept_{};  ///< When the open interval of a power was last handed out.
   std::optional<std::string> other_identity_;  ///< Read once, not yet confirmed.
 };
 

@@ -172,6 +172,38 @@ TEST(SunSpecBus, ARegisterThatTheDeviceRefusesIsToldAsSuch) {
   EXPECT_EQ(site.read(18, 1).error().exception_code, 2);
 }
 
+// A device that was silent may have got another firmware: its chain is walked again, although the
+// old place would answer.
+TEST(SunSpecBus, AfterASilenceTheChainIsWalkedAgain) {
+  struct Counted final : Bus {
+    explicit Counted(std::vector<ReadRequest>& made) : made_(made) {}
+    void read(const ReadRequest& request, milliseconds, Done done) override {
+      made_.push_back(request);
+      static constexpr std::uint16_t kChain[] = {0x5375, 0x6E53, 203, 105};
+      if (made_.size() == 4) {
+        done(tl::unexpected(ReadFailure{ReadFault::timeout}), milliseconds{1});
+      } else if (request.address < 40'004) {
+        const auto* at = kChain + (request.address - 40'000);
+        done(Words(at, at + request.count), milliseconds{1});
+      } else {
+        done(Words(request.count), milliseconds{1});
+      }
+    }
+    std::vector<ReadRequest>& made_;
+  };
+  std::vector<ReadRequest> made;
+  SunSpecBus bus{std::make_unique<Counted>(made), {{1, {203}}}};
+  std::vector<bool> outcomes;
+  for (int i = 0; i < 3; ++i) {
+    bus.read({1, Function::read_holding_registers, 18, 1}, milliseconds{1},
+             [&](const ReadResult& result, milliseconds) { outcomes.push_back(!!result); });
+  }
+  EXPECT_THAT(outcomes, ElementsAre(true, false, true));
+  ASSERT_EQ(made.size(), 7u);
+  EXPECT_EQ(made[3].address, 40'020) << "known: asked for at once";
+  EXPECT_EQ(made[4].address, 40'000) << "looked for anew";
+}
+
 TEST(SunSpecBus, WhatIsUnderWayAtItsEndIsNotTold) {
   struct Held final : Bus {
     explicit Held(Done& done) : done_(done) {}

@@ -88,6 +88,54 @@ TEST(Counter, ARollOverOfA32BitRegister) {
   EXPECT_EQ(trace.bookings.back().reasons, Reason::rollover);
 }
 
+// counter_zero_bounce: 0 for two reads, then the old line; all of its energy is booked once.
+TEST(Counter, ZeroBounce) {
+  Trace trace;
+  (void)trace.read(0, 5000.0);
+  EXPECT_EQ(trace.read(1, 0.0), 0.0);
+  EXPECT_EQ(trace.read(2, 0.0), 0.0);
+  EXPECT_NEAR(trace.read(3, 5012.0), 12.0, 1e-9);
+  EXPECT_EQ(trace.event, CounterEvent::bounce);
+}
+
+// counter_minus_one_tick: the last digit goes back by one and on again.
+TEST(Counter, MinusOneTick) {
+  Trace trace;
+  (void)trace.read(0, 5000.0);
+  EXPECT_EQ(trace.read(1, 4999.9), 0.0);
+  EXPECT_EQ(trace.event, CounterEvent::none);
+  EXPECT_NEAR(trace.read(2, 5001.0), 1.0, 1e-9);
+}
+
+// counter_true_reset: it stays low and counts from there; confirmed by the third sample, and what
+// it counted before that is not lost.
+TEST(Counter, TrueReset) {
+  Trace trace;
+  (void)trace.read(0, 5000.0);
+  EXPECT_EQ(trace.read(1, 0.0), 0.0);
+  EXPECT_EQ(trace.read(2, 4.0), 0.0);
+  EXPECT_NEAR(trace.read(3, 8.0), 8.0, 1e-9);
+  EXPECT_EQ(trace.event, CounterEvent::reset);
+}
+
+// rollover_decimal: a register of six digits.
+TEST(Counter, RolloverDecimal) {
+  Trace trace;
+  (void)trace.read(0, 999'998.5);
+  EXPECT_NEAR(trace.read(1, 2.0), 3.5, 1e-9);
+  EXPECT_EQ(trace.bookings.back().reasons, Reason::rollover);
+}
+
+// rollover_1e12: a 64-bit float in Wh that overflows at 1.0e12, as the PAC3200's does. Its step
+// there is 0.0001 Wh, so nothing is lost in the difference.
+TEST(Counter, Rollover1e12) {
+  Trace trace;
+  trace.settings = {400.0, 1e-7, 1e9};
+  (void)trace.read(0, 1e9 - 1.25);
+  EXPECT_NEAR(trace.read(1, 2.75), 4.0, 1e-6);
+  EXPECT_EQ(trace.bookings.back().reasons, Reason::rollover);
+}
+
 TEST(Counter, AJumpIsNeverBooked) {
   Trace trace;
   (void)trace.read(0, 100.0);

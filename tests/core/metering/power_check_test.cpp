@@ -104,6 +104,11 @@ TEST(PowerCheck, ExportAndAPowerThatIsNeverThereSayNothing) {
   exporting.run(100, 0.0, -200.0);
   EXPECT_THAT(exporting.frozen, IsEmpty());
   EXPECT_THAT(exporting.ratios, IsEmpty());
+  Watched prosumer;
+  prosumer.run(80, 100.0, 100.0);
+  prosumer.run(16, 0.0, -50.0);
+  prosumer.run(16, 100.0, 100.0);
+  EXPECT_THAT(prosumer.ratios, IsEmpty());
   Watched without;
   without.run(100, 100.0, 0.0);
   EXPECT_THAT(without.ratios, IsEmpty());

@@ -307,6 +307,143 @@ TEST(MeterTrack, KeepsSamplesAroundBoundariesAndOfDoubt) {
   EXPECT_THAT(kept, ElementsAre(0, 14, 15, 22, 23, 29, 30));
 }
 
+// stuck: the gateway answers out of its memory, the load goes on.
+TEST(MeterTrack, ACounterThatStandsUnderLoadIsDoubted) {
+  Live meter;
+  for (int minute = 0; minute <= 120; ++minute) {
+    meter.read(minutes{minute}, 1000.0 + std::min(minute, 30), 60'000.0);
+  }
+  ASSERT_THAT(meter.events, SizeIs(1));
+  EXPECT_EQ(meter.events[0].kind, "counter_stuck");
+  EXPECT_THAT(meter.events[0].text, HasSubstr("its counter stands while its power shows 60.0 kW"));
+  for (const int quarter : {0, 1}) EXPECT_EQ(meter.quarter(quarter).validity, Validity::ok);
+  for (int quarter = 2; quarter < 8; ++quarter) {
+    EXPECT_EQ(meter.quarter(quarter).validity, Validity::suspect) << quarter;
+    EXPECT_EQ(meter.quarter(quarter).reasons, Reason::stuck);
+  }
+}
+
+// cross: a transformer that the map multiplies once too often shows in the power alone.
+TEST(MeterTrack, APowerThatDiffersFromItsCounterIsTold) {
+  Live meter;
+  for (int minute = 0; minute <= 24 * 60 + 1; ++minute) {
+    meter.read(minutes{minute}, 1000.0 + minute, 66'000.0);
+  }
+  ASSERT_THAT(meter.events, SizeIs(1));
+  EXPECT_EQ(meter.events[0].kind, "power_differs");
+  EXPECT_THAT(meter.events[0].text, HasSubstr("adds up to 1.1 times what its counter counted"));
+  EXPECT_EQ(meter.quarter(95).validity, Validity::ok) << "energy is the counter's";
+}
+
+constexpr std::string_view kPowerMeter = R"(
+source = "the test"
+base = 0
+power = "power"
+register.power = { at = 0, type = "i32", unit = "W", absent = "0x80000000" }
+)";
+
+modbus::Words words_of_power(double power_W) {
+  const auto bits = static_cast<std::uint32_t>(static_cast<std::int32_t>(power_W));
+  return {Live::high(bits), Live::low(bits)};
+}
+
+// A device that counts nothing: the mean of its power, and nothing where that was not seen.
+TEST(MeterTrack, WithoutACounterThePowerIsAveraged) {
+  Live meter{kPowerMeter, 2.0};
+  for (seconds t{0}; t <= minutes{60}; t += seconds{15}) {
+    if (t > minutes{20} && t < minutes{25}) {
+      meter.take(t, tl::unexpected(modbus::ReadFailure{ReadFault::timeout, 0}));
+    } else if (t > minutes{35} && t < minutes{37}) {
+      meter.take(t, modbus::Words{0x8000, 0});
+    } else {
+      meter.take(t, words_of_power(t < minutes{45} ? 30'000.0 : 50'000.0));
+    }
+  }
+  ASSERT_THAT(meter.intervals, SizeIs(4));
+  EXPECT_NEAR(meter.quarter(0).mean_kW, 60.0, 1e-9);
+  EXPECT_EQ(meter.quarter(0).validity, Validity::ok);
+  EXPECT_EQ(meter.quarter(1).validity, Validity::missing);
+  EXPECT_EQ(meter.quarter(1).reasons, Reason::timeout | Reason::partial);
+  EXPECT_EQ(meter.quarter(2).validity, Validity::ok) << "two minutes of absent values";
+  EXPECT_NEAR(meter.quarter(3).mean_kW, 100.0, 1e-9);
+  EXPECT_FALSE(meter.track.live().register_kWh.has_value());
+}
+
+// The open interval is stored every minute: a kill costs that minute and no interval.
+TEST(MeterTrack, APowerGoesOnOverARestart) {
+  for (int stop = 0; stop <= 75; ++stop) {
+    SCOPED_TRACE(stop);
+    Live meter{kPowerMeter};
+    for (seconds t{0}; t <= minutes{30}; t += seconds{15}) {
+      meter.take(t, words_of_power(40'000.0));
+      if (t == stop * seconds{15}) meter.restart();
+    }
+    ASSERT_THAT(meter.intervals, SizeIs(2));
+    for (const int quarter : {0, 1}) {
+      EXPECT_EQ(meter.quarter(quarter).validity, Validity::ok);
+      EXPECT_NEAR(meter.quarter(quarter).mean_kW, 40.0, 1e-9);
+    }
+  }
+}
+
+TEST(MeterTrack, APowerKnowsWhenTheClockWasSet) {
+  Live meter{kPowerMeter};
+  for (seconds t{0}; t <= minutes{20}; t += seconds{15}) meter.take(t, words_of_power(40'000.0));
+  meter.track.clock_was_set();
+  for (seconds t = minutes{40}; t <= minutes{60}; t += seconds{15}) {
+    meter.take(t, words_of_power(40'000.0));
+  }
+  ASSERT_THAT(meter.intervals, SizeIs(4));
+  EXPECT_EQ(meter.quarter(1).reasons, Reason::clock | Reason::partial);
+  EXPECT_EQ(meter.quarter(3).validity, Validity::ok);
+}
+
+// scale_factor_change: the power of ten belongs to the read that it came with. Energy goes on
+// although its digits change, and the register wraps at 2^32 of its present steps.
+TEST(MeterTrack, ScaleFactorChange) {
+  const auto text = shipped_register_map("sunspec-meter");
+  ASSERT_TRUE(text.has_value());
+  Live meter{*text};
+  const auto read = [&](int minute, std::uint32_t energy, std::uint16_t factor, double power,
+                        std::uint16_t power_factor) {
+    modbus::Words watts(5);
+    watts[0] = static_cast<std::uint16_t>(static_cast<std::int16_t>(power));
+    watts[4] = power_factor;
+    modbus::Words counter(9);
+    counter[0] = Live::high(energy);
+    counter[1] = Live::low(energy);
+    counter[8] = factor;
+    meter.take(minutes{minute}, watts, 0);
+    meter.take(minutes{minute}, counter, 1);
+  };
+  const std::uint16_t minus_one = 0xFFFF;
+  for (int minute = 0; minute <= 30; ++minute) {
+    // 1000 Wh a minute on 1,000,000 Wh; the load is 60 kW.
+    const auto wh = static_cast<std::uint32_t>(1'000'000 + 1000 * minute);
+    if (minute < 10) {
+      read(minute, wh * 10, minus_one, 6000.0, 1);
+    } else {
+      read(minute, wh / 100, 2, 600.0, 2);
+    }
+    EXPECT_NEAR(*meter.track.live().power_kW, 60.0, 1e-9) << minute;
+  }
+  EXPECT_NEAR(meter.track.state().settings.modulus_kWh, 4'294'967'296.0 * 0.1, 1e-3);
+  EXPECT_NEAR(meter.track.state().settings.resolution_kWh, 0.1, 1e-12);
+  ASSERT_THAT(meter.intervals, SizeIs(2));
+  for (const int quarter : {0, 1}) {
+    EXPECT_EQ(meter.quarter(quarter).validity, Validity::ok);
+    EXPECT_NEAR(meter.quarter(quarter).mean_kW, 60.0, 1e-9) << quarter;
+  }
+  EXPECT_THAT(meter.events, IsEmpty());
+
+  // An accumulator of 0 does not count, and a factor of 0x8000 is none: nothing is booked.
+  read(31, 0, 2, 600.0, 0x8000);
+  read(32, 10'320, 0x8000, 600.0, 2);
+  EXPECT_EQ(meter.track.state().counter.phase, metering::CounterPhase::run);
+  read(33, 10'330, 2, 600.0, 2);
+  EXPECT_EQ(meter.track.state().counter.baseline.value_kWh, 1033.0);
+}
+
 // Two tariffs are summed, of one poll only: half a sum is none.
 TEST(MeterTrack, TariffsAreSummed) {
   constexpr std::string_view tariffs = R"(
