@@ -79,6 +79,18 @@ void read_overrides(TomlReader& table, modbus::RegisterMap& map) {
   }
 }
 
+/// A counter may be read seldom, for it counts meanwhile. A power says nothing of the time between.
+seconds read_poll(TomlReader& table, const modbus::RegisterMap& map) {
+  const bool counts = !map.energy.empty() || !map.power;
+  const seconds usual{counts ? 60 : 15};
+  const seconds poll = table.duration("poll").value_or(usual);
+  if (poll > seconds{0} && poll <= seconds{counts ? 900 : 120}) return poll;
+  table.problem_at("poll", counts ? "'poll' must lie between \"1s\" and \"15m\""
+                                  : "'poll' must lie between \"1s\" and \"2m\": the meter has no "
+                                    "counter, so its power is averaged");
+  return usual;
+}
+
 }  // namespace
 
 BusConfig read_bus(TomlReader& table, const std::string& name) {
@@ -106,23 +118,12 @@ LiveMeterConfig read_live_meter(TomlReader& table, const std::filesystem::path& 
   if (const std::string name = table.required_text("map"); !name.empty()) {
     if (auto map = find_register_map(name, folder)) {
       meter.map = std::move(*map);
-      if (!meter.map.sunspec_models.empty()) {
-        table.problem_at("map",
-                         fmt::format("map '{}' needs the device's SunSpec models to be found "
-                                     "first, which this version does not do; write a map with "
-                                     "the addresses on the wire",
-                                     name));
-      }
     } else {
       for (const std::string& problem : map.error()) table.problem_at("map", problem);
     }
   }
   read_overrides(table, meter.map);
-  meter.poll = table.duration("poll").value_or(meter.poll);
-  if (meter.poll <= seconds{0} || meter.poll > seconds{900}) {
-    table.problem_at("poll", "'poll' must lie between \"1s\" and \"15m\"");
-    meter.poll = seconds{60};
-  }
+  meter.poll = read_poll(table, meter.map);
   meter.timeout = table.milliseconds("timeout").value_or(meter.timeout);
   return meter;
 }

@@ -29,7 +29,7 @@ struct LiveMeterConfig {
   std::string bus;
   std::uint8_t unit = 1;
   modbus::RegisterMap map;  ///< Its `energy` and `power` as the meter overrides them.
-  std::chrono::seconds poll{60};
+  std::chrono::seconds poll{60};  ///< Default 15 s where the map has a power and no counter.
   std::chrono::milliseconds timeout{0};  ///< Zero: the bus's.
 };
 

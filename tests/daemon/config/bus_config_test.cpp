@@ -148,7 +148,6 @@ TEST(BusConfig, EveryMistakeHasItsSentence) {
       {"map = \"siemens-pac3200\"\n", "", "'map' is missing"},
       {"map = \"siemens-pac3200\"", "map = \"siemens-pac\"", "no register map is called"},
       {"map = \"siemens-pac3200\"", "map = \"our.toml\"", "our.toml' cannot be read"},
-      {"map = \"siemens-pac3200\"", "map = \"sunspec-meter\"", "needs the device's SunSpec models"},
       {"rated_kW = 400\n", "", "a live counter needs 'rated_kW'"},
       {"poll = \"10s\"", "poll = \"0s\"", "'poll' must lie between \"1s\" and \"15m\""},
       {"poll = \"10s\"", "poll = \"20m\"", "'poll' must lie between \"1s\" and \"15m\""},
@@ -165,6 +164,42 @@ TEST(BusConfig, EveryMistakeHasItsSentence) {
     SCOPED_TRACE(mistake.to);
     EXPECT_THAT(problems_with(mistake.from, mistake.to), Contains(HasSubstr(mistake.said)));
   }
+}
+
+TEST(BusConfig, AMeterWithoutACounterIsReadMoreOftenAndNeedsNoRating) {
+  const std::string text = edited(edited(kSite, "energy = [\"energy_heating\"]\n", "energy = []\n"),
+                                  "rated_kW = 500\n", "");
+  const auto site = loaded(text);
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  EXPECT_EQ(site->meters[2].live->poll, seconds{15});
+  EXPECT_THAT(site->meters[2].live->map.energy, IsEmpty());
+  const auto seldom = loaded(text + "poll = \"3m\"\n");
+  ASSERT_FALSE(seldom.has_value());
+  EXPECT_THAT(seldom.error(),
+              Contains(HasSubstr("'poll' must lie between \"1s\" and \"2m\": the meter has no "
+                                 "counter")));
+  const auto twice = loaded(text + R"(
+[[meter]]
+id = "again"
+source = "modbus"
+utility = "heating"
+bus = "cellar"
+unit = 3
+map = "belimo-energy-valve"
+energy = []
+power = "power_heating"
+)");
+  ASSERT_FALSE(twice.has_value());
+  EXPECT_THAT(twice.error(), Contains(HasSubstr("meters 'heat' and 'again' are the same")));
+}
+
+TEST(BusConfig, SunSpecDevicesShareNoUnitWithOtherMaps) {
+  const auto site = loaded(edited(kSite, "map = \"siemens-pac3200\"", "map = \"sunspec-meter\""));
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  EXPECT_THAT(site->meters[0].live->map.sunspec_models, ElementsAre(201, 202, 203, 204));
+  EXPECT_THAT(problems_with("map = \"belimo-energy-valve\"\nrated_kW = 900",
+                            "map = \"sunspec-meter\"\nrated_kW = 900"),
+              Contains(HasSubstr("give both maps the same 'sunspec_models'")));
 }
 
 TEST(BusConfig, ABrokenMapIsToldWithItsLine) {
