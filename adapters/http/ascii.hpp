@@ -1,0 +1,40 @@
+/// Letters as protocols compare them: no locale has a say.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace recald::http {
+
+[[nodiscard]] constexpr char to_lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+[[nodiscard]] inline std::string to_lower(std::string_view text) {
+  std::string lower{text};
+  for (char& c : lower) c = to_lower(c);
+  return lower;
+}
+
+[[nodiscard]] inline bool equals_ignoring_case(std::string_view a, std::string_view b) {
+  return std::ranges::equal(
+      a, b, {}, [](char c) { return to_lower(c); }, [](char c) { return to_lower(c); });
+}
+
+/// Without the spaces and tabs around it.
+[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+/// Takes the next element off a list "a, b, c"; elements come trimmed, quoted commas split too.
+[[nodiscard]] inline std::string_view take_element(std::string_view& list, char separator = ',') {
+  const std::size_t end = list.find(separator);
+  const std::string_view element = trimmed(list.substr(0, end));
+  list.remove_prefix(end == std::string_view::npos ? list.size() : end + 1);
+  return element;
+}
+
+}  // namespace recald::http

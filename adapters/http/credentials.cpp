@@ -1,0 +1,115 @@
+#include "adapters/http/credentials.hpp"
+
+#include <openssl/crypto.h>
+#include <openssl/evp.h>
+
+#include <cassert>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "adapters/http/ascii.hpp"
+#include "adapters/system/sha256.hpp"
+
+namespace recald::http {
+namespace {
+
+constexpr std::size_t kTokenMin = 16;
+constexpr std::streamsize kTokenFileMax = 4096;
+constexpr std::string_view kWhiteSpace = " \t\r\n";
+
+std::string digest(std::string_view text) {
+  system::Sha256 running;
+  running.add(text);
+  return running.hex();
+}
+
+/// Digests have one length, so that not even the token's length can be measured.
+bool is_same(std::string_view a, std::string_view b) {
+  const std::string left = digest(a);
+  const std::string right = digest(b);
+  return CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;
+}
+
+/// What follows the first colon of "name:password" in base 64; empty where there is none.
+std::string password_of(std::string_view encoded) {
+  if (encoded.empty() || encoded.size() % 4 != 0 || encoded.size() > 1024) return {};
+  std::string decoded(encoded.size() / 4 * 3, '\0');
+  const int length = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(decoded.data()),
+                                     reinterpret_cast<const unsigned char*>(encoded.data()),
+                                     static_cast<int>(encoded.size()));
+  if (length < 0) return {};
+  // EVP_DecodeBlock counts the padding as zero bytes.
+  while (encoded.ends_with('=') && !decoded.empty()) {
+    decoded.pop_back();
+    encoded.remove_suffix(1);
+  }
+  const std::size_t colon = decoded.find(':');
+  return colon == std::string::npos ? std::string{} : decoded.substr(colon + 1);
+}
+
+bool may_stand_in_token(char c) {
+  const char lower = to_lower(c);
+  return (lower >= 'a' && lower <= 'z') || (c >= '0' && c <= '9') ||
+         std::string_view{"-._~+/="}.find(c) != std::string_view::npos;
+}
+
+Result<void> check_permissions(const std::filesystem::path& file) {
+  using std::filesystem::perms;
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (error || status.type() == std::filesystem::file_type::not_found) {
+    return failure(
+        ErrorCode::not_found,
+        "token file '" + file.string() +
+            "' cannot be found; make one with: (umask 077; openssl rand -hex 32 > FILE)");
+  }
+  const perms others = perms::group_all | perms::others_all;
+  if ((status.permissions() & others) != perms::none) {
+    return failure(ErrorCode::invalid_value, "token file '" + file.string() +
+                                                 "' can be read by others than its owner; "
+                                                 "set its mode with: chmod 600 FILE");
+  }
+  return {};
+}
+
+}  // namespace
+
+bool carries_token(std::string_view authorization, std::string_view token) {
+  assert(!token.empty());
+  const std::size_t space = authorization.find(' ');
+  if (space == std::string_view::npos) return false;
+  const std::string_view scheme = authorization.substr(0, space);
+  const std::string_view rest = trimmed(authorization.substr(space));
+  if (equals_ignoring_case(scheme, "bearer")) return is_same(rest, token);
+  if (equals_ignoring_case(scheme, "basic")) return is_same(password_of(rest), token);
+  return false;
+}
+
+Result<std::string> read_token_file(const std::filesystem::path& file) {
+  if (auto checked = check_permissions(file); !checked) return tl::unexpected(checked.error());
+  std::ifstream in{file, std::ios::binary};
+  std::string token(kTokenFileMax, '\0');
+  in.read(token.data(), kTokenFileMax);
+  token.resize(static_cast<std::size_t>(in.gcount()));
+  if (in.bad() || (!in && !in.eof())) {
+    return failure(ErrorCode::io_failed, "token file '" + file.string() + "' cannot be read");
+  }
+  token.erase(token.find_last_not_of(kWhiteSpace) + 1);
+  token.erase(0, token.find_first_not_of(kWhiteSpace));
+  if (token.size() < kTokenMin) {
+    return failure(ErrorCode::invalid_value,
+                   "token file '" + file.string() + "' has a token of " +
+                       std::to_string(token.size()) +
+                       " characters; at least 16 are needed, such as openssl rand -hex 32 gives");
+  }
+  for (const char c : token) {
+    if (may_stand_in_token(c)) continue;
+    return failure(ErrorCode::invalid_value,
+                   "token file '" + file.string() +
+                       "' has a character that cannot be sent; letters, digits and -._~+/= can");
+  }
+  return token;
+}
+
+}  // namespace recald::http

@@ -1,0 +1,132 @@
+#include "adapters/http/exchange.hpp"
+
+#include <boost/asio/error.hpp>
+#include <boost/beast/core/error.hpp>
+#include <boost/beast/http/error.hpp>
+#include <exception>
+
+#include "adapters/http/credentials.hpp"
+#include "adapters/http/target.hpp"
+
+namespace recald::http {
+namespace {
+
+namespace beast_http = boost::beast::http;
+
+constexpr int kHttp11 = 11;
+
+Method method_of(beast_http::verb verb) {
+  switch (verb) {
+    case beast_http::verb::get:
+      return Method::get;
+    case beast_http::verb::head:
+      return Method::head;
+    case beast_http::verb::post:
+      return Method::post;
+    default:
+      return Method::other;
+  }
+}
+
+/// Refusals come from here and not from the handler, so they are dressed here.
+Response refused(int status, std::string_view code, std::string_view message) {
+  return dressed({}, error_response(status, code, message));
+}
+
+template <class Body>
+void set_fields(beast_http::response<Body>& message, const Response& response, bool keep_alive) {
+  if (!response.content_type.empty()) {
+    message.set(beast_http::field::content_type, response.content_type);
+  }
+  for (const auto& [name, value] : response.headers) message.insert(name, value);
+  message.keep_alive(keep_alive);
+}
+
+beast_http::status status_of(const Response& response) {
+  return beast_http::int_to_status(static_cast<unsigned>(response.status));
+}
+
+bool has_body(int status) { return status != 304 && status != 204; }
+
+}  // namespace
+
+Result<Request> request_head(const beast_http::request<beast_http::string_body>& message) {
+  const auto text = message.target();
+  auto target = parse_target({text.data(), text.size()});
+  if (!target) return tl::unexpected(target.error());
+  Request request{.method = method_of(message.method()),
+                  .path = std::move(target->path),
+                  .query = std::move(target->query)};
+  for (const auto& field : message) {
+    const auto name = field.name_string();
+    const auto value = field.value();
+    std::string& known = request.headers[to_lower(std::string_view{name.data(), name.size()})];
+    if (!known.empty()) known += ", ";  // RFC 9110, 5.3: a header given twice is a list
+    known.append(value.data(), value.size());
+  }
+  return request;
+}
+
+std::optional<Response> refusal_of_head(const Request& request, const SessionRules& rules) {
+  if (!rules.token.empty() && !rules.open_paths.contains(request.path) &&
+      !carries_token(request.header("authorization"), rules.token)) {
+    Response response = refused(401, "unauthorized",
+                                "this needs the token of the site's token_file, as the header "
+                                "Authorization: Bearer TOKEN, or in a browser as the password");
+    response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"recald\"");
+    response.headers.emplace_back("WWW-Authenticate", "Basic realm=\"recald\"");
+    return response;
+  }
+  if (request.method == Method::post) {
+    std::string_view type = request.header("content-type");
+    if (!equals_ignoring_case(take_element(type, ';'), "application/json")) {
+      return refused(415, "unsupported_media_type",
+                     "a POST needs the header Content-Type: application/json");
+    }
+  }
+  return {};
+}
+
+std::optional<Response> refusal_of(const boost::system::error_code& error) {
+  if (error == beast_http::error::body_limit) {
+    return refused(413, "too_large", "the request's body is larger than the server takes");
+  }
+  if (error == beast_http::error::header_limit) {
+    return refused(431, "header_too_large", "the request's header is larger than the server takes");
+  }
+  const bool is_gone =
+      error == beast_http::error::end_of_stream || error == beast_http::error::partial_message;
+  static const auto& http_errors = make_error_code(beast_http::error::bad_method).category();
+  if (is_gone || error.category() != http_errors) return {};
+  return refused(400, "malformed", "this is not an HTTP/1.1 request: " + error.message());
+}
+
+Response bad_request(const Error& error) { return refused(400, "malformed", error.message); }
+
+Response called(const Handler& handler, const Request& request) {
+  try {
+    return handler(request);
+  } catch (const std::exception&) {
+    return error_response(500, "internal", "the answer could not be made; the log may say why");
+  }
+}
+
+beast_http::response<beast_http::string_body> wire_message(const Response& response,
+                                                           bool keep_alive) {
+  beast_http::response<beast_http::string_body> message{status_of(response), kHttp11};
+  set_fields(message, response, keep_alive);
+  if (has_body(response.status)) {
+    message.body() = response.body;
+    message.prepare_payload();
+  }
+  return message;
+}
+
+beast_http::response<beast_http::empty_body> wire_head(const Response& response, bool keep_alive) {
+  beast_http::response<beast_http::empty_body> message{status_of(response), kHttp11};
+  set_fields(message, response, keep_alive);
+  if (has_body(response.status)) message.content_length(response.body.size());
+  return message;
+}
+
+}  // namespace recald::http

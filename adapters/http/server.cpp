@@ -1,0 +1,221 @@
+#include "adapters/http/server.hpp"
+
+#include <utility>  // Boost 1.74's Asio uses std::exchange without it
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
+
+#include "adapters/http/session.hpp"
+
+namespace recald::http {
+namespace {
+
+using boost::asio::awaitable;
+using boost::asio::redirect_error;
+using boost::asio::use_awaitable;
+using boost::asio::ip::tcp;
+using boost::beast::tcp_stream;
+using TlsStream = boost::beast::ssl_stream<tcp_stream>;
+
+constexpr std::chrono::milliseconds kAfterAcceptFailed{100};
+
+/// What belongs to the wish to be served, and cannot.
+Response too_many() {
+  Response response = dressed({}, error_response(503, "too_many_connections",
+                                                 "too many connections; try again in a moment"));
+  response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
+
+/// TLS 1.2 and 1.3, nothing older.
+Result<std::unique_ptr<boost::asio::ssl::context>> tls_context(const TlsFiles& files) {
+  using boost::asio::ssl::context;
+  auto tls = std::make_unique<context>(context::tls_server);
+  boost::system::error_code error;
+  tls->set_options(context::default_workarounds | context::no_sslv2 | context::no_sslv3 |
+                       context::no_tlsv1 | context::no_tlsv1_1 | context::single_dh_use,
+                   error);
+  if (!error) tls->use_certificate_chain_file(files.certificate.string(), error);
+  if (error) {
+    return failure(ErrorCode::io_failed, "certificate '" + files.certificate.string() +
+                                             "' cannot be used: " + error.message());
+  }
+  // Checks as well that the key belongs to the certificate.
+  tls->use_private_key_file(files.key.string(), context::pem, error);
+  if (error) {
+    return failure(ErrorCode::io_failed,
+                   "key '" + files.key.string() + "' cannot be used: " + error.message());
+  }
+  return tls;
+}
+
+Result<tcp::endpoint> endpoint_of(const ServerOptions& options) {
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address(options.address, error);
+  if (error) {
+    return failure(ErrorCode::invalid_value,
+                   "'" + options.address +
+                       "' is no numeric address to listen on; "
+                       "127.0.0.1 is this machine alone, 0.0.0.0 all its networks");
+  }
+  if (!address.is_loopback() && (options.token.empty() || !options.tls)) {
+    return failure(ErrorCode::invalid_value,
+                   "to listen on " + options.address +
+                       ", which others can reach, a token and TLS are needed: token_file, "
+                       "certificate and key");
+  }
+  return tcp::endpoint{address, options.port};
+}
+
+}  // namespace
+
+struct Server::Shared {
+  Shared(boost::asio::io_context& context, Handler given)
+      : acceptor(context), handler(std::move(given)) {}
+
+  SessionRules rules;
+  int connections_max = 0;
+  tcp::acceptor acceptor;
+  std::unique_ptr<boost::asio::ssl::context> tls;
+  Handler handler;
+  std::set<tcp_stream*> open;  ///< Of the sessions that run.
+};
+
+namespace {
+
+/// A stream that the server knows of, as long as its session lasts.
+template <class Shared>
+class Known {
+ public:
+  Known(std::shared_ptr<Shared> shared, tcp_stream& stream)
+      : shared_(std::move(shared)), stream_(stream) {
+    shared_->open.insert(&stream_);
+  }
+  ~Known() { shared_->open.erase(&stream_); }
+  Known(const Known&) = delete;
+  Known& operator=(const Known&) = delete;
+
+ private:
+  std::shared_ptr<Shared> shared_;
+  tcp_stream& stream_;
+};
+
+template <class Shared>
+awaitable<void> serve_plain(std::shared_ptr<Shared> shared, tcp::socket socket, bool is_welcome) {
+  tcp_stream stream{std::move(socket)};
+  const Known<Shared> known{shared, stream};
+  Session<tcp_stream> session{stream, shared->rules, shared->handler};
+  if (is_welcome) {
+    co_await session.run();
+  } else {
+    co_await session.turn_away(too_many());
+  }
+}
+
+template <class Shared>
+awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bool is_welcome) {
+  TlsStream stream{std::move(socket), *shared->tls};
+  const Known<Shared> known{shared, boost::beast::get_lowest_layer(stream)};
+  set_deadline(stream, shared->rules.slow_client);
+  boost::system::error_code error;
+  co_await stream.async_handshake(boost::asio::ssl::stream_base::server,
+                                  redirect_error(use_awaitable, error));
+  if (error) co_return;
+  Session<TlsStream> session{stream, shared->rules, shared->handler};
+  if (is_welcome) {
+    co_await session.run();
+  } else {
+    co_await session.turn_away(too_many());
+  }
+}
+
+/// As many again as are served are told that they are too many; more than that just find the door
+/// shut.
+template <class Shared>
+void receive(const std::shared_ptr<Shared>& shared, tcp::socket socket) {
+  const auto limit = static_cast<std::size_t>(shared->connections_max);
+  if (shared->open.size() >= 2 * limit) return;
+  const bool is_welcome = shared->open.size() < limit;
+  const auto executor = shared->acceptor.get_executor();
+  if (shared->tls) {
+    boost::asio::co_spawn(executor, serve_tls(shared, std::move(socket), is_welcome),
+                          boost::asio::detached);
+  } else {
+    boost::asio::co_spawn(executor, serve_plain(shared, std::move(socket), is_welcome),
+                          boost::asio::detached);
+  }
+}
+
+template <class Shared>
+awaitable<void> accept_all(std::shared_ptr<Shared> shared) {
+  boost::asio::steady_timer pause{shared->acceptor.get_executor()};
+  while (shared->acceptor.is_open()) {
+    boost::system::error_code error;
+    tcp::socket socket =
+        co_await shared->acceptor.async_accept(redirect_error(use_awaitable, error));
+    if (!error) {
+      receive(shared, std::move(socket));
+    } else if (shared->acceptor.is_open()) {
+      // Out of descriptors, mostly: the waiting client stays, so asking at once would spin.
+      pause.expires_after(kAfterAcceptFailed);
+      co_await pause.async_wait(redirect_error(use_awaitable, error));
+    }
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& context,
+                                               const ServerOptions& options, Handler handler) {
+  const auto endpoint = endpoint_of(options);
+  if (!endpoint) return tl::unexpected(endpoint.error());
+  auto shared = std::make_shared<Shared>(context, std::move(handler));
+  if (options.tls) {
+    auto tls = tls_context(*options.tls);
+    if (!tls) return tl::unexpected(tls.error());
+    shared->tls = std::move(*tls);
+  }
+  boost::system::error_code error;
+  shared->acceptor.open(endpoint->protocol(), error);
+  if (!error) shared->acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+  if (!error) shared->acceptor.bind(*endpoint, error);
+  if (!error) shared->acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
+  if (error) {
+    return failure(ErrorCode::io_failed, "cannot listen on " + options.address + " port " +
+                                             std::to_string(options.port) + ": " + error.message());
+  }
+  shared->connections_max = options.connections_max;
+  shared->rules = {.token = options.token,
+                   .open_paths = options.open_paths,
+                   .body_max = options.body_max,
+                   .header_max = options.header_max,
+                   .slow_client = options.slow_client};
+  boost::asio::co_spawn(context, accept_all(shared), boost::asio::detached);
+  return std::unique_ptr<Server>{new Server{std::move(shared)}};
+}
+
+Server::Server(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
+
+Server::~Server() { stop(); }
+
+std::uint16_t Server::port() const {
+  boost::system::error_code ignored;
+  return shared_->acceptor.local_endpoint(ignored).port();
+}
+
+void Server::set_token(std::string token) { shared_->rules.token = std::move(token); }
+
+void Server::stop() {
+  shared_->rules.is_stopping = true;
+  boost::system::error_code ignored;
+  shared_->acceptor.close(ignored);
+  for (tcp_stream* stream : shared_->open) stream->close();
+}
+
+}  // namespace recald::http

@@ -1,0 +1,73 @@
+/// An HTTP/1.1 server on the daemon's loop: limits, deadlines, token and TLS; what is answered is
+/// the handler's business.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "adapters/http/message.hpp"
+#include "core/result.hpp"
+
+namespace boost::asio {
+class io_context;
+}
+
+namespace recald::http {
+
+struct TlsFiles {
+  std::filesystem::path certificate;  ///< PEM, the whole chain, own certificate first.
+  std::filesystem::path key;          ///< PEM.
+};
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  ///< Numeric, IPv4 or IPv6.
+  std::uint16_t port = 8080;          ///< 0: any that is free.
+  std::string token;                  ///< Empty: none is asked for.
+  std::set<std::string> open_paths;   ///< Answered without the token.
+  std::optional<TlsFiles> tls;
+  std::size_t body_max = 1024 * 1024;
+  std::size_t header_max = 16 * 1024;  ///< Request line included.
+  int connections_max = 64;            ///< Whoever comes then gets a 503.
+  /// For a whole request to arrive, for an answer to leave, and between two requests.
+  std::chrono::milliseconds slow_client{10'000};
+};
+
+class Server {
+ public:
+  /// Listens from now on; connections are served while the context runs.
+  ///
+  /// What clients do wrong is answered here: 400 malformed, 401 without the token (before the body
+  /// is read), 413 and 431 too large, 503 too many connections. Who is slow is cut off.
+  /// @param context  Run by one thread; outlives this.
+  /// @param handler  Called on that thread, with whole requests only. What it throws is a 500.
+  /// @return or invalid_value: not a numeric address, or one that others can reach without both a
+  ///         token and TLS; io_failed: the address is in use or not ours, or the certificate or key
+  ///         cannot be read or do not belong together.
+  [[nodiscard]] static Result<std::unique_ptr<Server>> listen(boost::asio::io_context& context,
+                                                              const ServerOptions& options,
+                                                              Handler handler);
+  ~Server();  ///< As stop().
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  [[nodiscard]] std::uint16_t port() const;
+
+  /// Another token from now on, so that it can be changed without a restart.
+  void set_token(std::string token);
+
+  /// No new connections, and the present ones are closed. The handler is not called any more.
+  void stop();
+
+ private:
+  struct Shared;
+  explicit Server(std::shared_ptr<Shared> shared);
+
+  std::shared_ptr<Shared> shared_;  ///< With the sessions, which end after it.
+};
+
+}  // namespace recald::http

@@ -1,0 +1,151 @@
+/// One client's connection: its requests, one after the other, each with its deadline.
+///
+/// Internal to this folder: Beast shows here, so that tests can serve a stream that fails where
+/// they want it to.
+#pragma once
+
+#include <utility>  // Boost 1.74's Asio uses std::exchange without it
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/stream_traits.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <chrono>
+#include <optional>
+
+#include "adapters/http/exchange.hpp"
+
+namespace recald::http {
+
+/// The stream's reads and writes from here on have so long, all together. Streams without deadlines
+/// (a test's) go without.
+template <class Stream>
+void set_deadline(Stream& stream, std::chrono::milliseconds length) {
+  if constexpr (requires { boost::beast::get_lowest_layer(stream).expires_after(length); }) {
+    boost::beast::get_lowest_layer(stream).expires_after(length);
+  }
+}
+
+template <class Stream>
+class Session {
+ public:
+  /// @param rules, handler  Outlive it; may change between two requests.
+  Session(Stream& stream, const SessionRules& rules, const Handler& handler)
+      : stream_(stream), rules_(rules), handler_(handler) {}
+
+  /// Until the client goes, is too slow, asks for the end, or sent what cannot be read on after.
+  boost::asio::awaitable<void> run() {
+    bool goes_on = true;
+    while (goes_on) goes_on = co_await answer_one();
+  }
+
+  /// Sends one answer to whatever comes, unread.
+  boost::asio::awaitable<void> turn_away(const Response& response) {
+    set_deadline(stream_, rules_.slow_client);
+    if (co_await send(Method::get, response, false)) co_await part(false);
+  }
+
+ private:
+  using Error = boost::system::error_code;
+  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+
+  static auto into(Error& error) {
+    return boost::asio::redirect_error(boost::asio::use_awaitable, error);
+  }
+
+  /// @return whether another request may follow.
+  boost::asio::awaitable<bool> answer_one() {
+    Parser parser;
+    parser.header_limit(static_cast<std::uint32_t>(rules_.header_max));
+    parser.body_limit(rules_.body_max);
+    set_deadline(stream_, rules_.slow_client);
+    Error error;
+    co_await boost::beast::http::async_read_header(stream_, buffer_, parser, into(error));
+    if (error) co_return co_await refuse(Method::get, refusal_of(error));
+
+    auto request = request_head(parser.get());
+    if (!request) co_return co_await refuse(Method::get, bad_request(request.error()));
+    if (auto refusal = refusal_of_head(*request, rules_)) {
+      co_return co_await refuse(request->method, std::move(refusal));
+    }
+    if (equals_ignoring_case(request->header("expect"), "100-continue")) {
+      co_await send_continue(error);
+    }
+    if (!error) co_await boost::beast::http::async_read(stream_, buffer_, parser, into(error));
+    if (error) co_return co_await refuse(request->method, refusal_of(error));
+    if (rules_.is_stopping) co_return false;  // whoever answers may be gone
+
+    request->body = std::move(parser.get().body());
+    const bool keep_alive = parser.get().keep_alive();
+    const Response response = dressed(*request, called(handler_, *request));
+    set_deadline(stream_, rules_.slow_client);
+    const bool sent = co_await send(request->method, response, keep_alive);
+    if (sent && !keep_alive) co_await part(true);
+    co_return sent&& keep_alive;
+  }
+
+  /// Answers, if there is something to say, and parts: what follows on the stream is not known to
+  /// be a request.
+  boost::asio::awaitable<bool> refuse(Method method, std::optional<Response> refusal) {
+    if (!refusal) co_return false;
+    set_deadline(stream_, rules_.slow_client);
+    if (co_await send(method, *refusal, false)) co_await part(false);
+    co_return false;
+  }
+
+  boost::asio::awaitable<bool> send(Method method, const Response& response, bool keep_alive) {
+    Error error;
+    if (method == Method::head) {
+      const auto message = wire_head(response, keep_alive);
+      co_await boost::beast::http::async_write(stream_, message, into(error));
+    } else {
+      const auto message = wire_message(response, keep_alive);
+      co_await boost::beast::http::async_write(stream_, message, into(error));
+    }
+    co_return !error;
+  }
+
+  boost::asio::awaitable<void> send_continue(Error& error) {
+    const boost::beast::http::response<boost::beast::http::empty_body> go_on{
+        boost::beast::http::status::continue_, 11};
+    co_await boost::beast::http::async_write(stream_, go_on, into(error));
+  }
+
+  /// Ends the connection so that the client gets our last answer: to close on bytes that were sent
+  /// and not read would reset it. TCP can end one direction and read on; TLS 1.2 cannot, so there
+  /// the client is heard out first.
+  boost::asio::awaitable<void> part(bool has_read_all) {
+    Error error;
+    if constexpr (requires { stream_.async_shutdown(into(error)); }) {
+      if (!has_read_all) co_await read_the_rest();
+      co_await stream_.async_shutdown(into(error));
+    } else {
+      if constexpr (requires { stream_.socket(); }) {
+        stream_.socket().shutdown(boost::asio::socket_base::shutdown_send, error);
+      }
+      co_await read_the_rest();
+    }
+  }
+
+  /// Until the client ends, its time is up, or it has sent more than a request may have.
+  boost::asio::awaitable<void> read_the_rest() {
+    Error error;
+    char rest[4096];
+    for (std::size_t read = 0; !error && read <= 2 * rules_.body_max;) {
+      read += co_await stream_.async_read_some(boost::asio::buffer(rest), into(error));
+    }
+  }
+
+  Stream& stream_;
+  const SessionRules& rules_;
+  const Handler& handler_;
+  boost::beast::flat_buffer buffer_;
+};
+
+}  // namespace recald::http

@@ -1,0 +1,28 @@
+/// Where a server is.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/result.hpp"
+
+namespace recald::http {
+
+struct Url {
+  bool is_tls = false;
+  std::string host = "127.0.0.1";  ///< Name or address; IPv6 without brackets.
+  std::uint16_t port = 80;
+  std::string path = "/";  ///< As it goes over the wire, query included.
+
+  /// "http://host:port/path".
+  [[nodiscard]] std::string text() const;
+  /// Host and port as a Host header has them.
+  [[nodiscard]] std::string authority() const;
+};
+
+/// "http://host[:port][/path]" or https; the port is 80 or 443 unless given.
+/// @return or malformed.
+[[nodiscard]] Result<Url> parse_url(std::string_view text);
+
+}  // namespace recald::http

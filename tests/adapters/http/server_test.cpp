@@ -1,0 +1,253 @@
+/// The server on real sockets, against clients of every kind.
+#include "adapters/http/server.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+
+#include "tests/adapters/http/raw_client.hpp"
+#include "tests/support/background_process.hpp"
+
+namespace recald::http {
+namespace {
+
+using namespace std::chrono_literals;
+using recald::testing::RawClient;
+using recald::testing::RunningServer;
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// Says what it was asked.
+class ServerTest : public ::testing::Test {
+ protected:
+  Handler echo() {
+    return [this](const Request& request) -> Response {
+      ++handled_;
+      if (request.path == "/throws") throw std::runtime_error("on purpose");
+      std::string text = request.path;
+      for (const auto& [name, value] : request.query) text += " " + name + "=" + value;
+      return {.content_type = "text/plain", .body = text + "|" + request.body};
+    };
+  }
+
+  std::atomic<int> handled_{0};
+};
+
+constexpr const char* kPostHead =
+    "POST /r HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\n";
+
+TEST_F(ServerTest, AnswersOneRequestAfterTheOther) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("GET /a%20b?x=1&y=%2B HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_THAT(client.answer(), AllOf(StartsWith("HTTP/1.1 200 OK\r\n"), EndsWith("/a b x=1 y=+|")));
+  client.send(std::string{kPostHead} + "Content-Length: 4\r\n\r\n{  }");
+  EXPECT_THAT(client.answer(), EndsWith("\r\n\r\n/r|{  }"));
+  EXPECT_EQ(handled_, 2);
+}
+
+TEST_F(ServerTest, RequestsMayComeTogether) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("GET /1 HTTP/1.1\r\nHost: a\r\n\r\nGET /2 HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_THAT(client.answer(), EndsWith("\r\n\r\n/1|"));
+  EXPECT_THAT(client.answer(), EndsWith("\r\n\r\n/2|"));
+}
+
+TEST_F(ServerTest, AHeadIsAnswerWithoutBody) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("HEAD /abc HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(client.everything(), AllOf(HasSubstr("Content-Length: 5\r\n"), EndsWith("\r\n\r\n")));
+}
+
+TEST_F(ServerTest, WhoAsksForTheEndGetsIt) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("GET /a HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(client.everything(), AllOf(HasSubstr("Connection: close"), EndsWith("/a|")));
+}
+
+TEST_F(ServerTest, WhatIsNoRequestIsTold) {
+  RunningServer server{echo()};
+  for (const char* wrong : {"\x16\x03\x01 GET\r\n\r\n", "GET /a%zz HTTP/1.1\r\nHost: a\r\n\r\n",
+                            "GET /a HTTP/9.9\r\n\r\n", "GET /a HTTP/1.1\r\nbad header\r\n\r\n",
+                            "POST /a HTTP/1.1\r\nContent-Length: x\r\n\r\n"}) {
+    RawClient client{server.port()};
+    client.send(wrong);
+    EXPECT_THAT(client.everything(),
+                AllOf(StartsWith("HTTP/1.1 400 "), HasSubstr("{\"error\":{\"code\":\"malformed\"")))
+        << wrong;
+  }
+  EXPECT_EQ(handled_, 0);
+}
+
+TEST_F(ServerTest, ABodyOverTheLimitIsRefusedBeforeItComes) {
+  RunningServer server{echo(), {.body_max = 1000}};
+  RawClient told{server.port()};
+  told.send(std::string{kPostHead} + "Content-Length: 1001\r\n\r\n");  // and none of it
+  EXPECT_THAT(told.answer(), AllOf(StartsWith("HTTP/1.1 413 "), HasSubstr("too_large")));
+  RawClient chunked{server.port()};
+  chunked.send(std::string{kPostHead} + "Transfer-Encoding: chunked\r\n\r\n3E9\r\n" +
+               std::string(1001, ' ') + "\r\n0\r\n\r\n");
+  EXPECT_THAT(chunked.answer(), StartsWith("HTTP/1.1 413 "));
+  EXPECT_EQ(handled_, 0);
+  RawClient just_so{server.port()};
+  just_so.send(std::string{kPostHead} + "Content-Length: 1000\r\n\r\n" + std::string(1000, ' '));
+  EXPECT_THAT(just_so.answer(), StartsWith("HTTP/1.1 200 "));
+}
+
+// The client is still sending when the answer is on its way: a reset would take it back.
+TEST_F(ServerTest, WhoSendsTooMuchCanReadWhy) {
+  RunningServer server{echo(), {.body_max = 1024 * 1024}};
+  RawClient client{server.port()};
+  client.send(std::string{kPostHead} + "Content-Length: 1500000\r\n\r\n");
+  client.send(std::string(1'500'000, ' '));
+  EXPECT_THAT(client.everything(), AllOf(StartsWith("HTTP/1.1 413 "), HasSubstr("too_large")));
+}
+
+TEST_F(ServerTest, AHeaderOverTheLimitIsRefused) {
+  RunningServer server{echo(), {.header_max = 1000}};
+  RawClient client{server.port()};
+  client.send("GET /a HTTP/1.1\r\nCookie: " + std::string(1000, 'a') + "\r\n\r\n");
+  EXPECT_THAT(client.everything(), StartsWith("HTTP/1.1 431 "));
+  EXPECT_EQ(handled_, 0);
+}
+
+TEST_F(ServerTest, WhoAsksWhetherToGoOnIsTold) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send(std::string{kPostHead} + "Content-Length: 2\r\nExpect: 100-continue\r\n\r\n");
+  EXPECT_THAT(client.answer(), StartsWith("HTTP/1.1 100 Continue\r\n"));
+  client.send("{}");
+  EXPECT_THAT(client.answer(), EndsWith("\r\n\r\n/r|{}"));
+}
+
+TEST_F(ServerTest, WhoIsSlowIsCutOff) {
+  RunningServer server{echo(), {.slow_client = 50ms}};
+  for (const char* part : {"", "GET /a HTT",
+                           "POST /r HTTP/1.1\r\nContent-Type: application/json\r\n"
+                           "Content-Length: 9\r\n\r\n{"}) {
+    RawClient client{server.port()};
+    client.send(part);
+    EXPECT_THAT(client.everything(), IsEmpty()) << part;
+  }
+  EXPECT_EQ(handled_, 0);
+}
+
+TEST_F(ServerTest, SoManyConnectionsAndNoMore) {
+  RunningServer server{echo(), {.connections_max = 2}};
+  RawClient first{server.port()};
+  auto second = std::make_unique<RawClient>(server.port());
+  const char* request = "GET /a HTTP/1.1\r\nHost: a\r\n\r\n";
+  first.send(request);
+  second->send(request);
+  EXPECT_THAT(first.answer(), StartsWith("HTTP/1.1 200 "));
+  EXPECT_THAT(second->answer(), StartsWith("HTTP/1.1 200 "));
+  RawClient third{server.port()};
+  EXPECT_THAT(third.answer(), AllOf(StartsWith("HTTP/1.1 503 "), HasSubstr("Retry-After: 1\r\n")));
+  first.send(request);  // whoever was there stays
+  EXPECT_THAT(first.answer(), StartsWith("HTTP/1.1 200 "));
+  second.reset();
+  EXPECT_TRUE(recald::testing::eventually([&] {
+    RawClient next{server.port()};
+    next.send(request);
+    return next.answer().starts_with("HTTP/1.1 200 ");
+  }));
+}
+
+TEST_F(ServerTest, TheTokenIsAskedForBeforeTheBody) {
+  RunningServer server{echo(), {.token = "0123456789abcdef", .open_paths = {"/healthz"}}};
+  RawClient without{server.port()};
+  without.send(std::string{kPostHead} + "Content-Length: 1000\r\n\r\n");
+  EXPECT_THAT(without.answer(),
+              AllOf(StartsWith("HTTP/1.1 401 "), HasSubstr("WWW-Authenticate: Bearer"),
+                    HasSubstr("WWW-Authenticate: Basic"), HasSubstr("token_file")));
+  EXPECT_EQ(handled_, 0);
+  RawClient with{server.port()};
+  with.send("GET /a HTTP/1.1\r\nAuthorization: Bearer 0123456789abcdef\r\n\r\n");
+  EXPECT_THAT(with.answer(), StartsWith("HTTP/1.1 200 "));
+  RawClient open{server.port()};
+  open.send("GET /healthz HTTP/1.1\r\n\r\n");
+  EXPECT_THAT(open.answer(), StartsWith("HTTP/1.1 200 "));
+  server.on_loop([](Server& running) { running.set_token("fedcba9876543210"); });
+  with.send("GET /a HTTP/1.1\r\nAuthorization: Bearer 0123456789abcdef\r\n\r\n");
+  EXPECT_THAT(with.answer(), StartsWith("HTTP/1.1 401 "));
+}
+
+// A web page of any origin can make a browser send a form to a loopback address, but not as JSON.
+TEST_F(ServerTest, APostCallsItselfJson) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("POST /r HTTP/1.1\r\nContent-Type: text/plain\r\nContent-Length: 2\r\n\r\n{}");
+  EXPECT_THAT(client.answer(), StartsWith("HTTP/1.1 415 "));
+  EXPECT_EQ(handled_, 0);
+}
+
+TEST_F(ServerTest, AHandlerThatThrowsIsSurvived) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("GET /throws HTTP/1.1\r\n\r\n");
+  EXPECT_THAT(client.answer(), AllOf(StartsWith("HTTP/1.1 500 "), Not(HasSubstr("on purpose"))));
+  client.send("GET /a HTTP/1.1\r\n\r\n");
+  EXPECT_THAT(client.answer(), StartsWith("HTTP/1.1 200 "));
+}
+
+TEST_F(ServerTest, StopEndsConnectionsToo) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("GET /a HTTP/1.1\r\n\r\n");
+  EXPECT_THAT(client.answer(), StartsWith("HTTP/1.1 200 "));
+  server.on_loop([](Server& running) { running.stop(); });
+  EXPECT_THAT(client.everything(), IsEmpty());
+  EXPECT_THROW(RawClient{server.port()}, std::runtime_error);
+}
+
+TEST_F(ServerTest, HeadersThatAWholeAnswerHas) {
+  RunningServer server{echo()};
+  RawClient client{server.port()};
+  client.send("GET /a HTTP/1.1\r\n\r\n");
+  const std::string first = client.answer();
+  EXPECT_THAT(first, HasSubstr("Content-Security-Policy: default-src 'self'"));
+  const std::size_t tag = first.find("W/\"");
+  ASSERT_NE(tag, std::string::npos) << first;
+  client.send("GET /a HTTP/1.1\r\nIf-None-Match: " +
+              first.substr(tag, first.find('\r', tag) - tag) + "\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(client.everything(),
+              AllOf(StartsWith("HTTP/1.1 304 Not Modified\r\n"), EndsWith("\r\n\r\n")));
+}
+
+class ListenTest : public ::testing::Test {
+ protected:
+  std::string why_not(const ServerOptions& options) {
+    const auto server =
+        Server::listen(context_, options, [](const Request&) { return Response{}; });
+    return server ? "it listens" : server.error().message;
+  }
+  boost::asio::io_context context_{1};
+};
+
+TEST_F(ListenTest, OthersNeedATokenAndTls) {
+  EXPECT_THAT(why_not({.address = "0.0.0.0", .port = 0}), HasSubstr("a token and TLS are needed"));
+  EXPECT_THAT(why_not({.address = "0.0.0.0", .port = 0, .token = "0123456789abcdef"}),
+              HasSubstr("a token and TLS are needed"));
+  EXPECT_THAT(why_not({.address = "::", .port = 0}), HasSubstr("a token and TLS are needed"));
+  EXPECT_EQ(why_not({.address = "127.0.0.2", .port = 0}), "it listens");
+}
+
+TEST_F(ListenTest, WhatIsWrongIsSaid) {
+  EXPECT_THAT(why_not({.address = "tower"}), HasSubstr("'tower' is no numeric address"));
+  EXPECT_THAT(why_not({.port = 0, .tls = TlsFiles{"/nowhere.pem", "/nowhere.key"}}),
+              HasSubstr("certificate '/nowhere.pem' cannot be used"));
+  const auto first =
+      Server::listen(context_, {.port = 0}, [](const Request&) { return Response{}; });
+  ASSERT_TRUE(first.has_value());
+  EXPECT_THAT(why_not({.port = (*first)->port()}), HasSubstr("in use"));
+}
+
+}  // namespace
+}  // namespace recald::http

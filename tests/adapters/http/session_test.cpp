@@ -1,0 +1,124 @@
+/// A session over a stream in memory that fails at the n-th operation, or ends at the n-th byte.
+#include "adapters/http/session.hpp"
+
+#include <gmock/gmock.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/_experimental/test/stream.hpp>
+
+namespace recald::http {
+namespace {
+
+using boost::beast::test::connect;
+using boost::beast::test::fail_count;
+using boost::beast::test::stream;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+const std::string kTwoRequests =
+    "POST /first HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\n"
+    "Content-Length: 2\r\n\r\n{}"
+    "GET /last HTTP/1.1\r\nHost: a\r\n\r\n";
+const std::size_t kFirstLength = kTwoRequests.find("GET /last");
+
+class SessionTest : public ::testing::Test {
+ protected:
+  /// Lets the session run until it waits for the client or has ended.
+  void serve(stream& server) {
+    Session<stream> session{server, rules_, handler_};
+    boost::asio::co_spawn(
+        context_, [&]() -> boost::asio::awaitable<void> { co_await session.run(); },
+        [&](std::exception_ptr thrown) {
+          has_ended_ = true;
+          has_thrown_ = thrown != nullptr;
+        });
+    context_.poll();
+    server.close();  // whatever waits does not outlive the session
+    context_.restart();
+    context_.poll();
+  }
+
+  boost::asio::io_context context_;
+  SessionRules rules_;
+  std::vector<std::string> handled_;
+  Handler handler_ = [this](const Request& request) -> Response {
+    handled_.push_back(request.path);
+    return {.content_type = "text/plain", .body = request.path};
+  };
+  bool has_ended_ = false;
+  bool has_thrown_ = false;
+};
+
+// No failure at any operation throws, hangs or has a request handled that did not come whole.
+TEST_F(SessionTest, TheNthOperationFailsUntilARunPasses) {
+  std::string answered;
+  std::size_t n = 0;
+  for (; handled_.size() < 2 || !answered.ends_with("/last"); ++n) {
+    ASSERT_LT(n, 100u);
+    SCOPED_TRACE(n);
+    fail_count failing{n};
+    stream server{context_, failing};
+    stream client = connect(server);
+    server.append(kTwoRequests);
+    handled_.clear();
+    has_ended_ = false;
+    serve(server);
+    EXPECT_TRUE(has_ended_);
+    EXPECT_FALSE(has_thrown_);
+    ASSERT_LE(handled_.size(), 2u);
+    answered = std::string{client.str()};
+  }
+  EXPECT_GT(n, 3u);  // reads and writes of both requests have failed before
+}
+
+TEST_F(SessionTest, ARequestThatIsCutAtAnyByteIsNotHandled) {
+  for (std::size_t length = 0; length <= kTwoRequests.size(); ++length) {
+    SCOPED_TRACE(length);
+    stream server{context_};
+    stream client = connect(server);
+    server.append(kTwoRequests.substr(0, length));
+    client.close();
+    handled_.clear();
+    has_ended_ = false;
+    serve(server);
+    EXPECT_TRUE(has_ended_);
+    EXPECT_FALSE(has_thrown_);
+    const std::size_t whole = length == kTwoRequests.size() ? 2 : length >= kFirstLength ? 1 : 0;
+    EXPECT_THAT(handled_, SizeIs(whole));
+  }
+}
+
+TEST_F(SessionTest, ARequestThatDripsIsTheSame) {
+  stream server{context_};
+  server.read_size(1);
+  stream client = connect(server);
+  server.append(kTwoRequests);
+  serve(server);
+  EXPECT_THAT(handled_, ::testing::ElementsAre("/first", "/last"));
+  EXPECT_THAT(std::string{client.str()}, EndsWith("/last"));
+}
+
+TEST_F(SessionTest, NothingIsHandledAfterTheEndHasBegun) {
+  rules_.is_stopping = true;
+  stream server{context_};
+  stream client = connect(server);
+  server.append(kTwoRequests);
+  serve(server);
+  EXPECT_TRUE(has_ended_);
+  EXPECT_THAT(handled_, SizeIs(0));
+}
+
+TEST_F(SessionTest, WhatFollowsARefusalIsNotARequest) {
+  stream server{context_};
+  stream client = connect(server);
+  server.append("GET /%zz HTTP/1.1\r\n\r\n" + kTwoRequests);
+  serve(server);
+  EXPECT_THAT(handled_, SizeIs(0));
+  EXPECT_THAT(std::string{client.str()}, HasSubstr("HTTP/1.1 400 "));
+}
+
+}  // namespace
+}  // namespace recald::http
