@@ -80,6 +80,7 @@ Result<void> Committer::flush() {
   const milliseconds begin = loop_.now().monotonic;
   const auto counts = store_.commit(waiting_);
   health_.last_duration = loop_.now().monotonic - begin;
+  health_.durations.observe(health_.last_duration);
   if (!counts) {
     ++health_.failures;
     health_.is_degraded = true;

@@ -10,6 +10,7 @@
 
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
+#include "daemon/poll/latency_histogram.hpp"
 
 namespace recald::daemon {
 
@@ -32,6 +33,7 @@ struct CommitHealth {
   std::uint64_t lost_samples = 0;
   std::uint64_t conflicts = 0;
   std::chrono::milliseconds last_duration{0};
+  LatencyHistogram durations;  ///< Of all commits, those refused as well.
 };
 
 class Committer {

@@ -116,6 +116,7 @@ std::optional<std::size_t> BusPoller::choose(const Moment& now) const {
 BusOrder BusPoller::order_for(std::size_t unit, bool is_probe, const Moment& now) {
   const PolledUnit& polled = units_[unit];
   UnitPolling& polling = states_[unit];
+  const bool begins_poll = !is_probe && !polling.is_asked;
   if (!is_probe) polling.is_asked = true;
   const std::size_t read = is_probe ? 0 : polling.to_read.back();
   const modbus::PlannedRead& planned = polled.reads[read];
@@ -126,7 +127,8 @@ BusOrder BusPoller::order_for(std::size_t unit, bool is_probe, const Moment& now
           .request = {polled.unit, planned.function, planned.address, planned.count},
           .timeout = is_probe ? polling.timeout.probe_timeout() : polling.timeout.timeout(),
           .due = polling.due,
-          .is_probe = is_probe};
+          .is_probe = is_probe,
+          .begins_poll = begins_poll};
 }
 
 std::optional<BusOrder> BusPoller::probe(const Moment& now) {

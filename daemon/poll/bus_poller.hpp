@@ -49,6 +49,7 @@ struct BusOrder {
   std::chrono::milliseconds timeout;
   WallTime due;
   bool is_probe;
+  bool begins_poll = false;  ///< The first read of a poll: how late it is, the poll is.
 };
 
 /// A wait of several minutes is shortened to this: the wall clock may have been set meanwhile.

@@ -6,6 +6,7 @@
 
 #include "adapters/ports/bus.hpp"
 #include "adapters/ports/loop.hpp"
+#include "daemon/poll/bus_counters.hpp"
 #include "daemon/poll/bus_poller.hpp"
 
 namespace recald::daemon {
@@ -28,14 +29,17 @@ class BusRunner {
 
   void start();
   [[nodiscard]] const BusPoller& poller() const { return poller_; }
+  [[nodiscard]] const BusCounters& counters() const { return counters_; }
 
  private:
   void step();
+  void count(const PolledRead& read);
 
   Loop& loop_;
   std::unique_ptr<Bus> bus_;
   BusPoller poller_;
   OnRead on_read_;
+  BusCounters counters_;
   std::shared_ptr<BusRunner*> self_;  ///< Calls that come later find out whether this still is.
 };
 

@@ -66,6 +66,40 @@ TEST(BusRunner, HandsOnEveryReadWithItsTimes) {
   }
 }
 
+// A poll of two reads is as late as its first one; probes of a dead unit are not late at all.
+TEST(BusRunner, CountsRequestsAndPolls) {
+  VirtualLoop loop{kNoon};
+  int reads = 0;
+  BusPoller two_reads{{{.meter = "main",
+                        .reads = {{modbus::Function::read_holding_registers, 0, 2, {0}},
+                                  {modbus::Function::read_holding_registers, 100, 2, {1}}}}},
+                      {},
+                      Rng{1}};
+  BusRunner runner{loop, std::make_unique<TestBus>(loop, milliseconds{30}, reads),
+                   std::move(two_reads), [](const PolledRead&) {}};
+  runner.start();
+  loop.run_for(minutes{3} + seconds{1});
+  const BusCounters& counters = runner.counters();
+  EXPECT_EQ(counters.requests.at(0)[static_cast<std::size_t>(RequestResult::ok)], 8u);
+  EXPECT_EQ(counters.duration.count(), 8u);
+  EXPECT_EQ(counters.lateness.count(), 4u);
+  EXPECT_EQ(counters.lateness.sum_s(), 0.0);
+}
+
+TEST(BusRunner, CountsSilenceAsSuch) {
+  VirtualLoop loop{kNoon};
+  int reads = 0;
+  BusRunner runner{loop, std::make_unique<TestBus>(loop, seconds{9}, reads), poller(),
+                   [](const PolledRead&) {}};
+  runner.start();
+  loop.run_for(minutes{30});
+  const auto asked = static_cast<std::uint64_t>(reads);
+  const std::uint64_t silent =
+      runner.counters().requests.at(0)[static_cast<std::size_t>(RequestResult::timeout)];
+  EXPECT_GE(silent + 1, asked);  // one may be under way
+  EXPECT_GT(silent, runner.counters().lateness.count());
+}
+
 TEST(BusRunner, GoesOnAfterFailures) {
   VirtualLoop loop{kNoon};
   int reads = 0;
