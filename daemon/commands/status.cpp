@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "adapters/http/client.hpp"
+#include "adapters/http/credentials.hpp"
+#include "daemon/commands/commands.hpp"
+#include "daemon/config/site_config.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Whom to ask, and how.
+struct Question {
+  http::Url url;
+  http::ClientOptions options;
+};
+
+/// Where a daemon with this configuration can be reached from this machine.
+std::string reachable_address(const std::string& listens_on) {
+  if (listens_on == "0.0.0.0") return "127.0.0.1";
+  if (listens_on == "::") return "::1";
+  return listens_on;
+}
+
+tl::expected<Question, std::vector<std::string>> question_for_site(
+    const std::filesystem::path& file) {
+  const auto site = load_site(file);
+  if (!site) return tl::unexpected(site.error());
+  const auto why_not = [](std::string sentence) {
+    return tl::unexpected(std::vector<std::string>{std::move(sentence)});
+  };
+  if (!site->http) {
+    return why_not(
+        fmt::format("{}: there is no [http], so its daemon answers nobody; add "
+                    "[http] with listen = \"127.0.0.1:8080\"",
+                    file.filename().string()));
+  }
+  const HttpConfig& http = *site->http;
+  if (http.port == 0) {
+    return why_not(
+        fmt::format("{}: [http] listens on any free port; the daemon's log says which, "
+                    "ask with --url",
+                    file.filename().string()));
+  }
+  Question question;
+  question.url = {.is_tls = !http.certificate_file.empty(),
+                  .host = reachable_address(http.address),
+                  .port = http.port};
+  question.options.trusted_certificate = http.certificate_file;
+  if (!http.token_file.empty()) {
+    const auto token = http::read_token_file(http.token_file);
+    if (!token) return why_not(token.error().message);
+    question.options.token = *token;
+  }
+  return question;
+}
+
+tl::expected<Question, std::vector<std::string>> question_for(const StatusArguments& arguments) {
+  if (arguments.url.empty()) return question_for_site(arguments.site);
+  const auto url = http::parse_url(arguments.url);
+  if (!url) return tl::unexpected(std::vector<std::string>{url.error().message});
+  Question question{.url = *url};
+  if (!arguments.token_file.empty()) {
+    const auto token = http::read_token_file(arguments.token_file);
+    if (!token) return tl::unexpected(std::vector<std::string>{token.error().message});
+    question.options.token = *token;
+  }
+  return question;
+}
+
+/// One route's JSON. 503 is an answer too: /readyz gives its reasons with it.
+Result<Json> ask(Question question, const std::string& path) {
+  question.url.path = path;
+  const auto response = http::get(question.url, question.options);
+  if (!response) return tl::unexpected(response.error());
+  Json json = Json::parse(response->body, nullptr, false);
+  if (response->status == 401) {
+    return failure(ErrorCode::invalid_value,
+                   question.url.text() + " asks for a token; name its file with --token-file");
+  }
+  if (!json.is_object() || (response->status != 200 && response->status != 503)) {
+    return failure(ErrorCode::malformed, fmt::format("what answers at {} is no recald (status {})",
+                                                     question.url.text(), response->status));
+  }
+  return json;
+}
+
+/// A member as people read it; whatever answers may be of another version.
+std::string words(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || json[key].is_null()) return "-";
+  const Json& value = json[key];
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.5g}", value.get<double>());
+  return value.dump();
+}
+
+std::string status_words(const Json& site, const Json& ready, const Json& meters) {
+  std::string text =
+      fmt::format("{}: {}, version {}, since {}\n", words(site, "id"), words(ready, "status"),
+                  words(site, "version"), words(site, "started_at"));
+  for (const Json& reason : ready.value("reasons", Json::array())) {
+    if (reason.is_string()) text += "  ! " + reason.get<std::string>() + "\n";
+  }
+  text += fmt::format("{:<24} {:<9} {:>10} {:>14} {:<21} {:>8}\n", "meter", "state", "kW", "kWh",
+                      "last answer", "coverage");
+  for (const Json& meter : meters) {
+    text +=
+        fmt::format("{:<24} {:<9} {:>10} {:>14} {:<21} {:>8}\n", words(meter, "id"),
+                    words(meter, "state"), words(meter, "power_kW"), words(meter, "register_kWh"),
+                    words(meter, "read_at"), words(meter, "open_month_coverage"));
+  }
+  return text;
+}
+
+}  // namespace
+
+int run_status(const StatusArguments& arguments, const Console& console) {
+  const auto question = question_for(arguments);
+  if (!question) return console.fail(question.error());
+  const auto ready = ask(*question, "/readyz");
+  if (!ready) return console.fail(ready.error());
+  const auto sites = ask(*question, "/api/v1/sites");
+  if (!sites) return console.fail(sites.error());
+  const auto meters = ask(*question, "/api/v1/meters");
+  if (!meters) return console.fail(meters.error());
+  const Json site_list = sites->value("sites", Json::array());
+  const Json site = site_list.is_array() && !site_list.empty() ? site_list[0] : Json();
+  const Json meter_list = meters->value("meters", Json::array());
+  if (arguments.json) {
+    const Json json = {{"site", site}, {"ready", *ready}, {"meters", meter_list}};
+    console.out << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  } else {
+    console.out << status_words(site, *ready, meter_list);
+  }
+  return kSuccess;
+}
+
+}  // namespace recald::daemon

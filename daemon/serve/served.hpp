@@ -1,0 +1,30 @@
+/// What is served, and out of what: every answer is a plain function of these and a request.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "adapters/http/message.hpp"
+#include "adapters/ports/store.hpp"
+#include "daemon/config/site_config.hpp"
+#include "daemon/run/gateway.hpp"
+
+namespace recald::daemon {
+
+/// Outlives whoever serves it. All of it is used on the loop's thread alone.
+struct Served {
+  const SiteConfig& site;
+  const metering::LocalCalendar& calendar;
+  Store& store;
+  std::function<GatewayStatus()> status;
+  std::function<metering::Instant()> now;
+  metering::Instant started{};
+  /// Asks for a job: its number, or why there is none (unsupported: the site has no model;
+  /// cancelled: too many wait already). Absent: nobody works here.
+  std::function<Result<std::int64_t>(JobKind kind)> ask_job = {};
+};
+
+/// The answer to any request: an API route, /healthz, /readyz, /metrics, the status page.
+[[nodiscard]] http::Response answer(const Served& served, const http::Request& request);
+
+}  // namespace recald::daemon

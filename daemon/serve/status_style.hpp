@@ -1,0 +1,41 @@
+/// The status page's style sheet. Colours have a contrast of 4.5 to 1 and more, by day and by
+/// night.
+#pragma once
+
+#include <string_view>
+
+namespace recald::daemon {
+
+inline constexpr std::string_view kStatusStyle = R"css(:root {
+  color-scheme: light dark;
+  --ink: #1b1b1b; --paper: #ffffff; --line: #c4c4c4;
+  --muted: #595959; --good: #0b6b2e; --warn: #7a4b00; --bad: #a3151c; --link: #0b4f9c;
+}
+@media (prefers-color-scheme: dark) {
+  :root {
+    --ink: #ececec; --paper: #161616; --line: #4a4a4a;
+    --muted: #b0b0b0; --good: #6fd392; --warn: #f0b95a; --bad: #ff9a94; --link: #8fc1ff;
+  }
+}
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--paper); color: var(--ink); font: 1rem/1.5 system-ui, sans-serif; }
+main, footer { max-width: 72rem; margin: 0 auto; padding: 0.5rem 1rem; }
+h1 { font-size: 1.6rem; margin: 0.5rem 0 0; }
+h2, p.caption { font-size: 1.15rem; font-weight: 600; text-align: left; }
+p.caption { margin: 1.4rem 0 0.2rem; }
+ul { list-style: none; padding: 0; margin: 0; }
+table { border-collapse: collapse; width: 100%; }
+th, td { text-align: left; vertical-align: top; padding: 0.35rem 0.8rem 0.35rem 0;
+  border-bottom: 1px solid var(--line); }
+tbody th { font-weight: 600; }
+th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; }
+.scroll { overflow-x: auto; }
+.muted { color: var(--muted); }
+.good { color: var(--good); }
+.warn { color: var(--warn); }
+.bad { color: var(--bad); }
+a { color: var(--link); padding: 0.3rem 0.6rem 0.3rem 0; display: inline-block; }
+a:focus-visible { outline: 3px solid currentColor; outline-offset: 2px; }
+)css";
+
+}  // namespace recald::daemon
