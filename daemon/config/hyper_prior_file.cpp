@@ -54,8 +54,7 @@ tl::expected<HyperPrior, Problems> load_hyper_prior(const std::filesystem::path&
     if (made) return *made;
     root.problem(made.error().message);
   } catch (const toml::parse_error& error) {
-    problems.push_back(fmt::format("{}:{}: no valid TOML: {}", file.filename().string(),
-                                   error.source().begin.line, error.description()));
+    problems.push_back(syntax_problem(file.filename().string(), error));
   }
   return tl::unexpected(problems);
 }

@@ -139,8 +139,35 @@ void require_unit(TomlReader& root, std::string_view key, const RegisterField& f
                        is_rate ? "kW" : "kWh"));
 }
 
+/// A counter that is named twice would be summed twice.
+void require_once(TomlReader& root, const std::vector<std::string>& energy) {
+  std::set<std::string> seen;
+  for (const std::string& name : energy) {
+    if (seen.insert(name).second) continue;
+    root.problem_at("energy", fmt::format("'energy' names '{}' twice; it would count twice", name));
+  }
+}
+
+/// A power of ten is a field of its own, and a plain one.
+void require_scale_factor(TomlReader& root, const RegisterField& field, const RegisterMap& map) {
+  if (!field.scale_factor) return;
+  const RegisterField* factor = require_field(root, "register", *field.scale_factor, map);
+  if (factor == nullptr || !factor->scale_factor) return;
+  root.problem_at("register",
+                  fmt::format("[register.{}] 'scale_factor' names '{}', which has a 'scale_factor' "
+                              "itself; a power of ten stands in one register",
+                              field.name, factor->name));
+}
+
+/// Whether the map's reads fit what it says of its device.
+void require_plan(TomlReader& root, const RegisterMap& map) {
+  const auto reads = plan_reads(metered_fields(map), map.function, map.limits);
+  if (!reads) root.problem_at("registers_max", reads.error().message);
+}
+
 void read_uses(TomlReader& root, RegisterMap& map) {
-  map.energy = root.texts("energy").value_or(std::vector<std::string>{});
+  const auto energy = root.texts("energy");
+  map.energy = energy.value_or(std::vector<std::string>{});
   map.power = root.text("power");
   map.identity = root.texts("identity").value_or(std::vector<std::string>{});
   for (const std::string& name : map.energy) {
@@ -156,10 +183,11 @@ void read_uses(TomlReader& root, RegisterMap& map) {
   for (const std::string& name : map.identity) (void)require_field(root, "identity", name, map);
   if (!root.has("energy") && !root.has("power")) {
     root.problem("names neither 'energy' nor 'power': nothing of it could be metered");
+  } else if (energy && energy->empty() && !root.has("power")) {
+    root.problem_at("energy", "'energy' names no register: nothing of the map could be metered");
   }
-  for (const RegisterField& field : map.fields) {
-    if (field.scale_factor) (void)require_field(root, "register", *field.scale_factor, map);
-  }
+  require_once(root, map.energy);
+  for (const RegisterField& field : map.fields) require_scale_factor(root, field, map);
 }
 
 modbus::ReadLimits read_limits(TomlReader& root) {
@@ -261,6 +289,8 @@ RegisterMapFile read_map(TomlReader root, const std::string& name) {
     file.golden.push_back(read_golden(golden, map, defaults.base));
   }
   root.finish();
+  // Of a map with mistakes it is not known what would be read.
+  if (!root.has_problems()) require_plan(root, map);
   return file;
 }
 
@@ -275,8 +305,7 @@ tl::expected<RegisterMapFile, Problems> parse_register_map(std::string_view text
     const toml::table root = toml::parse(text, file_name);
     file = read_map(TomlReader{root, file_name, "", problems}, name);
   } catch (const toml::parse_error& error) {
-    problems.push_back(fmt::format("{}:{}: no valid TOML: {}", file_name, error.source().begin.line,
-                                   error.description()));
+    problems.push_back(syntax_problem(file_name, error));
   }
   if (!problems.empty()) return tl::unexpected(problems);
   return file;

@@ -7,8 +7,25 @@
 #include <cmath>
 
 #include "core/text/nearest.hpp"
+#include "core/text/printable.hpp"
 
 namespace recald::daemon {
+
+namespace {
+
+/// What a number must be, for people. TOML itself knows inf and nan.
+std::string limits_of(NumberRange range) {
+  if (std::isfinite(range.max)) return fmt::format("between {} and {}", range.min, range.max);
+  if (range.min > 0.0) return "greater than 0";
+  return std::isfinite(range.min) ? fmt::format("at least {}", range.min) : "a finite number";
+}
+
+}  // namespace
+
+std::string syntax_problem(std::string_view file, const toml::parse_error& error) {
+  return printable(fmt::format("{}:{}: no valid TOML: {}", file, error.source().begin.line,
+                               error.description()));
+}
 
 std::optional<std::chrono::seconds> parse_duration(std::string_view text) {
   long long count = 0;
@@ -39,13 +56,16 @@ std::string TomlReader::at(const toml::node& node) const {
   return where_.empty() ? place : place + where_ + " ";
 }
 
-void TomlReader::problem(std::string sentence) {
-  problems_->push_back(at(*table_) + std::move(sentence));
+/// Sentences quote keys and texts of the file, whatever these contain.
+void TomlReader::add(std::string place, std::string_view sentence) {
+  problems_->push_back(printable(std::move(place).append(sentence)));
 }
+
+void TomlReader::problem(std::string sentence) { add(at(*table_), sentence); }
 
 void TomlReader::problem_at(std::string_view key, std::string sentence) {
   const toml::node* node = table_->get(key);
-  problems_->push_back((node != nullptr ? at(*node) : at(*table_)) + std::move(sentence));
+  add(at(node != nullptr ? *node : *table_), sentence);
 }
 
 const toml::node* TomlReader::find(std::string_view key) {
@@ -69,12 +89,8 @@ std::optional<double> TomlReader::number(std::string_view key, NumberRange range
     problem_at(key, fmt::format("'{}' must be a number", key));
     return {};
   }
-  if (!(range.min <= *value && *value <= range.max)) {
-    const std::string limits =
-        range.max < std::numeric_limits<double>::infinity()
-            ? fmt::format("between {} and {}", range.min, range.max)
-            : (range.min > 0.0 ? "greater than 0" : fmt::format("at least {}", range.min));
-    problem_at(key, fmt::format("'{}' is {}; it must be {}", key, *value, limits));
+  if (!std::isfinite(*value) || !(range.min <= *value && *value <= range.max)) {
+    problem_at(key, fmt::format("'{}' is {}; it must be {}", key, *value, limits_of(range)));
     return {};
   }
   return value;
@@ -215,7 +231,9 @@ double TomlReader::required_number(std::string_view key, NumberRange range) {
 
 std::string TomlReader::required_text(std::string_view key) {
   if (!has(key)) problem(fmt::format("'{}' is missing", key));
-  return text(key).value_or("");
+  const auto value = text(key);
+  if (value && value->empty()) problem_at(key, fmt::format("'{}' is empty", key));
+  return value.value_or("");
 }
 
 std::vector<std::string> TomlReader::keys() const {
@@ -231,10 +249,9 @@ void TomlReader::finish() {
     const std::string_view nearest = nearest_name(key.str(), known);
     const std::string line = fmt::format("{}:{}: {}", file_, key.source().begin.line,
                                          where_.empty() ? "" : where_ + " ");
-    problems_->push_back(
-        line + (nearest.empty()
-                    ? fmt::format("unknown key '{}'", key.str())
-                    : fmt::format("unknown key '{}'; did you mean '{}'?", key.str(), nearest)));
+    add(line, nearest.empty()
+                  ? fmt::format("unknown key '{}'", key.str())
+                  : fmt::format("unknown key '{}'; did you mean '{}'?", key.str(), nearest));
   }
 }
 

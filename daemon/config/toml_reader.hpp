@@ -2,6 +2,9 @@
 /// nobody asked for is a mistake too.
 #pragma once
 
+// toml++ asserts what a file may well break ("[{" does), which would end a program whose assertions
+// are on; without it the same parser answers with an error.
+#define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
 #include <chrono>
 #include <limits>
@@ -54,7 +57,7 @@ class TomlReader {
   /// A whole number; 2.5 storeys are a problem.
   [[nodiscard]] int whole_number_or(std::string_view key, int fallback, NumberRange range);
   [[nodiscard]] std::string text_or(std::string_view key, std::string fallback);
-  /// The value; absence is a problem. A placeholder comes back then, and the load fails at its end.
+  /// The value; absence is a problem, and so is an empty text. A placeholder comes back then, and the load fails at its end.
   [[nodiscard]] double required_number(std::string_view key, NumberRange range = {});
   [[nodiscard]] std::string required_text(std::string_view key);
 
@@ -62,6 +65,9 @@ class TomlReader {
   [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
   /// Keys of this table, for tables whose keys are names of the user's (weights by meter).
   [[nodiscard]] std::vector<std::string> keys() const;
+
+  /// Whether anything of the whole file was wrong so far.
+  [[nodiscard]] bool has_problems() const { return !problems_->empty(); }
 
   /// Records a problem at this table's line, or at the key's.
   void problem(std::string sentence);
@@ -72,6 +78,7 @@ class TomlReader {
 
  private:
   const toml::node* find(std::string_view key);
+  void add(std::string place, std::string_view sentence);
   [[nodiscard]] std::string at(const toml::node& node) const;
 
   const toml::table* table_;
@@ -80,6 +87,9 @@ class TomlReader {
   Problems* problems_;
   std::vector<std::string> asked_;
 };
+
+/// What a file that is no TOML is answered: the line, and the parser's reason.
+[[nodiscard]] std::string syntax_problem(std::string_view file, const toml::parse_error& error);
 
 /// "15m" and the like; nothing for text that is no positive duration.
 [[nodiscard]] std::optional<std::chrono::seconds> parse_duration(std::string_view text);

@@ -136,6 +136,22 @@ TEST(RegisterMapFile, ShippedMapsDecodeTheirGoldenReplies) {
   }
 }
 
+// em24_total_vs_partial: the two EM24 share a name and not a map. Of the RS-485 one the counter at
+// 0x42 is the partial one, which people reset; of the Ethernet one 0x42 is no energy at all.
+TEST(RegisterMapFile, Em24TotalVsPartial) {
+  const std::pair<const char*, int> totals[] = {{"carlo-gavazzi-em24-din", 0x3E},
+                                                {"carlo-gavazzi-em24-e1", 0x34}};
+  for (const auto& [name, address] : totals) {
+    const auto map = find_register_map(name, ".");
+    ASSERT_TRUE(map.has_value()) << map.error().front();
+    ASSERT_THAT(map->energy, SizeIs(1));
+    EXPECT_EQ(map->find(map->energy.front())->address, address) << name;
+    for (const modbus::RegisterField& field : map->fields) {
+      EXPECT_FALSE(field.address <= 0x42 && 0x42 < field.end()) << name << ", " << field.name;
+    }
+  }
+}
+
 TEST(RegisterMapFile, ASiteNamesAShippedMapOrAFileBesideIt) {
   const recald::testing::TemporaryFolder folder;
   recald::testing::write_text(folder / "ours.toml", kMap);
@@ -198,6 +214,18 @@ TEST(RegisterMapFile, EveryMistakeHasItsSentence) {
       {"values = { energy = 10000 }\n", "", "'values' is missing"},
       {"gap_max = 4", "sunspec_models = [\"2o3\"]", "write numbers such as \"203\""},
       {"base = 1", "base = ", "ours.toml:4: no valid TOML"},
+      {"[[golden]]", "[{", "no valid TOML"},  // an assertion of the parser, where these are on
+      {"scale = 0.1", "scale = inf", "'scale' is inf; it must be a finite number"},
+      {"energy = [\"energy\"]", "energy = [\"energy\", \"energy\"]",
+       "'energy' names 'energy' twice; it would count twice"},
+      {"energy = [\"energy\"]\npower = \"power\"\n", "energy = []\n", "'energy' names no register"},
+      {"at = 202\ntype = \"i16\"", "at = 202\ntype = \"i16\"\nscale_factor = \"serial\"",
+       "[register.power] 'scale_factor' names 'tens', which has a 'scale_factor' itself"},
+      {"scale_factor = \"tens\"", "scale_factor = \"power\"",
+       "[register.power] 'scale_factor' names 'power'"},
+      {"at = 202", "at = 302", "must be read together and span 102 registers; the device gives 60"},
+      {"source = \"its manual\"", "source = \"\"", "'source' is empty"},
+      {"trust = \"one_source\"", "trust = \"one\\u001B[2J\"", "'trust' is \"one\\x1B[2J\""},
   };
   for (const Mistake& mistake : mistakes) {
     SCOPED_TRACE(mistake.to);

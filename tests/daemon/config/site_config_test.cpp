@@ -2,7 +2,10 @@
 #include "daemon/config/site_config.hpp"
 
 #include <gmock/gmock.h>
+
 #include <gtest/gtest.h>
+#include <locale>
+#include <sstream>
 
 #include <cstdlib>
 
@@ -346,7 +349,8 @@ TEST(SiteConfig, AllMistakesAreReportedAtOnce) {
           StartsWith("site.toml:7: [site] unknown key 'altitud_m'"),
           StartsWith("site.toml:20: [meter] 'warmth' is no utility"),
           ::testing::HasSubstr("[model.parameter] 'min' must be a number"),
-          ::testing::HasSubstr("[model.parameter] outdoor_airflow: a triangular prior needs min, mode and max"),
+          ::testing::HasSubstr(
+              "[model.parameter] outdoor_airflow: a triangular prior needs min, mode and max"),
           ::testing::HasSubstr("[building.air] 'fan_design_kW' is missing"),
           ::testing::HasSubstr("[building.air] unknown key 'fan_design_W'; did you mean "
                                "'fan_design_kW'?")));
@@ -355,6 +359,27 @@ TEST(SiteConfig, AllMistakesAreReportedAtOnce) {
 TEST(SiteConfig, SyntaxErrorIsOneSentenceWithItsLine) {
   const std::string text = with("\"Europe/Zurich\"", "Europe/Zurich");
   EXPECT_THAT(SiteFile{text}.problems(), ElementsAre(StartsWith("site.toml:4: no valid TOML: ")));
+}
+
+class DecimalComma : public std::numpunct<char> {
+  [[nodiscard]] char do_decimal_point() const override { return ','; }
+};
+
+// decimal_comma_locale: what a process is told about commas changes no number of a file, nor the
+// one in a sentence about it.
+TEST(SiteConfig, DecimalCommaLocale) {
+  const std::locale before =
+      std::locale::global(std::locale{std::locale::classic(), new DecimalComma});
+  const SiteFile file{sample_site()};
+  const SiteFile wrong{with("latitude_deg = 47.4", "latitude_deg = 247.4")};
+  std::ostringstream stream;
+  stream << 47.4;
+  std::locale::global(before);
+  ASSERT_EQ(stream.str(), "47,4");  // it was in force
+  EXPECT_EQ(file.config().location->latitude_deg, 47.4);
+  EXPECT_EQ(file.config().building->surfaces[1].u_W_m2K, 1.6);
+  EXPECT_THAT(wrong.problems(), ElementsAre("site.toml:5: [site] 'latitude_deg' is 247.4; it must "
+                                            "be between -90 and 90"));
 }
 
 TEST(SiteConfig, KeyGivenTwiceIsASyntaxError) {

@@ -109,16 +109,18 @@ TEST(TomlReader, WrongTypesNameLineAndKey) {
 }
 
 TEST(TomlReader, RangesAreInclusiveAndNamedInWords) {
-  Reading r{"low = 0\nhigh = 1.5\nzero = 0.0\nminus = -1\nblank = nan\n"};
+  Reading r{"low = 0\nhigh = 1.5\nzero = 0.0\nminus = -1\nblank = nan\nendless = inf\n"};
   EXPECT_EQ(r.reader.number("low", kShare), 0.0);
   (void)r.reader.number("high", kShare);
   (void)r.reader.number("zero", kPositive);
   (void)r.reader.number("minus", kNotNegative);
   (void)r.reader.number("blank", kShare);
+  (void)r.reader.number("endless");
   EXPECT_THAT(r.problems, ElementsAre("a.toml:2: 'high' is 1.5; it must be between 0 and 1",
                                       "a.toml:3: 'zero' is 0; it must be greater than 0",
                                       "a.toml:4: 'minus' is -1; it must be at least 0",
-                                      "a.toml:5: 'blank' is nan; it must be between 0 and 1"));
+                                      "a.toml:5: 'blank' is nan; it must be between 0 and 1",
+                                      "a.toml:6: 'endless' is inf; it must be a finite number"));
 }
 
 TEST(TomlReader, TablesKnowTheirPlace) {
