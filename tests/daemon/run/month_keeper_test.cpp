@@ -151,5 +151,30 @@ TEST_F(MonthKeeperTest, AStoreThatRefusesIsAskedAgainLater) {
   EXPECT_THAT(*keeper.close_due(std::span{&main_, 1}, end_of(2) + hours{72}), SizeIs(1));
 }
 
+// tzdata_changed: a month that is open has no boundaries yet and closes by the rules that hold
+// then; what was closed before stays. The new rules are Regina's: no summer time.
+TEST_F(MonthKeeperTest, TzdataChanged) {
+  auto all = readings(main_.number, end_of(2), end_of(5));
+  const Instant april_until_now = end_of(3);
+  for (Reading& reading : all) {
+    const bool is_first_hour =
+        april_until_now <= reading.start && reading.start < april_until_now + hours{1};
+    if (is_first_hour) reading.mean_kW = 500.0;
+  }
+  put(all);
+  ASSERT_THAT(keeper().close_due(std::span{&main_, 1}, end_of(3) + hours{72}).value(), SizeIs(1));
+  const auto changed = metering::LocalCalendar::open("America/Regina").value();
+  MonthKeeper updated{store_, changed, {}, "2026a"};
+  const auto closed =
+      updated.close_due(std::span{&main_, 1}, changed.month_span(month(4)).end + hours{72}).value();
+  ASSERT_THAT(closed, SizeIs(1));
+  EXPECT_EQ(closed[0].figure.month, month(4));
+  EXPECT_EQ(closed[0].figure.revision, 0);
+  EXPECT_LT(closed[0].figure.peak->kW, 200.0);  // that hour is March's now
+  const auto months = store_.months(main_.number).value();
+  ASSERT_THAT(months, SizeIs(2));
+  EXPECT_EQ(months[0].revision, 0);
+}
+
 }  // namespace
 }  // namespace recald::daemon
