@@ -4,140 +4,12 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
-#include <fstream>
-#include <set>
-#include <sstream>
 
-#include "core/text/nearest.hpp"
 #include "simulators/scenario/archetypes.hpp"
+#include "simulators/toml/toml_table.hpp"
 
 namespace recald::simulators {
 namespace {
-
-/// Collects the first thing that is wrong, so that reading need not stop at every key.
-class Complaint {
- public:
-  explicit Complaint(std::string file) : file_(std::move(file)) {}
-
-  void about(const toml::node* node, const std::string& sentence) {
-    if (!sentence_.empty()) return;
-    sentence_ = node == nullptr
-                    ? fmt::format("{}: {}", file_, sentence)
-                    : fmt::format("{}:{}: {}", file_, node->source().begin.line, sentence);
-  }
-  [[nodiscard]] bool empty() const { return sentence_.empty(); }
-  [[nodiscard]] const std::string& sentence() const { return sentence_; }
-
- private:
-  std::string file_;
-  std::string sentence_;
-};
-
-template <class T>
-struct Word {
-  std::string_view text;
-  T value;
-};
-
-using Names = std::set<std::string, std::less<>>;
-
-std::string did_you_mean(std::string_view text, const Names& names) {
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  const std::string_view meant = nearest_name(text, known);
-  return meant.empty() ? "" : fmt::format(" (did you mean {}?)", meant);
-}
-
-/// One table; remembers which keys were asked for, so that the rest are unknown.
-class Table {
- public:
-  Table(const toml::table* table, std::string_view name, Complaint& complaint)
-      : table_(table), name_(name), complaint_(complaint) {}
-
-  void number(std::string_view key, double least, double most, double& value) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return;
-    const auto given = node->value<double>();
-    if (!given || !node->is_number() || !(*given >= least && *given <= most)) {
-      complaint_.about(
-          node, fmt::format("{} in [{}] must be a number from {} to {}", key, name_, least, most));
-      return;
-    }
-    value = *given;
-  }
-
-  void number(std::string_view key, double least, double most, std::optional<double>& value) {
-    if (find(key) == nullptr) return;
-    double given = least;
-    number(key, least, most, given);
-    value = given;
-  }
-
-  void whole(std::string_view key, std::int64_t least, std::int64_t most, std::int64_t& value) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return;
-    const auto given = node->value<std::int64_t>();
-    if (!node->is_integer() || !given || *given < least || *given > most) {
-      complaint_.about(node, fmt::format("{} in [{}] must be a whole number from {} to {}", key,
-                                         name_, least, most));
-      return;
-    }
-    value = *given;
-  }
-
-  template <class T, std::size_t N>
-  void word(std::string_view key, const std::array<Word<T>, N>& words, T& value) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return;
-    const auto given = node->value<std::string_view>().value_or("");
-    const auto found = std::ranges::find(words, given, &Word<T>::text);
-    if (found != words.end()) {
-      value = found->value;
-      return;
-    }
-    std::string list;
-    for (const Word<T>& word : words) list += (list.empty() ? "" : ", ") + std::string(word.text);
-    complaint_.about(node, fmt::format("{} in [{}] is one of {}", key, name_, list));
-  }
-
-  [[nodiscard]] std::string text(std::string_view key) {
-    const toml::node* node = find(key);
-    return node == nullptr ? "" : node->value_or(std::string());
-  }
-
-  [[nodiscard]] std::optional<metering::Day> day(std::string_view key) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return std::nullopt;
-    const auto day = metering::parse_day(node->value_or(std::string_view()));
-    if (!day) {
-      complaint_.about(
-          node, fmt::format("{} in [{}] must be a date in quotes, \"YYYY-MM-DD\"", key, name_));
-      return std::nullopt;
-    }
-    return *day;
-  }
-
-  void no_other_keys() {
-    if (table_ == nullptr) return;
-    for (const auto& [key, node] : *table_) {
-      if (asked_.contains(key.str())) continue;
-      complaint_.about(&node, fmt::format("unknown key {} in [{}]{}", key.str(), name_,
-                                          did_you_mean(key.str(), asked_)));
-    }
-  }
-
-  [[nodiscard]] const toml::node* node() const { return table_; }
-
- private:
-  const toml::node* find(std::string_view key) {
-    asked_.emplace(key);
-    return table_ == nullptr ? nullptr : table_->get(key);
-  }
-
-  const toml::table* table_;
-  std::string_view name_;
-  Complaint& complaint_;
-  Names asked_;
-};
 
 constexpr std::array kUses{Word<Use>{"laboratory", Use::laboratory},
                            Word<Use>{"office", Use::office}, Word<Use>{"school", Use::school}};
@@ -164,7 +36,7 @@ std::array<Word<ClimateKind>, kClimateKinds.size()> climate_words() {
 }
 
 /// What decides the sizes of everything else comes first.
-Drawings read_brief(Table& building, Table& climate, Table& plant) {
+Drawings read_brief(TomlTable& building, TomlTable& climate, TomlTable& plant) {
   Brief brief;
   building.word("use", kUses, brief.use);
   if (brief.use == Use::laboratory) brief = {brief.use, ClimateKind::hot_humid, 3, 65.0, 40.0};
@@ -182,7 +54,7 @@ Drawings read_brief(Table& building, Table& climate, Table& plant) {
   return draw_up(brief);
 }
 
-void read_constructions(Table& building, Drawings& drawings) {
+void read_constructions(TomlTable& building, Drawings& drawings) {
   building.number("storey_height_m", 2.5, 8.0, drawings.storey_height_m);
   building.number("wall_u_W_m2K", 0.08, 2.5, drawings.wall_u_W_m2K);
   building.number("roof_u_W_m2K", 0.05, 2.0, drawings.roof_u_W_m2K);
@@ -195,7 +67,7 @@ void read_constructions(Table& building, Drawings& drawings) {
   building.number("core_plugs_W_m2", 0.5, 150.0, drawings.core_rooms.plugs_W_m2);
 }
 
-void read_controls(Table& controls, Drawings& drawings) {
+void read_controls(TomlTable& controls, Drawings& drawings) {
   controls.number("cooling_setpoint_C", 21.0, 27.5, drawings.cooling_setpoint_C);
   controls.number("heating_setpoint_C", 20.3, 21.9, drawings.heating_setpoint_C);
   controls.number("night_cooling_C", 24.0, 35.0, drawings.night_cooling_C);
@@ -206,7 +78,7 @@ void read_controls(Table& controls, Drawings& drawings) {
   controls.number("economiser_limit_C", 5.0, 30.0, drawings.economiser_limit_C);
 }
 
-void read_period(Table& period, Scenario& scenario) {
+void read_period(TomlTable& period, Scenario& scenario) {
   std::int64_t start = scenario.period.start_year;
   std::int64_t years = scenario.period.years;
   period.whole("start", 1972, 2036, start);
@@ -223,7 +95,7 @@ std::optional<Utility> meter_named(const std::string& name, const Drawings& draw
   return std::nullopt;
 }
 
-HiddenChoice read_effect(Table& table, const Drawings& drawings, Complaint& complaint) {
+HiddenChoice read_effect(TomlTable& table, const Drawings& drawings, Complaint& complaint) {
   HiddenChoice choice{};
   const std::string name = table.text("name");
   choice.kind = find_effect_kind(name);
@@ -261,13 +133,13 @@ class Reader {
   Reader(const toml::table& file, Complaint& complaint) : file_(file), complaint_(complaint) {}
 
   Scenario read() {
-    Table building = table("building");
-    Table climate = table("climate");
-    Table plant = table("plant");
-    Table controls = table("controls");
-    Table calendar = table("calendar");
-    Table meters = table("meters");
-    Table period = table("period");
+    TomlTable building = table("building");
+    TomlTable climate = table("climate");
+    TomlTable plant = table("plant");
+    TomlTable controls = table("controls");
+    TomlTable calendar = table("calendar");
+    TomlTable meters = table("meters");
+    TomlTable period = table("period");
     Scenario scenario;
     scenario.drawings = read_brief(building, climate, plant);
     read_constructions(building, scenario.drawings);
@@ -279,7 +151,7 @@ class Reader {
     calendar.word("of", kUses, scenario.drawings.calendar);
     meters.word("care", kCares, scenario.care);
     read_period(period, scenario);
-    for (Table* each : {&building, &climate, &plant, &controls, &calendar, &meters, &period}) {
+    for (TomlTable* each : {&building, &climate, &plant, &controls, &calendar, &meters, &period}) {
       each->no_other_keys();
     }
     read_lists(scenario);
@@ -288,7 +160,7 @@ class Reader {
   }
 
  private:
-  Table table(std::string_view name) {
+  TomlTable table(std::string_view name) {
     names_.emplace(name);
     const toml::node* node = file_.get(name);
     if (node != nullptr && !node->is_table()) {
@@ -308,17 +180,17 @@ class Reader {
       return;
     }
     for (const toml::node& entry : *list) {
-      Table table(entry.as_table(), name, complaint_);
+      TomlTable table(entry.as_table(), name, complaint_);
       read(table);
       table.no_other_keys();
     }
   }
 
   void read_lists(Scenario& scenario) {
-    each_in("effect", [&](Table& table) {
+    each_in("effect", [&](TomlTable& table) {
       scenario.effects.push_back(read_effect(table, scenario.drawings, complaint_));
     });
-    each_in("decoy", [&](Table& table) {
+    each_in("decoy", [&](TomlTable& table) {
       Decoy decoy = Decoy::neighbour_meter;
       table.word("name", kDecoys, decoy);
       scenario.decoys.push_back(decoy);
@@ -338,27 +210,10 @@ class Reader {
   Names names_;
 };
 
-Result<toml::table> parse(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(path)) {
-    return failure(ErrorCode::not_found,
-                   fmt::format("cannot read the scenario {}; check its path", path.string()));
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  try {
-    return toml::parse(text.str());
-  } catch (const toml::parse_error& error) {
-    return failure(ErrorCode::malformed,
-                   fmt::format("{}:{}: not TOML: {}", path.string(), error.source().begin.line,
-                               error.description()));
-  }
-}
-
 }  // namespace
 
 Result<Scenario> read_scenario(const std::filesystem::path& path) {
-  const auto file = parse(path);
+  const auto file = read_toml(path, "scenario");
   if (!file) return tl::unexpected(file.error());
   Complaint complaint(path.string());
   Scenario scenario = Reader(*file, complaint).read();
