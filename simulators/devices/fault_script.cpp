@@ -4,8 +4,11 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 #include <utility>
+
+#include "core/text/printable.hpp"
 
 namespace recald::simulators {
 namespace {
@@ -14,28 +17,36 @@ using std::chrono::milliseconds;
 
 struct KindName {
   std::string_view name;
-  FaultKind kind;
+  DeviceFaultKind kind;
   std::string_view amount_unit;  ///< "ms": a wait; "#": a number; empty: none.
+  double amount_max = 0.0;       ///< Of a number: what the frame has room for, or kWh.
 };
 
-constexpr std::array<KindName, 11> kKinds{{{"silent", FaultKind::silent, ""},
-                                           {"late", FaultKind::late, "ms"},
-                                           {"split", FaultKind::split, "ms"},
-                                           {"wrong_unit", FaultKind::wrong_unit, "#"},
-                                           {"wrong_length", FaultKind::wrong_length, "#"},
-                                           {"wrong_count", FaultKind::wrong_count, "#"},
-                                           {"exception", FaultKind::exception, "#"},
-                                           {"flip", FaultKind::flip, "#"},
-                                           {"reset", FaultKind::reset, "#"},
-                                           {"register", FaultKind::hold, "#"},
-                                           {"refuse", FaultKind::refuse, ""}}};
+constexpr double kAmountMax = 1e12;  ///< Of any number: more kWh than a meter counts.
+constexpr double kFrameBits = 8.0 * 260.0;
+
+constexpr std::array<KindName, 11> kKinds{
+    {{"silent", DeviceFaultKind::silent, ""},
+     {"late", DeviceFaultKind::late, "ms"},
+     {"split", DeviceFaultKind::split, "ms"},
+     {"wrong_unit", DeviceFaultKind::wrong_unit, "#", 255.0},
+     {"wrong_length", DeviceFaultKind::wrong_length, "#", 65'535.0},
+     {"wrong_count", DeviceFaultKind::wrong_count, "#", 255.0},
+     {"exception", DeviceFaultKind::exception, "#", 255.0},
+     {"flip", DeviceFaultKind::flip, "#", kFrameBits - 1.0},
+     {"reset", DeviceFaultKind::reset, "#", kAmountMax},
+     {"register", DeviceFaultKind::hold, "#", kAmountMax},
+     {"refuse", DeviceFaultKind::refuse, ""}}};
 
 std::optional<double> parse_number(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || value < 0.0) return {};
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  if (!(value >= 0.0 && value <= kAmountMax)) return {};
   return value;
 }
+
+constexpr double kTimeMax_ms = 3.6e6 * 24.0 * 366.0 * 20.0;  ///< Twenty years.
 
 /// "90s", "5m", "2h", "800ms".
 std::optional<milliseconds> parse_time(std::string_view text) {
@@ -44,7 +55,7 @@ std::optional<milliseconds> parse_time(std::string_view text) {
   for (const auto& [unit, length_ms] : kUnits) {
     if (!text.ends_with(unit)) continue;
     const auto count = parse_number(text.substr(0, text.size() - unit.size()));
-    if (!count) continue;
+    if (!count || *count * length_ms > kTimeMax_ms) continue;
     return milliseconds{static_cast<std::int64_t>(*count * length_ms)};
   }
   return {};
@@ -92,7 +103,8 @@ Result<ScriptedFault> parse_line(const std::string& line) {
   if (const std::string whom = words.next(); whom == "unit") {
     const std::string number = words.next();
     const auto unit = parse_number(number);
-    if (!unit || *unit > 255.0) return wrong(fmt::format("'{}' is no unit, 0 to 255", number));
+    if (!unit || *unit > 255.0 || *unit != std::floor(*unit))
+      return wrong(fmt::format("'{}' is no unit, 0 to 255", number));
     fault.unit = static_cast<int>(*unit);
   } else if (whom != "all") {
     return wrong(fmt::format("'{}' is neither 'unit' and a number nor 'all'", whom));
@@ -101,7 +113,7 @@ Result<ScriptedFault> parse_line(const std::string& line) {
   for (const KindName& kind : kKinds) {
     if (kind.name != name) continue;
     fault.kind = kind.kind;
-    const bool is_event = kind.kind == FaultKind::reset;
+    const bool is_event = kind.kind == DeviceFaultKind::reset;
     if (is_event != (fault.end == milliseconds::max())) {
       return wrong(is_event ? "a reset happens 'at' a time"
                             : fmt::format("'{}' lasts from..to", name));
@@ -113,7 +125,9 @@ Result<ScriptedFault> parse_line(const std::string& line) {
       fault.amount = static_cast<double>(wait->count());
     } else if (kind.amount_unit == "#") {
       const auto number = parse_number(amount);
-      if (!number) return wrong(fmt::format("'{}' needs a number", name));
+      if (!number || *number > kind.amount_max) {
+        return wrong(fmt::format("'{}' needs a number from 0 to {}", name, kind.amount_max));
+      }
       fault.amount = *number;
     } else if (!amount.empty()) {
       return wrong(fmt::format("'{}' needs nothing after it, and '{}' stands there", name, amount));
@@ -150,8 +164,8 @@ Result<FaultScript> parse_fault_script(std::string_view text) {
     if (fault) {
       script.faults.push_back(*fault);
     } else {
-      problems +=
-          fmt::format("{}line {}: {}", problems.empty() ? "" : "\n", number, fault.error().message);
+      problems += fmt::format("{}line {}: {}", problems.empty() ? "" : "\n", number,
+                              printable(fault.error().message));
     }
   }
   if (!problems.empty()) return failure(ErrorCode::malformed, problems);

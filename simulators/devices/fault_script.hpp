@@ -25,7 +25,7 @@
 
 namespace recald::simulators {
 
-enum class FaultKind : std::uint8_t {
+enum class DeviceFaultKind : std::uint8_t {
   silent,
   late,
   split,
@@ -43,7 +43,7 @@ struct ScriptedFault {
   std::chrono::milliseconds begin;  ///< Since the simulation began.
   std::chrono::milliseconds end;    ///< Not included; of a reset the end of time.
   std::optional<int> unit;          ///< None: all of them.
-  FaultKind kind;
+  DeviceFaultKind kind;
   double amount;  ///< Milliseconds, unit, bytes, code, bit or kWh; 0 where there is none.
 };
 

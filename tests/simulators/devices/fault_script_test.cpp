@@ -30,17 +30,17 @@ TEST(FaultScript, SaysWhatIsInForce) {
   EXPECT_THAT(script->faults, SizeIs(11));
   EXPECT_THAT(script->at(0s, 2), SizeIs(0));
   ASSERT_THAT(script->at(60s, 2), SizeIs(1));
-  EXPECT_EQ(script->at(60s, 2)[0].kind, FaultKind::silent);
+  EXPECT_EQ(script->at(60s, 2)[0].kind, DeviceFaultKind::silent);
   EXPECT_THAT(script->at(60s, 1), SizeIs(0));
   const auto late = script->at(5min + 59s, 1);
   ASSERT_THAT(late, SizeIs(2));
-  EXPECT_EQ(late[0].kind, FaultKind::late);
+  EXPECT_EQ(late[0].kind, DeviceFaultKind::late);
   EXPECT_EQ(late[0].amount, 800.0);
-  EXPECT_EQ(late[1].kind, FaultKind::refuse);
-  EXPECT_EQ(script->at(6min, 1)[0].kind, FaultKind::split);
+  EXPECT_EQ(late[1].kind, DeviceFaultKind::refuse);
+  EXPECT_EQ(script->at(6min, 1)[0].kind, DeviceFaultKind::split);
   const auto much_later = script->at(3h, 1);
   ASSERT_THAT(much_later, SizeIs(1));  // the reset stays
-  EXPECT_EQ(much_later[0].kind, FaultKind::reset);
+  EXPECT_EQ(much_later[0].kind, DeviceFaultKind::reset);
 }
 
 TEST(FaultScript, EveryWrongLineIsNamed) {
@@ -52,11 +52,18 @@ TEST(FaultScript, EveryWrongLineIsNamed) {
       {"at noon unit 2 reset 0", "'noon' is no time"},
       {"1m..5m unit 300 silent", "'300' is no unit"},
       {"1m..5m unit x silent", "'x' is no unit"},
+      {"1m..5m unit nan silent", "'nan' is no unit"},
+      {"1m..5m unit 1.5 silent", "'1.5' is no unit"},
+      {"nanm..infm all silent", "'nanm..infm' is no span"},
+      {"1m..5m all \x1B[2J", "'\\x1B[2J' is no disturbance"},
       {"1m..5m meter 2 silent", "'meter' is neither"},
       {"1m..5m unit 2 late", "'late' needs a wait"},
       {"1m..5m unit 2 late fast", "'late' needs a wait"},
       {"1m..5m unit 2 exception", "'exception' needs a number"},
       {"1m..5m unit 2 exception -1", "'exception' needs a number"},
+      {"1m..5m unit 2 exception 256", "'exception' needs a number from 0 to 255"},
+      {"1m..5m unit 2 flip 1e300", "'flip' needs a number from 0 to 2079"},
+      {"1m..5m unit 2 late 1e300h", "'late' needs a wait"},
       {"1m..5m unit 2 silent 3", "'silent' needs nothing after it"},
       {"1m..5m unit 2 exception 3 4", "'4' is one word too many"},
       {"1m..5m unit 2 reset 0", "a reset happens 'at' a time"},
