@@ -143,10 +143,34 @@ std::string misuse_of(const CalibrateArguments& arguments) {
   return "";
 }
 
+void add_decode(CLI::App& command, DecodeArguments& arguments) {
+  command.add_option("--map", arguments.map, "Register map: a shipped one, or a .toml file")
+      ->required();
+  command.add_option("--hex", arguments.hex, "The reply: a TCP or RTU frame, or bare registers")
+      ->required();
+  command.add_option("--request", arguments.request, "The request that it answers");
+  command.add_option("--at", arguments.at, "Address of its first register on the wire, base 0");
+  command.add_option("--as", arguments.as, "What it is, if that is misjudged")
+      ->check(CLI::IsMember({"tcp", "rtu", "registers"}));
+  command.add_flag("--json", arguments.json, "One JSON object on standard output");
+}
+
+void add_status(CLI::App& command, StatusArguments& arguments) {
+  CLI::Option* site = command.add_option("site", arguments.site, "Site file (TOML) of the daemon");
+  CLI::Option* url =
+      command.add_option("--url", arguments.url, "Where it listens, such as http://127.0.0.1:8080");
+  command.add_option("--token-file", arguments.token_file, "File with the token it asks for")
+      ->needs(url);
+  command.add_flag("--json", arguments.json, "One JSON object on standard output");
+  site->excludes(url);
+}
+
 /// What every command was given on the command line; only one of them is run.
 struct Arguments {
-  SiteArguments check;
-  SiteArguments run;
+  CheckArguments check;
+  ScanArguments scan;
+  RunArguments run;
+  DecodeArguments decode;
   ReplayArguments replay;
   ProfileArguments profile;
   CalibrateArguments calibrate;
@@ -156,6 +180,7 @@ struct Arguments {
   DoeArguments doe;
   DiagnoseArguments diagnose;
   DetectabilityArguments detectability;
+  StatusArguments status;
   ModelArguments model;
 };
 
@@ -167,11 +192,23 @@ struct Verb {
 void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* check = app.add_subcommand("check", "Explain what a site file gets wrong");
   add_site(*check, given.check);
+  check->add_flag("--meters", given.check.meters, "Read each live meter once");
   verbs.push_back({check, [&](const Console& console) { return run_check(given.check, console); }});
 
   CLI::App* run = app.add_subcommand("run", "Poll the meters, until told to end");
   run->add_option("site", given.run.site, "Site file (TOML)")->required();
+  run->add_option("--clock", given.run.clock,
+                  "For trials with simulated meters: START@ANCHORxSPEED, such as "
+                  "2026-01-30T00:00:00Z@1769900000x600");
   verbs.push_back({run, [&](const Console& console) { return run_run(given.run, console); }});
+
+  CLI::App* status = app.add_subcommand("status", "What a running daemon says of itself");
+  add_status(*status, given.status);
+  verbs.push_back({status, [&](const Console& console) {
+                     const bool names_one = !given.status.site.empty() || !given.status.url.empty();
+                     return names_one ? run_status(given.status, console)
+                                      : console.misused("status needs a site file or --url");
+                   }});
 
   CLI::App* replay =
       app.add_subcommand("replay", "Recorded readings to monthly figures, on a virtual clock");
@@ -188,6 +225,20 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   profile->add_option("--out", given.profile.out, "Folder for profile.json");
   verbs.push_back(
       {profile, [&](const Console& console) { return run_profile(given.profile, console); }});
+}
+
+void add_device_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* scan = app.add_subcommand("scan", "Which units of a bus answer, and what they are");
+  add_site(*scan, given.scan);
+  scan->add_option("--bus", given.scan.bus, "Name of the [bus.NAME] to scan")->required();
+  scan->add_option("--units", given.scan.units, "Modbus addresses, A-B or one")
+      ->capture_default_str();
+  verbs.push_back({scan, [&](const Console& console) { return run_scan(given.scan, console); }});
+
+  CLI::App* decode = app.add_subcommand("decode", "Explain a Modbus frame byte by byte");
+  add_decode(*decode, given.decode);
+  verbs.push_back(
+      {decode, [&](const Console& console) { return run_decode(given.decode, console); }});
 }
 
 void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
@@ -281,6 +332,7 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   Arguments given;
   std::vector<Verb> verbs;
   add_site_verbs(app, given, verbs);
+  add_device_verbs(app, given, verbs);
   add_calibration_verbs(app, given, verbs);
   add_design_verbs(app, given, verbs);
   add_model_verbs(app, given, verbs);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/model/parameter_library.hpp"
+#include "daemon/commands/check_meters.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 
@@ -100,7 +101,7 @@ std::vector<std::string> check_files(const SiteConfig& site) {
 
 }  // namespace
 
-int run_check(const SiteArguments& arguments, const Console& console) {
+int run_check(const CheckArguments& arguments, const Console& console) {
   const auto site = load_site(arguments.site);
   std::vector<std::string> problems = site ? check_files(*site) : site.error();
   if (site && !arguments.json) {
@@ -115,9 +116,26 @@ int run_check(const SiteArguments& arguments, const Console& console) {
     const auto more = check_model(*site, console, arguments.json);
     problems.insert(problems.end(), more.begin(), more.end());
   }
+  nlohmann::ordered_json meters = nlohmann::ordered_json::array();
+  // Nobody is disturbed for a file that has to be mended anyway.
+  if (site && arguments.meters && problems.empty()) {
+    const auto tell = [&](const TriedMeter& tried) {
+      if (!arguments.json) print_trial(tried, console);
+      meters.push_back(json_of(tried));
+      const auto more = problems_of(tried);
+      problems.insert(problems.end(), more.begin(), more.end());
+    };
+    if (try_meters(*site, tell).empty()) {
+      problems.push_back(
+          fmt::format("{}: no [[meter]] has source = \"modbus\", so there is none "
+                      "to try",
+                      site->file.filename().string()));
+    }
+  }
   if (arguments.json) {
-    console.out << nlohmann::ordered_json{{"ok", problems.empty()}, {"problems", problems}}.dump(2)
-                << "\n";
+    nlohmann::ordered_json result{{"ok", problems.empty()}, {"problems", problems}};
+    if (arguments.meters) result["meters"] = meters;
+    console.out << result.dump(2) << "\n";
   }
   if (!problems.empty()) return console.fail(problems);
   if (!arguments.json) console.out << "ok\n";

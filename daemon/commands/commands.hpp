@@ -15,8 +15,13 @@ struct SiteArguments {
   bool json = false;
 };
 
+struct RunArguments {
+  std::filesystem::path site;
+  std::string clock;  ///< "START@ANCHORxSPEED"; empty: the world's time.
+};
+
 /// The daemon.
-[[nodiscard]] int run_run(const SiteArguments& arguments, const Console& console);
+[[nodiscard]] int run_run(const RunArguments& arguments, const Console& console);
 
 struct ReplayArguments : SiteArguments {
   std::string from;  ///< Local day, or empty.
@@ -85,6 +90,30 @@ struct DiagnoseArguments : SiteArguments {
   std::vector<std::string> assumed;  ///< Effects known to be there, "scale_fault:steam".
 };
 
+struct CheckArguments : SiteArguments {
+  bool meters = false;  ///< Try each live meter once.
+};
+
+struct ScanArguments : SiteArguments {
+  std::string bus;
+  std::string units = "1-247";  ///< "3", "1-32"
+};
+
+struct DecodeArguments {
+  std::string map;      ///< A shipped map, or a file that ends in .toml.
+  std::string hex;      ///< The reply.
+  std::string request;  ///< The request that it answers, or empty.
+  std::string at;       ///< Address of the first register, or empty.
+  std::string as;       ///< "tcp", "rtu", "registers"; empty: as it looks.
+  bool json = false;
+};
+
+/// A running daemon: by its site file, or by its address.
+struct StatusArguments : SiteArguments {
+  std::string url;                   ///< "http://127.0.0.1:8080", in the place of a site file.
+  std::filesystem::path token_file;  ///< With a URL; empty: none is sent.
+};
+
 struct DetectabilityArguments : SiteArguments {
   std::filesystem::path footprint;  ///< Readings CSV: with the effect minus without.
   std::filesystem::path out;        ///< Folder for detectability.json, or empty.
@@ -94,7 +123,14 @@ struct ModelArguments : SiteArguments {
   std::string version;  ///< Or its first digits; empty: the one in force, for revert its parent.
 };
 
-int run_check(const SiteArguments& arguments, const Console& console);
+/// Explains a site file; with `meters` it also reads each live meter once.
+int run_check(const CheckArguments& arguments, const Console& console);
+/// Explains a Modbus reply byte by byte, with the values that a register map finds in it.
+int run_decode(const DecodeArguments& arguments, const Console& console);
+/// Which units of a bus answer, and what they say of themselves.
+int run_scan(const ScanArguments& arguments, const Console& console);
+/// What a running daemon says of itself, over HTTP.
+int run_status(const StatusArguments& arguments, const Console& console);
 int run_replay(const ReplayArguments& arguments, const Console& console);
 int run_profile(const ProfileArguments& arguments, const Console& console);
 /// Writes calibration.json, draws, months.csv, profile.json and report.html into the folder.
