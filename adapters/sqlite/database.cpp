@@ -4,24 +4,19 @@
 #include <sqlite3.h>
 
 #include <cassert>
-#include <cmath>
 #include <limits>
 #include <utility>
+
+#include "adapters/sqlite/backup.hpp"
+#include "adapters/sqlite/handles.hpp"
 
 namespace recald::sqlite {
 namespace {
 
 constexpr int kBusyTimeout_ms = 5000;
-constexpr int kBackupPages = 256;  // a step: a megabyte
+constexpr int kBackupPages = 256;
 
-struct CloseDatabase {
-  void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
-};
-struct FinalizeStatement {
-  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-};
-using DatabaseHandle = std::unique_ptr<sqlite3, CloseDatabase>;
-using StatementHandle = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
+}  // namespace
 
 ErrorCode code_of(int result) {
   switch (result & 0xFF) {
@@ -43,24 +38,8 @@ tl::unexpected<Error> failed(int result, sqlite3* database, std::string_view fil
   return failure(code_of(result), fmt::format("store '{}': {} (SQLite {})", file, words, result));
 }
 
-/// Moves a file over another, as a finished copy does.
-Result<void> rename_over(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code error;
-  std::filesystem::rename(from, to, error);
-  if (!error) return {};
-  return failure(ErrorCode::io_failed, fmt::format("'{}' cannot become '{}': {}", from.string(),
-                                                   to.string(), error.message()));
-}
-
-}  // namespace
-
 struct Statement::Impl {
   StatementHandle handle;
-  std::string file;
-};
-
-struct Database::Impl {
-  DatabaseHandle handle;
   std::string file;
 };
 
@@ -91,6 +70,13 @@ Statement& Statement::bind(int parameter, std::string_view text) {
 
 Statement& Statement::bind_null(int parameter) {
   [[maybe_unused]] const int result = sqlite3_bind_null(impl_->handle.get(), parameter + 1);
+  assert(result == SQLITE_OK && "the statement has this parameter");
+  return *this;
+}
+
+Statement& Statement::bind_column(int parameter, const Statement& row, int column) {
+  [[maybe_unused]] const int result = sqlite3_bind_value(
+      impl_->handle.get(), parameter + 1, sqlite3_column_value(row.impl_->handle.get(), column));
   assert(result == SQLITE_OK && "the statement has this parameter");
   return *this;
 }
@@ -177,37 +163,30 @@ Result<Statement> Database::prepare(std::string_view sql) {
       std::make_unique<Statement::Impl>(Statement::Impl{StatementHandle{raw}, impl_->file})};
 }
 
-void Database::roll_back() {
+Result<bool> Database::begin() {
+  const bool is_part = sqlite3_get_autocommit(impl_->handle.get()) == 0;
+  if (auto begun = execute(is_part ? "SAVEPOINT part" : "BEGIN IMMEDIATE"); !begun) {
+    return tl::unexpected(begun.error());
+  }
+  return is_part;
+}
+
+Result<void> Database::finish(bool is_part) { return execute(is_part ? "RELEASE part" : "COMMIT"); }
+
+void Database::roll_back(bool is_part) {
   // Some failures (a full disk) have rolled back already; then there is nothing left to do.
-  if (sqlite3_get_autocommit(impl_->handle.get()) == 0) (void)execute("ROLLBACK");
+  if (sqlite3_get_autocommit(impl_->handle.get()) != 0) return;
+  (void)execute(is_part ? "ROLLBACK TO part; RELEASE part" : "ROLLBACK");
 }
 
 Result<void> Database::back_up_to(const std::filesystem::path& file) {
-  const std::filesystem::path unfinished = file.string() + ".part";
-  std::error_code ignored;
-  std::filesystem::remove(unfinished, ignored);
-  const auto copied = copy_to(unfinished);
-  if (!copied) {
-    std::filesystem::remove(unfinished, ignored);
-    return copied;
+  auto backup = Backup::begin(*this, file);
+  if (!backup) return tl::unexpected(backup.error());
+  for (;;) {
+    const auto done = backup->step(kBackupPages);
+    if (!done) return tl::unexpected(done.error());
+    if (*done) return {};
   }
-  return rename_over(unfinished, file);
-}
-
-Result<void> Database::copy_to(const std::filesystem::path& file) {
-  sqlite3* raw = nullptr;
-  const int opened =
-      sqlite3_open_v2(file.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
-  const DatabaseHandle copy{raw};
-  if (opened != SQLITE_OK) return failed(opened, raw, file.string());
-  sqlite3_backup* backup = sqlite3_backup_init(raw, "main", impl_->handle.get(), "main");
-  if (backup == nullptr) return failed(sqlite3_errcode(raw), raw, file.string());
-  // What this connection writes meanwhile goes into the copy too, so no lock is held between steps.
-  int result = SQLITE_OK;
-  while (result == SQLITE_OK) result = sqlite3_backup_step(backup, kBackupPages);
-  sqlite3_backup_finish(backup);
-  if (result != SQLITE_DONE) return failed(result, raw, file.string());
-  return {};
 }
 
 Result<std::string> Database::quick_check() {
@@ -216,6 +195,10 @@ Result<std::string> Database::quick_check() {
   std::string damage;
   for (;;) {
     const auto row = statement->step();
+    // Some damage ends the check itself.
+    if (!row && row.error().code == ErrorCode::malformed) {
+      return damage.empty() ? row.error().message : damage;
+    }
     if (!row) return tl::unexpected(row.error());
     if (!*row) return damage;
     const std::string line = statement->text(0);

@@ -27,6 +27,8 @@ class Statement {
   Statement& bind(int parameter, double value);  ///< NaN becomes NULL.
   Statement& bind(int parameter, std::string_view text);
   Statement& bind_null(int parameter);
+  /// Whatever stands in another statement's row.
+  Statement& bind_column(int parameter, const Statement& row, int column);
 
   /// The next row. @return whether there is one, or as Database::execute. At the end, or after a
   /// failure, the statement can be bound and run again.
@@ -74,33 +76,38 @@ class Database {
   /// @pre the text is right; a wrong one is our bug and asserted.
   [[nodiscard]] Result<Statement> prepare(std::string_view sql);
 
-  /// Everything that `work` does happens, or nothing of it. `work` returns a Result.
+  /// Everything that `work` does happens, or nothing of it. `work` returns a Result. Within another
+  /// transaction it is a part of that one: what fails here is undone here.
   template <class Work>
   [[nodiscard]] auto transaction(Work&& work) -> decltype(work()) {
-    if (auto begun = execute("BEGIN IMMEDIATE"); !begun) return tl::unexpected(begun.error());
+    const auto is_part = begin();
+    if (!is_part) return tl::unexpected(is_part.error());
     auto result = work();
     if (!result) {
-      roll_back();
+      roll_back(*is_part);
       return result;
     }
-    if (auto committed = execute("COMMIT"); !committed) {
-      roll_back();
+    if (auto committed = finish(*is_part); !committed) {
+      roll_back(*is_part);
       return tl::unexpected(committed.error());
     }
     return result;
   }
 
-  /// A consistent copy while others write. An existing file is replaced when the copy is whole.
+  /// A consistent copy. An existing file is replaced when the copy is whole. `Backup` makes one a
+  /// portion at a time.
   [[nodiscard]] Result<void> back_up_to(const std::filesystem::path& file);
 
   /// What is damaged, in SQLite's words; empty when nothing is.
   [[nodiscard]] Result<std::string> quick_check();
 
  private:
+  friend class Backup;
   struct Impl;
   explicit Database(std::unique_ptr<Impl> impl);
-  void roll_back();
-  [[nodiscard]] Result<void> copy_to(const std::filesystem::path& file);
+  [[nodiscard]] Result<bool> begin();  ///< @return whether it is part of another transaction.
+  [[nodiscard]] Result<void> finish(bool is_part);
+  void roll_back(bool is_part);
   std::unique_ptr<Impl> impl_;
 };
 

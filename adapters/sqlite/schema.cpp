@@ -100,6 +100,16 @@ CREATE TABLE job (
   result   TEXT    NOT NULL
 ) STRICT;
 CREATE INDEX job_by_state ON job (state);
+
+CREATE TABLE edit (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  t      INTEGER NOT NULL,
+  author TEXT    NOT NULL,
+  reason TEXT    NOT NULL CHECK (reason <> ''),
+  file   TEXT    NOT NULL,
+  sha256 TEXT    NOT NULL
+) STRICT;
+ALTER TABLE interval ADD COLUMN edit INTEGER REFERENCES edit (number);
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {
@@ -114,7 +124,7 @@ Result<std::int64_t> ask(Database& database, std::string_view sql) {
 
 }  // namespace
 
-Result<void> bring_up_to_date(Database& database) {
+Result<int> schema_version(Database& database) {
   const auto version = ask(database, "PRAGMA user_version");
   if (!version) return tl::unexpected(version.error());
   const auto application = ask(database, "PRAGMA application_id");
@@ -132,6 +142,12 @@ Result<void> bring_up_to_date(Database& database) {
                     "newer recald that wrote it, or a backup from before",
                     *version, kSchemaVersion));
   }
+  return static_cast<int>(*version);
+}
+
+Result<void> bring_up_to_date(Database& database) {
+  const auto version = schema_version(database);
+  if (!version) return tl::unexpected(version.error());
   for (auto next = static_cast<std::size_t>(*version); next < kUpgrades.size(); ++next) {
     const std::string text = fmt::format("{}PRAGMA application_id={};PRAGMA user_version={};",
                                          kUpgrades[next], kApplicationId, next + 1);
@@ -139,6 +155,16 @@ Result<void> bring_up_to_date(Database& database) {
     if (!upgraded) return upgraded;
   }
   return {};
+}
+
+Result<void> require_current(Database& database) {
+  const auto version = schema_version(database);
+  if (!version) return tl::unexpected(version.error());
+  if (*version == kSchemaVersion) return {};
+  return failure(ErrorCode::unsupported,
+                 fmt::format("the store file has schema version {}, this recald reads {}; the "
+                             "daemon brings it up to date when it starts",
+                             *version, kSchemaVersion));
 }
 
 }  // namespace recald::sqlite

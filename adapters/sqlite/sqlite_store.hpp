@@ -2,17 +2,21 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
+#include <functional>
+#include <optional>
 
 #include "adapters/ports/store.hpp"
+#include "adapters/sqlite/batch_writer.hpp"
 #include "adapters/sqlite/database.hpp"
 
 namespace recald::sqlite {
 
 class SqliteStore final : public Store {
  public:
-  /// Opens or creates, brings the schema up to date.
-  /// @return as Database::open; unsupported when the file was written by a newer recald.
+  /// Opens or creates, brings the schema up to date. Opened read-only it is for another thread or
+  /// process than the daemon's: it sees what is committed, never waits for it and never writes.
+  /// @return as Database::open; unsupported when the file was written by a newer recald, or, to be
+  ///         read only, by an older one.
   [[nodiscard]] static Result<SqliteStore> open(const std::filesystem::path& file,
                                                 const Database::Options& options = {});
 
@@ -34,19 +38,21 @@ class SqliteStore final : public Store {
   Result<std::optional<StoredJob>> last_accepted(JobKind kind) override;
   Result<std::vector<StoredJob>> unfinished_jobs() override;
 
+  /// The number of a meter that is stored already; works on a store opened to read.
+  [[nodiscard]] Result<std::optional<std::uint32_t>> find_meter(const std::string& id);
+
+  /// @param make_room  Asked when a commit is refused, as by a full disk; true: room was made, and
+  ///                   the commit is tried once more.
+  void on_refusal(std::function<bool()> make_room) { make_room_ = std::move(make_room); }
+
   [[nodiscard]] Database& database() { return database_; }
 
  private:
-  struct Statements;
-
-  SqliteStore(Database database, std::unique_ptr<Statements> statements);
-  [[nodiscard]] Result<void> put_interval(const StoreBatch::Interval& interval,
-                                          CommitCounts& counts);
-  [[nodiscard]] Result<std::optional<StoredInterval>> latest(std::uint32_t meter,
-                                                             metering::Instant start);
+  SqliteStore(Database database, std::optional<BatchWriter> writer);
 
   Database database_;
-  std::shared_ptr<Statements> statements_;  ///< After the database: they end first.
+  std::optional<BatchWriter> writer_;  ///< After the database: its statements end first.
+  std::function<bool()> make_room_;
 };
 
 }  // namespace recald::sqlite

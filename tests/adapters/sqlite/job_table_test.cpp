@@ -138,7 +138,10 @@ TEST_F(JobTable, WhatWaitsOrRunsIsFoundAgainInTheOrderOfAsking) {
 TEST_F(JobTable, AStoreFromBeforeJobsIsUpgraded) {
   const auto number = store_->meter_number("main", std::chrono::seconds{900});
   ASSERT_TRUE(number.has_value());
-  ASSERT_TRUE(store_->database().execute("DROP TABLE job; PRAGMA user_version = 1").has_value());
+  const auto made_old = store_->database().execute(
+      "ALTER TABLE interval DROP COLUMN edit; DROP TABLE edit; DROP TABLE job;"
+      "PRAGMA user_version = 1");
+  ASSERT_TRUE(made_old.has_value()) << made_old.error().message;
   reopen();
   EXPECT_EQ(add(JobKind::calibration), 1);
   const auto same = store_->meter_number("main", std::chrono::seconds{900});

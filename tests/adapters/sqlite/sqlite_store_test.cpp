@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "adapters/sqlite/register_json.hpp"
 #include "adapters/sqlite/schema.hpp"
+#include "tests/support/damage.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::sqlite {
@@ -246,6 +246,28 @@ TEST(RegisterJson, KeepsEveryPartOfAState) {
   EXPECT_EQ(back->book.pieces[0].reasons, state.book.pieces[0].reasons);
 }
 
+TEST(RegisterJson, KeepsAPowerThatIsBeingAveraged) {
+  RegisterState state{.field = "power", .settings = {.rated_kW = 1.0}};
+  state.power = {.next = kStart,
+                 .until = kStart + minutes{3},
+                 .power_kW = 0.1 + 0.2,
+                 .energy_kWh = 1.0 / 3.0,
+                 .covered = minutes{2},
+                 .hole_longest = minutes{1},
+                 .reasons = metering::Reason::crc};
+  const auto back = register_from_json(to_json(state));
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(back->power.next, kStart);
+  EXPECT_EQ(back->power.until, kStart + minutes{3});
+  EXPECT_EQ(back->power.power_kW, 0.1 + 0.2);
+  EXPECT_EQ(back->power.energy_kWh, 1.0 / 3.0);
+  EXPECT_EQ(back->power.covered, minutes{2});
+  EXPECT_EQ(back->power.hole_longest, minutes{1});
+  EXPECT_EQ(back->power.reasons, metering::Reason::crc);
+  state.power.power_kW.reset();
+  EXPECT_FALSE(register_from_json(to_json(state))->power.power_kW.has_value());
+}
+
 TEST(RegisterJson, DamageIsTold) {
   const std::string good = to_json({.field = "energy", .settings = {.rated_kW = 1.0}});
   for (std::size_t size = 0; size < good.size(); ++size) {
@@ -421,12 +443,7 @@ TEST(StoreOpening, DamageIsFound) {
     ASSERT_TRUE(store->commit(batch).has_value());
     EXPECT_EQ(store->database().quick_check().value(), "");
   }
-  {
-    // The last connection has moved everything into the file itself. Its last page goes: readings.
-    std::fstream file{folder / "site.db", std::ios::in | std::ios::out | std::ios::binary};
-    file.seekp(-4096, std::ios::end);
-    file << std::string(4096, '\xA5');
-  }
+  recald::testing::damage_leaf(folder / "site.db", "interval", 3);
   auto database = Database::open(folder / "site.db", {});
   ASSERT_TRUE(database.has_value());
   const auto damage = database->quick_check();

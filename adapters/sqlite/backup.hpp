@@ -1,0 +1,33 @@
+/// A consistent copy of a database while it goes on being written, a portion at a time.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "adapters/sqlite/database.hpp"
+
+namespace recald::sqlite {
+
+/// Grows beside its target as "….part" and takes the target's place when it is whole; given up
+/// before, it leaves nothing. What the connection writes meanwhile goes into the copy too, so
+/// nothing waits for it.
+class Backup {
+ public:
+  /// @param database  Must outlive the backup.
+  /// @return io_failed when the file cannot be made.
+  [[nodiscard]] static Result<Backup> begin(Database& database, const std::filesystem::path& file);
+
+  ~Backup();
+  Backup(Backup&&) noexcept;
+  Backup& operator=(Backup&&) noexcept;
+
+  /// Copies some pages more, of 4 KiB each. @return whether the copy is whole and in its place.
+  [[nodiscard]] Result<bool> step(int pages);
+
+ private:
+  struct Impl;
+  explicit Backup(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace recald::sqlite

@@ -1,0 +1,165 @@
+#include "adapters/sqlite/batch_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/register_json.hpp"
+#include "core/metering/placement.hpp"
+
+namespace recald::sqlite {
+
+using metering::Placement;
+using metering::Reading;
+
+struct BatchWriter::Statements {
+  Statement latest_interval;
+  Statement insert_interval;
+  Statement put_register;
+  Statement insert_sample;
+  Statement insert_event;
+  Statement reopen_month;
+};
+
+BatchWriter::BatchWriter(std::unique_ptr<Statements> statements)
+    : statements_(std::move(statements)) {}
+BatchWriter::~BatchWriter() = default;
+BatchWriter::BatchWriter(BatchWriter&&) noexcept = default;
+BatchWriter& BatchWriter::operator=(BatchWriter&&) noexcept = default;
+
+Result<BatchWriter> BatchWriter::prepare(Database& database) {
+  auto latest =
+      database.prepare(fmt::format("SELECT {} FROM interval WHERE meter = ? AND t_start = ? "
+                                   "ORDER BY revision DESC LIMIT 1",
+                                   kIntervalColumns));
+  if (!latest) return tl::unexpected(latest.error());
+  auto interval = database.prepare("INSERT INTO interval VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  if (!interval) return tl::unexpected(interval.error());
+  auto state = database.prepare("INSERT OR REPLACE INTO register VALUES (?, ?, ?)");
+  if (!state) return tl::unexpected(state.error());
+  auto sample = database.prepare("INSERT OR IGNORE INTO sample VALUES (?, ?, ?, ?)");
+  if (!sample) return tl::unexpected(sample.error());
+  auto event = database.prepare("INSERT INTO event VALUES (NULL, ?, ?, ?, ?, ?)");
+  if (!event) return tl::unexpected(event.error());
+  auto reopen = database.prepare("INSERT OR IGNORE INTO reopened VALUES (?, ?)");
+  if (!reopen) return tl::unexpected(reopen.error());
+  return BatchWriter{std::make_unique<Statements>(
+      Statements{std::move(*latest), std::move(*interval), std::move(*state), std::move(*sample),
+                 std::move(*event), std::move(*reopen)})};
+}
+
+Result<CommitCounts> BatchWriter::write(const StoreBatch& batch) {
+  CommitCounts counts;
+  if (auto put = put_intervals(batch, counts); !put) return tl::unexpected(put.error());
+  if (auto put = put_registers(batch); !put) return tl::unexpected(put.error());
+  if (auto put = put_samples(batch); !put) return tl::unexpected(put.error());
+  if (auto put = put_events(batch); !put) return tl::unexpected(put.error());
+  if (auto put = reopen_months(batch); !put) return tl::unexpected(put.error());
+  return counts;
+}
+
+Result<void> BatchWriter::put_intervals(const StoreBatch& batch, CommitCounts& counts) {
+  for (const StoreBatch::Interval& interval : batch.intervals) {
+    if (auto put = put_interval(interval, batch.edit, counts); !put) return put;
+  }
+  return {};
+}
+
+Result<std::optional<StoredInterval>> BatchWriter::latest(std::uint32_t meter,
+                                                          metering::Instant start) {
+  Statement& query = statements_->latest_interval;
+  const auto row = query.bind(0, std::int64_t{meter}).bind(1, seconds_of(start)).step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) return std::optional<StoredInterval>{};
+  const StoredInterval found = read_interval(query, meter);
+  query.reset();
+  return std::optional{found};
+}
+
+Result<void> BatchWriter::put_interval(const StoreBatch::Interval& interval,
+                                       const std::optional<std::int64_t>& edit,
+                                       CommitCounts& counts) {
+  const Reading& reading = interval.reading;
+  const auto known = latest(reading.meter, reading.start);
+  if (!known) return tl::unexpected(known.error());
+  const std::optional<Reading> known_reading =
+      *known ? std::optional{(*known)->reading} : std::nullopt;
+  switch (metering::place(known_reading, reading, interval.supersedes)) {
+    case Placement::duplicate:
+      ++counts.duplicates;
+      return {};
+    case Placement::weaker:
+      ++counts.weaker;
+      return {};
+    case Placement::conflict:
+      counts.conflicts.push_back(reading);
+      return {};
+    case Placement::first:
+    case Placement::replaces:
+      break;
+  }
+  ++counts.taken;
+  Statement& insert = statements_->insert_interval;
+  insert.bind(0, std::int64_t{reading.meter})
+      .bind(1, seconds_of(reading.start))
+      .bind(2, std::int64_t{*known ? (*known)->revision + 1 : 0})
+      .bind(3, reading.mean_kW)
+      .bind(4, static_cast<std::int64_t>(reading.validity))
+      .bind(5, std::int64_t{reading.late})
+      .bind(6, static_cast<std::int64_t>(reading.reasons));
+  if (edit) {
+    insert.bind(7, *edit);
+  } else {
+    insert.bind_null(7);
+  }
+  return insert.run();
+}
+
+Result<void> BatchWriter::put_registers(const StoreBatch& batch) {
+  for (const StoreBatch::Register& entry : batch.registers) {
+    const auto put = statements_->put_register.bind(0, std::int64_t{entry.meter})
+                         .bind(1, std::string_view{entry.state.field})
+                         .bind(2, std::string_view{to_json(entry.state)})
+                         .run();
+    if (!put) return put;
+  }
+  return {};
+}
+
+Result<void> BatchWriter::put_samples(const StoreBatch& batch) {
+  for (const RawSample& sample : batch.samples) {
+    const auto put = statements_->insert_sample.bind(0, std::int64_t{sample.meter})
+                         .bind(1, seconds_of(sample.time))
+                         .bind(2, std::string_view{sample.field})
+                         .bind(3, sample.value)
+                         .run();
+    if (!put) return put;
+  }
+  return {};
+}
+
+Result<void> BatchWriter::put_events(const StoreBatch& batch) {
+  for (const StoreEvent& event : batch.events) {
+    const auto put = statements_->insert_event.bind(0, seconds_of(event.time))
+                         .bind(1, static_cast<std::int64_t>(event.severity))
+                         .bind(2, std::string_view{event.kind})
+                         .bind(3, std::string_view{event.subject})
+                         .bind(4, std::string_view{event.text})
+                         .run();
+    if (!put) return put;
+  }
+  return {};
+}
+
+Result<void> BatchWriter::reopen_months(const StoreBatch& batch) {
+  for (const MeterMonth& changed : batch.reopened) {
+    const auto put = statements_->reopen_month.bind(0, std::int64_t{changed.meter})
+                         .bind(1, std::string_view{metering::to_string(changed.month)})
+                         .run();
+    if (!put) return put;
+  }
+  return {};
+}
+
+}  // namespace recald::sqlite

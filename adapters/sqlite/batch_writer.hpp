@@ -1,0 +1,43 @@
+/// What the daemon writes all day: batches of intervals with the states that explain them.
+#pragma once
+
+#include <memory>
+
+#include "adapters/ports/store.hpp"
+#include "adapters/sqlite/database.hpp"
+
+namespace recald::sqlite {
+
+/// Its statements are prepared once.
+class BatchWriter {
+ public:
+  /// @param database  Outlives the writer, at another address if need be: statements know it
+  ///                  themselves.
+  [[nodiscard]] static Result<BatchWriter> prepare(Database& database);
+
+  ~BatchWriter();
+  BatchWriter(BatchWriter&&) noexcept;
+  BatchWriter& operator=(BatchWriter&&) noexcept;
+
+  /// @pre within a transaction: half of a batch is worse than none.
+  [[nodiscard]] Result<CommitCounts> write(const StoreBatch& batch);
+
+ private:
+  struct Statements;
+
+  explicit BatchWriter(std::unique_ptr<Statements> statements);
+  [[nodiscard]] Result<void> put_intervals(const StoreBatch& batch, CommitCounts& counts);
+  [[nodiscard]] Result<void> put_interval(const StoreBatch::Interval& interval,
+                                          const std::optional<std::int64_t>& edit,
+                                          CommitCounts& counts);
+  [[nodiscard]] Result<std::optional<StoredInterval>> latest(std::uint32_t meter,
+                                                             metering::Instant start);
+  [[nodiscard]] Result<void> put_registers(const StoreBatch& batch);
+  [[nodiscard]] Result<void> put_samples(const StoreBatch& batch);
+  [[nodiscard]] Result<void> put_events(const StoreBatch& batch);
+  [[nodiscard]] Result<void> reopen_months(const StoreBatch& batch);
+
+  std::unique_ptr<Statements> statements_;
+};
+
+}  // namespace recald::sqlite

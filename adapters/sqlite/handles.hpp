@@ -1,0 +1,35 @@
+/// SQLite's own types, for the files of this folder that speak to the library; no other includes
+/// it.
+#pragma once
+
+#include <sqlite3.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "adapters/sqlite/database.hpp"
+
+namespace recald::sqlite {
+
+struct CloseDatabase {
+  void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+};
+struct FinalizeStatement {
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+using DatabaseHandle = std::unique_ptr<sqlite3, CloseDatabase>;
+using StatementHandle = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
+
+/// What kind of failure a result code of SQLite is.
+[[nodiscard]] ErrorCode code_of(int result);
+
+/// @param database  Whose last failure it was, with its words; null: only the code is known.
+[[nodiscard]] tl::unexpected<Error> failed(int result, sqlite3* database, std::string_view file);
+
+struct Database::Impl {
+  DatabaseHandle handle;
+  std::string file;
+};
+
+}  // namespace recald::sqlite

@@ -1,0 +1,132 @@
+#include "adapters/sqlite/month_table.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "adapters/sqlite/interval_row.hpp"
+
+namespace recald::sqlite {
+namespace {
+
+using metering::MonthlyFigure;
+
+void bind_month(Statement& insert, std::uint32_t meter, const StoredMonth& month, int revision) {
+  const MonthlyFigure& figure = month.figure;
+  insert.bind(0, std::int64_t{meter})
+      .bind(1, std::string_view{metering::to_string(figure.month)})
+      .bind(2, std::int64_t{revision})
+      .bind(3, seconds_of(month.closed_at))
+      .bind(4, std::string_view{month.time_zone_release})
+      .bind(5, figure.daily_average_kWh)
+      .bind(6, figure.daily_average_variance_kWh2);
+  if (figure.peak) {
+    insert.bind(7, figure.peak->kW)
+        .bind(8, seconds_of(figure.peak->start))
+        .bind(9, std::int64_t{figure.peak->could_be_exceeded});
+  } else {
+    insert.bind_null(7).bind_null(8).bind_null(9);
+  }
+  insert.bind(10, std::int64_t{figure.peak_window.count()})
+      .bind(11, figure.coverage)
+      .bind(12, figure.filled_share);
+  for (int i = 0; i < 5; ++i) {
+    insert.bind(13 + i, std::int64_t{figure.slots_by_validity[static_cast<std::size_t>(i)]});
+  }
+  insert.bind(18, std::int64_t{figure.slots});
+  if (figure.usable) {
+    insert.bind_null(19);
+  } else {
+    insert.bind(19, std::string_view{figure.unusable_because});
+  }
+  insert.bind(20, static_cast<std::int64_t>(figure.reasons));
+}
+
+/// Columns as in `kMonthColumns`. @return malformed when the month's name is none.
+Result<StoredMonth> read_month(const Statement& row) {
+  const auto month = metering::parse_month(row.text(0));
+  if (!month) return tl::unexpected(month.error());
+  MonthlyFigure figure{.month = *month};
+  figure.revision = static_cast<int>(row.integer(1));
+  figure.daily_average_kWh = row.real(2);
+  figure.daily_average_variance_kWh2 = row.real(3);
+  if (!row.is_null(4)) {
+    figure.peak =
+        metering::PeakDemand{row.real(4), instant_of(row.integer(5)), row.integer(6) != 0};
+  }
+  figure.peak_window = std::chrono::seconds{row.integer(7)};
+  figure.coverage = row.real(8);
+  figure.filled_share = row.real(9);
+  for (int i = 0; i < 5; ++i) {
+    figure.slots_by_validity[static_cast<std::size_t>(i)] = static_cast<int>(row.integer(10 + i));
+  }
+  figure.slots = static_cast<int>(row.integer(15));
+  figure.usable = row.is_null(16);
+  figure.unusable_because = row.text(16);
+  figure.reasons = static_cast<metering::Reason>(row.integer(17));
+  return StoredMonth{std::move(figure), instant_of(row.integer(18)), row.text(19)};
+}
+
+constexpr auto kMonthColumns =
+    "month, revision, daily_average_kWh, daily_average_variance, peak_kW, peak_at, "
+    "peak_could_be_exceeded, peak_window_s, coverage, filled_share, slots_ok, slots_missing, "
+    "slots_filled, slots_scaled, slots_suspect, slots, unusable_because, reasons, closed_at, "
+    "tzdata";
+
+}  // namespace
+
+Result<int> insert_month(Database& database, std::uint32_t meter, const StoredMonth& month) {
+  const std::string name = metering::to_string(month.figure.month);
+  return database.transaction([&]() -> Result<int> {
+    auto last = database.prepare(
+        "SELECT coalesce(max(revision), -1) FROM month WHERE meter = ? AND month = ?");
+    if (!last) return tl::unexpected(last.error());
+    const auto row = last->bind(0, std::int64_t{meter}).bind(1, std::string_view{name}).step();
+    if (!row) return tl::unexpected(row.error());
+    const int revision = static_cast<int>(last->integer(0)) + 1;
+    last->reset();
+    auto insert = database.prepare(
+        "INSERT INTO month VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    if (!insert) return tl::unexpected(insert.error());
+    bind_month(*insert, meter, month, revision);
+    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    auto settled = database.prepare("DELETE FROM reopened WHERE meter = ? AND month = ?");
+    if (!settled) return tl::unexpected(settled.error());
+    settled->bind(0, std::int64_t{meter}).bind(1, std::string_view{name});
+    if (auto done = settled->run(); !done) return tl::unexpected(done.error());
+    return revision;
+  });
+}
+
+Result<std::vector<StoredMonth>> stored_months(Database& database, std::uint32_t meter) {
+  auto query = database.prepare(
+      fmt::format("SELECT {} FROM month WHERE meter = ? ORDER BY month, revision", kMonthColumns));
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, std::int64_t{meter});
+  std::vector<StoredMonth> months;
+  for (;;) {
+    const auto row = query->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return months;
+    auto month = read_month(*query);
+    if (!month) return tl::unexpected(month.error());
+    if (!months.empty() && months.back().figure.month == month->figure.month) months.pop_back();
+    months.push_back(std::move(*month));
+  }
+}
+
+Result<std::vector<MeterMonth>> reopened_months(Database& database) {
+  auto query = database.prepare("SELECT meter, month FROM reopened ORDER BY meter, month");
+  if (!query) return tl::unexpected(query.error());
+  std::vector<MeterMonth> months;
+  for (;;) {
+    const auto row = query->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return months;
+    const auto month = metering::parse_month(query->text(1));
+    if (!month) return tl::unexpected(month.error());
+    months.push_back({static_cast<std::uint32_t>(query->integer(0)), *month});
+  }
+}
+
+}  // namespace recald::sqlite

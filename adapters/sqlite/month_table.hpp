@@ -1,0 +1,28 @@
+/// Closed months in the store's `month` table; those that wait to be closed again in `reopened`.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adapters/ports/store.hpp"
+#include "adapters/sqlite/database.hpp"
+
+namespace recald::sqlite {
+
+struct StoredMonth {
+  metering::MonthlyFigure figure;
+  metering::Instant closed_at;
+  std::string time_zone_release;  ///< With which it was closed.
+};
+
+/// As revision 0 or one more than the last; what was reopened is settled. @return the revision.
+[[nodiscard]] Result<int> insert_month(Database& database, std::uint32_t meter,
+                                       const StoredMonth& month);
+
+/// The latest revision of each month, ascending. @return malformed when a month's name is none.
+[[nodiscard]] Result<std::vector<StoredMonth>> stored_months(Database& database,
+                                                             std::uint32_t meter);
+
+[[nodiscard]] Result<std::vector<MeterMonth>> reopened_months(Database& database);
+
+}  // namespace recald::sqlite

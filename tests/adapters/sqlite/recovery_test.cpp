@@ -1,0 +1,174 @@
+/// Damaged stores: put aside, and all that can be read is in the new one.
+#include "adapters/sqlite/recovery.hpp"
+
+#include <gmock/gmock.h>
+
+#include "adapters/sqlite/edit_table.hpp"
+#include "tests/support/damage.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::sqlite {
+namespace {
+
+using metering::Instant;
+using recald::testing::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+const Instant kStart = std::chrono::sys_days{std::chrono::year{2024} / 3 / 1};
+const Instant kNow = kStart + std::chrono::days{40} + std::chrono::hours{5};
+constexpr std::chrono::seconds kQuarter{900};
+constexpr int kQuarters = 3000;
+
+class RecoveryTest : public ::testing::Test {
+ protected:
+  RecoveryTest() {
+    auto store = SqliteStore::open(file()).value();
+    for (const char* id : {"main", "cooling"}) {
+      const std::uint32_t meter = store.meter_number(id, kQuarter).value();
+      StoreBatch batch;
+      batch.edit = insert_edit(store.database(), {.time = kStart, .reason = "began"}).value();
+      for (int i = 0; i < kQuarters; ++i) {
+        batch.intervals.push_back({{meter, kStart + i * kQuarter, 100.0 * meter + i}});
+        batch.samples.push_back({meter, "energy", kStart + i * kQuarter, 25.0 * i});
+        if (i % 100 == 0) batch.events.push_back({kStart, Severity::info, "test", id, "x"});
+      }
+      batch.registers.push_back({meter, {.field = "energy", .identity = id}});
+      EXPECT_TRUE(store.commit(batch).has_value());
+    }
+    metering::MonthlyFigure march{.month = std::chrono::year{2024} / 3};
+    EXPECT_TRUE(store.put_month(0, march, "2025b", kStart).has_value());
+    EXPECT_TRUE(store.add_job({.asked_by = "api", .asked = kStart, .result = "{}"}).has_value());
+  }
+
+  [[nodiscard]] std::filesystem::path file() const { return folder_ / "site.db"; }
+  [[nodiscard]] static CheckedStore open(const std::filesystem::path& file,
+                                         const std::vector<std::filesystem::path>& backups = {}) {
+    auto opened = open_checked(file, backups, kNow);
+    if (!opened) throw std::runtime_error(opened.error().message);
+    return std::move(*opened);
+  }
+  [[nodiscard]] static const RecoveredTable& table(const Recovery& recovery,
+                                                   const std::string& name) {
+    return *std::ranges::find(recovery.tables, name, &RecoveredTable::name);
+  }
+  /// Values of a meter's intervals, each as it was written. @return how many there are.
+  static int right_intervals(SqliteStore& store, std::uint32_t meter) {
+    int count = 0;
+    (void)store.for_each_interval(
+        meter, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
+          const auto i = (interval.reading.start - kStart) / kQuarter;
+          EXPECT_EQ(interval.reading.mean_kW, 100.0 * meter + static_cast<double>(i));
+          ++count;
+        });
+    return count;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(RecoveryTest, ASoundStoreIsOpenedAndNothingElse) {
+  CheckedStore opened = open(file());
+  EXPECT_FALSE(opened.recovery.has_value());
+  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters);
+  EXPECT_FALSE(open(folder_ / "new.db").recovery.has_value());
+}
+
+TEST_F(RecoveryTest, APageOfReadingsCostsThatPage) {
+  recald::testing::damage_leaf(file(), "interval", 20);
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  const Recovery& recovery = *opened.recovery;
+  EXPECT_EQ(recovery.damaged.filename(), "site.db.damaged-20240410T050000Z");
+  EXPECT_TRUE(std::filesystem::exists(recovery.damaged));
+  const RecoveredTable& intervals = table(recovery, "interval");
+  EXPECT_FALSE(intervals.is_whole);
+  // A page of 4 KiB holds some 150 rows.
+  EXPECT_GE(intervals.from_damaged, 2 * kQuarters - 250);
+  EXPECT_LT(intervals.from_damaged, 2 * kQuarters);
+  EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1),
+            intervals.from_damaged);
+  EXPECT_TRUE(table(recovery, "sample").is_whole);
+  EXPECT_EQ(table(recovery, "sample").from_damaged, 2 * kQuarters);
+  EXPECT_EQ(opened.store.registers(1)->at(0).identity, "cooling");
+  EXPECT_THAT(*opened.store.months(0), SizeIs(1));
+  EXPECT_THAT(*opened.store.events(1000), SizeIs(60));
+  EXPECT_TRUE(opened.store.job(1)->has_value());
+  EXPECT_THAT(*stored_edits(opened.store.database()), SizeIs(2));
+  EXPECT_EQ(opened.store.database().quick_check().value(), "");
+  EXPECT_THAT(recovery.sentence(), HasSubstr("it is kept as 'site.db.damaged-20240410T050000Z'"));
+  EXPECT_THAT(recovery.sentence(), HasSubstr(" interval (not all),"));
+  EXPECT_THAT(recovery.sentence(), HasSubstr("there was no sound backup"));
+}
+
+TEST_F(RecoveryTest, ABackupFillsTheHole) {
+  const auto backup = folder_ / "backup.db";
+  const auto bad_backup = folder_ / "bad.db";
+  ASSERT_TRUE(open(file()).store.database().back_up_to(backup).has_value());
+  std::filesystem::copy(backup, bad_backup);
+  recald::testing::damage_leaf(bad_backup, "interval", 2);
+  recald::testing::damage_leaf(file(), "interval", 20);
+  CheckedStore opened = open(file(), {folder_ / "none.db", bad_backup, backup});
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(opened.recovery->backup, backup);
+  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters);
+  EXPECT_EQ(right_intervals(opened.store, 1), kQuarters);
+  const RecoveredTable& intervals = table(*opened.recovery, "interval");
+  EXPECT_EQ(intervals.from_damaged + intervals.from_backup, 2 * kQuarters);
+  EXPECT_GT(intervals.from_backup, 0);
+}
+
+TEST_F(RecoveryTest, WithoutItsMetersReadingsKeepTheirNumbers) {
+  recald::testing::damage_leaf(file(), "meter", 0);
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(opened.store.find_meter("unknown-1").value(), 1u);
+  EXPECT_EQ(right_intervals(opened.store, 1), kQuarters);
+}
+
+TEST_F(RecoveryTest, NothingReadableIsANewStoreAndABackupFillsIt) {
+  const auto backup = folder_ / "backup.db";
+  ASSERT_TRUE(open(file()).store.database().back_up_to(backup).has_value());
+  recald::testing::damage_page(file(), 1);
+  CheckedStore opened = open(file(), {backup});
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_FALSE(table(*opened.recovery, "interval").is_whole);
+  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters);
+  EXPECT_EQ(opened.store.find_meter("cooling").value(), 1u);
+}
+
+// Any page: whatever it held, the store opens, and what is in it is right.
+TEST_F(RecoveryTest, WhicheverPageIsDamaged) {
+  const std::string whole = recald::testing::read_text(file());
+  const auto pages = static_cast<std::int64_t>(whole.size()) / recald::testing::kPageBytes;
+  ASSERT_GT(pages, 60);
+  int recovered = 0;
+  for (std::int64_t page = 1; page <= pages; page += page < 16 ? 1 : 3) {
+    SCOPED_TRACE(page);
+    const TemporaryFolder here;
+    recald::testing::write_text(here / "site.db", whole);
+    recald::testing::damage_page(here / "site.db", page);
+    CheckedStore opened = open(here / "site.db");
+    EXPECT_EQ(opened.store.database().quick_check().value(), "");
+    recovered += static_cast<int>(opened.recovery.has_value());
+    const int found = right_intervals(opened.store, 0) + right_intervals(opened.store, 1);
+    if (!opened.recovery) {
+      EXPECT_EQ(found, 2 * kQuarters);
+    }
+  }
+  EXPECT_GE(recovered, 15);
+}
+
+TEST_F(RecoveryTest, AnotherProgramsDatabaseIsLeftAlone) {
+  {
+    auto other = Database::open(folder_ / "other.db", {});
+    ASSERT_TRUE(other->execute("CREATE TABLE t (a)").has_value());
+  }
+  const auto opened = open_checked(folder_ / "other.db", {}, kNow);
+  ASSERT_FALSE(opened.has_value());
+  EXPECT_THAT(opened.error().message, HasSubstr("database of another program"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "other.db"));
+}
+
+}  // namespace
+}  // namespace recald::sqlite
