@@ -10,6 +10,9 @@ class FailingStore final : public Store {
   explicit FailingStore(Store& behind) : behind_(behind) {}
 
   bool refuses = false;
+  /// Told of each batch before it is committed, and after it was.
+  std::function<void(const StoreBatch&)> before_commit;
+  std::function<void(const StoreBatch&)> after_commit;
 
   Result<std::uint32_t> meter_number(const std::string& id,
                                      std::chrono::seconds interval) override {
@@ -18,7 +21,10 @@ class FailingStore final : public Store {
   }
   Result<CommitCounts> commit(const StoreBatch& batch) override {
     if (refuses) return refusal();
-    return behind_.commit(batch);
+    if (before_commit) before_commit(batch);
+    auto counts = behind_.commit(batch);
+    if (counts && after_commit) after_commit(batch);
+    return counts;
   }
   Result<void> for_each_interval(std::uint32_t meter, const metering::TimeSpan& span,
                                  const std::function<void(const StoredInterval&)>& visit) override {

@@ -1,0 +1,124 @@
+/// The real program, killed with SIGKILL at random moments while it polls a real socket.
+///
+/// RECALD_REAL_KILLS: how often, 12 unless set.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <set>
+
+#include "adapters/sqlite/sample_table.hpp"
+#include "adapters/sqlite/sqlite_store.hpp"
+#include "core/random/rng.hpp"
+#include "tests/support/background_process.hpp"
+#include "tests/support/scripted_device.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using recald::testing::BackgroundProcess;
+using recald::testing::Bytes;
+using recald::testing::eventually;
+using recald::testing::Piece;
+using recald::testing::ScriptedServer;
+using recald::testing::TemporaryFolder;
+
+/// A counter in Wh that rises by one with every read, as a u32 at address 0.
+std::vector<Piece> counting(const Bytes& request, int number) {
+  const auto wh = static_cast<std::uint32_t>(1'000'000 + number);
+  const auto byte = [&](int shift) { return static_cast<std::uint8_t>(wh >> shift & 0xFF); };
+  return {{std::chrono::milliseconds{0},
+           {request[0], request[1], 0, 0, 0, 7, request[6], 0x03, 4, byte(24), byte(16), byte(8),
+            byte(0)}}};
+}
+
+class KillCommand : public ::testing::Test {
+ protected:
+  KillCommand() : server_{counting} {
+    recald::testing::write_text(folder_ / "counter.toml", R"(
+source = "the test"
+base = 0
+energy = ["energy"]
+register.energy = { at = 0, type = "u32", unit = "Wh" }
+)");
+    recald::testing::write_text(folder_ / "site.toml", R"([site]
+id = "tower"
+timezone = "America/Chicago"
+interval = "1m"
+
+[bus.plant]
+type = "tcp"
+host = "127.0.0.1"
+port = )" + std::to_string(server_.port()) + R"(
+
+[[meter]]
+id = "main"
+source = "modbus"
+utility = "electricity"
+bus = "plant"
+unit = 1
+map = "counter.toml"
+rated_kW = 400
+poll = "1s"
+)");
+  }
+
+  /// Samples of the register that a reader beside the daemon sees committed.
+  [[nodiscard]] std::map<Instant, double> committed() const {
+    std::map<Instant, double> samples;
+    if (!std::filesystem::exists(folder_ / "site.db")) return samples;
+    auto store = sqlite::SqliteStore::open(folder_ / "site.db",
+                                           {.access = sqlite::Database::Access::read_only});
+    if (!store) return samples;
+    const auto read = sqlite::for_each_sample(
+        store->database(), 0, "energy",
+        [&](const metering::RegisterSample& one) { samples[one.time] = one.value_kWh; });
+    EXPECT_TRUE(read.has_value()) << read.error().message;
+    return samples;
+  }
+
+  TemporaryFolder folder_;
+  ScriptedServer server_;
+};
+
+TEST_F(KillCommand, KillsOfTheRealProgramLoseNothing) {
+  const char* given = std::getenv("RECALD_REAL_KILLS");
+  const int kills = given != nullptr ? std::atoi(given) : 12;
+  const std::filesystem::path said = folder_ / "said.txt";
+  const std::vector<std::string> command{RECALD_PROGRAM, "run", (folder_ / "site.toml").string()};
+  Rng rng{1};
+  std::map<Instant, double> seen;
+  for (int kill = 0; kill < kills; ++kill) {
+    BackgroundProcess daemon{command, said};
+    const int requests = server_.requests() + 1 + static_cast<int>(rng.below(8));
+    ASSERT_TRUE(eventually([&] { return server_.requests() >= requests; }))
+        << recald::testing::read_text(said);
+    const auto before = committed();
+    EXPECT_EQ(daemon.end(SIGKILL), -SIGKILL);
+    const auto after = committed();
+    EXPECT_TRUE(std::ranges::includes(after, before)) << "after kill " << kill;
+    EXPECT_TRUE(std::ranges::includes(after, seen)) << "after kill " << kill;
+    seen = after;
+  }
+  auto store = sqlite::SqliteStore::open(folder_ / "site.db").value();
+  EXPECT_EQ(store.database().quick_check().value(), "");
+  EXPECT_GE(seen.size(), static_cast<std::size_t>(kills));
+  // The register rises with each read, so a sample that stood twice would be seen.
+  std::set<double> values;
+  for (const auto& [time, value_kWh] : seen) EXPECT_TRUE(values.insert(value_kWh).second);
+  std::optional<Instant> last;
+  const auto read = store.for_each_interval(
+      0, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
+        if (last) {
+          EXPECT_EQ(interval.reading.start - *last, std::chrono::minutes{1});
+        }
+        last = interval.reading.start;
+      });
+  EXPECT_TRUE(read.has_value());
+}
+
+}  // namespace
+}  // namespace recald::daemon
