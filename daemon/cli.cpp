@@ -165,6 +165,27 @@ void add_status(CLI::App& command, StatusArguments& arguments) {
   site->excludes(url);
 }
 
+void add_export(CLI::App& command, ExportArguments& arguments) {
+  add_site(command, arguments);
+  command.add_option("--from", arguments.from, "First local day, YYYY-MM-DD");
+  command.add_option("--to", arguments.to, "Last local day, YYYY-MM-DD");
+  command.add_flag("--months", arguments.months, "Closed months in the place of readings");
+  command.add_option("--out", arguments.out, "File; without it standard output");
+}
+
+void add_import(CLI::App& command, ImportArguments& arguments) {
+  add_site(command, arguments);
+  command.add_option("file", arguments.file, "Readings CSV: timestamp,meter,value,unit")
+      ->required();
+  command.add_option("--reason", arguments.reason, "Why, for those who find them later")
+      ->required();
+  command.add_option("--stamps", arguments.stamps, "What the file's stamps name of an interval")
+      ->check(CLI::IsMember({"start", "end"}))
+      ->capture_default_str();
+  command.add_flag("--supersede", arguments.supersede, "Replace good readings too");
+  command.add_flag("--dry-run", arguments.dry_run, "Say what would happen, change nothing");
+}
+
 /// What every command was given on the command line; only one of them is run.
 struct Arguments {
   CheckArguments check;
@@ -173,6 +194,9 @@ struct Arguments {
   DecodeArguments decode;
   ReplayArguments replay;
   ProfileArguments profile;
+  SiteArguments verify;
+  ExportArguments exported;
+  ImportArguments imported;
   CalibrateArguments calibrate;
   CalibrateArguments report;
   ScreenArguments screen;
@@ -225,6 +249,23 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   profile->add_option("--out", given.profile.out, "Folder for profile.json");
   verbs.push_back(
       {profile, [&](const Console& console) { return run_profile(given.profile, console); }});
+}
+
+void add_store_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* verify = app.add_subcommand("verify", "Check the store against itself");
+  add_site(*verify, given.verify);
+  verbs.push_back(
+      {verify, [&](const Console& console) { return run_verify(given.verify, console); }});
+
+  CLI::App* exported = app.add_subcommand("export", "The store's readings or months as CSV");
+  add_export(*exported, given.exported);
+  verbs.push_back(
+      {exported, [&](const Console& console) { return run_export(given.exported, console); }});
+
+  CLI::App* imported = app.add_subcommand("import", "Readings into the store, with a reason");
+  add_import(*imported, given.imported);
+  verbs.push_back(
+      {imported, [&](const Console& console) { return run_import(given.imported, console); }});
 }
 
 void add_device_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
@@ -332,6 +373,7 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   Arguments given;
   std::vector<Verb> verbs;
   add_site_verbs(app, given, verbs);
+  add_store_verbs(app, given, verbs);
   add_device_verbs(app, given, verbs);
   add_calibration_verbs(app, given, verbs);
   add_design_verbs(app, given, verbs);

@@ -114,6 +114,21 @@ struct StatusArguments : SiteArguments {
   std::filesystem::path token_file;  ///< With a URL; empty: none is sent.
 };
 
+struct ExportArguments : SiteArguments {
+  std::string from;  ///< Local day, or empty.
+  std::string to;
+  bool months = false;        ///< Closed months in the place of readings.
+  std::filesystem::path out;  ///< File, or empty: standard output.
+};
+
+struct ImportArguments : SiteArguments {
+  std::filesystem::path file;
+  std::string reason;
+  std::string stamps = "start";  ///< Or "end": what the file's stamps name.
+  bool supersede = false;
+  bool dry_run = false;
+};
+
 struct DetectabilityArguments : SiteArguments {
   std::filesystem::path footprint;  ///< Readings CSV: with the effect minus without.
   std::filesystem::path out;        ///< Folder for detectability.json, or empty.
@@ -132,6 +147,12 @@ int run_scan(const ScanArguments& arguments, const Console& console);
 /// What a running daemon says of itself, over HTTP.
 int run_status(const StatusArguments& arguments, const Console& console);
 int run_replay(const ReplayArguments& arguments, const Console& console);
+/// Checks the store without changing it, beside a daemon if need be; a sentence a fault.
+int run_verify(const SiteArguments& arguments, const Console& console);
+/// The store's readings or months as CSV.
+int run_export(const ExportArguments& arguments, const Console& console);
+/// Readings CSV into the store, as an edit with author and reason. Not while a daemon runs on it.
+int run_import(const ImportArguments& arguments, const Console& console);
 int run_profile(const ProfileArguments& arguments, const Console& console);
 /// Writes calibration.json, draws, months.csv, profile.json and report.html into the folder.
 int run_calibrate(const CalibrateArguments& arguments, const Console& console);

@@ -17,6 +17,31 @@ constexpr std::chrono::hours kAfterwards{48};
 
 }  // namespace
 
+Result<MonthlyFigure> stored_figure(Store& store, const metering::LocalCalendar& calendar,
+                                    const metering::CloserOptions& closing,
+                                    const StoredMeter& meter, Month month, Instant known_until) {
+  std::optional<MonthlyFigure> made;
+  metering::CloserOptions options = closing;
+  options.period = metering::MonthRange{month, month};
+  metering::MonthCloser closer{
+      calendar, {meter.meter}, options, [&](metering::ClosedMonth&& closed) {
+        if (closed.figure.month == month) made = closed.figure;
+      }};
+  // The month before says what this meter is like.
+  const metering::TimeSpan span{
+      calendar.month_span(metering::previous_month(month)).begin,
+      std::min(known_until, calendar.month_span(month).end + kAfterwards)};
+  const auto read = store.for_each_interval(meter.number, span, [&](const StoredInterval& stored) {
+    metering::Reading reading = stored.reading;
+    reading.meter = 0;
+    closer.add(reading);
+  });
+  if (!read) return tl::unexpected(read.error());
+  closer.finish();
+  assert(made && "a closer hands out its whole period");
+  return *made;
+}
+
 MonthKeeper::MonthKeeper(Store& store, metering::LocalCalendar calendar,
                          metering::CloserOptions options, std::string time_zone_release)
     : store_(store),
@@ -45,28 +70,6 @@ Result<std::vector<Month>> MonthKeeper::due(const StoredMeter& meter,
   return months;
 }
 
-Result<MonthlyFigure> MonthKeeper::figure(const StoredMeter& meter, Month month) const {
-  std::optional<MonthlyFigure> made;
-  metering::CloserOptions options = options_;
-  options.period = metering::MonthRange{month, month};
-  metering::MonthCloser closer{
-      calendar_, {meter.meter}, options, [&](metering::ClosedMonth&& closed) {
-        if (closed.figure.month == month) made = closed.figure;
-      }};
-  // The month before says what this meter is like.
-  const metering::TimeSpan span{calendar_.month_span(metering::previous_month(month)).begin,
-                                calendar_.month_span(month).end + kAfterwards};
-  const auto read = store_.for_each_interval(meter.number, span, [&](const StoredInterval& stored) {
-    metering::Reading reading = stored.reading;
-    reading.meter = 0;
-    closer.add(reading);
-  });
-  if (!read) return tl::unexpected(read.error());
-  closer.finish();
-  assert(made && "a closer hands out its whole period");
-  return *made;
-}
-
 Result<std::vector<ClosedFigure>> MonthKeeper::close_due(std::span<const StoredMeter> meters,
                                                          Instant now) {
   const auto reopened = store_.reopened();
@@ -76,7 +79,7 @@ Result<std::vector<ClosedFigure>> MonthKeeper::close_due(std::span<const StoredM
     const auto months = due(meter, *reopened, now);
     if (!months) return tl::unexpected(months.error());
     for (const Month month : *months) {
-      auto made = figure(meter, month);
+      auto made = stored_figure(store_, calendar_, options_, meter, month);
       if (!made) return tl::unexpected(made.error());
       const auto revision = store_.put_month(meter.number, *made, time_zone_release_, now);
       if (!revision) return tl::unexpected(revision.error());

@@ -21,6 +21,13 @@ struct ClosedFigure {
   metering::MonthlyFigure figure;  ///< With the revision that it has in the store.
 };
 
+/// A month's figure out of what is stored, by the rules of a replay.
+/// @param known_until  Readings that start later are left out, as if they had not come yet.
+[[nodiscard]] Result<metering::MonthlyFigure> stored_figure(
+    Store& store, const metering::LocalCalendar& calendar, const metering::CloserOptions& options,
+    const StoredMeter& meter, metering::Month month,
+    metering::Instant known_until = metering::Instant::max());
+
 /// Nothing is kept in memory between two calls: a restart in the middle loses nothing and repeats
 /// nothing, and a figure is made of what is stored, by the rules of a replay.
 class MonthKeeper {
@@ -39,8 +46,6 @@ class MonthKeeper {
   [[nodiscard]] Result<std::vector<metering::Month>> due(const StoredMeter& meter,
                                                          std::span<const MeterMonth> reopened,
                                                          metering::Instant now) const;
-  [[nodiscard]] Result<metering::MonthlyFigure> figure(const StoredMeter& meter,
-                                                       metering::Month month) const;
 
   Store& store_;
   metering::LocalCalendar calendar_;

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "adapters/system/file_lock.hpp"
+#include "daemon/commands/commands.hpp"
+#include "daemon/commands/open_site.hpp"
+#include "daemon/upkeep/import_csv.hpp"
+
+namespace recald::daemon {
+namespace {
+
+constexpr std::size_t kLinesShown = 10;
+
+std::string author() {
+  const char* user = std::getenv("USER");
+  return user != nullptr && *user != '\0' ? user : "unknown";
+}
+
+void print_issues(const ImportArguments& arguments, const csv::LineIssues& issues,
+                  const Console& console) {
+  const std::string name = arguments.file.filename().string();
+  for (std::size_t i = 0; i < std::min(kLinesShown, issues.listed.size()); ++i) {
+    console.err << fmt::format("{}:{}: {}\n", name, issues.listed[i].line, issues.listed[i].reason);
+  }
+  if (issues.total > kLinesShown) {
+    console.err << fmt::format("… and {} more\n", issues.total - kLinesShown);
+  }
+}
+
+void print_words(const ImportOutcome& outcome, const ImportArguments& arguments,
+                 const Console& console) {
+  console.out << fmt::format(
+      "{}{} readings: {} taken, {} known already, {} known better, {} in conflict\n",
+      arguments.dry_run ? "would be so: " : "", outcome.file.readings, outcome.taken,
+      outcome.duplicates, outcome.weaker, outcome.conflicts);
+  if (outcome.conflicts > 0) {
+    console.err << "readings in conflict are as good as the stored ones and differ; --supersede "
+                   "takes the file's\n";
+  }
+  if (!outcome.closed.empty()) {
+    console.out << fmt::format("{} months closed, {} of them again\n", outcome.closed.size(),
+                               outcome.reopened.size());
+  }
+}
+
+nlohmann::ordered_json json_of(const ImportOutcome& outcome, bool dry_run) {
+  return {{"readings", outcome.file.readings},
+          {"bad_lines", outcome.file.issues.total},
+          {"taken", outcome.taken},
+          {"duplicates", outcome.duplicates},
+          {"weaker", outcome.weaker},
+          {"conflicts", outcome.conflicts},
+          {"months_reopened", outcome.reopened.size()},
+          {"months_closed", outcome.closed.size()},
+          {"dry_run", dry_run}};
+}
+
+}  // namespace
+
+int run_import(const ImportArguments& arguments, const Console& console) {
+  if (arguments.reason.find_first_not_of(" \t") == std::string::npos) {
+    return console.misused(
+        "--reason is empty; say why these readings are put in, for those who "
+        "find them later");
+  }
+  const auto site = open_site(arguments.site);
+  if (!site) return console.fail(site.error());
+  const auto lock = system::FileLock::take(site->config.store.file.string() + ".lock");
+  if (!lock) {
+    return console.fail(lock.error().message + "; end the daemon, import, and start it again");
+  }
+  auto store = sqlite::SqliteStore::open(site->config.store.file);
+  if (!store) return console.fail(store.error());
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto outcome =
+      import_readings(*store, site->config, site->calendar, arguments.file,
+                      {.author = author(),
+                       .reason = arguments.reason,
+                       .stamps = arguments.stamps == "end" ? csv::Stamps::end : csv::Stamps::start,
+                       .supersedes = arguments.supersede,
+                       .dry_run = arguments.dry_run},
+                      now);
+  if (!outcome) return console.fail(outcome.error());
+  print_issues(arguments, outcome->file.issues, console);
+  if (arguments.json) {
+    console.out << json_of(*outcome, arguments.dry_run).dump(2) << "\n";
+  } else {
+    print_words(*outcome, arguments, console);
+  }
+  return kSuccess;
+}
+
+}  // namespace recald::daemon
