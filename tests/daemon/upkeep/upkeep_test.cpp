@@ -144,7 +144,7 @@ TEST_F(UpkeepTest, AFullDiskTakesTheReserveAndTheCommitIsThere) {
   disk.before = [](const FaultyDisk::Step& step) {
     return step.operation == FaultyDisk::Operation::write ? SQLITE_FULL : SQLITE_OK;
   };
-  EXPECT_FALSE(store.commit({.samples = {{0, "energy", kMidnight, 1.0}}}).has_value());
+  EXPECT_FALSE(store.commit({.samples = {{0, "energy", kMidnight + days{1}, 1.0}}}).has_value());
   disk.before = {};
   maintain(upkeep, kMidnight + hours{1});
   EXPECT_TRUE(std::filesystem::exists(reserve));
