@@ -74,7 +74,7 @@ Result<void> set_trust(boost::asio::ssl::context& tls, const ClientOptions& opti
                                            "' cannot be used: " + error.message());
 }
 
-awaitable<Result<Response>> exchange_over_tls(beast::tcp_stream connected, const Url& url,
+awaitable<Result<Response>> exchange_over_tls(beast::tcp_stream& connected, const Url& url,
                                               const ClientOptions& options) {
   boost::asio::ssl::context tls{boost::asio::ssl::context::tls_client};
   if (auto trusted = set_trust(tls, options); !trusted) co_return tl::unexpected(trusted.error());
@@ -103,7 +103,7 @@ awaitable<Result<Response>> ask(const Url& url, const ClientOptions& options) {
     co_return failure(ErrorCode::not_found,
                       "nothing answers at " + url.text() + ": " + error.message());
   }
-  if (url.is_tls) co_return co_await exchange_over_tls(std::move(stream), url, options);
+  if (url.is_tls) co_return co_await exchange_over_tls(stream, url, options);
   co_return co_await exchange(stream, url, options);
 }
 

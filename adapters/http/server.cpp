@@ -114,7 +114,8 @@ awaitable<void> serve_plain(std::shared_ptr<Shared> shared, tcp::socket socket, 
   if (is_welcome) {
     co_await session.run();
   } else {
-    co_await session.turn_away(too_many());
+    const Response refusal = too_many();
+    co_await session.turn_away(refusal);
   }
 }
 
@@ -131,7 +132,8 @@ awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bo
   if (is_welcome) {
     co_await session.run();
   } else {
-    co_await session.turn_away(too_many());
+    const Response refusal = too_many();
+    co_await session.turn_away(refusal);
   }
 }
 

@@ -47,8 +47,7 @@ class Session {
 
   /// Sends one answer to whatever comes, unread.
   boost::asio::awaitable<void> turn_away(const Response& response) {
-    set_deadline(stream_, rules_.slow_client);
-    if (co_await send(Method::get, response, false)) co_await part(false);
+    co_await refuse(Method::get, response);
   }
 
  private:
@@ -59,6 +58,8 @@ class Session {
     return boost::asio::redirect_error(boost::asio::use_awaitable, error);
   }
 
+  /// What is refused here stands in a variable before it is awaited: GCC 12 destroys temporaries in
+  /// the arguments of an awaited call twice.
   /// @return whether another request may follow.
   boost::asio::awaitable<bool> answer_one() {
     Parser parser;
@@ -67,36 +68,43 @@ class Session {
     set_deadline(stream_, rules_.slow_client);
     Error error;
     co_await boost::beast::http::async_read_header(stream_, buffer_, parser, into(error));
-    if (error) co_return co_await refuse(Method::get, refusal_of(error));
-
-    auto request = request_head(parser.get());
-    if (!request) co_return co_await refuse(Method::get, bad_request(request.error()));
-    if (auto refusal = refusal_of_head(*request, rules_)) {
-      co_return co_await refuse(request->method, std::move(refusal));
+    Result<Request> request;
+    std::optional<Response> refusal;
+    if (error) {
+      refusal = refusal_of(error);
+    } else if (request = request_head(parser.get()); !request) {
+      refusal = bad_request(request.error());
+    } else {
+      refusal = refusal_of_head(*request, rules_);
     }
-    if (equals_ignoring_case(request->header("expect"), "100-continue")) {
-      co_await send_continue(error);
+    const Method method = request ? request->method : Method::get;
+    if (!error && !refusal) {
+      co_await read_body(*request, parser, error);
+      if (error) refusal = refusal_of(error);
     }
-    if (!error) co_await boost::beast::http::async_read(stream_, buffer_, parser, into(error));
-    if (error) co_return co_await refuse(request->method, refusal_of(error));
-    if (rules_.is_stopping) co_return false;  // whoever answers may be gone
+    if (refusal) co_await refuse(method, *refusal);
+    if (error || refusal || rules_.is_stopping) co_return false;  // whoever answers may be gone
 
     request->body = std::move(parser.get().body());
     const bool keep_alive = parser.get().keep_alive();
     const Response response = dressed(*request, called(handler_, *request));
     set_deadline(stream_, rules_.slow_client);
-    const bool sent = co_await send(request->method, response, keep_alive);
+    const bool sent = co_await send(method, response, keep_alive);
     if (sent && !keep_alive) co_await part(true);
     co_return sent&& keep_alive;
   }
 
-  /// Answers, if there is something to say, and parts: what follows on the stream is not known to
-  /// be a request.
-  boost::asio::awaitable<bool> refuse(Method method, std::optional<Response> refusal) {
-    if (!refusal) co_return false;
+  boost::asio::awaitable<void> read_body(const Request& request, Parser& parser, Error& error) {
+    if (equals_ignoring_case(request.header("expect"), "100-continue")) {
+      co_await send_continue(error);
+    }
+    if (!error) co_await boost::beast::http::async_read(stream_, buffer_, parser, into(error));
+  }
+
+  /// Answers and parts: what follows on the stream is not known to be a request.
+  boost::asio::awaitable<void> refuse(Method method, const Response& refusal) {
     set_deadline(stream_, rules_.slow_client);
-    if (co_await send(method, *refusal, false)) co_await part(false);
-    co_return false;
+    if (co_await send(method, refusal, false)) co_await part(false);
   }
 
   boost::asio::awaitable<bool> send(Method method, const Response& response, bool keep_alive) {

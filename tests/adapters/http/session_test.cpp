@@ -27,8 +27,9 @@ const std::size_t kFirstLength = kTwoRequests.find("GET /last");
 class SessionTest : public ::testing::Test {
  protected:
   /// Lets the session run until it waits for the client or has ended.
-  void serve(stream& server) {
+  void serve(stream& server, stream& client) {
     Session<stream> session{server, rules_, handler_};
+    context_.restart();
     boost::asio::co_spawn(
         context_, [&]() -> boost::asio::awaitable<void> { co_await session.run(); },
         [&](std::exception_ptr thrown) {
@@ -36,7 +37,7 @@ class SessionTest : public ::testing::Test {
           has_thrown_ = thrown != nullptr;
         });
     context_.poll();
-    server.close();  // whatever waits does not outlive the session
+    client.close();  // whatever still waits ends with it
     context_.restart();
     context_.poll();
   }
@@ -65,7 +66,7 @@ TEST_F(SessionTest, TheNthOperationFailsUntilARunPasses) {
     server.append(kTwoRequests);
     handled_.clear();
     has_ended_ = false;
-    serve(server);
+    serve(server, client);
     EXPECT_TRUE(has_ended_);
     EXPECT_FALSE(has_thrown_);
     ASSERT_LE(handled_.size(), 2u);
@@ -83,7 +84,7 @@ TEST_F(SessionTest, ARequestThatIsCutAtAnyByteIsNotHandled) {
     client.close();
     handled_.clear();
     has_ended_ = false;
-    serve(server);
+    serve(server, client);
     EXPECT_TRUE(has_ended_);
     EXPECT_FALSE(has_thrown_);
     const std::size_t whole = length == kTwoRequests.size() ? 2 : length >= kFirstLength ? 1 : 0;
@@ -96,7 +97,7 @@ TEST_F(SessionTest, ARequestThatDripsIsTheSame) {
   server.read_size(1);
   stream client = connect(server);
   server.append(kTwoRequests);
-  serve(server);
+  serve(server, client);
   EXPECT_THAT(handled_, ::testing::ElementsAre("/first", "/last"));
   EXPECT_THAT(std::string{client.str()}, EndsWith("/last"));
 }
@@ -106,7 +107,7 @@ TEST_F(SessionTest, NothingIsHandledAfterTheEndHasBegun) {
   stream server{context_};
   stream client = connect(server);
   server.append(kTwoRequests);
-  serve(server);
+  serve(server, client);
   EXPECT_TRUE(has_ended_);
   EXPECT_THAT(handled_, SizeIs(0));
 }
@@ -115,7 +116,7 @@ TEST_F(SessionTest, WhatFollowsARefusalIsNotARequest) {
   stream server{context_};
   stream client = connect(server);
   server.append("GET /%zz HTTP/1.1\r\n\r\n" + kTwoRequests);
-  serve(server);
+  serve(server, client);
   EXPECT_THAT(handled_, SizeIs(0));
   EXPECT_THAT(std::string{client.str()}, HasSubstr("HTTP/1.1 400 "));
 }
