@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -59,9 +60,11 @@ class ServedSite : public ::testing::Test {
     recald::testing::write_text(folder_ / "counter.toml", recald::testing::CounterBus::kMap);
     recald::testing::write_text(folder_ / "site.toml", kServedSite);
     site_ = load_site(folder_ / "site.toml").value();
-    devices_[1].energy_kWh = [](std::chrono::milliseconds t) { return 0.05 + 60.0 * hours_of(t); };
+    devices_[1].energy_kWh = [](std::chrono::milliseconds t) {
+      return 0.05 + 60.0 * hours_of(t) + unevenness_kWh(t);
+    };
     devices_[2].energy_kWh = [](std::chrono::milliseconds t) {
-      return 1000.05 + 100.0 * hours_of(t);
+      return 1000.05 + 100.0 * hours_of(t) + unevenness_kWh(t);
     };
     begin();
   }
@@ -99,6 +102,10 @@ class ServedSite : public ::testing::Test {
     if (!json.contains("error")) return std::to_string(response.status);
     return std::to_string(response.status) + " " + json["error"]["code"].get<std::string>() + " " +
            json["error"]["field"].get<std::string>();
+  }
+  /// 0.1 kWh more in every second interval: a load that never changes is a frozen meter.
+  static double unevenness_kWh(std::chrono::milliseconds t) {
+    return 0.1 * std::floor(2.0 * hours_of(t));
   }
   static double hours_of(std::chrono::milliseconds t) {
     return static_cast<double>(t.count()) / 3.6e6;
