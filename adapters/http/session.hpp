@@ -58,8 +58,6 @@ class Session {
     return boost::asio::redirect_error(boost::asio::use_awaitable, error);
   }
 
-  /// What is refused here stands in a variable before it is awaited: GCC 12 destroys temporaries in
-  /// the arguments of an awaited call twice.
   /// @return whether another request may follow.
   boost::asio::awaitable<bool> answer_one() {
     Parser parser;
@@ -104,7 +102,9 @@ class Session {
   /// Answers and parts: what follows on the stream is not known to be a request.
   boost::asio::awaitable<void> refuse(Method method, const Response& refusal) {
     set_deadline(stream_, rules_.slow_client);
-    if (co_await send(method, refusal, false)) co_await part(false);
+    // Not `if (co_await …) co_await …;`, which GCC 12 runs without the caller's frame, and crashes.
+    const bool sent = co_await send(method, refusal, false);
+    if (sent) co_await part(false);
   }
 
   boost::asio::awaitable<bool> send(Method method, const Response& response, bool keep_alive) {
