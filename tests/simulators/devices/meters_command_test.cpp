@@ -80,6 +80,7 @@ class Socket {
   }
   /// So many bytes, or fewer when the other end closes.
   [[nodiscard]] Bytes get(std::size_t count) const {
+    if (count == 0) return {};  // recv would wait for a first byte
     Bytes bytes(count);
     const auto got = ::recv(descriptor_, bytes.data(), count, MSG_WAITALL);
     bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
