@@ -4,15 +4,19 @@
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it
 
 #include <boost/asio/io_context.hpp>
+#include <optional>
 
 #include "adapters/ports/loop.hpp"
+#include "core/metering/trial_clock.hpp"
 
 namespace recald::asio {
 
 class AsioLoop final : public Loop {
  public:
   /// @param context  Run by one thread; outlives this.
-  explicit AsioLoop(boost::asio::io_context& context) : context_(context) {}
+  /// @param trial    Time as it passes in a trial; absent: the world's.
+  explicit AsioLoop(boost::asio::io_context& context,
+                    std::optional<metering::TrialClock> trial = {});
 
   [[nodiscard]] Moment now() const override;
   void after(std::chrono::milliseconds wait, Call call) override;
@@ -20,6 +24,11 @@ class AsioLoop final : public Loop {
 
  private:
   boost::asio::io_context& context_;
+  std::optional<metering::TrialClock> trial_;
+  /// In a trial both clocks are one: an adjustment of the system's by a millisecond would otherwise
+  /// look like a clock that was set.
+  std::chrono::steady_clock::time_point began_;
+  metering::TrialClock::Microseconds real_at_begin_;
 };
 
 }  // namespace recald::asio

@@ -40,8 +40,8 @@ std::optional<Instant> parse_instant(std::string_view text) {
 
 }  // namespace
 
-TrialClock::Milliseconds TrialClock::simulated(Milliseconds real) const {
-  const double elapsed_ms = static_cast<double>((real - Milliseconds{anchor}).count());
+TrialClock::Milliseconds TrialClock::simulated(Microseconds real) const {
+  const double elapsed_ms = static_cast<double>((real - Microseconds{anchor}).count()) / 1e3;
   return Milliseconds{start} + std::chrono::milliseconds{std::llround(elapsed_ms * speed)};
 }
 

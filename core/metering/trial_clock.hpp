@@ -17,8 +17,10 @@ struct TrialClock {
   double speed = 1.0;  ///< Simulated seconds in a real one, > 0.
 
   using Milliseconds = std::chrono::sys_time<std::chrono::milliseconds>;
+  /// A real millisecond can be half a simulated minute.
+  using Microseconds = std::chrono::sys_time<std::chrono::microseconds>;
 
-  [[nodiscard]] Milliseconds simulated(Milliseconds real) const;
+  [[nodiscard]] Milliseconds simulated(Microseconds real) const;
   /// How long a wait of simulated time really takes, at least a nanosecond of it when any.
   [[nodiscard]] std::chrono::nanoseconds real_wait(std::chrono::milliseconds simulated_wait) const;
 };

@@ -61,6 +61,21 @@ TEST_F(AsioLoopTest, TheWallClockIsTheSystems) {
   EXPECT_LE(now, before + 5s);
 }
 
+// A quarter of an hour in a millisecond, on both clocks, and waits that shrink with it.
+TEST(AsioLoopTrial, TimeRunsFaster) {
+  boost::asio::io_context context{1};
+  const auto anchor = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const metering::Instant start = std::chrono::sys_days{std::chrono::year{2026} / 1 / 30};
+  AsioLoop loop{context, metering::TrialClock{start, anchor, 900'000.0}};
+  const Moment begin = loop.now();
+  EXPECT_GE(begin.instant(), start);
+  Moment end{};
+  loop.after(12h, [&] { end = loop.now(); });
+  context.run();
+  EXPECT_GE(end.monotonic - begin.monotonic, 12h);
+  EXPECT_EQ(end.wall - begin.wall, end.monotonic - begin.monotonic);
+}
+
 class BusThreadTest : public AsioLoopTest {
  protected:
   /// Runs the loop until the read has ended.
