@@ -22,6 +22,8 @@ struct RegisterField {
   [[nodiscard]] int words() const { return word_count(format.type); }
   /// One past its last register.
   [[nodiscard]] int end() const { return address + words(); }
+
+  bool operator==(const RegisterField&) const = default;
 };
 
 /// How many sources agree on the map.
@@ -32,6 +34,8 @@ struct ReadLimits {
   int registers_max = kRegistersMax;
   int gap_max = 16;  ///< Unused registers that may be read along between two fields.
   bool one_request_per_field = false;  ///< For devices that refuse any other read.
+
+  bool operator==(const ReadLimits&) const = default;
 };
 
 struct RegisterMap {
@@ -50,6 +54,8 @@ struct RegisterMap {
   std::vector<std::string> identity;  ///< Other contents mean another device.
 
   [[nodiscard]] const RegisterField* find(std::string_view field_name) const;
+
+  bool operator==(const RegisterMap&) const = default;
 };
 
 /// The fields that are the meter: its energy, power and identity, with their scale factors.

@@ -49,6 +49,8 @@ struct ValueFormat {
   std::optional<std::uint64_t> mask;  ///< Unsigned types: bits that belong to the value.
   /// Raw bits that mean "no value", as wide as the type: 0x8000 of an i16.
   std::optional<std::uint64_t> absent;
+
+  bool operator==(const ValueFormat&) const = default;
 };
 
 /// Why words are no value.

@@ -31,6 +31,8 @@ struct LiveMeterConfig {
   modbus::RegisterMap map;  ///< Its `energy` and `power` as the meter overrides them.
   std::chrono::seconds poll{60};  ///< Default 15 s where the map has a power and no counter.
   std::chrono::milliseconds timeout{0};  ///< Zero: the bus's.
+
+  bool operator==(const LiveMeterConfig&) const = default;
 };
 
 [[nodiscard]] BusConfig read_bus(TomlReader& table, const std::string& name);

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <fstream>
 #include <set>
 
 #include "core/model/parameter_library.hpp"
 #include "daemon/config/building_config.hpp"
+#include "daemon/config/site_path.hpp"
 #include "daemon/config/toml_reader.hpp"
 
 namespace recald::daemon {
@@ -15,31 +16,13 @@ namespace {
 
 using std::chrono::seconds;
 
+/// What turns a reading into kWh: a ratio of transformers, a heating value.
+constexpr NumberRange kFactor{1e-6, 1e6};
+
 bool is_identifier(std::string_view text) {
   return !text.empty() && text.size() <= 40 && std::ranges::all_of(text, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
   });
-}
-
-/// Relative to the site file; a leading $NAME comes from the environment, so that a site file can
-/// point at data that is kept elsewhere.
-std::filesystem::path resolve(const std::filesystem::path& site_file, const std::string& text,
-                              TomlReader& table) {
-  std::string path = text;
-  if (path.starts_with('$')) {
-    const std::size_t slash = std::min(path.find('/'), path.size());
-    const std::string name = path.substr(1, slash - 1);
-    const char* value = std::getenv(name.c_str());
-    if (value == nullptr) {
-      table.problem_at("file", fmt::format("'file' begins with ${0}, but the environment has no "
-                                           "variable {0}; set it to the folder with the data",
-                                           name));
-      return {};
-    }
-    path = value + path.substr(slash);
-  }
-  const std::filesystem::path given{path};
-  return given.is_absolute() ? given : site_file.parent_path() / given;
 }
 
 csv::Stamps read_stamps(TomlReader& table) {
@@ -96,7 +79,7 @@ void read_site(TomlReader table, SiteConfig& config) {
 
 WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_file) {
   WeatherConfig weather;
-  weather.file = resolve(site_file, table.required_text("file"), table);
+  weather.file = resolve(site_file, table.required_text("file"), "file", table);
   weather.format =
       table.word("format", {"csv", "epw"}) == "epw" ? WeatherFormat::epw : WeatherFormat::csv;
   weather.stamps = read_stamps(table);
@@ -165,14 +148,16 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
   if (is_live) {
     config.live = read_live_meter(table, site.file.parent_path());
   } else {
-    config.file = resolve(site.file, table.required_text("file"), table);
+    config.file = resolve(site.file, table.required_text("file"), "file", table);
     config.name_in_file = table.text_or("name_in_file", meter.id);
     config.stamps = read_stamps(table);
   }
   config.interval = read_interval(table, "interval");
   meter.interval = config.interval.value_or(site.interval);
   meter.rated_kW = table.number("rated_kW", kPositive);
-  if (is_live && !table.has("rated_kW")) {
+  const bool only_knows_power =
+      is_live && config.live->map.energy.empty() && config.live->map.power.has_value();
+  if (is_live && !only_knows_power && !table.has("rated_kW")) {
     table.problem("a live counter needs 'rated_kW': it tells a jump from a load");
   }
   meter.zero_run_max = table.duration("zero_run_max");
@@ -182,14 +167,15 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
   }
   meter.stuck_max = table.duration("stuck_max");
   meter.negative_is_valid = table.boolean("negative_is_valid").value_or(false);
-  config.multiplier = table.number_or("multiplier", 1.0, kPositive);
+  config.multiplier = table.number_or("multiplier", 1.0, kFactor);
   config.units.steam_kWh_per_kg =
-      table.number_or("steam_kWh_per_kg", config.units.steam_kWh_per_kg, kPositive);
-  config.units.gas_kWh_per_m3 = table.number("gas_kWh_per_m3", kPositive);
+      table.number_or("steam_kWh_per_kg", config.units.steam_kWh_per_kg, kFactor);
+  config.units.gas_kWh_per_m3 = table.number("gas_kWh_per_m3", kFactor);
   if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
   if (auto counter = table.table("counter"))
     config.counter = read_counter(*counter, meter.rated_kW);
   config.end_uses = read_end_uses(table);
+  config.text = table.toml();
   table.finish();
   return config;
 }
@@ -204,9 +190,19 @@ void require_bus(TomlReader& table, const SiteConfig& site) {
                      fmt::format("'bus' names '{0}', but there is no [bus.{0}]", meter.live->bus));
   }
   for (const MeterConfig& other : site.meters) {
-    const bool is_same = &other != &meter && other.live && other.live->bus == meter.live->bus &&
-                         other.live->unit == meter.live->unit &&
-                         other.live->map.energy == meter.live->map.energy;
+    const bool is_same_unit = &other != &meter && other.live &&
+                              other.live->bus == meter.live->bus &&
+                              other.live->unit == meter.live->unit;
+    if (!is_same_unit) continue;
+    if (other.live->map.sunspec_models != meter.live->map.sunspec_models) {
+      table.problem_at(
+          "map", fmt::format("meters '{}' and '{}' are unit {} on bus '{}' with SunSpec models of "
+                             "their own; give both maps the same 'sunspec_models'",
+                             other.meter.id, meter.meter.id, meter.live->unit, meter.live->bus));
+    }
+    const bool is_same =
+        other.live->map.energy == meter.live->map.energy &&
+        (!meter.live->map.energy.empty() || other.live->map.power == meter.live->map.power);
     if (!is_same) continue;
     table.problem_at(
         "unit", fmt::format("meters '{}' and '{}' are the same registers of unit {} "
@@ -312,12 +308,10 @@ void read_root(TomlReader root, SiteConfig& config) {
     root.problem("[site] is missing");
   }
   if (auto weather = root.table("weather")) config.weather = read_weather(*weather, config.file);
-  config.store.file = std::filesystem::path{config.file}.replace_extension(".db");
-  if (auto store = root.table("store")) {
-    if (const auto file = store->text("file"))
-      config.store.file = resolve(config.file, *file, *store);
-    store->finish();
-  }
+  config.store = default_store(config.file);
+  if (auto store = root.table("store")) config.store = read_store(*store, config.file);
+  if (auto http = root.table("http")) config.http = read_http(*http, config.file);
+  if (auto table = root.table("recalibration")) config.recalibration = read_recalibration(*table);
   if (auto buses = root.table("bus")) {
     for (const std::string& name : buses->keys()) {
       if (auto bus = buses->table(name)) config.buses.push_back(read_bus(*bus, name));
@@ -341,7 +335,10 @@ void read_root(TomlReader root, SiteConfig& config) {
     // What is there but wrong has been reported already.
     TomlReader& model = models.front();
     if (!root.has("building")) model.problem("needs a [building]");
-    if (!root.has("period")) model.problem("needs a [period]");
+    const bool is_live = std::ranges::any_of(
+        config.meters, [](const MeterConfig& meter) { return meter.live.has_value(); });
+    // Live meters have their latest months.
+    if (!root.has("period") && !is_live) model.problem("needs a [period]");
     if (!root.has("weather")) model.problem("needs [weather]");
     const bool located = site && site->has("latitude_deg") && site->has("longitude_deg");
     if (!located) model.problem("needs latitude_deg and longitude_deg in [site]");
@@ -358,28 +355,31 @@ std::optional<std::size_t> SiteConfig::meter_index(const std::string& meter_id) 
   return {};
 }
 
-tl::expected<SiteConfig, std::vector<std::string>> load_site(const std::filesystem::path& file) {
+tl::expected<SiteConfig, std::vector<std::string>> parse_site(std::string_view text,
+                                                              const std::filesystem::path& file) {
   Problems problems;
-  if (!std::filesystem::exists(file)) {
-    problems.push_back(fmt::format("site file '{}' does not exist", file.string()));
-    return tl::unexpected(problems);
-  }
-  if (std::filesystem::is_directory(file)) {
-    problems.push_back(
-        fmt::format("site file '{}' is a folder; name the TOML file in it", file.string()));
-    return tl::unexpected(problems);
-  }
+  const std::string name = file.filename().string();
   SiteConfig config;
   config.file = file;
   try {
-    const toml::table root = toml::parse_file(file.string());
-    read_root(TomlReader{root, file.filename().string(), "", problems}, config);
+    const toml::table root = toml::parse(text, name);
+    read_root(TomlReader{root, name, "", problems}, config);
   } catch (const toml::parse_error& error) {
-    problems.push_back(fmt::format("{}:{}: no valid TOML: {}", file.filename().string(),
-                                   error.source().begin.line, error.description()));
+    problems.push_back(syntax_problem(name, error));
   }
   if (!problems.empty()) return tl::unexpected(problems);
   return config;
+}
+
+tl::expected<SiteConfig, std::vector<std::string>> load_site(const std::filesystem::path& file) {
+  const auto refused = [&](std::string_view why) {
+    return tl::unexpected(Problems{fmt::format("site file '{}' {}", file.string(), why)});
+  };
+  if (!std::filesystem::exists(file)) return refused("does not exist");
+  if (std::filesystem::is_directory(file)) return refused("is a folder; name the TOML file in it");
+  std::ifstream in{file, std::ios::binary};
+  if (!in) return refused("cannot be read; give recald the right to read it");
+  return parse_site(std::string{std::istreambuf_iterator<char>{in}, {}}, file);
 }
 
 }  // namespace recald::daemon

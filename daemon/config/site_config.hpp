@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adapters/csv/line_issues.hpp"
@@ -18,6 +19,8 @@
 #include "core/result.hpp"
 #include "core/weather/sun.hpp"
 #include "daemon/config/bus_config.hpp"
+#include "daemon/config/service_config.hpp"
+#include "daemon/config/store_config.hpp"
 
 namespace recald::daemon {
 
@@ -32,6 +35,7 @@ struct MeterConfig {
   std::optional<metering::CounterSettings> counter;
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
   std::optional<LiveMeterConfig> live;      ///< source = "modbus"; then `file` is empty.
+  std::string text;  ///< The table as TOML: whether a file that is read again says something else.
 };
 
 enum class WeatherFormat { csv, epw };
@@ -59,10 +63,6 @@ struct ModelConfig {
   std::vector<ParameterConfig> parameters;
 };
 
-struct StoreConfig {
-  std::filesystem::path file;  ///< Default: the site file with the ending .db.
-};
-
 struct SiteConfig {
   std::filesystem::path file;
   std::string id;
@@ -73,6 +73,8 @@ struct SiteConfig {
   model::Holidays holidays;
   metering::CloserOptions closing;
   StoreConfig store;
+  std::optional<HttpConfig> http;  ///< Absent: nothing is served.
+  RecalibrationConfig recalibration;
   std::vector<BusConfig> buses;
   std::vector<MeterConfig> meters;
   std::optional<WeatherConfig> weather;
@@ -89,5 +91,9 @@ struct SiteConfig {
 /// @return every problem found, or one when the file is missing or no TOML.
 [[nodiscard]] tl::expected<SiteConfig, std::vector<std::string>> load_site(
     const std::filesystem::path& file);
+
+/// The same of a text; `file` is where paths in it start from and what messages name.
+[[nodiscard]] tl::expected<SiteConfig, std::vector<std::string>> parse_site(
+    std::string_view text, const std::filesystem::path& file);
 
 }  // namespace recald::daemon

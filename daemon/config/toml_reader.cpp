@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "core/text/nearest.hpp"
 #include "core/text/printable.hpp"
@@ -240,6 +241,12 @@ std::vector<std::string> TomlReader::keys() const {
   std::vector<std::string> names;
   for (const auto& [key, node] : *table_) names.emplace_back(key.str());
   return names;
+}
+
+std::string TomlReader::toml() const {
+  std::ostringstream text;
+  text << *table_;
+  return text.str();
 }
 
 void TomlReader::finish() {

@@ -66,6 +66,9 @@ class TomlReader {
   /// Keys of this table, for tables whose keys are names of the user's (weights by meter).
   [[nodiscard]] std::vector<std::string> keys() const;
 
+  /// This table as TOML, its keys in alphabetical order.
+  [[nodiscard]] std::string toml() const;
+
   /// Whether anything of the whole file was wrong so far.
   [[nodiscard]] bool has_problems() const { return !problems_->empty(); }
 
