@@ -96,7 +96,7 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
   if (!calibrated) return console.fail(calibrated.error());
   calibrated->warnings.insert(calibrated->warnings.end(), design_site->notes.begin(),
                               design_site->notes.end());
-  RunFacts complete = with_sampling(std::move(*facts), arguments, calibrated->calibration);
+  RunFacts complete = with_sampling(std::move(*facts), arguments.seed, calibrated->calibration);
   complete.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   const std::string json = calibration_json(*calibrated, complete);

@@ -41,17 +41,4 @@ int gate_verdict(bool converged, const CalibrateArguments& arguments,
   return console.fail("the chains have not converged; these figures are not to be relied on");
 }
 
-RunFacts with_sampling(RunFacts facts, const SamplingArguments& arguments,
-                       const calibration::Calibration& calibration) {
-  const calibration::SamplingReport& report = calibration.sampling;
-  facts.sampler = report.sampler;
-  facts.hyper_prior_profile = calibration.hyper_prior.name;
-  facts.seed = arguments.seed;
-  facts.iterations = report.burn_in + report.kept;
-  facts.burn_in = report.burn_in;
-  facts.chains = static_cast<int>(calibration.chains.size());
-  facts.design_runs = static_cast<int>(calibration.design.theta.rows());
-  return facts;
-}
-
 }  // namespace recald::daemon

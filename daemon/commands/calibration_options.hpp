@@ -3,7 +3,6 @@
 
 #include "core/calibration/calibration.hpp"
 #include "daemon/commands/commands.hpp"
-#include "daemon/results/run_facts.hpp"
 
 namespace recald::daemon {
 
@@ -17,9 +16,5 @@ namespace recald::daemon {
 [[nodiscard]] std::filesystem::path folder_for(bool converged, const CalibrateArguments& arguments);
 [[nodiscard]] int gate_verdict(bool converged, const CalibrateArguments& arguments,
                                const std::filesystem::path& folder, const Console& console);
-
-/// `facts` with what the command line said and what the sampling took.
-[[nodiscard]] RunFacts with_sampling(RunFacts facts, const SamplingArguments& arguments,
-                                     const calibration::Calibration& calibration);
 
 }  // namespace recald::daemon

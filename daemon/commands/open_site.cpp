@@ -43,24 +43,6 @@ void print_data_words(const Recording& recording, const Console& console) {
   }
 }
 
-metering::MonthRange whole_period(const SiteConfig& site) {
-  metering::MonthRange whole = site.period->calibration;
-  if (site.period->validation) {
-    whole.first = std::min(whole.first, site.period->validation->first);
-    whole.last = std::max(whole.last, site.period->validation->last);
-  }
-  return whole;
-}
-
-Result<void> require_model(const SiteConfig& site) {
-  if (site.model) return {};
-  return failure(
-      ErrorCode::not_enough_data,
-      fmt::format("{} describes meters but no [[model]]; add one with a [building] and a "
-                  "[period] to calibrate, or use `recald replay`",
-                  site.file.filename().string()));
-}
-
 tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
                                                    const Console& console,
                                                    const std::string& model) {
@@ -69,16 +51,11 @@ tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& 
   const auto fail = [&](const Error& error) { return tl::unexpected(console.fail(error)); };
   if (auto modelled = require_model(site->config); !modelled) return fail(modelled.error());
   if (!model.empty()) site->config.model->kind = model;
-  auto facts = facts_of(site->config);
-  if (!facts) return fail(facts.error());
-  VirtualClock clock{metering::Instant{}};
-  auto recording = replay_meters(site->config, site->calendar, {}, clock, {});
-  if (!recording) return fail(recording.error());
-  print_data_words(*recording, console);
-  auto weather = load_weather(site->config, site->calendar, whole_period(site->config));
-  if (!weather) return fail(weather.error());
-  return ModelledSite{std::move(*site), std::move(*recording), std::move(*weather),
-                      std::move(*facts)};
+  auto modelled = load_modelled_site(
+      std::move(*site), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
+  if (!modelled) return fail(modelled.error());
+  print_data_words(modelled->recording, console);
+  return std::move(*modelled);
 }
 
 }  // namespace recald::daemon

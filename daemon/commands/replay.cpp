@@ -54,6 +54,16 @@ nlohmann::ordered_json summary_json(const SiteConfig& site, const Recording& rec
           {"meters", meters}};
 }
 
+std::string source_line(const MeterRecord& record) {
+  if (!record.in_file) {
+    return fmt::format("{}: {} readings every {} s (read live)\n", record.meter.id,
+                       record.counts.accepted, record.meter.interval.count());
+  }
+  return fmt::format("{}: {} readings every {} s ({})\n", record.meter.id, record.rows.readings,
+                     record.meter.interval.count(),
+                     record.in_file->interval_inferred ? "inferred from the file" : "as declared");
+}
+
 }  // namespace
 
 int run_replay(const ReplayArguments& arguments, const Console& console) {
@@ -69,27 +79,23 @@ int run_replay(const ReplayArguments& arguments, const Console& console) {
   if (!site) return console.fail(site.error());
 
   VirtualClock clock{metering::Instant{}};
-  const auto recording =
-      replay_meters(site->config, site->calendar, {*from, *to}, clock,
-                    [&](const metering::Meter& meter, const metering::MonthlyFigure& figure,
-                        metering::Instant now) {
-                      if (!arguments.json) console.out << figure_line(meter, figure, now) << "\n";
-                    });
-  if (!recording) return console.fail(recording.error());
-  for (const MeterRecord& record : recording->meters) {
-    console.err << fmt::format(
-        "{}: {} readings every {} s ({})\n", record.meter.id, record.rows.readings,
-        record.meter.interval.count(),
-        record.in_file->interval_inferred ? "inferred from the file" : "as declared");
-  }
-  print_data_words(*recording, console);
+  const auto recorded =
+      record_site(*site, {*from, *to}, clock,
+                  [&](const metering::Meter& meter, const metering::MonthlyFigure& figure,
+                      metering::Instant now) {
+                    if (!arguments.json) console.out << figure_line(meter, figure, now) << "\n";
+                  });
+  if (!recorded) return console.fail(recorded.error());
+  const Recording& recording = recorded->recording;
+  for (const MeterRecord& record : recording.meters) console.err << source_line(record);
+  print_data_words(recording, console);
   if (!arguments.out.empty()) {
     if (auto made = system::make_folder(arguments.out); !made) return console.fail(made.error());
     const auto written = system::write_file(arguments.out / "months.csv",
-                                            months_csv(*recording, system::time_zone_release()));
+                                            months_csv(recording, system::time_zone_release()));
     if (!written) return console.fail(written.error());
   }
-  if (arguments.json) console.out << summary_json(site->config, *recording).dump(2) << "\n";
+  if (arguments.json) console.out << summary_json(site->config, recording).dump(2) << "\n";
   return kSuccess;
 }
 

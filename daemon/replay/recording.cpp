@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace recald::daemon {
 namespace {
@@ -16,6 +17,7 @@ std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> group_by
     const SiteConfig& site) {
   std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> groups;
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    if (site.meters[i].live) continue;
     const auto& file = site.meters[i].file;
     const auto known =
         std::ranges::find(groups, file, [](const auto& group) { return group.first; });
@@ -123,17 +125,15 @@ bool is_site_different(const Recording& recording, metering::Month month) {
   });
 }
 
+bool has_live_meters(const SiteConfig& site) {
+  return std::ranges::any_of(site.meters,
+                             [](const MeterConfig& meter) { return meter.live.has_value(); });
+}
+
 Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                 const ReplayOptions& options, VirtualClock& clock,
-                                const OnMonthClosed& on_month_closed) {
-  for (const MeterConfig& config : site.meters) {
-    if (!config.live) continue;
-    return failure(
-        ErrorCode::unsupported,
-        fmt::format("meter '{}' is read live and has no file to replay; give it source = "
-                    "\"csv\" and a file of recorded readings",
-                    config.meter.id));
-  }
+                                const OnMonthClosed& on_month_closed, LiveReadings* live) {
+  assert((live != nullptr || !has_live_meters(site)) && "live meters need a store to read from");
   Recording recording;
   Recorder recorder{site, recording};
   std::vector<metering::Meter> meters;
@@ -144,6 +144,13 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                  on_month_closed(meters[closed.meter], closed.figure, clock.now());
                                }};
   const TimeSpan asked = asked_span(options, calendar);
+  const auto take = [&](std::size_t meter, const metering::Reading& reading) {
+    if (!asked.contains(reading.start)) return;
+    metering::Reading placed = reading;
+    placed.meter = static_cast<std::uint32_t>(meter);
+    clock.advance_to(placed.start + closer.meters()[placed.meter].interval);
+    closer.add(placed);
+  };
 
   for (const auto& [file, indices] : group_by_file(site)) {
     const csv::ReadingsSink sink{
@@ -154,13 +161,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
               recording.meters[i].in_file = shown;
             },
         .on_reading =
-            [&](const metering::Reading& reading) {
-              if (!asked.contains(reading.start)) return;
-              metering::Reading placed = reading;
-              placed.meter = static_cast<std::uint32_t>(indices[reading.meter]);
-              clock.advance_to(placed.start + closer.meters()[placed.meter].interval);
-              closer.add(placed);
-            }};
+            [&](const metering::Reading& reading) { take(indices[reading.meter], reading); }};
     auto report = csv::read_readings(file, file_options(site, indices), sink);
     if (!report) return tl::unexpected(report.error());
     recording.readings += report->readings;
@@ -169,11 +170,23 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
     }
     recording.files.push_back({file, std::move(report->issues)});
   }
+  for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    const MeterConfig& config = site.meters[i];
+    if (!config.live) continue;
+    const auto count =
+        live->for_each(config, [&](const metering::Reading& reading) { take(i, reading); });
+    if (!count) return tl::unexpected(count.error());
+    if (*count == 0) {
+      return failure(ErrorCode::not_enough_data,
+                     fmt::format("the store has no reading of meter '{}' yet", config.meter.id));
+    }
+    recording.readings += *count;
+  }
   closer.finish();
   recorder.describe(closer, calendar);
 
   for (std::size_t i = 0; i < recording.meters.size(); ++i) {
-    if (recording.meters[i].in_file) continue;
+    if (recording.meters[i].in_file || site.meters[i].live) continue;
     return failure(ErrorCode::not_enough_data,
                    fmt::format("{} has no usable row of meter '{}'; check the meter column, or set "
                                "name_in_file",

@@ -55,14 +55,30 @@ struct ReplayOptions {
 using OnMonthClosed = std::function<void(const metering::Meter&, const metering::MonthlyFigure&,
                                          metering::Instant now)>;
 
-/// Reads every file of the site's meters once, in order of time as the files have it, and closes
-/// months as time passes.
+using ReadingSink = std::function<void(const metering::Reading&)>;
+
+/// Where the readings of live meters are found again.
+class LiveReadings {
+ public:
+  virtual ~LiveReadings() = default;
+
+  /// The readings of one meter in order of time. @return how many there were.
+  virtual Result<std::uint64_t> for_each(const MeterConfig& meter, const ReadingSink& sink) = 0;
+};
+
+/// Whether some meter of the site is read live.
+[[nodiscard]] bool has_live_meters(const SiteConfig& site);
+
+/// Reads every file of the site's meters once, in order of time as the files have it, then what
+/// live meters left behind, and closes months as time passes.
 ///
+/// @param live  Where live meters' readings are; null for a site that has no live meter.
 /// @return not_found / io_failed / malformed with the file's name; not_enough_data when a file has
-///         no row of a meter that the site declares.
+///         no row of a meter that the site declares, or nothing was read of a live one.
 [[nodiscard]] Result<Recording> replay_meters(const SiteConfig& site,
                                               const metering::LocalCalendar& calendar,
                                               const ReplayOptions& options, VirtualClock& clock,
-                                              const OnMonthClosed& on_month_closed);
+                                              const OnMonthClosed& on_month_closed,
+                                              LiveReadings* live = nullptr);
 
 }  // namespace recald::daemon

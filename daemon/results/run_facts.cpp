@@ -8,17 +8,20 @@
 
 namespace recald::daemon {
 
-Result<RunFacts> facts_of(const SiteConfig& site) {
+Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest) {
   system::Sha256 site_digest;
   system::Sha256 data_digest;
   if (auto added = site_digest.add_file(site.file); !added) return tl::unexpected(added.error());
   if (auto added = data_digest.add_file(site.file); !added) return tl::unexpected(added.error());
   std::set<std::filesystem::path> files;
-  for (const MeterConfig& meter : site.meters) files.insert(meter.file);
+  for (const MeterConfig& meter : site.meters) {
+    if (!meter.live) files.insert(meter.file);
+  }
   if (site.weather) files.insert(site.weather->file);
   for (const auto& file : files) {
     if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
   }
+  data_digest.add(live_digest);
   RunFacts facts;
   facts.recald_version = kVersion;
   facts.data_revision = data_digest.hex();
@@ -38,6 +41,19 @@ Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
   facts.recald_version = kVersion;
   facts.data_revision = digest.hex();
   facts.model_version = model + "-" + facts.data_revision.substr(0, 12);
+  return facts;
+}
+
+RunFacts with_sampling(RunFacts facts, std::uint64_t seed,
+                       const calibration::Calibration& calibration) {
+  const calibration::SamplingReport& report = calibration.sampling;
+  facts.sampler = report.sampler;
+  facts.hyper_prior_profile = calibration.hyper_prior.name;
+  facts.seed = seed;
+  facts.iterations = report.burn_in + report.kept;
+  facts.burn_in = report.burn_in;
+  facts.chains = static_cast<int>(calibration.chains.size());
+  facts.design_runs = static_cast<int>(calibration.design.theta.rows());
   return facts;
 }
 

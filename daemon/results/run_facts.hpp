@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/calibration/calibration.hpp"
 #include "core/result.hpp"
 #include "daemon/config/site_config.hpp"
 
@@ -26,12 +27,19 @@ struct RunFacts {
   double wall_s = 0.0;  ///< The only thing that differs between equal runs.
 };
 
-/// Hashes what the site's results depend on. @return not_found or io_failed for a data file.
-[[nodiscard]] Result<RunFacts> facts_of(const SiteConfig& site);
+/// Hashes what the site's results depend on.
+/// @param live_digest  Of the readings that came from live meters; empty: none did.
+/// @return not_found or io_failed for a data file.
+[[nodiscard]] Result<RunFacts> facts_of(const SiteConfig& site,
+                                        const std::string& live_digest = "");
 
 /// The same for a design of experiments, over the files it was read from.
 /// @param model  Kind of model: the version is this and the digest of the files, shortened.
 [[nodiscard]] Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
                                               const std::string& model);
+
+/// `facts` with the seed and what the sampling took.
+[[nodiscard]] RunFacts with_sampling(RunFacts facts, std::uint64_t seed,
+                                     const calibration::Calibration& calibration);
 
 }  // namespace recald::daemon

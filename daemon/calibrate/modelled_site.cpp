@@ -1,0 +1,92 @@
+#include "daemon/calibrate/modelled_site.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "daemon/replay/stored_readings.hpp"
+
+namespace recald::daemon {
+
+using metering::MonthRange;
+
+MonthRange whole_period(const SiteConfig& site) {
+  MonthRange whole = site.period->calibration;
+  if (site.period->validation) {
+    whole.first = std::min(whole.first, site.period->validation->first);
+    whole.last = std::max(whole.last, site.period->validation->last);
+  }
+  return whole;
+}
+
+Result<void> require_model(const SiteConfig& site) {
+  if (site.model) return {};
+  return failure(
+      ErrorCode::not_enough_data,
+      fmt::format("{} describes meters but no [[model]]; add one with a [building] and a "
+                  "[period] to calibrate, or use `recald replay`",
+                  site.file.filename().string()));
+}
+
+Result<SiteRecording> record_site(const OpenSite& site, const ReplayOptions& options,
+                                  VirtualClock& clock, const OnMonthClosed& on_month_closed) {
+  std::unique_ptr<StoredReadings> live;
+  if (has_live_meters(site.config)) {
+    auto opened = StoredReadings::open(site.config);
+    if (!opened) return tl::unexpected(opened.error());
+    live = std::move(*opened);
+  }
+  auto recording =
+      replay_meters(site.config, site.calendar, options, clock, on_month_closed, live.get());
+  if (!recording) return tl::unexpected(recording.error());
+  return SiteRecording{std::move(*recording), live ? live->digest() : ""};
+}
+
+Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now) {
+  VirtualClock clock{metering::Instant{}};
+  auto recorded = record_site(site, {}, clock, {});
+  if (!recorded) return tl::unexpected(recorded.error());
+  if (!site.config.period) {
+    const auto months = latest_months(site, recorded->recording, now);
+    if (!months) return tl::unexpected(months.error());
+    site.config.period = PeriodConfig{*months, {}};
+  }
+  auto facts = facts_of(site.config, recorded->live_digest);
+  if (!facts) return tl::unexpected(facts.error());
+  auto weather = load_weather(site.config, site.calendar, whole_period(site.config));
+  if (!weather) return tl::unexpected(weather.error());
+  return ModelledSite{std::move(site), std::move(recorded->recording), std::move(*weather),
+                      std::move(*facts)};
+}
+
+Result<MonthRange> latest_months(const OpenSite& site, const Recording& recording,
+                                 metering::Instant now) {
+  std::optional<MonthRange> common;
+  for (const std::string& id : site.config.model->outputs) {
+    const MeterRecord& record = recording.meters[*site.config.meter_index(id)];
+    const auto is_closed = [&](const metering::MonthlyFigure& figure) {
+      return figure.usable &&
+             site.calendar.month_span(figure.month).end + site.config.closing.watermark <= now;
+    };
+    const auto last = std::find_if(record.figures.rbegin(), record.figures.rend(), is_closed);
+    if (last == record.figures.rend()) {
+      return failure(ErrorCode::not_enough_data,
+                     fmt::format("meter '{}' has no usable closed month yet", id));
+    }
+    const MonthRange own{record.figures.front().month, last->month};
+    if (!common) common = own;
+    common->first = std::max(common->first, own.first);
+    common->last = std::min(common->last, own.last);
+  }
+  common->first = std::max(
+      common->first, common->last - std::chrono::months{site.config.recalibration.months - 1});
+  if (common->last < common->first) {
+    return failure(ErrorCode::not_enough_data,
+                   "the modelled meters have no closed month in common yet");
+  }
+  return *common;
+}
+
+}  // namespace recald::daemon

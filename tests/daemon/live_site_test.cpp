@@ -1,0 +1,152 @@
+/// A site whose readings are in the daemon's store instead of files: every command and every job
+/// reads them there, and makes of them what it would have made of a file.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/run/site_jobs.hpp"
+#include "tests/daemon/command_line.hpp"
+#include "tests/daemon/depot_year.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using nlohmann::json;
+using recald::daemon::testing::Outcome;
+using recald::daemon::testing::run;
+using recald::testing::read_text;
+using recald::testing::TemporaryFolder;
+using recald::testing::write_text;
+using ::testing::HasSubstr;
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+class LiveSite : public ::testing::Test {
+ protected:
+  LiveSite() {
+    recald::testing::write_depot_year(folder_.path());
+    std::string live = recald::testing::sample_site();
+    replace(live, "file = \"readings.csv\"\nrated_kW = 400",
+            "source = \"modbus\"\nbus = \"plant\"\nunit = 1\nmap = \"abb-b23\"\nrated_kW = 400\n"
+            "interval = \"1h\"");
+    replace(live, "file = \"readings.csv\"\nname_in_file = \"heat\"",
+            "source = \"modbus\"\nbus = \"plant\"\nunit = 2\nmap = \"eastron-sdm630\"\n"
+            "rated_kW = 900\ninterval = \"1h\"");
+    live += "\n[bus.plant]\ntype = \"tcp\"\nhost = \"127.0.0.1\"\n";
+    write_text(folder_ / "live.toml", live);
+    // A history names meters as the site does.
+    std::string history = read_text(folder_ / "readings.csv");
+    replace(history, ",heat,", ",district_heat,");
+    write_text(folder_ / "history.csv", history);
+  }
+  [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
+
+  void import_history() {
+    const Outcome imported =
+        run({"import", path("live.toml"), path("history.csv"), "--reason", "the old system"});
+    ASSERT_EQ(imported.exit_code, 0) << imported.err;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(LiveSite, BeforeItsFirstReadingItIsToldThatThereIsNone) {
+  for (const char* command : {"calibrate", "replay", "profile"}) {
+    const Outcome outcome = run({command, path("live.toml")});
+    EXPECT_EQ(outcome.exit_code, 1) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("live.db does not exist yet")) << command;
+  }
+}
+
+TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {
+  import_history();
+  const auto calibrated = [&](const char* site) {
+    const Outcome outcome = run({"calibrate", path(site), "--json", "--draws", "400"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  // Two plausibilities differ: a live counter has a rated power.
+  std::string with_file = read_text(folder_ / "site.toml");
+  replace(with_file, "name_in_file = \"heat\"", "name_in_file = \"heat\"\nrated_kW = 900");
+  write_text(folder_ / "site.toml", with_file);
+  const json from_file = calibrated("site.toml");
+  const json from_store = calibrated("live.toml");
+  EXPECT_EQ(from_store["months"], from_file["months"]);
+  EXPECT_EQ(from_store["parameters"], from_file["parameters"]);
+  EXPECT_EQ(from_store["after"], from_file["after"]);
+  EXPECT_NE(from_store["data_revision"], from_file["data_revision"]);
+}
+
+TEST_F(LiveSite, TheDataRevisionIsThatOfTheReadings) {
+  import_history();
+  const auto revision = [&] {
+    const Outcome outcome = run({"calibrate", path("live.toml"), "--json", "--draws", "200"});
+    return json::parse(outcome.out)["data_revision"].get<std::string>();
+  };
+  const std::string before = revision();
+  EXPECT_EQ(revision(), before);
+  write_text(folder_ / "more.csv",
+             "timestamp,meter,value,unit\n2021-05-05T10:00:00Z,electricity,61.5,kW\n");
+  ASSERT_EQ(
+      run({"import", path("live.toml"), path("more.csv"), "--reason", "put right", "--supersede"})
+          .exit_code,
+      0);
+  EXPECT_NE(revision(), before);
+}
+
+TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
+  import_history();
+  auto config = load_site(folder_ / "live.toml").value();
+  config.recalibration.months = 8;
+  const auto calendar = metering::LocalCalendar::open(config.timezone).value();
+  const DoJob work = make_site_work({config, calendar});
+  StoredJob job;
+  job.number = 7;
+  const metering::Instant now = std::chrono::sys_days{std::chrono::year{2021} / 12 / 20};
+
+  const auto outcome = work(job, now, [] { return true; });
+  ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
+  const json result = json::parse(outcome->result);
+  ASSERT_EQ(result["months"].size(), 8U);
+  EXPECT_EQ(result["months"].front(), "2021-04");
+  EXPECT_EQ(result["months"].back(), "2021-11");
+  EXPECT_EQ(outcome->folder, path("live-results") + "/calibration-7");
+  EXPECT_EQ(json::parse(read_text(std::filesystem::path{outcome->folder} / "calibration.json")),
+            result);
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path{outcome->folder} / "report.html"));
+
+  const auto again = work(job, now, [] { return true; });
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(json::parse(again->result)["parameters"], result["parameters"]);
+}
+
+TEST_F(LiveSite, AJobThatIsToldToStopStops) {
+  import_history();
+  const auto config = load_site(folder_ / "live.toml").value();
+  const DoJob work =
+      make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+  int asked = 0;
+  const auto outcome =
+      work({}, std::chrono::sys_days{std::chrono::year{2022} / 2 / 1}, [&] { return ++asked < 3; });
+  ASSERT_FALSE(outcome.has_value());
+  EXPECT_EQ(outcome.error().code, ErrorCode::cancelled);
+  EXPECT_LT(asked, 20);
+}
+
+TEST_F(LiveSite, AJobBeforeAnyMonthHasClosedSaysSo) {
+  import_history();
+  const auto config = load_site(folder_ / "live.toml").value();
+  const DoJob work =
+      make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+  const auto outcome =
+      work({}, std::chrono::sys_days{std::chrono::year{2021} / 1 / 20}, [] { return true; });
+  ASSERT_FALSE(outcome.has_value());
+  EXPECT_THAT(outcome.error().message, HasSubstr("has no usable closed month yet"));
+}
+
+}  // namespace
+}  // namespace recald::daemon
