@@ -1,0 +1,86 @@
+/// Calibrations and diagnoses beside polling: asked for, done one at a time, kept with what came of
+/// them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "adapters/ports/worker.hpp"
+
+namespace recald::daemon {
+
+struct JobOutcome {
+  bool accepted = false;  ///< Its gates hold: this is the result in use from now on.
+  std::string message;    ///< Which gate failed; else empty.
+  std::string folder;     ///< With its files.
+  std::string result;     ///< JSON
+};
+
+/// False as soon as the job is to end early. Safe from any thread.
+using GoesOn = std::function<bool()>;
+
+/// Does a job, on the worker. @param now  When it began.
+/// @return what came of it; cancelled when it was told not to go on; or why it failed.
+using DoJob = std::function<Result<JobOutcome>(const StoredJob& job, metering::Instant now,
+                                               const GoesOn& goes_on)>;
+
+/// Told of every change of a job's state that has been stored.
+using OnJob = std::function<void(const StoredJob&)>;
+
+/// A job is stored before anyone hears of its number, and its outcome before the next one begins: a
+/// kill at any moment loses nothing that was asked for. What ran then runs again.
+class JobRunner {
+ public:
+  struct Ports {
+    Loop& loop;
+    Store& store;
+    Worker& worker;
+  };
+  JobRunner(Ports ports, DoJob work, OnJob on_job);
+  ~JobRunner();
+  JobRunner(const JobRunner&) = delete;
+  JobRunner& operator=(const JobRunner&) = delete;
+
+  /// Jobs that begin from now on are done so; what runs goes on as it began.
+  void set_work(DoJob work) { work_ = std::move(work); }
+
+  /// Takes up what an earlier process was asked for.
+  [[nodiscard]] Result<void> resume();
+
+  /// One that waits already serves: it will see the same readings.
+  /// @return the job's number, or the store's failure.
+  [[nodiscard]] Result<std::int64_t> ask(JobKind kind, const std::string& asked_by);
+
+  /// A job that runs ends as soon as it can.
+  /// @return not_found when no such job waits or runs.
+  [[nodiscard]] Result<void> cancel(std::int64_t number);
+
+  /// The process ends: what runs is interrupted, and runs again in the next one.
+  void interrupt() { running_goes_on_->store(false); }
+
+ private:
+  enum class Stage { idle, running, keeping };
+
+  void begin_next();
+  void finish(Result<JobOutcome> outcome);
+  void keep();
+  void try_later(void (JobRunner::*step)());
+
+  Ports ports_;
+  DoJob work_;
+  OnJob on_job_;
+  Stage stage_ = Stage::idle;
+  StoredJob current_;       ///< Unless idle.
+  bool cancelled_ = false;  ///< Somebody took `current_` back.
+  std::shared_ptr<std::atomic<bool>> running_goes_on_;
+  std::shared_ptr<JobRunner*> self_;
+};
+
+}  // namespace recald::daemon

@@ -1,0 +1,84 @@
+#include "daemon/run/site_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "adapters/system/write_file.hpp"
+#include "daemon/calibrate/finished_calibration.hpp"
+#include "daemon/diagnose/diagnosis_files.hpp"
+#include "daemon/diagnose/site_diagnosis.hpp"
+#include "daemon/results/calibration_files.hpp"
+
+namespace recald::daemon {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
+
+std::filesystem::path folder_of(const SiteConfig& site, const StoredJob& job) {
+  return results_folder(site) / fmt::format("{}-{}", name_of(job.kind), job.number);
+}
+
+Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
+                             const GoesOn& goes_on) {
+  const auto folder = folder_of(site.config, job);
+  auto modelled = load_modelled_site(std::move(site), now);
+  if (!modelled) return tl::unexpected(modelled.error());
+  const calibration::RunContext context{
+      .seed = kSeed, .observer = [&](const calibration::Progress&) { return goes_on(); }};
+  const auto done = finish_calibration(std::move(*modelled), {}, context);
+  if (!done) return tl::unexpected(done.error());
+  JobOutcome outcome{.accepted = done->calibration.calibration.converged,
+                     .folder = folder.string(),
+                     .result = calibration_json(done->calibration, done->modelled.facts)};
+  if (!outcome.accepted) {
+    outcome.message = "the chains have not converged, so the result before stays in use";
+  }
+  const auto written = write_calibration(*done, outcome.result, metering::to_string(now), folder);
+  if (!written) return tl::unexpected(written.error());
+  return outcome;
+}
+
+Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
+                            const GoesOn& goes_on) {
+  const auto folder = folder_of(site.config, job);
+  site.config.model->kind = "hourly";
+  auto modelled = load_modelled_site(std::move(site), now);
+  if (!modelled) return tl::unexpected(modelled.error());
+  const auto problem = prepare_diagnosis(*modelled);
+  if (!problem) return tl::unexpected(problem.error());
+  const auto done = diagnose_site(*modelled, *problem, {.rules = {}, .seed = kSeed},
+                                  [&](const char*, double) { return goes_on(); });
+  if (!done) return tl::unexpected(done.error());
+  modelled->facts.seed = kSeed;
+  JobOutcome outcome{
+      .accepted = true,
+      .folder = folder.string(),
+      .result = diagnosis_json(done->diagnosis, *problem, modelled->facts, done->others)};
+  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  const auto written =
+      write_diagnosis(*done, *modelled, *problem, outcome.result, metering::to_string(now), folder);
+  if (!written) return tl::unexpected(written.error());
+  return outcome;
+}
+
+}  // namespace
+
+std::filesystem::path results_folder(const SiteConfig& site) {
+  return site.store.file.parent_path() / (site.store.file.stem().string() + "-results");
+}
+
+DoJob make_site_work(OpenSite site) {
+  return [site = std::move(site)](const StoredJob& job, metering::Instant now,
+                                  const GoesOn& goes_on) -> Result<JobOutcome> {
+    if (auto modelled = require_model(site.config); !modelled) {
+      return tl::unexpected(modelled.error());
+    }
+    OpenSite latest = site;
+    latest.config.period.reset();
+    return job.kind == JobKind::calibration ? calibrate(std::move(latest), job, now, goes_on)
+                                            : diagnose(std::move(latest), job, now, goes_on);
+  };
+}
+
+}  // namespace recald::daemon
