@@ -5,10 +5,12 @@
 /// ports, so that the whole of it runs on a virtual clock with scripted buses.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,8 +19,7 @@
 #include "adapters/ports/store.hpp"
 #include "daemon/config/site_config.hpp"
 #include "daemon/ingest/committer.hpp"
-#include "daemon/ingest/meter_track.hpp"
-#include "daemon/poll/bus_runner.hpp"
+#include "daemon/run/live_bus.hpp"
 #include "daemon/run/month_keeper.hpp"
 
 namespace recald::daemon {
@@ -43,11 +44,23 @@ struct MeterStatus {
   LiveValues live;
   std::optional<metering::Reading> last_interval;  ///< Committed.
   std::uint64_t skipped_polls = 0;
+  RequestCounts requests{};
+  MeterCounters counters;
+  double open_month_coverage = 0.0;  ///< 0…1; NaN before the month's first interval has ended.
+};
+
+struct BusStatus {
+  std::string name;
+  LatencyHistogram duration;
+  LatencyHistogram lateness;
 };
 
 struct GatewayStatus {
   bool clock_ok = false;
   CommitHealth store;
+  std::size_t waiting_intervals = 0;      ///< For the store.
+  std::array<std::uint64_t, 3> events{};  ///< Committed, by Severity.
+  std::vector<BusStatus> buses;           ///< That have meters.
   std::vector<MeterStatus> meters;
 };
 
@@ -65,41 +78,38 @@ class Gateway {
   /// Polls begin, and months that fell due while nobody ran are closed.
   void start();
 
+  /// Goes on by another site file. Buses of which it says what the old one said, with all their
+  /// meters, stay as they are: connected, with their counters and what is known of silent devices.
+  /// The others are opened anew, from where the store has their counters.
+  /// @return or why not, as `open`; then everything is as it was.
+  /// @pre the site's time zone is the same
+  Result<void> reload(const SiteConfig& site);
+
+  /// For people to find it among the events.
+  void note(StoreEvent event) { committer_.add({.events = {std::move(event)}}); }
+
   /// Commits what is still on its way. Call it before the end.
   Result<void> flush() { return committer_.flush(); }
 
   [[nodiscard]] GatewayStatus status() const;
 
  private:
-  struct LiveMeter {
-    StoredMeter stored;
-    LiveMeterConfig config;
-    MeterTrack track;
-    std::vector<modbus::PlannedRead> reads;
-    std::size_t bus;   ///< Index into buses_.
-    std::size_t unit;  ///< Index on that bus.
-    std::optional<metering::Reading> last_interval;
-    metering::Instant closed_until = metering::Instant::min();  ///< End of the last closed month.
-  };
-  struct LiveBus {
-    BusConfig config;
-    std::vector<std::size_t> meters;  ///< By unit on the bus.
-    std::unique_ptr<BusRunner> runner;
-  };
   /// A read from before the clock was right.
   struct HeldRead {
-    std::size_t meter;
+    std::uint32_t meter;  ///< Its number: a reload may replace the meter meanwhile.
     PolledRead read;
   };
 
   Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site,
           const GatewayPorts& ports, OnMonth on_month);
 
-  [[nodiscard]] Result<void> add_meter(const MeterConfig& config);
-  [[nodiscard]] Result<void> restore(LiveMeter& meter);
-  void make_runners();
-  void take(std::size_t bus, const PolledRead& read);
-  void take_for_meter(std::size_t meter, const PolledRead& read, metering::Instant at);
+  /// Opens the buses of `site`, but those that are among `kept`.
+  [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
+      const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
+  void start(LiveBus& bus);
+  [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
+  void take(LiveMeter& meter, const PolledRead& read);
+  void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
   void mark_late(StoreBatch& batch, LiveMeter& meter);
@@ -112,10 +122,10 @@ class Gateway {
   OnMonth on_month_;
   Committer committer_;
   MonthKeeper keeper_;
-  std::vector<LiveMeter> meters_;
-  std::vector<LiveBus> buses_;
+  std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
   bool clock_ok_ = false;
+  std::array<std::uint64_t, 3> events_{};  ///< Committed, by Severity.
   std::deque<HeldRead> held_;
   std::shared_ptr<Gateway*> self_;
 };

@@ -1,0 +1,82 @@
+/// A bus with its meters, as the site file describes them: what a reload keeps or replaces as one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/ports/bus.hpp"
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "daemon/config/site_config.hpp"
+#include "daemon/ingest/meter_track.hpp"
+#include "daemon/ingest/open_month.hpp"
+#include "daemon/poll/bus_runner.hpp"
+#include "daemon/run/month_keeper.hpp"
+
+namespace recald::daemon {
+
+/// What became of a meter since the process began.
+struct MeterCounters {
+  std::array<std::uint64_t, 5> intervals{};     ///< Committed, by Validity.
+  std::uint64_t late = 0;                       ///< Of them, of months that were closed.
+  std::map<std::string, std::uint64_t> events;  ///< By kind.
+};
+
+struct LiveMeter {
+  StoredMeter stored;
+  LiveMeterConfig config;
+  std::string text;  ///< As MeterConfig's.
+  MeterTrack track;
+  std::vector<modbus::PlannedRead> reads;
+  OpenMonth open_month;
+  MeterCounters counters{};
+  std::optional<metering::Reading> last_interval;
+  metering::Instant closed_until = metering::Instant::min();  ///< End of the last closed month.
+};
+
+class LiveBus {
+ public:
+  struct Ports {
+    Loop& loop;
+    std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
+    std::uint64_t seed;  ///< Of the jitter of probes.
+  };
+  using OnRead = std::function<void(LiveMeter&, const PolledRead&)>;
+
+  /// Registers the bus's meters with the store and takes up their counters where they stopped.
+  /// @return or the store's failure; unsupported where a meter's reads cannot be planned.
+  [[nodiscard]] static Result<std::unique_ptr<LiveBus>> open(
+      const SiteConfig& site, const BusConfig& bus, const metering::LocalCalendar& calendar,
+      Store& store);
+
+  /// The device behind it is opened and polls begin; nothing happens for a bus without meters.
+  void start(const Ports& ports, OnRead on_read);
+
+  /// Whether the site file says of this bus and its meters what it said when it was opened.
+  [[nodiscard]] bool is_described_by(const SiteConfig& site) const;
+
+  [[nodiscard]] const BusConfig& config() const { return config_; }
+  [[nodiscard]] std::vector<LiveMeter>& meters() { return meters_; }
+  [[nodiscard]] const std::vector<LiveMeter>& meters() const { return meters_; }
+  /// Null before the start, and for a bus without meters.
+  [[nodiscard]] const BusRunner* runner() const { return runner_.get(); }
+
+ private:
+  explicit LiveBus(BusConfig config) : config_(std::move(config)) {}
+  [[nodiscard]] Result<void> add_meter(const MeterConfig& meter,
+                                       const metering::LocalCalendar& calendar, Store& store);
+  [[nodiscard]] std::unique_ptr<Bus> make_bus(const Ports& ports) const;
+  [[nodiscard]] std::vector<PolledUnit> polled_units() const;
+
+  BusConfig config_;
+  std::vector<LiveMeter> meters_;  ///< By unit of the poller.
+  std::unique_ptr<BusRunner> runner_;
+};
+
+}  // namespace recald::daemon
