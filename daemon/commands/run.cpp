@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
@@ -8,8 +9,8 @@
 
 namespace recald::daemon {
 
-int run_run(const SiteArguments& arguments, const Console& console) {
-  const auto site = open_site(arguments.site);
+int run_run(const RunArguments& arguments, const Console& console) {
+  auto site = open_site(arguments.site);
   if (!site) return console.fail(site.error());
   const bool reads_anything = std::ranges::any_of(
       site->config.meters, [](const MeterConfig& meter) { return meter.live.has_value(); });
@@ -19,7 +20,13 @@ int run_run(const SiteArguments& arguments, const Console& console) {
                     "recald replay for recorded readings",
                     arguments.site.filename().string()));
   }
-  const auto ended = run_service(site->config, site->calendar);
+  ServiceOptions options;
+  if (!arguments.clock.empty()) {
+    const auto clock = metering::parse_trial_clock(arguments.clock);
+    if (!clock) return console.misused("--clock: " + clock.error().message);
+    options.trial = *clock;
+  }
+  const auto ended = run_service(std::move(*site), options);
   if (!ended) return console.fail(ended.error());
   return kSuccess;
 }

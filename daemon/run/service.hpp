@@ -1,15 +1,21 @@
-/// The daemon as a process: real clocks, real buses, a store on disk, signals.
+/// The daemon as a process: real clocks, real buses, a store on disk, signals, HTTP.
 #pragma once
 
-#include "core/metering/civil_time.hpp"
+#include <optional>
+
+#include "core/metering/trial_clock.hpp"
 #include "core/result.hpp"
-#include "daemon/config/site_config.hpp"
+#include "daemon/calibrate/modelled_site.hpp"
 
 namespace recald::daemon {
 
-/// Runs until it is told to end (SIGTERM or SIGINT), then commits what is on its way.
+struct ServiceOptions {
+  std::optional<metering::TrialClock> trial;  ///< Absent: the world's time.
+};
+
+/// Runs until it is told to end (SIGTERM or SIGINT), then commits what is on its way. SIGHUP reads
+/// the site file again, SIGUSR1 asks for a calibration.
 /// @return nothing, or why it could not begin or not commit at its end.
-[[nodiscard]] Result<void> run_service(const SiteConfig& site,
-                                       const metering::LocalCalendar& calendar);
+[[nodiscard]] Result<void> run_service(OpenSite site, const ServiceOptions& options);
 
 }  // namespace recald::daemon

@@ -37,6 +37,8 @@ class BackgroundProcess {
   BackgroundProcess(const BackgroundProcess&) = delete;
   BackgroundProcess& operator=(const BackgroundProcess&) = delete;
 
+  void signal(int number) const { ::kill(pid_, number); }
+
   /// Sends the signal and waits for the end. @return the exit code, or minus the signal's number.
   int end(int signal) {
     ::kill(pid_, signal);

@@ -67,6 +67,10 @@ poll = "1s"
   [[nodiscard]] std::filesystem::path said() const { return folder_ / "said.txt"; }
   [[nodiscard]] std::string what_was_said() const { return recald::testing::read_text(said()); }
 
+  [[nodiscard]] bool said_so(const std::string& words) const {
+    return what_was_said().find(words) != std::string::npos;
+  }
+
   /// Samples in the store, as a reader beside the daemon sees them; 0 while there is no store.
   [[nodiscard]] std::int64_t samples() const {
     if (!std::filesystem::exists(folder_ / "site.db")) return 0;
@@ -96,6 +100,52 @@ TEST_F(RunCommand, PollsIsKilledGoesOnAndEnds) {
   EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
   EXPECT_THAT(what_was_said(), HasSubstr("event=started site=tower"));
   EXPECT_THAT(what_was_said(), HasSubstr("event=ended"));
+}
+
+// A gateway's owner edits the file and makes a mistake: the meters must not notice.
+TEST_F(RunCommand, ReloadBadFile) {
+  const std::string good = recald::testing::read_text(folder_ / "site.toml");
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return samples() >= 1; })) << what_was_said();
+  recald::testing::write_text(folder_ / "site.toml", good + "pol = \"2s\"\n");
+  daemon.signal(SIGHUP);
+  ASSERT_TRUE(eventually([&] { return said_so("event=not_reloaded"); })) << what_was_said();
+  EXPECT_THAT(what_was_said(), HasSubstr("unknown key 'pol'"));
+  const std::int64_t before = samples();
+  EXPECT_TRUE(eventually([&] { return samples() >= before + 2; })) << what_was_said();
+  EXPECT_EQ(server_.connections(), 1);
+
+  recald::testing::write_text(folder_ / "site.toml", good + "timeout = \"2s\"\n");
+  daemon.signal(SIGHUP);
+  ASSERT_TRUE(eventually([&] { return said_so("event=reloaded"); })) << what_was_said();
+  EXPECT_TRUE(eventually([&] { return server_.connections() == 2; })) << what_was_said();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
+}
+
+TEST_F(RunCommand, WhatNeedsARestartIsNotReloaded) {
+  const std::string good = recald::testing::read_text(folder_ / "site.toml");
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return samples() >= 1; })) << what_was_said();
+  std::string moved = good;
+  moved.replace(moved.find("America/Chicago"), 15, "America/Denver");
+  recald::testing::write_text(folder_ / "site.toml", moved);
+  daemon.signal(SIGHUP);
+  EXPECT_TRUE(eventually([&] { return said_so("another timezone needs a restart"); }))
+      << what_was_said();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
+}
+
+// An administrator's tool may reload before the daemon is ready; that must not end it.
+TEST_F(RunCommand, SighupAtStart) {
+  for (int time = 0; time < 5; ++time) {
+    std::filesystem::remove(folder_ / "site.db.lock");
+    std::filesystem::remove(said());
+    BackgroundProcess daemon{command("run"), said()};
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "site.db.lock"); }));
+    daemon.signal(SIGHUP);
+    EXPECT_TRUE(eventually([&] { return said_so("event=reloaded"); })) << what_was_said();
+    EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
+  }
 }
 
 TEST_F(RunCommand, OneAtATimeRunsOnAStore) {

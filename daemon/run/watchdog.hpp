@@ -1,0 +1,30 @@
+/// Tells systemd, where it runs us, that we are ready and that we live.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "adapters/ports/loop.hpp"
+
+namespace recald::daemon {
+
+/// Feeds the watchdog of the unit file for as long as the loop turns and the store answers. Where
+/// nobody watches it does nothing.
+class Watchdog {
+ public:
+  /// @param is_well  Asked on the loop before each feed; false lets systemd restart us.
+  Watchdog(Loop& loop, std::function<bool()> is_well);
+
+  void ready();
+  void ending();
+
+ private:
+  void feed();
+
+  Loop& loop_;
+  std::function<bool()> is_well_;
+  std::chrono::milliseconds period_{0};  ///< 0: nobody watches.
+  std::shared_ptr<Watchdog*> self_;
+};
+
+}  // namespace recald::daemon
