@@ -20,7 +20,7 @@ namespace recald::simulators {
 /// Now, in the time of the simulation.
 [[nodiscard]] inline SimulatedTime simulated_now(const metering::TrialClock& clock) {
   return clock.simulated(
-      std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now()));
+      std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now()));
 }
 
 /// @tparam Stream  A TCP socket, or the descriptor of a pseudo-terminal.
