@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "adapters/sqlite/edit_table.hpp"
@@ -42,7 +43,9 @@ class Import {
     MonthKeeper keeper{store_, calendar_, site_.closing, system::time_zone_release()};
     std::vector<StoredMeter> stored;
     for (const MeterImport& meter : meters_) stored.push_back(meter.stored);
-    auto closed = keeper.close_due(stored, now);
+    const auto until = known_until(stored);
+    if (!until) return tl::unexpected(until.error());
+    auto closed = keeper.close_due(stored, std::min(now, *until));
     if (!closed) return tl::unexpected(closed.error());
     outcome_.closed = std::move(*closed);
     return std::move(outcome_);
@@ -76,6 +79,18 @@ class Import {
       meters_.push_back(std::move(meter));
     }
     return {};
+  }
+
+  /// When the months of the store's readings are due. A file says nothing of the time after it:
+  /// what has not been read yet is not missing.
+  [[nodiscard]] Result<metering::Instant> known_until(std::span<const StoredMeter> meters) const {
+    metering::Instant last{};
+    for (const StoredMeter& meter : meters) {
+      const auto extent = store_.interval_extent(meter.number);
+      if (!extent) return tl::unexpected(extent.error());
+      if (*extent) last = std::max(last, (*extent)->end + meter.meter.interval);
+    }
+    return last + site_.closing.watermark;
   }
 
   [[nodiscard]] csv::ReadingsOptions file_options() const {
