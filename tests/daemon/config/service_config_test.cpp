@@ -71,7 +71,7 @@ TEST(HttpConfig, MistakesAreNamedWithTheirKey) {
   for (const char* text :
        {"listen = \"8080\"", "listen = \":8080\"", "listen = \"127.0.0.1:\"",
         "listen = \"127.0.0.1:70000\"", "listen = \"::1:8080\"", "listen = \"127.0.0.1:80a\""}) {
-    EXPECT_THAT(http(text).problems, ElementsAre(HasSubstr("site.toml:1: [http]: 'listen' is")))
+    EXPECT_THAT(http(text).problems, ElementsAre(HasSubstr("site.toml:1: [http] 'listen' is")))
         << text;
   }
   EXPECT_THAT(http("certificate_file = \"c\"").problems, ElementsAre(HasSubstr("TLS needs both")));
@@ -85,7 +85,7 @@ TEST(HttpConfig, MistakesAreNamedWithTheirKey) {
 TEST(RecalibrationConfig, MistakesAreNamedWithTheirKey) {
   EXPECT_THAT(recalibration_problems("schedule = \"monthly\"\nmonths = 12"), IsEmpty());
   EXPECT_THAT(recalibration_problems("schedule = \"weekly\""),
-              ElementsAre(HasSubstr("site.toml:1: [recalibration]: 'schedule'")));
+              ElementsAre(HasSubstr("site.toml:1: [recalibration] 'schedule'")));
   EXPECT_THAT(recalibration_problems("months = 5"), ElementsAre(HasSubstr("months")));
   EXPECT_THAT(recalibration_problems("months = 6.5"), ElementsAre(HasSubstr("months")));
   EXPECT_THAT(recalibration_problems("month = 12"), ElementsAre(HasSubstr("months")));
