@@ -1,0 +1,203 @@
+"""Load of many meters on one daemon: see load.sh. Prints figures; judges nothing."""
+import os
+import re
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from pathlib import Path
+
+TCP_ENDPOINTS = 250
+LINES = 8
+UNITS = 4
+INTERVAL_S = 60  # a boundary a minute, so that ten minutes have ten of them
+TICK = os.sysconf("SC_CLK_TCK")
+
+PLAN = f"""
+[[endpoint]]
+repeat = {TCP_ENDPOINTS}
+[[endpoint.device]]
+unit = 1
+repeat = {UNITS}
+layout = "abb-b23"
+load_kW = 60
+
+[[endpoint]]
+type = "rtu"
+link = "line"
+repeat = {LINES}
+[[endpoint.device]]
+unit = 1
+repeat = {UNITS}
+layout = "abb-b23"
+load_kW = 60
+"""
+
+# Eight fields in two reads. The simulated device holds 0 where its makers have voltages and
+# currents, so these serve as an identity that never changes.
+MAP = """
+source = "load script: the fields of a B23 that a dashboard would show"
+base = 0
+fc = 3
+order = "ABCD"
+energy = ["energy_import"]
+power = "power"
+identity = ["voltage_1", "voltage_2", "voltage_3", "current_1", "current_2", "current_3"]
+register.energy_import = { at = 0x5000, type = "u64", scale = 0.01, unit = "kWh" }
+register.power = { at = 0x5B14, type = "i32", scale = 0.01, unit = "W" }
+register.voltage_1 = { at = 0x5B00, type = "u32" }
+register.voltage_2 = { at = 0x5B02, type = "u32" }
+register.voltage_3 = { at = 0x5B04, type = "u32" }
+register.current_1 = { at = 0x5B0C, type = "u32" }
+register.current_2 = { at = 0x5B0E, type = "u32" }
+register.current_3 = { at = 0x5B10, type = "u32" }
+"""
+
+
+def site(addresses):
+    """The site file: a bus for each address, UNITS meters on each."""
+    text = f"""[site]
+id = "load"
+timezone = "UTC"
+interval = "{INTERVAL_S // 60}m"
+[http]
+listen = "127.0.0.1:0"
+"""
+    meters = ""
+    for number, address in enumerate(addresses):
+        host, _, port = address.rpartition(":")
+        where = (f'type = "tcp"\nhost = "{host}"\nport = {port}' if host
+                 else f'type = "rtu"\nport = "{address}"\nbaud = 115200')
+        text += f"[bus.b{number}]\n{where}\n"
+        for unit in range(1, UNITS + 1):
+            meters += (f'[[meter]]\nid = "b{number}-u{unit}"\nsource = "modbus"\n'
+                       f'utility = "electricity"\nbus = "b{number}"\nunit = {unit}\n'
+                       f'map = "eight-fields.toml"\nrated_kW = 400\npoll = "10s"\n')
+    return text + meters
+
+
+def wait_for(path, pattern, process, seconds=60):
+    """The first match in a growing file; None where the process ends or time runs out."""
+    for _ in range(seconds * 10):
+        found = re.search(pattern, path.read_text())
+        if found or process.poll() is not None:
+            return found
+        time.sleep(0.1)
+    return None
+
+
+def cpu_s(pid):
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / TICK
+
+
+def memory_MiB(pid, name):
+    status = Path(f"/proc/{pid}/status").read_text()
+    return int(re.search(rf"^{name}:\s+(\d+) kB", status, re.M).group(1)) / 1024
+
+
+def quantile_bound(buckets, share):
+    """The upper edge of the histogram bucket in which the quantile lies, summed over all buses."""
+    total = buckets.get("+Inf", 0)
+    edges = sorted((float(edge), count) for edge, count in buckets.items() if edge != "+Inf")
+    return next((edge for edge, count in edges if total and count >= share * total), None)
+
+
+def print_lateness(metrics):
+    """Lateness by kind of bus: the first TCP_ENDPOINTS buses are TCP, the rest lines."""
+    line = re.compile(r'recald_poll_lateness_seconds_bucket\{(.*)\} (\S+)')
+    by_kind = {"tcp": {}, "lines": {}}
+    for labels, value in line.findall(metrics):
+        bus = re.search(r'bus="b(\d+)"', labels)
+        edge = re.search(r'le="([^"]+)"', labels).group(1)
+        kind = "lines" if bus and int(bus.group(1)) >= TCP_ENDPOINTS else "tcp"
+        by_kind[kind][edge] = by_kind[kind].get(edge, 0) + float(value)
+    for kind, buckets in by_kind.items():
+        if buckets:
+            print(f"poll lateness, {kind}: p50 <= {quantile_bound(buckets, 0.5)} s, "
+                  f"p99 <= {quantile_bound(buckets, 0.99)} s of {buckets.get('+Inf', 0):.0f} polls")
+        else:
+            print(f"poll lateness, {kind}: not in /metrics")
+
+
+def fetch(url):
+    try:
+        with urllib.request.urlopen(url, timeout=30) as reply:
+            return reply.read().decode()
+    except OSError as error:
+        return f"no metrics: {error}"
+
+
+def print_intervals(store, first, last):
+    """Of the slots between two boundaries, how many are stored and how many of them `ok` (0)."""
+    db = sqlite3.connect(f"file:{store}?mode=ro", uri=True)
+    meters = db.execute("SELECT count(*) FROM meter").fetchone()[0]
+    slots = (last - first) // INTERVAL_S
+    latest = ("SELECT meter, t_start, max(revision), validity FROM interval "
+              "WHERE t_start >= ? AND t_start < ? GROUP BY meter, t_start")
+    counts = dict(db.execute(f"SELECT validity, count(*) FROM ({latest}) GROUP BY validity",
+                             (first, last)))
+    ok = counts.get(0, 0)
+    print(f"slots of {INTERVAL_S} s over {slots} boundaries: expected {meters * slots}, "
+          f"stored {sum(counts.values())}, ok {ok}, missed {meters * slots - ok}")
+    print("by validity (0 ok, 1 missing, 2 filled, 3 scaled, 4 suspect):", counts)
+
+
+def main(build, minutes):
+    folder = Path(tempfile.mkdtemp(prefix="recald-load-"))
+    (folder / "plan.toml").write_text(PLAN)
+    (folder / "eight-fields.toml").write_text(MAP)
+    said_by_sim, said_by_daemon = folder / "sim.txt", folder / "daemon.txt"
+    with open(said_by_sim, "w") as out:
+        sim = subprocess.Popen([f"{build}/simulators/recald-sim", "meters", folder / "plan.toml"],
+                               stdout=out, stderr=subprocess.STDOUT)
+    daemon = None
+    try:
+        if not wait_for(said_by_sim, "ready: ", sim):
+            sys.exit(f"the simulated devices did not start: {said_by_sim.read_text()}")
+        addresses = re.findall(r"listening on (\S+): ", said_by_sim.read_text())
+        (folder / "site.toml").write_text(site(addresses))
+        with open(said_by_daemon, "w") as out:
+            daemon = subprocess.Popen([f"{build}/daemon/recald", "run", folder / "site.toml"],
+                                      stdout=out, stderr=subprocess.STDOUT)
+        if not wait_for(said_by_daemon, "event=started", daemon):
+            sys.exit(f"the daemon did not start: {said_by_daemon.read_text()}")
+        listening = wait_for(said_by_daemon, r"event=listening .*port=(\d+)", daemon, seconds=5)
+        print(f"{len(addresses)} endpoints, {len(addresses) * UNITS} meters, {minutes:g} minutes; "
+              f"files in {folder}", flush=True)
+
+        time.sleep(INTERVAL_S)  # until every meter has a first sample
+        first = int(-(-time.time() // INTERVAL_S)) * INTERVAL_S
+        begin, begin_s, sim_begin_s = time.time(), cpu_s(daemon.pid), cpu_s(sim.pid)
+        resident = []
+        while time.time() < begin + 60 * minutes:
+            time.sleep(5)
+            if daemon.poll() is not None:
+                sys.exit(f"the daemon ended: {said_by_daemon.read_text()[-2000:]}")
+            resident.append(memory_MiB(daemon.pid, "VmRSS"))
+        elapsed_s = time.time() - begin
+        last = int(time.time() // INTERVAL_S) * INTERVAL_S
+        print(f"daemon: {100 * (cpu_s(daemon.pid) - begin_s) / elapsed_s:.1f} % of a core, "
+              f"resident {resident[-1]:.1f} MiB at the end, "
+              f"{memory_MiB(daemon.pid, 'VmHWM'):.1f} MiB at most")
+        print(f"devices: {100 * (cpu_s(sim.pid) - sim_begin_s) / elapsed_s:.1f} % of a core, "
+              f"resident {memory_MiB(sim.pid, 'VmRSS'):.1f} MiB; load average "
+              f"{os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+        print_lateness(fetch(f"http://127.0.0.1:{listening.group(1)}/metrics") if listening else "")
+        time.sleep(15)  # the last boundary's reads and its commit
+        daemon.send_signal(signal.SIGTERM)
+        print(f"daemon ended with {daemon.wait()}")
+        print_intervals(folder / "site.db", first, last)
+    finally:
+        for process in (daemon, sim):
+            if process and process.poll() is None:
+                process.send_signal(signal.SIGTERM)
+                process.wait()
+    print("devices saw:", said_by_sim.read_text().splitlines()[-1])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], float(sys.argv[2]))
