@@ -1,0 +1,256 @@
+#include "core/drift/sequential.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/calibration/log_sum.hpp"
+#include "core/calibration/smc.hpp"
+
+namespace recald::drift {
+namespace {
+
+using calibration::Particles;
+using calibration::PointIndex;
+using calibration::Posterior;
+using calibration::PosteriorData;
+
+/// Fewer effective particles than this share stand for nothing that moves could repair.
+constexpr double kHopelessShare = 0.02;
+
+/// Rows of `data` with these indices.
+PosteriorData select(const PosteriorData& data, const std::vector<Eigen::Index>& rows) {
+  PosteriorData selected = data;
+  selected.points.clear();
+  for (const Eigen::Index row : rows) {
+    selected.points.push_back(data.points[static_cast<std::size_t>(row)]);
+  }
+  selected.values = data.values(rows);
+  selected.extra_variances = data.extra_variances(rows);
+  if (data.common_errors.cols() > 0) selected.common_errors = data.common_errors(rows, Eigen::all);
+  return selected;
+}
+
+/// log likelihood of every particle under a posterior.
+Result<Eigen::VectorXd> log_likelihoods(Posterior& posterior, const Particles& particles) {
+  Eigen::VectorXd values(particles.count());
+  Eigen::VectorXd position;
+  for (Eigen::Index i = 0; i < particles.count(); ++i) {
+    position = particles.positions.col(i);
+    const auto density = posterior.log_density(position);
+    if (!density) return tl::unexpected(density.error());
+    values(i) = std::isnan(*density) ? -std::numeric_limits<double>::infinity()
+                                     : *density - particles.log_prior(i);
+  }
+  return values;
+}
+
+/// Weights the particles by their rise. @return the log of the weighted mean rise.
+double reweight(Particles& particles, const Eigen::VectorXd& log_likelihood) {
+  const double before = calibration::log_sum(particles.log_weight);
+  for (Eigen::Index i = 0; i < particles.count(); ++i) {
+    // A particle that was impossible stays so; its rise would be no number.
+    const bool was_possible = std::isfinite(particles.log_likelihood(i));
+    particles.log_weight(i) += was_possible ? log_likelihood(i) - particles.log_likelihood(i)
+                                            : -std::numeric_limits<double>::infinity();
+  }
+  particles.log_likelihood = log_likelihood;
+  return calibration::log_sum(particles.log_weight) - before;
+}
+
+double effective_share(const Particles& particles) {
+  return calibration::effective_count(particles.log_weight) /
+         static_cast<double>(particles.count());
+}
+
+/// `count` of the particles, evenly by weight, in their order.
+std::vector<Eigen::Index> spread_over(const Particles& particles, int count) {
+  const double total = calibration::log_sum(particles.log_weight);
+  std::vector<Eigen::Index> chosen;
+  double reached = 0.0;
+  for (Eigen::Index i = 0; i < particles.count(); ++i) {
+    reached += std::exp(particles.log_weight(i) - total) * count;
+    while (static_cast<double>(chosen.size()) + 0.5 <= reached && std::ssize(chosen) < count) {
+      chosen.push_back(i);
+    }
+  }
+  while (std::ssize(chosen) < count) chosen.push_back(chosen.empty() ? 0 : chosen.back());
+  return chosen;
+}
+
+}  // namespace
+
+SequentialCalibration::SequentialCalibration(const MonthlyModel& model,
+                                             std::vector<Parameter> parameters, PosteriorData all,
+                                             calibration::HyperPrior prior, Window window,
+                                             const SequentialOptions& options, std::uint64_t seed)
+    : model_(model.clone()),
+      parameters_(std::move(parameters)),
+      all_(std::move(all)),
+      prior_(std::move(prior)),
+      window_(std::move(window)),
+      options_(options),
+      seed_(seed) {
+  assert(options.particles >= 16 && options.forecast_particles >= 1);
+  prior_variances_ = all_.extra_variances.array() + 1.0 / prior_.discrepancy_precision.mean() +
+                     1.0 / prior_.error_precision.mean();
+}
+
+PosteriorData SequentialCalibration::points_seen_from(int newest, int added) const {
+  const int oldest =
+      window_.months > 0 ? newest - window_.months + 1 : std::numeric_limits<int>::min();
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < all_.points.size(); ++i) {
+    const int month = all_.points[i].month;
+    const bool is_held = month >= oldest && std::ranges::binary_search(taken_, month);
+    if (is_held || month == added) rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  PosteriorData data = select(all_, rows);
+  if (window_.half_life_months <= 0.0) return data;
+  for (Eigen::Index i = 0; i < data.extra_variances.size(); ++i) {
+    const int age = std::max(0, newest - data.points[static_cast<std::size_t>(i)].month);
+    data.extra_variances(i) += (std::exp2(age / window_.half_life_months) - 1.0) *
+                               prior_variances_(rows[static_cast<std::size_t>(i)]);
+  }
+  return data;
+}
+
+Result<Posterior> SequentialCalibration::posterior_of(PosteriorData data) const {
+  return Posterior::make(*model_, parameters_, std::move(data), prior_);
+}
+
+Result<std::vector<Forecast>> SequentialCalibration::forecast(int month) {
+  assert(has_begun() && !std::ranges::binary_search(taken_, month));
+  PosteriorData data = points_seen_from(taken_.back(), month);
+  std::vector<Eigen::Index> ahead;
+  std::vector<Eigen::Index> behind;
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const bool is_ahead = data.points[i].month == month;
+    (is_ahead ? ahead : behind).push_back(row);
+    if (is_ahead) data.values(row) = 0.0;  // then the residual there is -f, and nobody has looked
+  }
+  auto joint = posterior_of(std::move(data));
+  if (!joint) return tl::unexpected(joint.error());
+
+  const auto chosen = spread_over(*particles_, options_.forecast_particles);
+  const auto n = static_cast<Eigen::Index>(chosen.size());
+  std::vector<Forecast> forecasts(
+      ahead.size(), Forecast{Eigen::VectorXd(n), Eigen::VectorXd(n),
+                             Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n))});
+  Eigen::VectorXd theta(joint->parameter_count());
+  calibration::Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(joint->kernel_dimension())};
+  const Eigen::Index m = joint->point_count();
+  Eigen::MatrixXd precision(m, m);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    joint->to_natural(particles_->positions.col(chosen[static_cast<std::size_t>(k)]), theta, hyper);
+    if (!joint->set_hyperparameters(hyper)) {
+      return failure(ErrorCode::not_positive_definite,
+                     "a particle of the posterior has a covariance without a factor");
+    }
+    const Eigen::VectorXd& residual =
+        joint->residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
+    joint->precision(precision);
+    // Of what is normal together, what is ahead given what is behind.
+    const Eigen::MatrixXd covariance = Eigen::MatrixXd(precision(ahead, ahead)).inverse();
+    const Eigen::VectorXd mean =
+        -residual(ahead) -
+        covariance * (precision(ahead, behind) * Eigen::VectorXd(residual(behind)));
+    for (std::size_t i = 0; i < ahead.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      forecasts[i].means(k) = mean(row);
+      forecasts[i].sds(k) = std::sqrt(covariance(row, row));
+    }
+  }
+  return forecasts;
+}
+
+Result<void> SequentialCalibration::begin_anew(Posterior& posterior, MonthTaken& taken,
+                                               const std::function<bool()>& proceed) {
+  Rng rng{seed_, 2 * static_cast<std::uint64_t>(taken.month) + 1};
+  const auto chain = calibration::smc(posterior, {.iterations = options_.particles, .burn_in = 0},
+                                      rng, [&](int, int) { return !proceed || proceed(); });
+  if (!chain) return tl::unexpected(chain.error());
+  const Eigen::Index count = chain->draws.rows();
+  Particles particles{chain->draws.transpose(), Eigen::VectorXd(count), Eigen::VectorXd(count),
+                      Eigen::VectorXd::Zero(count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    particles.log_prior(i) = posterior.log_prior(particles.positions.col(i));
+    particles.log_likelihood(i) = chain->log_density(i) - particles.log_prior(i);
+  }
+  particles_ = std::move(particles);
+  taken.anew = true;
+  months_since_anew_ = 0;
+  return {};
+}
+
+Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bool()>& proceed) {
+  assert(!std::ranges::binary_search(taken_, month));
+  MonthTaken taken{.month = month};
+  const auto remember = [&] {
+    taken_.insert(std::ranges::lower_bound(taken_, month), month);
+    return taken;
+  };
+  PosteriorData data = points_seen_from(month, month);
+  if (data.points.size() < parameters_.size() + 2) return remember();
+  auto posterior = posterior_of(std::move(data));
+  if (!posterior) return tl::unexpected(posterior.error());
+  const auto anew = [&]() -> Result<MonthTaken> {
+    if (auto begun = begin_anew(*posterior, taken, proceed); !begun) {
+      return tl::unexpected(begun.error());
+    }
+    return remember();
+  };
+  if (!particles_) return anew();
+
+  Particles carried = *particles_;
+  // What was believed before and the new month: how they rise by it is the month's score.
+  auto before = posterior_of(points_seen_from(taken_.back(), month));
+  if (!before) return tl::unexpected(before.error());
+  const auto beside = log_likelihoods(*before, carried);
+  if (!beside) return tl::unexpected(beside.error());
+  taken.log_score = reweight(carried, *beside);
+  if (forgets()) {
+    const auto after = log_likelihoods(*posterior, carried);
+    if (!after) return tl::unexpected(after.error());
+    reweight(carried, *after);
+  }
+  taken.effective_share = effective_share(carried);
+  ++months_since_anew_;
+  if (months_since_anew_ >= options_.anew_every_months || taken.effective_share < kHopelessShare) {
+    return anew();
+  }
+  if (taken.effective_share < options_.effective_share) {
+    Rng rng{seed_, 2 * static_cast<std::uint64_t>(month)};
+    calibration::ParticleMover mover(*posterior, rng, carried.count(), {});
+    const auto shaped = mover.set_shape(covariance(carried));
+    if (!shaped) return anew();  // the population has collapsed
+    resample(carried, rng);
+    if (auto moved = mover.move(carried, 1.0, proceed); !moved) {
+      return tl::unexpected(moved.error());
+    }
+    taken.moved = true;
+    taken.acceptance_rate = mover.acceptance_rate();
+    if (taken.acceptance_rate < options_.acceptance_min) return anew();
+  }
+  particles_ = std::move(carried);
+  return remember();
+}
+
+Eigen::MatrixXd SequentialCalibration::draw_parameters(int count) const {
+  assert(has_begun());
+  const auto chosen = spread_over(*particles_, count);
+  Eigen::MatrixXd draws(count, static_cast<Eigen::Index>(parameters_.size()));
+  for (Eigen::Index k = 0; k < draws.rows(); ++k) {
+    const auto column = particles_->positions.col(chosen[static_cast<std::size_t>(k)]);
+    for (Eigen::Index j = 0; j < draws.cols(); ++j) {
+      draws(k, j) = parameters_[static_cast<std::size_t>(j)].prior.at_score(column(j)).value;
+    }
+  }
+  return draws;
+}
+
+}  // namespace recald::drift
