@@ -33,7 +33,7 @@ Result<void> require_model(const SiteConfig& site) {
 Result<SiteRecording> record_site(const OpenSite& site, const ReplayOptions& options,
                                   VirtualClock& clock, const OnMonthClosed& on_month_closed) {
   std::unique_ptr<StoredReadings> live;
-  if (has_live_meters(site.config)) {
+  if (has_stored_meters(site.config)) {
     auto opened = StoredReadings::open(site.config);
     if (!opened) return tl::unexpected(opened.error());
     live = std::move(*opened);

@@ -26,6 +26,12 @@ void print_meters(const SiteConfig& site, const Console& console) {
                                  duration_words(config.live->poll));
       continue;
     }
+    if (config.source == MeterSource::http) {
+      console.out << fmt::format("  meter {:<16} {:<14} as it is sent, interval {}\n", meter.id,
+                                 metering::to_string(meter.utility),
+                                 duration_words(meter.interval));
+      continue;
+    }
     console.out << fmt::format(
         "  meter {:<16} {:<14} {} ('{}', {}-stamped, interval {})\n", meter.id,
         metering::to_string(meter.utility), config.file.string(), config.name_in_file,
@@ -92,7 +98,7 @@ std::vector<std::string> check_files(const SiteConfig& site) {
                                    what, file.string()));
   };
   for (const MeterConfig& config : site.meters) {
-    if (config.live) continue;
+    if (config.is_stored()) continue;
     require(config.file, fmt::format("the file of meter '{}',", config.meter.id));
   }
   if (site.weather) require(site.weather->file, "the weather file");

@@ -130,6 +130,12 @@ std::optional<model::MeterMap> read_end_uses(TomlReader& table) {
   return map;
 }
 
+MeterSource read_source(TomlReader& table) {
+  const auto word = table.word("source", {"csv", "modbus", "http"});
+  if (word == "modbus") return MeterSource::modbus;
+  return word == "http" ? MeterSource::http : MeterSource::csv;
+}
+
 MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
   MeterConfig config;
   metering::Meter& meter = config.meter;
@@ -138,7 +144,8 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
     table.problem_at("id",
                      fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", meter.id));
   }
-  const bool is_live = table.word("source", {"csv", "modbus"}) == "modbus";
+  config.source = read_source(table);
+  const bool is_live = config.source == MeterSource::modbus;
   const std::string utility_name = table.required_text("utility");
   if (const auto utility = metering::parse_utility(utility_name)) {
     meter.utility = *utility;
@@ -147,7 +154,7 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
   }
   if (is_live) {
     config.live = read_live_meter(table, site.file.parent_path());
-  } else {
+  } else if (config.source == MeterSource::csv) {
     config.file = resolve(site.file, table.required_text("file"), "file", table);
     config.name_in_file = table.text_or("name_in_file", meter.id);
     config.stamps = read_stamps(table);
@@ -311,7 +318,9 @@ void read_root(TomlReader root, SiteConfig& config) {
   config.store = default_store(config.file);
   if (auto store = root.table("store")) config.store = read_store(*store, config.file);
   if (auto http = root.table("http")) config.http = read_http(*http, config.file);
-  if (auto table = root.table("recalibration")) config.recalibration = read_recalibration(*table);
+  if (auto table = root.table("recalibration")) {
+    config.recalibration = read_recalibration(*table, config.file);
+  }
   if (auto buses = root.table("bus")) {
     for (const std::string& name : buses->keys()) {
       if (auto bus = buses->table(name)) config.buses.push_back(read_bus(*bus, name));
@@ -335,10 +344,9 @@ void read_root(TomlReader root, SiteConfig& config) {
     // What is there but wrong has been reported already.
     TomlReader& model = models.front();
     if (!root.has("building")) model.problem("needs a [building]");
-    const bool is_live = std::ranges::any_of(
-        config.meters, [](const MeterConfig& meter) { return meter.live.has_value(); });
-    // Live meters have their latest months.
-    if (!root.has("period") && !is_live) model.problem("needs a [period]");
+    const bool has_store = std::ranges::any_of(config.meters, &MeterConfig::is_stored);
+    // A store has its latest months.
+    if (!root.has("period") && !has_store) model.problem("needs a [period]");
     if (!root.has("weather")) model.problem("needs [weather]");
     const bool located = site && site->has("latitude_deg") && site->has("longitude_deg");
     if (!located) model.problem("needs latitude_deg and longitude_deg in [site]");
@@ -347,6 +355,18 @@ void read_root(TomlReader root, SiteConfig& config) {
 }
 
 }  // namespace
+
+std::string_view name_of(MeterSource source) {
+  switch (source) {
+    case MeterSource::modbus:
+      return "modbus";
+    case MeterSource::http:
+      return "http";
+    case MeterSource::csv:
+      break;
+  }
+  return "csv";
+}
 
 std::optional<std::size_t> SiteConfig::meter_index(const std::string& meter_id) const {
   for (std::size_t i = 0; i < meters.size(); ++i) {

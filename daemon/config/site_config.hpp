@@ -24,18 +24,28 @@
 
 namespace recald::daemon {
 
+/// Where a meter's readings come from: a file, registers that are read, or whoever sends them.
+enum class MeterSource : std::uint8_t { csv, modbus, http };
+
+/// "csv", "modbus", "http"
+[[nodiscard]] std::string_view name_of(MeterSource source);
+
 struct MeterConfig {
   metering::Meter meter;
-  std::filesystem::path file;
-  std::string name_in_file;  ///< In the file's `meter` column.
+  MeterSource source = MeterSource::csv;
+  std::filesystem::path file;  ///< source = "csv"; else empty.
+  std::string name_in_file;    ///< In the file's `meter` column.
   csv::Stamps stamps = csv::Stamps::start;
   std::optional<std::chrono::seconds> interval;  ///< Declared; absent: as the file shows.
   double multiplier = 1.0;
   metering::UnitFactors units;
   std::optional<metering::CounterSettings> counter;
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
-  std::optional<LiveMeterConfig> live;      ///< source = "modbus"; then `file` is empty.
+  std::optional<LiveMeterConfig> live;      ///< source = "modbus".
   std::string text;  ///< The table as TOML: whether a file that is read again says something else.
+
+  /// Its readings are in the site's store, and not in a file.
+  [[nodiscard]] bool is_stored() const { return source != MeterSource::csv; }
 };
 
 enum class WeatherFormat { csv, epw };

@@ -17,7 +17,7 @@ std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> group_by
     const SiteConfig& site) {
   std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> groups;
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
-    if (site.meters[i].live) continue;
+    if (site.meters[i].is_stored()) continue;
     const auto& file = site.meters[i].file;
     const auto known =
         std::ranges::find(groups, file, [](const auto& group) { return group.first; });
@@ -125,15 +125,15 @@ bool is_site_different(const Recording& recording, metering::Month month) {
   });
 }
 
-bool has_live_meters(const SiteConfig& site) {
-  return std::ranges::any_of(site.meters,
-                             [](const MeterConfig& meter) { return meter.live.has_value(); });
+bool has_stored_meters(const SiteConfig& site) {
+  return std::ranges::any_of(site.meters, &MeterConfig::is_stored);
 }
 
 Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                 const ReplayOptions& options, VirtualClock& clock,
                                 const OnMonthClosed& on_month_closed, LiveReadings* live) {
-  assert((live != nullptr || !has_live_meters(site)) && "live meters need a store to read from");
+  assert((live != nullptr || !has_stored_meters(site)) &&
+         "stored meters need a store to read from");
   Recording recording;
   Recorder recorder{site, recording};
   std::vector<metering::Meter> meters;
@@ -172,7 +172,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   }
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
-    if (!config.live) continue;
+    if (!config.is_stored()) continue;
     const auto count =
         live->for_each(config, [&](const metering::Reading& reading) { take(i, reading); });
     if (!count) return tl::unexpected(count.error());
@@ -186,7 +186,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   recorder.describe(closer, calendar);
 
   for (std::size_t i = 0; i < recording.meters.size(); ++i) {
-    if (recording.meters[i].in_file || site.meters[i].live) continue;
+    if (recording.meters[i].in_file || site.meters[i].is_stored()) continue;
     return failure(ErrorCode::not_enough_data,
                    fmt::format("{} has no usable row of meter '{}'; check the meter column, or set "
                                "name_in_file",

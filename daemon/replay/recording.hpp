@@ -67,7 +67,7 @@ class LiveReadings {
 };
 
 /// Whether some meter of the site is read live.
-[[nodiscard]] bool has_live_meters(const SiteConfig& site);
+[[nodiscard]] bool has_stored_meters(const SiteConfig& site);
 
 /// Reads every file of the site's meters once, in order of time as the files have it, then what
 /// live meters left behind, and closes months as time passes.

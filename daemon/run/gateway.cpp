@@ -43,6 +43,7 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
   auto buses = gateway->open_buses(site, {});
   if (!buses) return tl::unexpected(buses.error());
   gateway->buses_ = std::move(*buses);
+  if (auto opened = gateway->open_pushed(site); !opened) return tl::unexpected(opened.error());
   return gateway;
 }
 
@@ -58,6 +59,26 @@ Result<std::vector<std::unique_ptr<LiveBus>>> Gateway::open_buses(
     opened.push_back(std::move(*live));
   }
   return opened;
+}
+
+Result<void> Gateway::open_pushed(const SiteConfig& site) {
+  std::vector<PushedMeter> opened;
+  for (const MeterConfig& config : site.meters) {
+    if (config.source != MeterSource::http) continue;
+    auto progress = MeterProgress::open(config.meter, calendar_, ports_.store);
+    if (!progress) return tl::unexpected(progress.error());
+    PushedMeter meter{.progress = std::move(*progress)};
+    const auto known =
+        std::ranges::find(pushed_, meter.progress.stored.number,
+                          [](const auto& one) { return one.progress.stored.number; });
+    if (known != pushed_.end()) {
+      meter.progress.counters = known->progress.counters;
+      meter.heard_at = known->heard_at;
+    }
+    opened.push_back(std::move(meter));
+  }
+  pushed_ = std::move(opened);
+  return {};
 }
 
 void Gateway::start() {
@@ -80,6 +101,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   const std::span kept{buses_.begin(), changed};
   auto opened = open_buses(site, kept);
   if (!opened) return tl::unexpected(opened.error());
+  if (auto pushed = open_pushed(site); !pushed) return pushed;
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
   for (auto& bus : *opened) {
     start(*bus);
@@ -91,10 +113,26 @@ Result<void> Gateway::reload(const SiteConfig& site) {
 LiveMeter* Gateway::find_meter(std::uint32_t number) {
   for (const auto& bus : buses_) {
     for (LiveMeter& meter : bus->meters()) {
-      if (meter.stored.number == number) return &meter;
+      if (meter.progress.stored.number == number) return &meter;
     }
   }
   return nullptr;
+}
+
+std::vector<MeterProgress*> Gateway::all_progress() {
+  std::vector<MeterProgress*> all;
+  for (const auto& bus : buses_) {
+    for (LiveMeter& meter : bus->meters()) all.push_back(&meter.progress);
+  }
+  for (PushedMeter& meter : pushed_) all.push_back(&meter.progress);
+  return all;
+}
+
+MeterProgress* Gateway::find_progress(std::uint32_t number) {
+  if (LiveMeter* const meter = find_meter(number)) return &meter->progress;
+  const auto pushed = std::ranges::find(
+      pushed_, number, [](const PushedMeter& one) { return one.progress.stored.number; });
+  return pushed == pushed_.end() ? nullptr : &pushed->progress;
 }
 
 /// Stamps are good from the first plausible time on, and until the clock is set again.
@@ -136,41 +174,53 @@ void Gateway::take(LiveMeter& meter, const PolledRead& read) {
     return;
   }
   if (held_.size() >= kHeldMax) held_.pop_front();
-  held_.push_back({meter.stored.number, read});
+  held_.push_back({meter.progress.stored.number, read});
 }
 
 void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
   StoreBatch batch =
       meter.track.take(meter.reads[read.order.read], read.result, read.order.due, at);
-  mark_late(batch, meter);
+  meter.progress.mark_late(batch, calendar_);
   committer_.add(std::move(batch));
 }
 
-/// An interval of a month that is closed already opens it again.
-void Gateway::mark_late(StoreBatch& batch, LiveMeter& meter) {
-  for (StoreBatch::Interval& interval : batch.intervals) {
-    if (interval.reading.start >= meter.closed_until) break;
-    interval.reading.late = true;
-    const MeterMonth month{meter.stored.number, calendar_.month_of(interval.reading.start)};
-    if (batch.reopened.empty() || batch.reopened.back() != month) batch.reopened.push_back(month);
+Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
+                                          std::vector<metering::Reading> readings) {
+  const auto pushed = std::ranges::find(
+      pushed_, meter, [](const PushedMeter& one) { return one.progress.stored.meter.id; });
+  if (pushed == pushed_.end()) {
+    return failure(ErrorCode::not_found, "no readings are taken of a meter '" + meter + "'");
   }
+  StoreBatch batch;
+  for (metering::Reading& reading : readings) {
+    reading.meter = pushed->progress.stored.number;
+    batch.intervals.push_back({reading});
+  }
+  pushed->progress.mark_late(batch, calendar_);
+  const Instant now = ports_.loop.now().instant();
+  pushed->heard_at = now;
+  auto counts = ports_.store.commit(batch);
+  if (!counts) return counts;
+  note_committed(batch);
+  if (!counts->conflicts.empty()) {
+    note({now, Severity::warning, "reading_conflict", meter,
+          fmt::format("{} readings were sent again with another value, the first of {}; what was "
+                      "there stays",
+                      counts->conflicts.size(),
+                      metering::to_string(counts->conflicts.front().start))});
+  }
+  return counts;
 }
 
 void Gateway::note_committed(const StoreBatch& batch) {
   for (const StoreBatch::Interval& interval : batch.intervals) {
-    LiveMeter* const meter = find_meter(interval.reading.meter);
-    if (meter == nullptr) continue;
-    meter->last_interval = interval.reading;
-    meter->open_month.observe(interval.reading);
-    ++meter->counters.intervals[static_cast<std::size_t>(interval.reading.validity)];
-    if (interval.reading.late) ++meter->counters.late;
+    MeterProgress* const progress = find_progress(interval.reading.meter);
+    if (progress != nullptr) progress->note(interval.reading);
   }
   for (const StoreEvent& event : batch.events) {
     ++events_[static_cast<std::size_t>(event.severity)];
-    for (const auto& bus : buses_) {
-      for (LiveMeter& meter : bus->meters()) {
-        if (meter.stored.meter.id == event.subject) ++meter.counters.events[event.kind];
-      }
+    for (MeterProgress* const progress : all_progress()) {
+      if (progress->stored.meter.id == event.subject) ++progress->counters.events[event.kind];
     }
   }
 }
@@ -178,9 +228,7 @@ void Gateway::note_committed(const StoreBatch& batch) {
 void Gateway::close_months() {
   if (!clock_ok_) return;
   std::vector<StoredMeter> stored;
-  for (const auto& bus : buses_) {
-    for (const LiveMeter& meter : bus->meters()) stored.push_back(meter.stored);
-  }
+  for (const MeterProgress* const progress : all_progress()) stored.push_back(progress->stored);
   const auto closed = keeper_.close_due(stored, ports_.loop.now().instant());
   if (!closed) {
     committer_.add({.events = {{ports_.loop.now().instant(), Severity::error, "month_not_closed",
@@ -188,9 +236,10 @@ void Gateway::close_months() {
     return;
   }
   for (const ClosedFigure& one : *closed) {
-    LiveMeter* const meter = find_meter(one.number);
-    meter->closed_until = std::max(meter->closed_until, calendar_.month_span(one.figure.month).end);
-    if (on_month_) on_month_(meter->stored.meter, one.figure);
+    MeterProgress& progress = *find_progress(one.number);
+    progress.closed_until =
+        std::max(progress.closed_until, calendar_.month_span(one.figure.month).end);
+    if (on_month_) on_month_(progress.stored.meter, one.figure);
   }
 }
 
@@ -214,17 +263,28 @@ GatewayStatus Gateway::status() const {
     status.buses.push_back({bus->config().name, counters.duration, counters.lateness});
     for (std::size_t unit = 0; unit < bus->meters().size(); ++unit) {
       const LiveMeter& meter = bus->meters()[unit];
-      status.meters.push_back(
-          {.id = meter.stored.meter.id,
-           .bus = bus->config().name,
-           .state = runner->poller().state(unit),
-           .live = meter.track.live(),
-           .last_interval = meter.last_interval,
-           .skipped_polls = runner->poller().skipped(unit),
-           .requests = counters.requests[unit],
-           .counters = meter.counters,
-           .open_month_coverage = clock_ok_ ? meter.open_month.coverage(now) : std::nan("")});
+      status.meters.push_back({.id = meter.progress.stored.meter.id,
+                               .poll = PollStatus{.bus = bus->config().name,
+                                                  .state = runner->poller().state(unit),
+                                                  .skipped = runner->poller().skipped(unit),
+                                                  .requests = counters.requests[unit]},
+                               .live = meter.track.live(),
+                               .last_interval = meter.progress.last_interval,
+                               .counters = meter.progress.counters,
+                               .open_month_coverage = clock_ok_
+                                                          ? meter.progress.open_month.coverage(now)
+                                                          : std::nan("")});
     }
+  }
+  for (const PushedMeter& meter : pushed_) {
+    status.meters.push_back(
+        {.id = meter.progress.stored.meter.id,
+         .poll = std::nullopt,
+         .live = {.power_kW = {}, .register_kWh = {}, .read_at = meter.heard_at},
+         .last_interval = meter.progress.last_interval,
+         .counters = meter.progress.counters,
+         .open_month_coverage =
+             clock_ok_ ? meter.progress.open_month.coverage(now) : std::nan("")});
   }
   return status;
 }

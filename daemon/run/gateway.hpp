@@ -36,15 +36,20 @@ struct GatewayPorts {
 /// A month has closed, or closed again.
 using OnMonth = std::function<void(const metering::Meter&, const metering::MonthlyFigure&)>;
 
-/// One live meter as people see it.
-struct MeterStatus {
-  std::string id;
+/// Of a meter that is polled.
+struct PollStatus {
   std::string bus;
   UnitState state = UnitState::up;
-  LiveValues live;
-  std::optional<metering::Reading> last_interval;  ///< Committed.
-  std::uint64_t skipped_polls = 0;
+  std::uint64_t skipped = 0;
   RequestCounts requests{};
+};
+
+/// One meter whose readings the store keeps, as people see it.
+struct MeterStatus {
+  std::string id;
+  std::optional<PollStatus> poll;  ///< Absent: others send its readings.
+  LiveValues live;                 ///< Of a meter that is not polled, only when it was heard of.
+  std::optional<metering::Reading> last_interval;  ///< Committed.
   MeterCounters counters;
   double open_month_coverage = 0.0;  ///< 0…1; NaN before the month's first interval has ended.
 };
@@ -85,6 +90,12 @@ class Gateway {
   /// @pre the site's time zone is the same
   Result<void> reload(const SiteConfig& site);
 
+  /// Readings that others send, of a meter with source = "http". What it answers is stored.
+  /// @param readings  Their `meter` is not looked at.
+  /// @return not_found for a meter that takes none, or the store's failure; then nothing is stored.
+  [[nodiscard]] Result<CommitCounts> take_pushed(const std::string& meter,
+                                                 std::vector<metering::Reading> readings);
+
   /// For people to find it among the events.
   void note(StoreEvent event) { committer_.add({.events = {std::move(event)}}); }
 
@@ -94,6 +105,12 @@ class Gateway {
   [[nodiscard]] GatewayStatus status() const;
 
  private:
+  /// A meter with source = "http".
+  struct PushedMeter {
+    MeterProgress progress;
+    std::optional<metering::Instant> heard_at;  ///< Since the process began.
+  };
+
   /// A read from before the clock was right.
   struct HeldRead {
     std::uint32_t meter;  ///< Its number: a reload may replace the meter meanwhile.
@@ -107,12 +124,15 @@ class Gateway {
   [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
+  /// Opens the meters of `site` that others send readings of; what is known of them stays.
+  Result<void> open_pushed(const SiteConfig& site);
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
+  [[nodiscard]] std::vector<MeterProgress*> all_progress();
+  [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
   void take(LiveMeter& meter, const PolledRead& read);
   void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
-  void mark_late(StoreBatch& batch, LiveMeter& meter);
   void note_committed(const StoreBatch& batch);
   void close_months();
   void close_months_every_hour();
@@ -124,6 +144,7 @@ class Gateway {
   MonthKeeper keeper_;
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
+  std::vector<PushedMeter> pushed_;
   bool clock_ok_ = false;
   std::array<std::uint64_t, 3> events_{};  ///< Committed, by Severity.
   std::deque<HeldRead> held_;

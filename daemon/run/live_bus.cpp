@@ -10,30 +10,7 @@
 namespace recald::daemon {
 namespace {
 
-using metering::Instant;
 using std::chrono::milliseconds;
-
-constexpr std::chrono::hours kUsualDays{24 * 31};
-
-/// What a restart would otherwise forget: the usual day, the last interval, the closed months.
-Result<void> restore(LiveMeter& meter, const metering::LocalCalendar& calendar, Store& store) {
-  const auto extent = store.interval_extent(meter.stored.number);
-  if (!extent) return tl::unexpected(extent.error());
-  if (*extent) {
-    const metering::TimeSpan recent{(*extent)->end - kUsualDays, Instant::max()};
-    const auto read =
-        store.for_each_interval(meter.stored.number, recent, [&](const StoredInterval& stored) {
-          meter.track.remember(stored.reading);
-          meter.open_month.observe(stored.reading);
-          meter.last_interval = stored.reading;
-        });
-    if (!read) return read;
-  }
-  const auto months = store.months(meter.stored.number);
-  if (!months) return tl::unexpected(months.error());
-  if (!months->empty()) meter.closed_until = calendar.month_span(months->back().month).end;
-  return {};
-}
 
 /// The site's meters on the bus of that name, in order of the file.
 std::vector<const MeterConfig*> meters_on(const SiteConfig& site, const std::string& bus) {
@@ -61,18 +38,21 @@ Result<std::unique_ptr<LiveBus>> LiveBus::open(const SiteConfig& site, const Bus
 Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::LocalCalendar& calendar,
                                 Store& store) {
   const LiveMeterConfig& live = *config.live;
-  const auto number = store.meter_number(config.meter.id, config.meter.interval);
-  if (!number) return tl::unexpected(number.error());
   auto reads = plan_reads(metered_fields(live.map), live.map.function, live.map.limits);
   if (!reads) {
     return failure(reads.error().code,
                    fmt::format("meter '{}': {}", config.meter.id, reads.error().message));
   }
-  const auto states = store.registers(*number);
+  std::vector<metering::Reading> recent;
+  auto progress = MeterProgress::open(config.meter, calendar, store,
+                                      [&](const metering::Reading& one) { recent.push_back(one); });
+  if (!progress) return tl::unexpected(progress.error());
+  const std::uint32_t number = progress->stored.number;
+  const auto states = store.registers(number);
   if (!states) return tl::unexpected(states.error());
 
   TrackedMeter tracked{
-      .number = *number,
+      .number = number,
       .id = config.meter.id,
       .map = live.map,
       .multiplier = config.multiplier,
@@ -81,13 +61,12 @@ Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::Local
       .booking = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll}};
   const std::optional<RegisterState> state =
       states->empty() ? std::nullopt : std::optional{states->front()};
-  LiveMeter meter{.stored = {*number, config.meter},
+  LiveMeter meter{.progress = std::move(*progress),
                   .config = live,
                   .text = config.text,
                   .track = MeterTrack{std::move(tracked), calendar, state},
-                  .reads = std::move(*reads),
-                  .open_month = OpenMonth{calendar, config.meter.interval}};
-  if (auto restored = restore(meter, calendar, store); !restored) return restored;
+                  .reads = std::move(*reads)};
+  for (const metering::Reading& one : recent) meter.track.remember(one);
   meters_.push_back(std::move(meter));
   return {};
 }
@@ -108,11 +87,11 @@ std::vector<PolledUnit> LiveBus::polled_units() const {
   std::vector<PolledUnit> units;
   for (const LiveMeter& meter : meters_) {
     const LiveMeterConfig& live = meter.config;
-    units.push_back({.meter = meter.stored.meter.id,
+    units.push_back({.meter = meter.progress.stored.meter.id,
                      .unit = live.unit,
                      .reads = meter.reads,
                      .period = live.poll,
-                     .interval = meter.stored.meter.interval,
+                     .interval = meter.progress.stored.meter.interval,
                      .timeout = live.timeout > milliseconds{0} ? live.timeout : config_.timeout});
   }
   return units;
@@ -138,7 +117,7 @@ bool LiveBus::is_described_by(const SiteConfig& site) const {
   return std::ranges::equal(meters_, meters_on(site, config_.name),
                             [](const LiveMeter& now, const MeterConfig* then) {
                               return now.text == then->text && now.config == *then->live &&
-                                     now.stored.meter.interval == then->meter.interval;
+                                     now.progress.stored.meter.interval == then->meter.interval;
                             });
 }
 

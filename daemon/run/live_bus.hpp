@@ -1,12 +1,9 @@
 /// A bus with its meters, as the site file describes them: what a reload keeps or replaces as one.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,29 +12,17 @@
 #include "adapters/ports/store.hpp"
 #include "daemon/config/site_config.hpp"
 #include "daemon/ingest/meter_track.hpp"
-#include "daemon/ingest/open_month.hpp"
 #include "daemon/poll/bus_runner.hpp"
-#include "daemon/run/month_keeper.hpp"
+#include "daemon/run/meter_progress.hpp"
 
 namespace recald::daemon {
 
-/// What became of a meter since the process began.
-struct MeterCounters {
-  std::array<std::uint64_t, 5> intervals{};     ///< Committed, by Validity.
-  std::uint64_t late = 0;                       ///< Of them, of months that were closed.
-  std::map<std::string, std::uint64_t> events;  ///< By kind.
-};
-
 struct LiveMeter {
-  StoredMeter stored;
+  MeterProgress progress;
   LiveMeterConfig config;
   std::string text;  ///< As MeterConfig's.
   MeterTrack track;
   std::vector<modbus::PlannedRead> reads;
-  OpenMonth open_month;
-  MeterCounters counters{};
-  std::optional<metering::Reading> last_interval;
-  metering::Instant closed_until = metering::Instant::min();  ///< End of the last closed month.
 };
 
 class LiveBus {

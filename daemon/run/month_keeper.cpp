@@ -42,6 +42,16 @@ Result<MonthlyFigure> stored_figure(Store& store, const metering::LocalCalendar&
   return *made;
 }
 
+std::vector<Month> months_that_depend_on(Instant start, const metering::LocalCalendar& calendar) {
+  const Month month = calendar.month_of(start);
+  std::vector<Month> months;
+  const Month before = metering::previous_month(month);
+  if (start < calendar.month_span(before).end + kAfterwards) months.push_back(before);
+  months.push_back(month);
+  months.push_back(metering::next_month(month));
+  return months;
+}
+
 MonthKeeper::MonthKeeper(Store& store, metering::LocalCalendar calendar,
                          metering::CloserOptions options, std::string time_zone_release)
     : store_(store),

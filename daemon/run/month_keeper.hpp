@@ -28,6 +28,11 @@ struct ClosedFigure {
     const StoredMeter& meter, metering::Month month,
     metering::Instant known_until = metering::Instant::max());
 
+/// Whose figures depend on a reading: its own month, the next, which is judged by what its meter
+/// was like before, and the one before where it starts soon after that.
+[[nodiscard]] std::vector<metering::Month> months_that_depend_on(
+    metering::Instant start, const metering::LocalCalendar& calendar);
+
 /// Nothing is kept in memory between two calls: a restart in the middle loses nothing and repeats
 /// nothing, and a figure is made of what is stored, by the rules of a replay.
 class MonthKeeper {

@@ -146,7 +146,11 @@ class Service {
                         .status = [this] { return gateway_->status(); },
                         .now = [this] { return loop_.now().instant(); },
                         .started = loop_.now().instant(),
-                        .ask_job = [this](JobKind kind) { return ask(kind, "api"); }};
+                        .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
+                        .take_readings =
+                            [this](const std::string& meter, auto readings) {
+                              return gateway_->take_pushed(meter, std::move(readings));
+                            }};
     auto server = http::Server::listen(context_, options, [served](const http::Request& request) {
       return answer(served, request);
     });

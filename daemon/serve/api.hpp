@@ -48,7 +48,8 @@ http::Response post_job(const Served& served, const http::Request& request) {
   return post_job_of(kind, served, request);
 }
 
-/// No meter takes pushed readings yet: 404 for a meter that is none, else 409.
+/// Readings of a meter with source = "http"; see daemon/serve/README.md. Sent twice, they are taken
+/// once.
 [[nodiscard]] http::Response post_readings(const Served& served, const http::Request& request);
 
 }  // namespace recald::daemon

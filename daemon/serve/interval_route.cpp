@@ -78,7 +78,8 @@ http::Response get_intervals(const Served& served, const http::Request& request)
 
   const metering::Meter& described = (*meter)->meter;
   Page page;
-  if ((*meter)->live) {  // a recorded meter has nothing in the store, and asking would enter it
+  if ((*meter)
+          ->is_stored()) {  // a recorded meter has nothing in the store, and asking would enter it
     const auto number = served.store.meter_number(described.id, described.interval);
     if (!number) return refusal(number.error()).value();
     auto read = read_page(served.store, *number, described, *span, *limit);

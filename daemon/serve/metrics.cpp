@@ -12,7 +12,7 @@
 namespace recald::daemon {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 double seconds_of(metering::Instant t) { return static_cast<double>(t.time_since_epoch().count()); }
 
@@ -35,11 +35,12 @@ void write_buses(PrometheusText& text, const GatewayStatus& status) {
   text.begin("recald_poll_requests_total", "counter",
              "Requests to a meter, by how they ended; timeout includes no connection.");
   for (const MeterStatus& meter : status.meters) {
+    if (!meter.poll) continue;
     for (std::size_t i = 0; i < kRequestResults.size(); ++i) {
       const bool is_usual = static_cast<RequestResult>(i) == RequestResult::ok;
-      if (meter.requests[i] == 0 && !is_usual) continue;
-      text.sample(static_cast<double>(meter.requests[i]),
-                  {{"bus", meter.bus}, {"meter", meter.id}, {"result", kRequestResults[i]}});
+      if (meter.poll->requests[i] == 0 && !is_usual) continue;
+      text.sample(static_cast<double>(meter.poll->requests[i]),
+                  {{"bus", meter.poll->bus}, {"meter", meter.id}, {"result", kRequestResults[i]}});
     }
   }
   text.begin("recald_poll_duration_seconds", "histogram", "From a request to its outcome.");
@@ -52,10 +53,10 @@ void write_buses(PrometheusText& text, const GatewayStatus& status) {
 void write_meters(PrometheusText& text, const GatewayStatus& status) {
   text.begin("recald_unit_state", "gauge", "Of a meter's device: 0 down, 1 degraded, 2 up.");
   for (const MeterStatus& meter : status.meters) {
-    text.sample(static_cast<double>(meter.state), {{"meter", meter.id}});
+    if (meter.poll) text.sample(static_cast<double>(meter.poll->state), {{"meter", meter.id}});
   }
   text.begin("recald_last_reading_timestamp_seconds", "gauge",
-             "When a meter last answered, since 1970.");
+             "When a meter last answered or was sent readings of, since 1970.");
   for (const MeterStatus& meter : status.meters) {
     if (meter.live.read_at) text.sample(seconds_of(*meter.live.read_at), {{"meter", meter.id}});
   }

@@ -86,7 +86,7 @@ http::Response get_months(const Served& served, const http::Request& request) {
   Json months = Json::array();
   for (std::size_t m = query->first_meter; m < served.site.meters.size(); ++m) {
     const MeterConfig& meter = served.site.meters[m];
-    if (!meter.live || (query->meter != nullptr && query->meter != &meter)) continue;
+    if (!meter.is_stored() || (query->meter != nullptr && query->meter != &meter)) continue;
     const auto number = served.store.meter_number(meter.meter.id, meter.meter.interval);
     if (!number) return refusal(number.error()).value();
     const auto figures = served.store.months(*number);

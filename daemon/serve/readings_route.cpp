@@ -3,27 +3,35 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/serve/api.hpp"
+#include "daemon/serve/json_answer.hpp"
 #include "daemon/serve/parameters.hpp"
+#include "daemon/serve/pushed_readings.hpp"
 
 namespace recald::daemon {
 
 http::Response post_readings(const Served& served, const http::Request& request) {
   if (const auto checked = has_only(request, {}); !checked) return checked.error();
-  const auto json = nlohmann::json::parse(request.body, nullptr, false);
-  const bool names_meter = json.is_object() && json.contains("meter") && json["meter"].is_string();
-  if (!names_meter) {
+  auto pushed = parse_pushed(request.body, served.site, served.now());
+  if (!pushed) return pushed.error();
+  const std::string& id = pushed->meter->meter.id;
+  if (!served.take_readings) {
     return http::error_response(
-        400, "malformed", R"(the body is no JSON object such as {"meter":"main","readings":[]})",
-        "meter");
+        409, "not_possible", fmt::format("no readings of meter '{}' are taken here", id), "meter");
   }
-  const auto meter = meter_of(served.site, json["meter"].get<std::string>());
-  if (!meter) return meter.error();
-  return http::error_response(
-      409, "not_possible",
-      fmt::format("meter '{}' has source = \"{}\": its readings come from there and are not taken "
-                  "from others",
-                  (*meter)->meter.id, (*meter)->live ? "modbus" : "csv"),
-      "meter");
+  const auto counts = served.take_readings(id, std::move(pushed->readings));
+  if (!counts) {
+    return http::error_response(503, "store_unavailable",
+                                "nothing was stored, send it again: " + counts.error().message);
+  }
+  auto conflicts = nlohmann::ordered_json::array();
+  for (const metering::Reading& reading : counts->conflicts) {
+    conflicts.push_back(metering::to_string(reading.start));
+  }
+  return json_answer({{"meter", id},
+                      {"stored", counts->taken},
+                      {"known", counts->duplicates},
+                      {"weaker", counts->weaker},
+                      {"conflicts", conflicts}});
 }
 
 }  // namespace recald::daemon

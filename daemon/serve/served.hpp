@@ -22,6 +22,10 @@ struct Served {
   /// Asks for a job: its number, or why there is none (unsupported: the site has no model;
   /// cancelled: too many wait already). Absent: nobody works here.
   std::function<Result<std::int64_t>(JobKind kind)> ask_job = {};
+  /// Gateway::take_pushed. Absent: nothing is taken here.
+  std::function<Result<CommitCounts>(const std::string& meter,
+                                     std::vector<metering::Reading> readings)>
+      take_readings = {};
 };
 
 /// The answer to any request: an API route, /healthz, /readyz, /metrics, the status page.

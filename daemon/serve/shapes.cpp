@@ -38,19 +38,23 @@ std::string reasons_list(metering::Reason reasons) {
   return "[\"" + list + "\"]";
 }
 
-Json polled_json(const MeterStatus& status, std::chrono::seconds length) {
+Json status_json(const MeterStatus& status, std::chrono::seconds length) {
   Json last;
   if (status.last_interval) {
     last = Json::parse(interval_json({.reading = *status.last_interval}, length));
     last.erase("revision");  // of the latest commit, which does not tell it
   }
-  return {{"state", name_of(status.state)},
-          {"power_kW", or_null(status.live.power_kW)},
-          {"register_kWh", or_null(status.live.register_kWh)},
-          {"read_at", or_null(status.live.read_at)},
-          {"skipped_polls", status.skipped_polls},
-          {"open_month_coverage", or_null(status.open_month_coverage)},
-          {"last_interval", last}};
+  Json json;
+  if (status.poll) {
+    json = {{"state", name_of(status.poll->state)},
+            {"power_kW", or_null(status.live.power_kW)},
+            {"register_kWh", or_null(status.live.register_kWh)},
+            {"skipped_polls", status.poll->skipped}};
+  }
+  json["read_at"] = or_null(status.live.read_at);
+  json["open_month_coverage"] = or_null(status.open_month_coverage);
+  json["last_interval"] = last;
+  return json;
 }
 
 }  // namespace
@@ -70,13 +74,13 @@ Json meter_json(const MeterConfig& config, const MeterStatus* status) {
                {"utility", to_string(config.meter.utility)},
                {"interval_s", config.meter.interval.count()},
                {"rated_kW", or_null(config.meter.rated_kW)},
-               {"source", config.live ? "modbus" : "csv"}};
+               {"source", name_of(config.source)}};
   if (config.live) {
     json["bus"] = config.live->bus;
     json["unit"] = config.live->unit;
     json["poll_s"] = config.live->poll.count();
   }
-  if (status != nullptr) json.update(polled_json(*status, config.meter.interval));
+  if (status != nullptr) json.update(status_json(*status, config.meter.interval));
   return json;
 }
 

@@ -15,7 +15,7 @@ namespace recald::daemon {
 [[nodiscard]] std::string_view name_of(UnitState state);    ///< "up", "degraded", "down"
 [[nodiscard]] std::string_view name_of(Severity severity);  ///< "info", "warning", "error"
 
-/// @param status  Null for a meter that is not polled.
+/// @param status  Null for a recorded meter.
 [[nodiscard]] nlohmann::ordered_json meter_json(const MeterConfig& config,
                                                 const MeterStatus* status);
 

@@ -28,7 +28,8 @@ constexpr double kCoverageGood = 0.9;
 /// A sign beside each word, so that nothing is said by colour alone.
 Cell state_cell(const MeterStatus* status) {
   if (status == nullptr) return {"recorded", "muted"};
-  switch (status->state) {
+  if (!status->poll) return {"sent by others", "muted"};
+  switch (status->poll->state) {
     case UnitState::up:
       return {"✔ up", "good"};
     case UnitState::degraded:
@@ -81,8 +82,11 @@ void write_meters(Html& html, const Served& served, const GatewayStatus& status)
 
 void write_verdict(Html& html, const Served& served, const GatewayStatus& status) {
   const auto reasons = reasons_not_ready(status);
-  const auto silent = std::ranges::count_if(
-      status.meters, [](const MeterStatus& meter) { return meter.state != UnitState::up; });
+  const auto polled = std::ranges::count_if(
+      status.meters, [](const MeterStatus& meter) { return meter.poll.has_value(); });
+  const auto silent = std::ranges::count_if(status.meters, [](const MeterStatus& meter) {
+    return meter.poll && meter.poll->state != UnitState::up;
+  });
   html.markup("<section aria-labelledby=\"verdict\"><h2 id=\"verdict\">Is it well?</h2><ul>");
   html.element("li", fmt::format("✔ The daemon runs since {}.",
                                  site_time_text(served.calendar, served.started)));
@@ -93,12 +97,11 @@ void write_verdict(Html& html, const Served& served, const GatewayStatus& status
                                    status.store.commits));
   }
   if (silent == 0) {
-    html.element("li", fmt::format("✔ All {} polled meters answer.", status.meters.size()));
+    html.element("li", fmt::format("✔ All {} polled meters answer.", polled));
   } else {
-    html.element("li",
-                 fmt::format("▲ {} of {} polled meters do not answer, or not always.", silent,
-                             status.meters.size()),
-                 "warn");
+    html.element(
+        "li", fmt::format("▲ {} of {} polled meters do not answer, or not always.", silent, polled),
+        "warn");
   }
   html.markup("</ul></section>");
 }

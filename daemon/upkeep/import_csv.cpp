@@ -18,8 +18,6 @@ using metering::Month;
 using metering::Reading;
 
 constexpr std::size_t kBatchMax = 1000;
-/// Readings after a month that its last slots are judged by, as MonthKeeper has it.
-constexpr std::chrono::hours kAfterwards{48};
 
 /// One import, within a transaction.
 class Import {
@@ -134,18 +132,13 @@ class Import {
     if (counts->taken > 0) reopen(meter, batch);
   }
 
-  /// A month's figures depend on it, on what follows at once and on what its meter was like before.
   void reopen(const MeterImport& meter, const StoreBatch& batch) {
     StoreBatch changes;
-    for (const Month month :
-         {metering::previous_month(meter.month), meter.month, metering::next_month(meter.month)}) {
+    const auto earliest = std::ranges::min(batch.intervals, {}, [](const auto& interval) {
+                            return interval.reading.start;
+                          }).reading.start;
+    for (const Month month : months_that_depend_on(earliest, calendar_)) {
       if (!meter.closed.contains(month)) continue;
-      const bool is_before = month < meter.month;
-      const metering::Instant seen_until = calendar_.month_span(month).end + kAfterwards;
-      const bool is_seen = std::ranges::any_of(batch.intervals, [&](const auto& interval) {
-        return interval.reading.start < seen_until;
-      });
-      if (is_before && !is_seen) continue;
       const MeterMonth changed{meter.stored.number, month};
       if (std::ranges::find(outcome_.reopened, changed) != outcome_.reopened.end()) continue;
       outcome_.reopened.push_back(changed);

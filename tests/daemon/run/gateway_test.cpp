@@ -164,7 +164,7 @@ TEST_F(GatewayTest, AMonthFromRegistersToFigures) {
   EXPECT_FALSE(status.store.is_degraded);
   ASSERT_THAT(status.meters, SizeIs(2));
   EXPECT_EQ(status.meters[0].id, "main");
-  EXPECT_EQ(status.meters[0].state, UnitState::up);
+  EXPECT_EQ(status.meters[0].poll->state, UnitState::up);
   EXPECT_EQ(status.meters[0].last_interval->start, kStart + days{36} - minutes{15});
   EXPECT_NEAR(*status.meters[0].live.register_kWh, main_kWh(days{36}), 2.0);
 }
@@ -301,9 +301,9 @@ TEST_F(GatewayTest, ADeadMeterIsSeenAndItsNeighbourIsNot) {
   begin();
   loop_.run_for(hours{6});
   const GatewayStatus status = gateway_->status();
-  EXPECT_EQ(status.meters[0].state, UnitState::down);
+  EXPECT_EQ(status.meters[0].poll->state, UnitState::down);
   EXPECT_FALSE(status.meters[0].last_interval.has_value());
-  EXPECT_EQ(status.meters[1].state, UnitState::up);
+  EXPECT_EQ(status.meters[1].poll->state, UnitState::up);
   // Its first poll waited for a time-out, and the last interval is under way.
   EXPECT_EQ(count("cooling", Validity::ok), 24 - 2);
 }

@@ -120,14 +120,14 @@ const std::string kTwoBuses =
 TEST_F(Reload, AFileThatSaysTheSameChangesNothing) {
   begin(kTwoBuses);
   loop_.run_for(hours{1} + minutes{7});
-  const auto requests = gateway_->status().meters[0].requests;
+  const auto requests = gateway_->status().meters[0].poll->requests;
   // Comments, spaces and the order of keys are nothing that changed.
   ASSERT_TRUE(gateway_
                   ->reload(site("# again\n" + bus("roof") + bus("plant") +
                                 meter("main", "plant", 1) + meter("lift", "roof", 2)))
                   .has_value());
   EXPECT_THAT(made_, ElementsAre("plant", "roof"));
-  EXPECT_EQ(gateway_->status().meters[0].requests, requests);
+  EXPECT_EQ(gateway_->status().meters[0].poll->requests, requests);
   loop_.run_for(hours{3});
   EXPECT_EQ(flawed("main"), 0);
   EXPECT_EQ(flawed("lift"), 0);
@@ -168,13 +168,13 @@ TEST_F(Reload, WhatIsKnownOfASilentDeviceIsNotForgotten) {
   devices_[2].is_silent = [](milliseconds) { return true; };
   begin(kTwoBuses);
   loop_.run_for(hours{2});
-  ASSERT_EQ(gateway_->status().meters[1].state, UnitState::down);
+  ASSERT_EQ(gateway_->status().meters[1].poll->state, UnitState::down);
   ASSERT_TRUE(gateway_
                   ->reload(site(bus("plant", "timeout = \"2s\"\n") + bus("roof") +
                                 meter("main", "plant", 1) + meter("lift", "roof", 2)))
                   .has_value());
   for (const MeterStatus& one : gateway_->status().meters) {
-    EXPECT_EQ(one.state, one.id == "lift" ? UnitState::down : UnitState::up) << one.id;
+    EXPECT_EQ(one.poll->state, one.id == "lift" ? UnitState::down : UnitState::up) << one.id;
   }
 }
 

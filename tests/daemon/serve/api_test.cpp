@@ -285,14 +285,5 @@ TEST_F(Jobs, AreRefusedWithTheirReason) {
   }
 }
 
-TEST_F(Jobs, ReadingsArePushedToNoMeterYet) {
-  EXPECT_EQ(in_short(post("/api/v1/readings", "{")), "400 malformed meter");
-  EXPECT_EQ(in_short(post("/api/v1/readings", R"({"meter":3})")), "400 malformed meter");
-  EXPECT_EQ(in_short(post("/api/v1/readings", R"({"meter":"x"})")), "404 not_found meter");
-  const http::Response refused = post("/api/v1/readings", R"({"meter":"main","readings":[]})");
-  EXPECT_EQ(in_short(refused), "409 not_possible meter");
-  EXPECT_THAT(refused.body, HasSubstr("source = \\\"modbus\\\""));
-}
-
 }  // namespace
 }  // namespace recald::daemon

@@ -56,9 +56,10 @@ file = "old.csv"
 /// decides), 2024-03-30T12:00:00Z, so that a month closes soon.
 class ServedSite : public ::testing::Test {
  protected:
-  ServedSite() {
+  /// @param more  Of the site file.
+  explicit ServedSite(const std::string& more = "") {
     recald::testing::write_text(folder_ / "counter.toml", recald::testing::CounterBus::kMap);
-    recald::testing::write_text(folder_ / "site.toml", kServedSite);
+    recald::testing::write_text(folder_ / "site.toml", kServedSite + more);
     site_ = load_site(folder_ / "site.toml").value();
     devices_[1].energy_kWh = [](std::chrono::milliseconds t) {
       return 0.05 + 60.0 * hours_of(t) + unevenness_kWh(t);
@@ -127,7 +128,11 @@ class ServedSite : public ::testing::Test {
                  .store = store_,
                  .status = [this] { return gateway_->status(); },
                  .now = [this] { return loop_.now().instant(); },
-                 .started = kStart};
+                 .started = kStart,
+                 .take_readings =
+                     [this](const std::string& meter, auto readings) {
+                       return gateway_->take_pushed(meter, std::move(readings));
+                     }};
 };
 
 }  // namespace recald::daemon
