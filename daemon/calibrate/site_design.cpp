@@ -33,6 +33,20 @@ doe::MonthlyTable in_order_of_time(doe::MonthlyTable table) {
 
 }  // namespace
 
+doe::MonthlyTable measured_table(const PreparedSite& site) {
+  const SiteCalibration& so_far = site.so_far;
+  doe::MonthlyTable table;
+  table.months = design_months(so_far.month_names);
+  table.values.resize(static_cast<Eigen::Index>(table.months.size()),
+                      static_cast<Eigen::Index>(so_far.outputs.size()));
+  for (std::size_t k = 0; k < so_far.outputs.size(); ++k) {
+    table.names.push_back(so_far.outputs[k].name);
+    table.values.col(static_cast<Eigen::Index>(k)) =
+        Eigen::Map<const Eigen::VectorXd>(so_far.outputs[k].measured.data(), table.values.rows());
+  }
+  return in_order_of_time(std::move(table));
+}
+
 doe::DesignPlan plan_design(const PreparedSite& site, const SiteDesignOptions& options) {
   const SiteCalibration& so_far = site.so_far;
   doe::DesignPlan plan;
@@ -43,13 +57,7 @@ doe::DesignPlan plan_design(const PreparedSite& site, const SiteDesignOptions& o
   const std::vector<doe::DesignMonth> months = design_months(so_far.month_names);
   plan.months = design_months(site.problem.month_names);
   plan.inputs = in_order_of_time({months, site.inputs.names, site.inputs.values});
-  Eigen::MatrixXd measured(static_cast<Eigen::Index>(months.size()),
-                           static_cast<Eigen::Index>(so_far.outputs.size()));
-  for (std::size_t k = 0; k < so_far.outputs.size(); ++k) {
-    measured.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(
-        so_far.outputs[k].measured.data(), static_cast<Eigen::Index>(months.size()));
-  }
-  plan.measurements = in_order_of_time({months, plan.output_names, std::move(measured)});
+  plan.measurements = measured_table(site);
   plan.seed = options.seed;
   plan.fingerprint = options.fingerprint;
   return plan;

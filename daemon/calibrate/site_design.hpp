@@ -18,6 +18,9 @@ struct SiteDesignOptions {
   std::string fingerprint;  ///< Of site file, data and program: what a run depends on.
 };
 
+/// Daily averages and peaks of a site's months, by name of the output. NaN: not measured.
+[[nodiscard]] doe::MonthlyTable measured_table(const PreparedSite& site);
+
 /// What is to be run, and with what it is to be compared.
 [[nodiscard]] doe::DesignPlan plan_design(const PreparedSite& site,
                                           const SiteDesignOptions& options);

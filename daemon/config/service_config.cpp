@@ -71,7 +71,7 @@ HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) 
   return config;
 }
 
-RecalibrationConfig read_recalibration(TomlReader& table) {
+RecalibrationConfig read_recalibration(TomlReader& table, const std::filesystem::path& site_file) {
   RecalibrationConfig config;
   if (const auto text = table.text("schedule")) {
     if (const auto schedule = parse_schedule(*text)) {
@@ -81,6 +81,9 @@ RecalibrationConfig read_recalibration(TomlReader& table) {
     }
   }
   config.months = table.whole_number_or("months", config.months, {6, 120});
+  if (const auto text = table.text("design")) {
+    config.design = resolve(site_file, *text, "design", table);
+  }
   table.finish();
   return config;
 }

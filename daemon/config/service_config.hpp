@@ -22,12 +22,16 @@ struct HttpConfig {
 struct RecalibrationConfig {
   Schedule schedule{.when_a_month_closes = true, .times = {}};
   int months = 24;  ///< The last so many closed months are fitted.
+  /// Folder of a design of experiments (`recald doe`) whose meta-model is calibrated; empty: the
+  /// site's model itself is.
+  std::filesystem::path design;
 };
 
 /// [http]. Whoever listens beyond this machine needs a token and TLS.
 [[nodiscard]] HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file);
 
 /// [recalibration]
-[[nodiscard]] RecalibrationConfig read_recalibration(TomlReader& table);
+[[nodiscard]] RecalibrationConfig read_recalibration(TomlReader& table,
+                                                     const std::filesystem::path& site_file);
 
 }  // namespace recald::daemon

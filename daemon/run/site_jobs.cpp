@@ -6,6 +6,7 @@
 
 #include "adapters/system/write_file.hpp"
 #include "daemon/calibrate/finished_calibration.hpp"
+#include "daemon/calibrate/site_on_design.hpp"
 #include "daemon/diagnose/diagnosis_files.hpp"
 #include "daemon/diagnose/site_diagnosis.hpp"
 #include "daemon/results/calibration_files.hpp"
@@ -19,6 +20,30 @@ std::filesystem::path folder_of(const SiteConfig& site, const StoredJob& job) {
   return results_folder(site) / fmt::format("{}-{}", name_of(job.kind), job.number);
 }
 
+JobOutcome outcome_of(const AssessedCalibration& calibration, const RunFacts& facts,
+                      const std::filesystem::path& folder) {
+  JobOutcome outcome{.accepted = calibration.calibration.converged,
+                     .folder = folder.string(),
+                     .result = calibration_json(calibration, facts)};
+  if (!outcome.accepted) {
+    outcome.message = "the chains have not converged, so the result before stays in use";
+  }
+  return outcome;
+}
+
+Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
+                                       const std::filesystem::path& design,
+                                       const std::filesystem::path& folder,
+                                       const calibration::RunContext& context) {
+  const auto done = calibrate_on_design(modelled, design, context);
+  if (!done) return tl::unexpected(done.error());
+  JobOutcome outcome = outcome_of(done->calibration, done->facts, folder);
+  if (auto written = write_calibration(*done, outcome.result, folder); !written) {
+    return tl::unexpected(written.error());
+  }
+  return outcome;
+}
+
 Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
                              const GoesOn& goes_on) {
   const auto folder = folder_of(site.config, job);
@@ -26,14 +51,12 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   if (!modelled) return tl::unexpected(modelled.error());
   const calibration::RunContext context{
       .seed = kSeed, .observer = [&](const calibration::Progress&) { return goes_on(); }};
+  if (const auto& design = modelled->site.config.recalibration.design; !design.empty()) {
+    return calibrate_metamodel(*modelled, design, folder, context);
+  }
   const auto done = finish_calibration(std::move(*modelled), {}, context);
   if (!done) return tl::unexpected(done.error());
-  JobOutcome outcome{.accepted = done->calibration.calibration.converged,
-                     .folder = folder.string(),
-                     .result = calibration_json(done->calibration, done->modelled.facts)};
-  if (!outcome.accepted) {
-    outcome.message = "the chains have not converged, so the result before stays in use";
-  }
+  JobOutcome outcome = outcome_of(done->calibration, done->modelled.facts, folder);
   const auto written = write_calibration(*done, outcome.result, metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
   return outcome;

@@ -2,6 +2,7 @@
 /// reads them there, and makes of them what it would have made of a file.
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "daemon/run/site_jobs.hpp"
@@ -129,6 +130,38 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
   EXPECT_EQ(json::parse(read_text(std::filesystem::path{outcome->folder} / "calibration.json")),
             result);
   EXPECT_TRUE(std::filesystem::exists(std::filesystem::path{outcome->folder} / "report.html"));
+}
+
+TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
+  import_history();
+  ASSERT_EQ(run({"doe", path("site.toml"), "--runs", "60", "--out", path("doe")}).exit_code, 0);
+  auto config = load_site(folder_ / "live.toml").value();
+  config.recalibration.months = 8;
+  config.recalibration.design = folder_ / "doe";
+  const DoJob work =
+      make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+  const auto outcome =
+      work({}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
+  ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
+  const json result = json::parse(outcome->result);
+  EXPECT_EQ(result["model"], "metamodel");
+  EXPECT_TRUE(outcome->accepted) << outcome->message;
+  // Nine months were simulated; October and November, measured since, show how well it does.
+  std::map<std::string, int> months;
+  for (const json& month : result["months"]) ++months[month["role"].get<std::string>()];
+  EXPECT_EQ(months, (std::map<std::string, int>{{"calibration", 9}, {"validation", 2}}));
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path{outcome->folder} / "calibration.json"));
+}
+
+TEST_F(LiveSite, AJobSaysThatItsDesignIsMissing) {
+  import_history();
+  auto config = load_site(folder_ / "live.toml").value();
+  config.recalibration.design = folder_ / "nowhere";
+  const auto calendar = metering::LocalCalendar::open(config.timezone).value();
+  const auto outcome = make_site_work({config, calendar})(
+      {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
+  ASSERT_FALSE(outcome.has_value());
+  EXPECT_THAT(outcome.error().message, HasSubstr("nowhere"));
 }
 
 TEST_F(LiveSite, AJobThatIsToldToStopStops) {

@@ -27,7 +27,7 @@ Problems recalibration_problems(const char* text) {
   Problems problems;
   const toml::table table = toml::parse(text);
   TomlReader reader{table, "site.toml", "[recalibration]", problems};
-  static_cast<void>(read_recalibration(reader));
+  static_cast<void>(read_recalibration(reader, "/etc/recald/site.toml"));
   return problems;
 }
 

@@ -1,0 +1,34 @@
+/// A site's measured months on the meta-model of a design that was run before: a calibration
+/// without a single run of the simulation.
+#pragma once
+
+#include <filesystem>
+
+#include "daemon/calibrate/design_calibration.hpp"
+#include "daemon/calibrate/modelled_site.hpp"
+#include "daemon/calibrate/site_calibration.hpp"
+
+namespace recald::daemon {
+
+/// The measured months of a prepared site for which the design has model inputs.
+/// @return unsupported when the site measures none of the design's outputs; not_enough_data when
+///         the design covers none of its months.
+[[nodiscard]] Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
+                                                         const PreparedSite& site);
+
+struct SiteOnDesign {
+  DesignCalibration calibration;
+  RunFacts facts;  ///< Of site, readings and design.
+};
+
+/// As `recald calibrate --model metamodel --design` does it, but with the site's own months.
+/// @return or what reading the design, the site and the calibration find.
+[[nodiscard]] Result<SiteOnDesign> calibrate_on_design(const ModelledSite& modelled,
+                                                       const std::filesystem::path& design,
+                                                       const calibration::RunContext& context);
+
+/// Draws and, last, calibration.json.
+[[nodiscard]] Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,
+                                             const std::filesystem::path& folder);
+
+}  // namespace recald::daemon
