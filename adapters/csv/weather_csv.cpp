@@ -17,7 +17,7 @@ using weather::kWeatherVariables;
 using weather::WeatherHour;
 using weather::WeatherRecord;
 
-constexpr std::string_view kHeader =
+constexpr std::string_view kWeatherHeader =
     "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2";
 constexpr std::size_t kDryBulb = 0;  // in kWeatherVariables
 
@@ -40,7 +40,7 @@ constexpr std::array<Range, kWeatherVariables.size()> kRanges{{
 }};
 
 /// Column of the file for each variable; none where the file lacks it.
-using Columns = std::array<std::optional<std::size_t>, kWeatherVariables.size()>;
+using WeatherColumns = std::array<std::optional<std::size_t>, kWeatherVariables.size()>;
 
 class WeatherReader {
  public:
@@ -69,7 +69,7 @@ class WeatherReader {
   [[nodiscard]] tl::unexpected<Error> wrong_header(std::string_view header,
                                                    const std::string& why) const {
     return failure(ErrorCode::malformed, in_quotes(name_) + ": the header must be like '" +
-                                             std::string{kHeader} + "' but is " +
+                                             std::string{kWeatherHeader} + "' but is " +
                                              in_quotes(header.substr(0, 120)) + why);
   }
 
@@ -177,7 +177,7 @@ class WeatherReader {
   std::string name_;
   const WeatherCsvOptions& options_;
   FieldSplitter fields_;
-  Columns columns_;
+  WeatherColumns columns_;
   std::size_t column_count_ = 0;
   std::vector<WeatherRecord> records_;
   WeatherCsv csv_;

@@ -11,10 +11,6 @@ constexpr std::uint8_t kBasic = 0x01;  // vendor, product, revision, as a stream
 constexpr std::uint8_t kMoreFollows = 0xFF;
 constexpr std::size_t kFixed = 7;  // function, type, code, conformity, more, next, number
 
-tl::unexpected<ReadFailure> mismatch(std::string what) {
-  return tl::unexpected(ReadFailure{ReadFault::mismatch, 0, std::move(what)});
-}
-
 }  // namespace
 
 std::array<std::uint8_t, 5> encode_identity_request(std::uint8_t unit, std::uint8_t first_object) {

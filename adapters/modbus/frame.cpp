@@ -4,21 +4,12 @@
 
 #include <cassert>
 
+#include "adapters/modbus/bytes.hpp"
+
 namespace recald::modbus {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 7;  // transaction, protocol, length, unit
-constexpr std::uint8_t kExceptionBit = 0x80;
-
-using Bytes = std::span<const std::uint8_t>;
-
-unsigned word_at(Bytes bytes, std::size_t at) {
-  return static_cast<unsigned>(bytes[at]) << 8 | bytes[at + 1];
-}
-
-tl::unexpected<ReadFailure> mismatch(std::string what) {
-  return tl::unexpected(ReadFailure{ReadFault::mismatch, 0, std::move(what)});
-}
 
 /// A reply without its transport's bytes: function, then byte count and data, or the exception
 /// code.
@@ -54,6 +45,10 @@ ReadResult check_pdu(Bytes pdu, const ReadRequest& request) {
 }
 
 }  // namespace
+
+tl::unexpected<ReadFailure> mismatch(std::string what) {
+  return tl::unexpected(ReadFailure{ReadFault::mismatch, 0, std::move(what)});
+}
 
 std::string_view to_string(ReadFault fault) {
   switch (fault) {

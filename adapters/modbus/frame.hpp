@@ -52,6 +52,9 @@ struct ReadFailure {
   std::string what;                 ///< For people: what was expected and what came.
 };
 
+/// The reply is none to what was asked.
+[[nodiscard]] tl::unexpected<ReadFailure> mismatch(std::string what);
+
 using ReadResult = tl::expected<Words, ReadFailure>;
 
 /// Unit, function, address and count: what both transports put their own bytes around.

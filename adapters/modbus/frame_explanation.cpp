@@ -5,20 +5,15 @@
 #include <array>
 #include <cctype>
 
+#include "adapters/modbus/bytes.hpp"
+
 namespace recald::modbus {
 namespace {
-
-using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kTcpHeader = 7;  // transaction, protocol, length, unit
 constexpr std::size_t kRtuShortest = 5;
 constexpr std::size_t kCheckSum = 2;
-constexpr std::uint8_t kExceptionBit = 0x80;
 constexpr std::array<std::string_view, 3> kFramings{"tcp", "rtu", "registers"};
-
-std::uint16_t word_at(Bytes bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
-}
 
 std::uint16_t check_sum_of(Bytes frame) {
   return static_cast<std::uint16_t>(frame[frame.size() - 1] << 8 | frame[frame.size() - 2]);

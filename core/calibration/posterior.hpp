@@ -102,7 +102,7 @@ class Posterior final : public Target {
   [[nodiscard]] double log_likelihood_of_residual(const Eigen::VectorXd& residual);
   /// y - f(theta) on the normalised scale (m), valid until the next call.
   [[nodiscard]] const Eigen::VectorXd& residual_at(std::span<const double> theta);
-  /// Sigma^-1 (m x m) at the hyper-parameters set last.
+  /// Sigma^-1 at the hyper-parameters set last. @param inverse  (m x m), already of that size.
   void precision(Eigen::MatrixXd& inverse) { covariance_->precision(inverse); }
 
   /// Natural values of a point in unconstrained coordinates; `theta` and `hyper` already sized.

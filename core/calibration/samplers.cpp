@@ -13,15 +13,13 @@
 namespace recald::calibration {
 namespace {
 
-using Observer = SamplerObserver;
-
 Result<Chain> run_nuts(Target& target, const SamplerOptions& options, Rng& rng,
-                       const Observer& observer) {
+                       const SamplerObserver& observer) {
   return nuts(target, options, rng, observer);
 }
 
 Result<Chain> run_smc(Target& target, const SamplerOptions& options, Rng& rng,
-                      const Observer& observer) {
+                      const SamplerObserver& observer) {
   return smc(target, options, rng, observer);
 }
 

@@ -8,7 +8,7 @@
 namespace recald::diagnosis {
 namespace {
 
-constexpr std::size_t kLeastParts = 100;
+constexpr std::size_t kLeastGround = 100;
 // Spread of residuals in the upper half of the levels over that in the lower half, beyond which a
 // meter is judged on the square-root scale.
 constexpr double kSpreadRatio = 1.6;
@@ -156,7 +156,7 @@ Result<JointFit> first_fit(Predictor& predictor, const SiteProblem& site, const 
 Result<void> require_parts(const SiteProblem& site, const Observations& fit) {
   for (std::size_t g = 0; g < site.meters.size(); ++g) {
     const std::size_t measured = fit.meters[g].rows.size();
-    if (measured >= kLeastParts) continue;
+    if (measured >= kLeastGround) continue;
     return failure(ErrorCode::not_enough_data,
                    "meter '" + site.meters[g].id + "' has " + std::to_string(measured) +
                        " measured four-hour parts in the months to fit, and a diagnosis needs 100 "

@@ -78,12 +78,12 @@ class ScoredModel {
   }
   /// A choice is as it is. @param eta_begin  Of the posterior.
   void hold_choices(Eigen::Index eta_begin, GaussianPosterior& posterior) const {
-    constexpr double kNothing = 1e-12;
+    constexpr double kNoSpread = 1e-12;
     for (Eigen::Index j = 0; j < eta_count(); ++j) {
       if (!is_choice(j)) continue;
       posterior.covariance.row(eta_begin + j).setZero();
       posterior.covariance.col(eta_begin + j).setZero();
-      posterior.covariance(eta_begin + j, eta_begin + j) = kNothing;
+      posterior.covariance(eta_begin + j, eta_begin + j) = kNoSpread;
     }
   }
   /// Log of how many ways there were to choose: what one of them pays in evidence.

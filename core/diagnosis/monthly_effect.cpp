@@ -55,12 +55,12 @@ Eigen::ArrayXd ratios(const Eigen::ArrayXd& recorded, const Eigen::ArrayXd& unre
 }
 
 /// Where a value lies between two nodes: the lower one and the share of the upper.
-struct Place {
+struct NodePlace {
   Eigen::Index lower;
   double upper_share;
 };
 
-Place place_of(const std::vector<double>& nodes, double value) {
+NodePlace place_of(const std::vector<double>& nodes, double value) {
   if (nodes.size() == 1) return {0, 0.0};
   const auto above = std::ranges::upper_bound(nodes, value);
   const auto cell = std::clamp<std::ptrdiff_t>(above - nodes.begin() - 1, 0, std::ssize(nodes) - 2);
@@ -131,7 +131,7 @@ MonthlyEffect::MonthlyEffect(std::vector<std::vector<double>> nodes, int meter,
 void MonthlyEffect::apply(std::span<const double> theta, std::span<const double> eta,
                           std::span<double> daily_kWh) const {
   assert(eta.size() == nodes_.size() && theta.size() >= middle_.size());
-  std::array<Place, kNodes.size()> places{};
+  std::array<NodePlace, kNodes.size()> places{};
   for (std::size_t j = 0; j < eta.size(); ++j) places[j] = place_of(nodes_[j], eta[j]);
   const std::size_t first = is_of_record() ? static_cast<std::size_t>(meter_ * months_) : 0;
   assert(daily_kWh.size() >= first + static_cast<std::size_t>(table_.rows()));

@@ -10,7 +10,7 @@ namespace {
 // Training population of seed 601, 30 buildings with nothing hidden: one plus the mean of the
 // positive support, of the first look alone where an effect was not worth a fit; drawn towards the
 // mean of all effects by the weight of four buildings. What is not listed was visible at none.
-constexpr double kAnyEffect = 3.4;
+constexpr double kAnyEffectInMap = 3.4;
 constexpr auto kNullScales = std::to_array<Learnt>({
     {"after_hours", 1.4},
     {"chiller_part_load", 3.5},
@@ -55,6 +55,8 @@ constexpr auto kNullScales = std::to_array<Learnt>({
 
 }  // namespace
 
-double null_scale(std::string_view effect) { return learnt_of(kNullScales, effect, kAnyEffect); }
+double null_scale(std::string_view effect) {
+  return learnt_of(kNullScales, effect, kAnyEffectInMap);
+}
 
 }  // namespace recald::diagnosis

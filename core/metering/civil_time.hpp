@@ -21,6 +21,12 @@ using Instant = std::chrono::sys_seconds;  ///< UTC, whole seconds.
 using Month = std::chrono::year_month;     ///< A local calendar month.
 using Day = std::chrono::year_month_day;   ///< A local calendar day.
 
+inline constexpr std::chrono::seconds kDay{86'400};  ///< Of 24 hours, as most are.
+
+[[nodiscard]] inline double in_hours(std::chrono::seconds span) {
+  return static_cast<double>(span.count()) / 3600.0;
+}
+
 /// Half open: [begin, end).
 struct TimeSpan {
   Instant begin;

@@ -12,8 +12,6 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds kDay{86'400};
-
 seconds peak_window(const MonthSlots& month, const PeakRule& rule) {
   const seconds interval = month.grid->interval();
   const bool fits = rule.window >= interval && rule.window % interval == seconds{0} &&

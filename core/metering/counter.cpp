@@ -17,11 +17,9 @@ constexpr double kRolloverFrom = 0.9;  // of the modulus
 constexpr std::size_t kErraticRestarts = 10;
 constexpr seconds kErraticTime{3600};
 
-double hours(seconds span) { return static_cast<double>(span.count()) / 3600.0; }
-
 /// A: the most that the register can have risen.
 double rise_max_kWh(seconds span, const CounterSettings& settings) {
-  return kRatedMargin * settings.rated_kW * hours(span) + 2.0 * settings.resolution_kWh;
+  return kRatedMargin * settings.rated_kW * in_hours(span) + 2.0 * settings.resolution_kWh;
 }
 
 /// "v fits X": −2r <= v − X <= A since X.

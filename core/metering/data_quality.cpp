@@ -10,9 +10,7 @@
 namespace recald::metering {
 namespace {
 
-using std::chrono::hours;
-
-constexpr hours kLongZeroRun{72};
+constexpr std::chrono::hours kLongZeroRun{72};
 
 std::string span_words(const TimeSpan& span) {
   const double length_h = static_cast<double>(span.length().count()) / 3600.0;

@@ -217,7 +217,7 @@ class MonthFiller {
   /// Of the slots in long gaps, from the means of complete days.
   [[nodiscard]] double block_variance_kWh2() const {
     if (days_missing_ == 0.0) return 0.0;
-    Moments days;
+    Moments complete_days;
     const std::vector<int>& begins = month_.grid->day_begins();
     for (std::size_t day = 0; day + 1 < begins.size(); ++day) {
       if (begins[day] == begins[day + 1]) continue;
@@ -227,11 +227,11 @@ class MonthFiller {
         complete = complete && month_.is_ok(slot);
         sum_kW += measured_kW(slot);
       }
-      if (complete) days.merge({1.0, sum_kW / (begins[day + 1] - begins[day]), 0.0});
+      if (complete) complete_days.merge({1.0, sum_kW / (begins[day + 1] - begins[day]), 0.0});
     }
-    double variance_kW2 = days.variance();
-    double days_known = days.n;
-    if (days.n < options_.days_min) {
+    double variance_kW2 = complete_days.variance();
+    double days_known = complete_days.n;
+    if (complete_days.n < options_.days_min) {
       // Without whole days to compare, a day is taken to stray as far as a single slot does.
       variance_kW2 = whole_month_.variance();
       days_known = std::max(1.0, whole_month_.n / times_);

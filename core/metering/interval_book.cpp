@@ -11,8 +11,6 @@ namespace {
 
 using std::chrono::seconds;
 
-double hours(seconds span) { return static_cast<double>(span.count()) / 3600.0; }
-
 Instant interval_start(Instant t, seconds interval) {
   const seconds past = t.time_since_epoch() % interval;
   return t - past;
@@ -20,7 +18,7 @@ Instant interval_start(Instant t, seconds interval) {
 
 std::vector<double> lengths_h(std::span<const CounterBooking> pieces) {
   std::vector<double> lengths;
-  for (const CounterBooking& piece : pieces) lengths.push_back(hours(piece.span.length()));
+  for (const CounterBooking& piece : pieces) lengths.push_back(in_hours(piece.span.length()));
   return lengths;
 }
 
@@ -78,7 +76,7 @@ Reading reading_of(std::span<const CounterBooking> pieces, std::uint32_t meter,
     energy_kWh += piece.energy_kWh;
   }
   if (is_missing || covered < interval.length()) return reading;
-  reading.mean_kW = energy_kWh / hours(interval.length());
+  reading.mean_kW = energy_kWh / in_hours(interval.length());
   reading.validity = is_estimated ? Validity::scaled : Validity::ok;
   return reading;
 }

@@ -9,8 +9,6 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds kDay{86'400};
-
 }  // namespace
 
 MonthGrid::MonthGrid(const LocalCalendar& calendar, Month month, seconds interval, seconds phase)

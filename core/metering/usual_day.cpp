@@ -11,7 +11,6 @@ namespace {
 using std::chrono::seconds;
 
 constexpr int kDaysRemembered = 20;
-constexpr seconds kDay{86'400};
 
 }  // namespace
 

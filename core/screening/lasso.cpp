@@ -13,7 +13,7 @@ namespace recald::screening {
 namespace {
 
 // Share of a column's sum of squares about zero below which its variance is rounding.
-constexpr double kNoSpread = 1e-14;
+constexpr double kConstantColumn = 1e-14;
 
 /// Coordinate descent whose state survives from one penalty to the next.
 class Descent {
@@ -134,7 +134,7 @@ StandardisedProducts::StandardisedProducts(const regression::CentredProducts& pr
       variance(products.yy.sum() / products.rows) {
   Eigen::VectorXd scale(x_sd.size());
   for (Eigen::Index j = 0; j < scale.size(); ++j) {
-    const bool spread = x_sd(j) * x_sd(j) > kNoSpread * x_mean(j) * x_mean(j);
+    const bool spread = x_sd(j) * x_sd(j) > kConstantColumn * x_mean(j) * x_mean(j);
     scale(j) = spread ? 1.0 / x_sd(j) : 0.0;
   }
   correlation = scale.asDiagonal() * products.xx * scale.asDiagonal() / products.rows;

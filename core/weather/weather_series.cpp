@@ -16,7 +16,7 @@ using std::chrono::minutes;
 using std::chrono::seconds;
 
 constexpr std::size_t kVariables = kWeatherVariables.size();
-constexpr double kRadian = std::numbers::pi / 180.0;
+constexpr double kRadianPerDegree = std::numbers::pi / 180.0;
 constexpr double kCalm_m_s = 0.1;  // a direction seen in a calm still counts a little
 
 bool is_direction(const WeatherVariable& variable) {
@@ -33,8 +33,8 @@ class Mean {
     weight_ += weight;
   }
   void add_direction(double deg, double weight, double vector_weight) {
-    east_ += weight * vector_weight * std::sin(deg * kRadian);
-    north_ += weight * vector_weight * std::cos(deg * kRadian);
+    east_ += weight * vector_weight * std::sin(deg * kRadianPerDegree);
+    north_ += weight * vector_weight * std::cos(deg * kRadianPerDegree);
     weight_ += weight;
   }
   [[nodiscard]] double weight() const { return weight_; }
@@ -42,7 +42,7 @@ class Mean {
     if (weight_ <= 0.0) return kAbsent;
     if (!direction) return sum_ / weight_;
     if (std::hypot(east_, north_) < 1e-9 * weight_) return kAbsent;  // winds that cancel
-    const double deg = std::atan2(east_, north_) / kRadian;
+    const double deg = std::atan2(east_, north_) / kRadianPerDegree;
     return deg < 0.0 ? deg + 360.0 : deg;
   }
 

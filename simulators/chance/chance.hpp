@@ -5,6 +5,8 @@
 
 namespace recald::simulators {
 
+inline constexpr double kDay_s = 86'400.0;
+
 /// One stream of `Rng` a concern, so that a new draw in one leaves all others as they were.
 enum class Stream : std::uint64_t {
   weather = 1,

@@ -10,9 +10,8 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kDaysTurn = 2.0 * std::numbers::pi;
 constexpr double kHour_s = 3600.0;
-constexpr double kDay_s = 86'400.0;
 
 double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
@@ -24,7 +23,7 @@ double solar_hour_of(metering::Instant t, const Place& place) {
 
 /// Shape of a day with mean 0 and half range about 1: coldest near sunrise, warmest at 15 h.
 double daily_shape(double solar_hour) {
-  const double angle = kTurn * (solar_hour - 14.8) / 24.0;
+  const double angle = kDaysTurn * (solar_hour - 14.8) / 24.0;
   return 0.92 * std::cos(angle) + 0.16 * std::cos(2.0 * angle + 0.6);
 }
 
@@ -151,7 +150,7 @@ double WeatherGenerator::dew_C(const AirMass& mass, const Moment& when, double s
 WeatherGenerator::Wind WeatherGenerator::wind(const AirMass& mass, const Moment& when,
                                               double cloud) {
   constexpr double spread = 0.45;
-  const double afternoon = std::cos(kTurn * (when.solar_hour - 14.5) / 24.0);
+  const double afternoon = std::cos(kDaysTurn * (when.solar_hour - 14.5) / 24.0);
   const double daily = 1.0 + climate_.wind.daily_share * afternoon;
   const double level = std::exp(spread * wind_level_.advance(rng_) - 0.5 * spread * spread);
   const double speed_m_s = std::min(
@@ -162,11 +161,11 @@ WeatherGenerator::Wind WeatherGenerator::wind(const AirMass& mass, const Moment&
   const ThermalBreeze& breeze = climate_.wind.breeze;
   const double breeze_m_s = breeze.speed_m_s.at(when.winter) * (1.0 - cloud) * afternoon;
   if (breeze_m_s == 0.0) return {speed_m_s, from_deg};
-  const double from = from_deg * kTurn / 360.0;
-  const double breeze_from = breeze.day_from_deg * kTurn / 360.0;
+  const double from = from_deg * kDaysTurn / 360.0;
+  const double breeze_from = breeze.day_from_deg * kDaysTurn / 360.0;
   const double east = speed_m_s * std::sin(from) + breeze_m_s * std::sin(breeze_from);
   const double north = speed_m_s * std::cos(from) + breeze_m_s * std::cos(breeze_from);
-  const double sum_from_deg = std::atan2(east, north) * 360.0 / kTurn;
+  const double sum_from_deg = std::atan2(east, north) * 360.0 / kDaysTurn;
   return {std::hypot(east, north), std::fmod(sum_from_deg + 360.0, 360.0)};
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr std::string_view kHeader = "timestamp,meter,value,unit";
+constexpr std::string_view kReadingsHeader = "timestamp,meter,value,unit";
 
 struct RecordedValue {
   metering::Instant begin;
@@ -85,7 +85,8 @@ Result<std::vector<RecordedValue>> read_values(const std::filesystem::path& file
   const auto wrong = [&](int number, std::string_view what) {
     return failure(ErrorCode::malformed, fmt::format("{}:{}: {}", file.string(), number, what));
   };
-  if (line != kHeader) return wrong(1, fmt::format("the header must be {}", kHeader));
+  if (line != kReadingsHeader)
+    return wrong(1, fmt::format("the header must be {}", kReadingsHeader));
   std::vector<RecordedValue> values;
   for (int number = 2; std::getline(in, line); ++number) {
     const auto fields = four_fields(line);

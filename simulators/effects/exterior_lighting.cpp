@@ -7,8 +7,6 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kDay_s = 86'400.0;
-
 /// More lamps outside than drawn. A photocell lights them in the dusk, a little earlier under
 /// clouds; some lamps are always broken.
 class ExteriorLighting final : public HiddenEffect {

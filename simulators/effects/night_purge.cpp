@@ -29,7 +29,6 @@ class NightPurge final : public HiddenEffect {
   }
 
  private:
-  static constexpr double kDay_s = 86'400.0;
   static constexpr double kFrom_h = 22.0;
   static constexpr double kTo_h = 6.0;
   static constexpr double kDampest_C = 16.0;

@@ -6,8 +6,6 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kDay_s = 86'400.0;
-
 /// Servers that no drawing shows. They hardly notice day, night or holidays.
 class ServerRoom final : public HiddenEffect {
  public:

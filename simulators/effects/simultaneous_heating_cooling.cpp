@@ -24,7 +24,6 @@ class SimultaneousHeatingCooling final : public HiddenEffect {
   }
 
  private:
-  static constexpr double kDay_s = 86'400.0;
   static constexpr double kMonth_s = 30.0 * kDay_s;
 
   EffectSettings settings_;

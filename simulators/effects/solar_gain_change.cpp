@@ -9,7 +9,6 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kDay_s = 86'400.0;
 constexpr double kBareTrees = 0.35;  ///< Of the shade of trees in leaf.
 constexpr double kColdestDay = 20.0;
 

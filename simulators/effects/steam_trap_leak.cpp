@@ -6,8 +6,6 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kDay_s = 86'400.0;
-
 /// Traps that blow through and bare pipes: heat goes away whatever the weather, in amounts that
 /// wander with the pressure in the pipe.
 class SteamTrapLeak final : public HiddenEffect {

@@ -15,8 +15,8 @@ namespace recald::simulators {
 namespace {
 
 constexpr int kDays = 7;
-constexpr double kWidth = 900.0;
-constexpr double kMargin = 22.0;
+constexpr double kWeekWidth = 900.0;
+constexpr double kWeekMargin = 22.0;
 
 /// Mondays of weeks without holidays in which all uses are at work, schools too.
 constexpr metering::Day kWinterMonday{std::chrono::year{kShowYear}, std::chrono::January,
@@ -104,7 +104,7 @@ void draw_years(Svg& svg, double y, const std::vector<MeterYear>& meters) {
         {meter.plate.utility, fmt::format("{} {:.0f} kWh/m² a year", in_words(meter.plate.kind),
                                           meter.annual_kWh_m2())});
   }
-  draw_key(svg, {kMargin, y}, key);
+  draw_key(svg, {kWeekMargin, y}, key);
 }
 
 }  // namespace
@@ -120,8 +120,8 @@ std::string week_figure(const Scenario& scenario, const Simulated& simulated,
   }
   const Scale scale = range.scale(6);
   const std::string building = describe_scenario(scenario);
-  Svg svg(kWidth, 430.0, building);
-  svg.text({kMargin, 32.0}, building, {.size = 15.0, .bold = true});
+  Svg svg(kWeekWidth, 430.0, building);
+  svg.text({kWeekMargin, 32.0}, building, {.size = 15.0, .bold = true});
   draw_years(svg, 60.0, meters);
   draw_week(svg, 56.0, 102.0, weeks[0], meters, scale);
   draw_week(svg, 494.0, 102.0, weeks[1], meters, scale);

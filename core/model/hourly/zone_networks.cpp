@@ -10,7 +10,7 @@ namespace {
 constexpr double kAirToSurface_W_m2K = 3.45;   // h_is
 constexpr double kSurfaceToMass_W_m2K = 9.1;   // h_ms
 constexpr double kInnerSurfacePerFloor = 4.5;  // A_t / A_f
-constexpr double kLeastLift_K = 0.1;           // between supply air and the cooling set-point
+constexpr double kLeastCooling_K = 0.1;        // between supply air and the cooling set-point
 // The most that an envelope may take of the inner surfaces' own conductance.
 constexpr double kMostOfSurfaces = 0.9;
 
@@ -189,7 +189,7 @@ void ZoneNetworks::expose(const ZoneSurroundings& s) {
 }
 
 ZoneTotals ZoneNetworks::serve_with_boxes(int part, const ZoneService& s) {
-  const double per_lift_K = 1.0 / std::max(s.cooling_C - s.supply_C, kLeastLift_K);
+  const double per_lift_K = 1.0 / std::max(s.cooling_C - s.supply_C, kLeastCooling_K);
   ZonePair heating_W = ZonePair::Zero();
   ZonePair all_heat_W = ZonePair::Zero();
   ZonePair scheduled_W_K = ZonePair::Zero();

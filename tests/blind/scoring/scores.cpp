@@ -39,7 +39,7 @@ std::string effect_text(const HiddenEffect& effect) {
   return text;
 }
 
-std::string truth_text(const Answer& answer) {
+std::string truth_in_full(const Answer& answer) {
   std::vector<std::string> effects;
   for (const HiddenEffect& effect : answer.effects) effects.push_back(effect_text(effect));
   std::string text = effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, "; "));
@@ -53,7 +53,7 @@ std::vector<Failure> failures_of(const ScoredCases& cases) {
     if (scored.judgement.right) continue;
     failures.push_back({.case_id = scored.answer->case_id,
                         .block = std::string(block_name(scored.answer->block)),
-                        .truth = truth_text(*scored.answer),
+                        .truth = truth_in_full(*scored.answer),
                         .said = said_text(scored)});
   }
   return failures;
