@@ -130,7 +130,7 @@ class Elements {
 
 }  // namespace
 
-Checked<PushedReadings> parse_pushed(const std::string& body, const SiteConfig& site, Instant now) {
+Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& site, Instant now) {
   const auto json = nlohmann::json::parse(body, nullptr, false);
   if (!json.is_object()) return malformed("the body is no JSON object", "body");
   for (const auto& [key, value] : json.items()) {

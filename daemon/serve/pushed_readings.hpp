@@ -1,7 +1,7 @@
 /// The body of POST /api/v1/readings, checked.
 #pragma once
 
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/metering/reading.hpp"
@@ -21,7 +21,7 @@ struct PushedReadings {
 /// @param now   What ends after it has not happened yet.
 /// @return or the answer that refuses all of it: 400, 404 for another meter, 409 for one whose
 ///         readings come from elsewhere.
-[[nodiscard]] Checked<PushedReadings> parse_pushed(const std::string& body, const SiteConfig& site,
+[[nodiscard]] Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& site,
                                                    metering::Instant now);
 
 }  // namespace recald::daemon

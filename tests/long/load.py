@@ -1,4 +1,5 @@
 """Load of many meters on one daemon: see load.sh. Prints figures; judges nothing."""
+import http.client
 import os
 import re
 import signal
@@ -6,13 +7,15 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import urllib.request
 from pathlib import Path
 
-TCP_ENDPOINTS = 250
-LINES = 8
-UNITS = 4
+TCP_ENDPOINTS = int(os.environ.get("ENDPOINTS", 250))
+LINES = int(os.environ.get("LINES", 8))
+UNITS = int(os.environ.get("UNITS", 4))
+REQUESTS_PER_S = float(os.environ.get("REQUESTS", 0))
 INTERVAL_S = 60  # a boundary a minute, so that ten minutes have ten of them
 TICK = os.sysconf("SC_CLK_TCK")
 
@@ -24,7 +27,7 @@ unit = 1
 repeat = {UNITS}
 layout = "abb-b23"
 load_kW = 60
-
+""" + (f"""
 [[endpoint]]
 type = "rtu"
 link = "line"
@@ -34,7 +37,7 @@ unit = 1
 repeat = {UNITS}
 layout = "abb-b23"
 load_kW = 60
-"""
+""" if LINES else "")
 
 # Eight fields in two reads. The simulated device holds 0 where its makers have voltages and
 # currents, so these serve as an identity that never changes.
@@ -131,6 +134,37 @@ def fetch(url):
         return f"no metrics: {error}"
 
 
+class Asking(threading.Thread):
+    """Asks the API so many times a second over one connection, the meters and an interval list."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
+        self.waits_s = []
+        self.wrong = 0
+        self.goes_on = True
+
+    def run(self):
+        begin = time.monotonic()
+        while self.goes_on:
+            due = begin + len(self.waits_s) / REQUESTS_PER_S
+            time.sleep(max(0.0, due - time.monotonic()))
+            asked = time.monotonic()
+            path = ("/api/v1/meters/b0-u1", "/healthz",
+                    "/api/v1/intervals?meter=b0-u1&limit=20")[len(self.waits_s) % 3]
+            self.connection.request("GET", path)
+            reply = self.connection.getresponse()
+            reply.read()
+            self.wrong += reply.status != 200
+            self.waits_s.append(time.monotonic() - asked)
+
+    def print_figures(self, elapsed_s):
+        waits = sorted(self.waits_s) or [float("nan")]
+        print(f"requests: {len(self.waits_s) / elapsed_s:.0f} a second, {self.wrong} refused, answered "
+              f"within {1e3 * waits[len(waits) // 2]:.1f} ms (half), "
+              f"{1e3 * waits[int(0.99 * (len(waits) - 1))]:.1f} ms (99 %)")
+
+
 def print_intervals(store, first, last):
     """Of the slots between two boundaries, how many are stored and how many of them `ok` (0)."""
     db = sqlite3.connect(f"file:{store}?mode=ro", uri=True)
@@ -173,12 +207,19 @@ def main(build, minutes):
         first = int(-(-time.time() // INTERVAL_S)) * INTERVAL_S
         begin, begin_s, sim_begin_s = time.time(), cpu_s(daemon.pid), cpu_s(sim.pid)
         resident = []
+        asking = Asking(int(listening.group(1))) if listening and REQUESTS_PER_S else None
+        if asking:
+            asking.start()
         while time.time() < begin + 60 * minutes:
             time.sleep(5)
             if daemon.poll() is not None:
                 sys.exit(f"the daemon ended: {said_by_daemon.read_text()[-2000:]}")
             resident.append(memory_MiB(daemon.pid, "VmRSS"))
         elapsed_s = time.time() - begin
+        if asking:
+            asking.goes_on = False
+            asking.join()
+            asking.print_figures(elapsed_s)
         last = int(time.time() // INTERVAL_S) * INTERVAL_S
         print(f"daemon: {100 * (cpu_s(daemon.pid) - begin_s) / elapsed_s:.1f} % of a core, "
               f"resident {resident[-1]:.1f} MiB at the end, "
