@@ -19,7 +19,8 @@ install_packages $BUILD_PACKAGES
 
 echo "Building (release) …"
 log=$(mktemp)
-if ! { cmake -S "$root" --preset release -DRECALD_TESTS=OFF -DRECALD_WARNINGS_AS_ERRORS=OFF -B "$root/.build/demo" &&
+if ! { cmake -S "$root" --preset release -DRECALD_TESTS=OFF -DRECALD_WARNINGS_AS_ERRORS=OFF \
+    -DRECALD_TOGETHER=ON -B "$root/.build/demo" &&
   cmake --build "$root/.build/demo" --target recald recald-sim; } >"$log" 2>&1; then
   tail -n 40 "$log" >&2
   echo "The build failed; the last lines are above, all of it in $log." >&2

@@ -92,7 +92,7 @@ class SequentialCalibration {
   [[nodiscard]] Result<void> begin_anew(calibration::Posterior& posterior, MonthTaken& taken,
                                         const std::function<bool()>& proceed);
 
-  std::unique_ptr<MonthlyModel> model_;
+  std::shared_ptr<const MonthlyModel> model_;  ///< Cloned by whoever evaluates it.
   std::vector<Parameter> parameters_;
   calibration::PosteriorData all_;
   calibration::HyperPrior prior_;
