@@ -31,7 +31,7 @@ struct RegisterState {
   std::string field;  ///< Name in the register map.
   metering::CounterState counter;
   metering::IntervalBook book;
-  metering::PowerBook power;            ///< In the place of both, of a meter that counts nothing.
+  metering::PowerBook power;           ///< In the place of both, of a meter that counts nothing.
   metering::CounterSettings settings;  ///< Under which the state was reached.
   std::string identity;                ///< Serial number as read; empty: the map has none.
 };
@@ -113,6 +113,7 @@ struct CommitCounts {
   int duplicates = 0;  ///< Said what was known.
   int weaker = 0;      ///< Known better already.
   std::vector<metering::Reading> conflicts;  ///< As good, with another value; the first stays.
+  std::vector<bool> was_taken;               ///< By interval of the batch.
 };
 
 class Store {

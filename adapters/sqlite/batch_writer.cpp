@@ -55,13 +55,19 @@ Result<CommitCounts> BatchWriter::write(const StoreBatch& batch) {
   if (auto put = put_registers(batch); !put) return tl::unexpected(put.error());
   if (auto put = put_samples(batch); !put) return tl::unexpected(put.error());
   if (auto put = put_events(batch); !put) return tl::unexpected(put.error());
-  if (auto put = reopen_months(batch); !put) return tl::unexpected(put.error());
+  // What was known already changes no month.
+  const bool changes = counts.taken > 0 || batch.intervals.empty();
+  if (auto put = changes ? reopen_months(batch) : Result<void>{}; !put) {
+    return tl::unexpected(put.error());
+  }
   return counts;
 }
 
 Result<void> BatchWriter::put_intervals(const StoreBatch& batch, CommitCounts& counts) {
   for (const StoreBatch::Interval& interval : batch.intervals) {
+    const int before = counts.taken;
     if (auto put = put_interval(interval, batch.edit, counts); !put) return put;
+    counts.was_taken.push_back(counts.taken > before);
   }
   return {};
 }

@@ -93,6 +93,7 @@ Result<DesignSite> check_design_site(const doe::DesignFolder& design) {
                                name));
   }
   DesignSite result;
+  result.site_file = site_file;
   for (const AddedEffect& effect : *effects) {
     if (teaches(effect, design)) continue;
     const auto names = parameter_names({effect});

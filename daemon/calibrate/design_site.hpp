@@ -25,7 +25,8 @@ struct DesignSite {
   /// Parameters of effects that these months must not teach again: they are held, and what they
   /// could move counts as error.
   std::vector<std::string> held;
-  std::vector<std::string> notes;  ///< In words.
+  std::vector<std::string> notes;        ///< In words.
+  std::filesystem::path site_file = {};  ///< Empty: another program's design.
 };
 
 /// Nothing for a design without site.json: it is another program's.

@@ -71,6 +71,15 @@ Result<SiteOnDesign> calibrate_on_design(const ModelledSite& modelled,
   auto design_site = check_design_site(*design);
   if (!design_site) return tl::unexpected(design_site.error());
   const SiteConfig& site = modelled.site.config;
+  std::error_code ignored;
+  const bool is_others = !design_site->site_file.empty() &&
+                         !std::filesystem::equivalent(design_site->site_file, site.file, ignored);
+  if (is_others) {
+    return failure(ErrorCode::unsupported,
+                   fmt::format("the design in {} was run for {} and not for this site; run `recald "
+                               "doe` for it",
+                               folder.string(), design_site->site_file.string()));
+  }
   auto version = active_version(site);
   if (!version) return tl::unexpected(version.error());
   SiteOnDesign done{.calibration = {}, .facts = modelled.facts};

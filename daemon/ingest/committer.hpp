@@ -17,7 +17,7 @@ namespace recald::daemon {
 struct CommitRules {
   std::chrono::milliseconds gather{1'000};  ///< Intervals do not wait: they are committed at once.
   std::chrono::milliseconds retry{10'000};  ///< After a failure.
-  /// What is kept while the store refuses, some 24 hours of a hundred meters. Beyond it raw samples
+  /// What is kept while the store refuses: 24 hours of a hundred meters. Beyond it raw samples
   /// are given up first, then the oldest intervals.
   std::size_t intervals_max = 10'000;
   std::size_t samples_max = 50'000;

@@ -15,12 +15,22 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A gateway without a clock battery wakes up in 1970 until somebody tells it the time.
-constexpr Instant kEarliestTime =
-    std::chrono::sys_days{std::chrono::year{2024} / std::chrono::January / 1};
 constexpr milliseconds kClockSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
+
+/// A day of all meters, and no less than usual, is kept while the store refuses.
+CommitRules rules_for(const SiteConfig& site) {
+  CommitRules rules;
+  std::size_t intervals_a_day = 0;
+  for (const MeterConfig& meter : site.meters) {
+    if (meter.is_stored()) {
+      intervals_a_day += static_cast<std::size_t>(hours{24} / meter.meter.interval);
+    }
+  }
+  rules.intervals_max = std::max(rules.intervals_max, intervals_a_day);
+  return rules;
+}
 
 }  // namespace
 
@@ -29,8 +39,10 @@ Gateway::Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site
     : calendar_(calendar),
       ports_(ports),
       on_month_(std::move(on_month)),
-      committer_(ports_.loop, ports_.store, {},
-                 [this](const StoreBatch& batch, const CommitCounts&) { note_committed(batch); }),
+      committer_(ports_.loop, ports_.store, rules_for(site),
+                 [this](const StoreBatch& batch, const CommitCounts& counts) {
+                   note_committed(batch, counts);
+                 }),
       keeper_(ports_.store, calendar, site.closing, ports_.time_zone_release),
       self_(std::make_shared<Gateway*>(this)) {}
 
@@ -103,6 +115,8 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   if (!opened) return tl::unexpected(opened.error());
   if (auto pushed = open_pushed(site); !pushed) return pushed;
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
+  // Reads that are held were planned by a description that may be another now.
+  std::erase_if(held_, [&](const HeldRead& held) { return find_meter(held.meter) == nullptr; });
   for (auto& bus : *opened) {
     start(*bus);
     buses_.push_back(std::move(bus));
@@ -141,7 +155,7 @@ void Gateway::watch_clock(const Moment& now) {
   const milliseconds moved =
       wall_minus_monotonic_ ? offset - *wall_minus_monotonic_ : milliseconds{0};
   wall_minus_monotonic_ = offset;
-  const bool was_ok = std::exchange(clock_ok_, now.instant() >= kEarliestTime);
+  const bool was_ok = std::exchange(clock_ok_, is_plausible_time(now.instant()));
   if (!was_ok) {
     if (clock_ok_) release_held(now);
     return;
@@ -197,11 +211,12 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
     batch.intervals.push_back({reading});
   }
   pushed->progress.mark_late(batch, calendar_);
+  watch_clock(ports_.loop.now());
   const Instant now = ports_.loop.now().instant();
-  pushed->heard_at = now;
   auto counts = ports_.store.commit(batch);
   if (!counts) return counts;
-  note_committed(batch);
+  pushed->heard_at = now;
+  note_committed(batch, *counts);
   if (!counts->conflicts.empty()) {
     note({now, Severity::warning, "reading_conflict", meter,
           fmt::format("{} readings were sent again with another value, the first of {}; what was "
@@ -212,10 +227,12 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   return counts;
 }
 
-void Gateway::note_committed(const StoreBatch& batch) {
-  for (const StoreBatch::Interval& interval : batch.intervals) {
-    MeterProgress* const progress = find_progress(interval.reading.meter);
-    if (progress != nullptr) progress->note(interval.reading);
+void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts) {
+  for (std::size_t i = 0; i < batch.intervals.size(); ++i) {
+    if (!counts.was_taken[i]) continue;
+    const metering::Reading& reading = batch.intervals[i].reading;
+    MeterProgress* const progress = find_progress(reading.meter);
+    if (progress != nullptr) progress->note(reading);
   }
   for (const StoreEvent& event : batch.events) {
     ++events_[static_cast<std::size_t>(event.severity)];
@@ -226,7 +243,10 @@ void Gateway::note_committed(const StoreBatch& batch) {
 }
 
 void Gateway::close_months() {
+  watch_clock(ports_.loop.now());
   if (!clock_ok_) return;
+  // A month is closed out of the store: what still waits for it would be missing.
+  if (!committer_.flush()) return;
   std::vector<StoredMeter> stored;
   for (const MeterProgress* const progress : all_progress()) stored.push_back(progress->stored);
   const auto closed = keeper_.close_due(stored, ports_.loop.now().instant());

@@ -24,6 +24,15 @@
 
 namespace recald::daemon {
 
+/// A gateway without a clock battery wakes up in 1970 until somebody tells it the time.
+inline constexpr metering::Instant kEarliestTime =
+    std::chrono::sys_days{std::chrono::year{2024} / std::chrono::January / 1};
+
+/// Whether a clock can be right; one that shows less or more than that has not been set.
+[[nodiscard]] inline bool is_plausible_time(metering::Instant now) {
+  return kEarliestTime <= now && now < metering::kLatestInstant - std::chrono::days{62};
+}
+
 /// What the gateway needs of the outside. All of it outlives the gateway.
 struct GatewayPorts {
   Loop& loop;
@@ -133,7 +142,7 @@ class Gateway {
   void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
-  void note_committed(const StoreBatch& batch);
+  void note_committed(const StoreBatch& batch, const CommitCounts& counts);
   void close_months();
   void close_months_every_hour();
 

@@ -59,8 +59,11 @@ Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::Local
       .counter = config.counter.value_or(
           metering::CounterSettings{.rated_kW = config.meter.rated_kW.value_or(0.0)}),
       .booking = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll}};
+  // A map that once had a counter and now has none leaves the counter's state behind.
+  const auto field = live.map.energy.empty() ? "power" : "energy";
+  const auto found = std::ranges::find(*states, field, &RegisterState::field);
   const std::optional<RegisterState> state =
-      states->empty() ? std::nullopt : std::optional{states->front()};
+      found == states->end() ? std::nullopt : std::optional{*found};
   LiveMeter meter{.progress = std::move(*progress),
                   .config = live,
                   .text = config.text,

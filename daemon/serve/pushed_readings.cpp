@@ -19,6 +19,8 @@ constexpr std::string_view kExample =
     R"({"meter":"chw","unit":"kWh","readings":[{"time":"2026-03-01T00:00:00Z","value":1.5}]})";
 constexpr double kValueMax = 1e18;  // so that no unit and no multiplier makes it infinite
 constexpr seconds kClocksDiffer{300};
+/// A sender whose clock was reset must not give a site months of the year 2000.
+constexpr std::chrono::days kOldest{400};
 
 tl::unexpected<http::Response> malformed(std::string_view what, std::string_view field) {
   return refusal(400, "malformed", fmt::format("{}; the body is JSON such as {}", what, kExample),
@@ -100,6 +102,13 @@ class Elements {
       return refusal(400, "invalid_value",
                      fmt::format("{} is {}: that interval ends after now, {}", place,
                                  csv::in_quotes(*text), metering::to_string(now_)),
+                     place);
+    }
+    if (start < now_ - kOldest) {
+      return refusal(400, "invalid_value",
+                     fmt::format("{} is {}, more than {} days ago; readings from before are "
+                                 "imported: recald import",
+                                 place, csv::in_quotes(*text), kOldest.count()),
                      place);
     }
     return start;

@@ -11,6 +11,10 @@ namespace recald::daemon {
 
 http::Response post_readings(const Served& served, const http::Request& request) {
   if (const auto checked = has_only(request, {}); !checked) return checked.error();
+  if (!is_plausible_time(served.now())) {
+    return http::error_response(503, "clock_not_set",
+                                "the clock here has not been set yet, send it again later");
+  }
   auto pushed = parse_pushed(request.body, served.site, served.now());
   if (!pushed) return pushed.error();
   const std::string& id = pushed->meter->meter.id;

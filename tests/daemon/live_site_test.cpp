@@ -134,7 +134,7 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
 
 TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   import_history();
-  ASSERT_EQ(run({"doe", path("site.toml"), "--runs", "60", "--out", path("doe")}).exit_code, 0);
+  ASSERT_EQ(run({"doe", path("live.toml"), "--runs", "60", "--out", path("doe")}).exit_code, 0);
   auto config = load_site(folder_ / "live.toml").value();
   config.recalibration.months = 8;
   config.recalibration.design = folder_ / "doe";
@@ -151,6 +151,18 @@ TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   for (const json& month : result["months"]) ++months[month["role"].get<std::string>()];
   EXPECT_EQ(months, (std::map<std::string, int>{{"calibration", 9}, {"validation", 2}}));
   EXPECT_TRUE(std::filesystem::exists(std::filesystem::path{outcome->folder} / "calibration.json"));
+}
+
+TEST_F(LiveSite, ADesignOfAnotherSiteIsRefused) {
+  import_history();
+  ASSERT_EQ(run({"doe", path("site.toml"), "--runs", "60", "--out", path("doe")}).exit_code, 0);
+  auto config = load_site(folder_ / "live.toml").value();
+  config.recalibration.design = folder_ / "doe";
+  const auto calendar = metering::LocalCalendar::open(config.timezone).value();
+  const auto outcome = make_site_work({config, calendar})(
+      {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
+  ASSERT_FALSE(outcome.has_value());
+  EXPECT_THAT(outcome.error().message, HasSubstr("not for this site"));
 }
 
 TEST_F(LiveSite, AJobSaysThatItsDesignIsMissing) {

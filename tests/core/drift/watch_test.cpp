@@ -20,16 +20,16 @@ std::vector<std::optional<double>> normals(Rng& rng, int outputs) {
 TEST(Watch, AFamilyOfMetersKeepsToTheStatedRate) {
   Rng rng{31};
   int alarms = 0;
-  constexpr int kMonths = 60;
   constexpr int kSites = 800;
+  constexpr int kSiteMonths = 60;
   for (int site = 0; site < kSites; ++site) {
     Watch watch{3, {}};
-    for (int month = 0; month < kMonths; ++month) {
+    for (int month = 0; month < kSiteMonths; ++month) {
       alarms += static_cast<int>(watch.observe(month, normals(rng, 3)).size());
     }
   }
   EXPECT_GT(alarms, 0);
-  EXPECT_LT(alarms, kSites * kMonths / 240.0);
+  EXPECT_LT(alarms, kSites * kSiteMonths / 240.0);
 }
 
 TEST(Watch, AStepIsFoundDatedAndItsDirectionTold) {

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <ostream>
+
 #include "tests/daemon/serve/served_site.hpp"
 
 namespace recald::daemon {
@@ -105,6 +107,25 @@ TEST_F(PushedMeterSite, AMonthClosesAndALateReadingOpensItAgain) {
   EXPECT_NEAR(months[0]["coverage"].get<double>(), 30.0 * 96 / (31 * 96 - 4), 1e-9);
 }
 
+TEST_F(PushedMeterSite, WhatIsKnownOpensNoMonth) {
+  const metering::Instant march{calendar_.month_span(std::chrono::year{2024} / 3).begin};
+  for (int day = 0; day < 29; ++day) taken(body_of(march + days{day}, 96, 6.0));
+  loop_.run_for(days{3});
+  for (int day = 0; day < 29; ++day) taken(body_of(march + days{day}, 96, 6.0));
+  loop_.run_for(hours{2});
+  const Json months = get_json("/api/v1/months", {{"meter", "chw"}})["months"];
+  ASSERT_THAT(months, SizeIs(1));
+  EXPECT_EQ(months[0]["revision"], 0);
+}
+
+TEST_F(PushedMeterSite, WhatIsNotTakenIsNotShown) {
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})");
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":9}]})");
+  EXPECT_EQ(get_json("/api/v1/meters/chw")["last_interval"]["mean_kW"], 14.0);
+  EXPECT_THAT(get("/metrics").body,
+              HasSubstr(R"(recald_intervals_total{meter="chw",validity="ok"} 1)"));
+}
+
 TEST_F(PushedMeterSite, IsShownAsSuch) {
   taken(body_of(kStart - hours{3}, 4, 5.0));
   const Json meter = get_json("/api/v1/meters/chw");
@@ -133,6 +154,7 @@ TEST_F(PushedMeterSite, ARestartKnowsWhatWasSent) {
 struct WrongBody {
   const char* body;
   const char* said;
+  friend void PrintTo(const WrongBody& wrong, std::ostream* out) { *out << wrong.said; }
 };
 
 class WrongBodies : public PushedMeterSite, public ::testing::WithParamInterface<WrongBody> {};
@@ -173,6 +195,9 @@ INSTANTIATE_TEST_SUITE_P(
             "400 invalid_value readings[0].time"},
         WrongBody{
             R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T12:00:00Z","value":1}]})",
+            "400 invalid_value readings[0].time"},
+        WrongBody{
+            R"({"meter":"chw","unit":"kWh","readings":[{"time":"2000-01-01T00:00:00Z","value":1}]})",
             "400 invalid_value readings[0].time"},
         WrongBody{R"({"meter":"chw","unit":"kWh","readings":[
             {"time":"2024-03-30T10:00:00Z","value":1},{"time":"2024-03-30T10:15:00Z","valve":1}]})",
