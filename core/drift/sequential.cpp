@@ -14,7 +14,6 @@ namespace recald::drift {
 namespace {
 
 using calibration::Particles;
-using calibration::PointIndex;
 using calibration::Posterior;
 using calibration::PosteriorData;
 
@@ -195,7 +194,10 @@ Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bo
     return taken;
   };
   PosteriorData data = points_seen_from(month, month);
-  if (data.points.size() < parameters_.size() + 2) return remember();
+  if (data.points.size() < parameters_.size() + 2) {
+    particles_.reset();  // a window that has lost its months knows nothing any more
+    return remember();
+  }
   auto posterior = posterior_of(std::move(data));
   if (!posterior) return tl::unexpected(posterior.error());
   const auto anew = [&]() -> Result<MonthTaken> {
@@ -219,8 +221,8 @@ Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bo
     reweight(carried, *after);
   }
   taken.effective_share = effective_share(carried);
-  ++months_since_anew_;
-  if (months_since_anew_ >= options_.anew_every_months || taken.effective_share < kHopelessShare) {
+  const int months_since_anew = months_since_anew_ + 1;
+  if (months_since_anew >= options_.anew_every_months || taken.effective_share < kHopelessShare) {
     return anew();
   }
   if (taken.effective_share < options_.effective_share) {
@@ -237,6 +239,7 @@ Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bo
     if (taken.acceptance_rate < options_.acceptance_min) return anew();
   }
   particles_ = std::move(carried);
+  months_since_anew_ = months_since_anew;
   return remember();
 }
 

@@ -70,7 +70,8 @@ class SequentialCalibration {
   [[nodiscard]] Result<std::vector<Forecast>> forecast(int month);
 
   /// Takes a month in, whether it has points or not. The first ones are sampled together: before
-  /// `q + 2` points there is no posterior, and nothing is sampled.
+  /// `q + 2` points there is no posterior, and nothing is sampled; a window that has fewer again
+  /// has none again.
   /// @param proceed  Asked now and then; false gives `cancelled`.
   /// @return or an error of the model or of sampling; then everything is as it was.
   [[nodiscard]] Result<MonthTaken> take(int month, const std::function<bool()>& proceed = {});

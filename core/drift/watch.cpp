@@ -8,8 +8,8 @@
 namespace recald::drift {
 namespace {
 
-/// CUSUM limits for k = 1/2 by the mean number of months between false alarms of one output
-/// (simulated, see core/drift/README.md); between them linear in the logarithm.
+/// Two-sided CUSUM limits for k = 1/2 by the mean number of months between false alarms of one
+/// output; between and beyond them linear in the logarithm. The middle one is tested.
 double cusum_limit(double months) {
   constexpr double kMonths[] = {60.0, 240.0, 720.0};
   constexpr double kLimits[] = {3.02, 4.34, 5.45};

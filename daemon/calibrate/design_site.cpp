@@ -77,7 +77,8 @@ Result<DesignSite> check_design_site(const doe::DesignFolder& design) {
     return DesignSite{note->effects,
                       {fmt::format("The design's site file '{}' cannot be read, so nobody knows "
                                    "whether its model has effects that the design lacks.",
-                                   site_file.string())}};
+                                   site_file.string())},
+                      site_file};
   }
   const auto effects = active_effects(*site);
   if (!effects) return tl::unexpected(effects.error());

@@ -180,6 +180,31 @@ TEST(SequentialCalibration, MissingMonthsChangeNothing) {
   EXPECT_NEAR(sequence.draw_parameters(256).col(0).mean(), 0.5, 0.05);
 }
 
+TEST(SequentialCalibration, AWindowThatHasLostItsMonthsBeginsAgain) {
+  const Posterior posterior = calibration::small_posterior(0.03);
+  PosteriorData gaps = posterior.data();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < kMonths; ++i) {
+    if (i < 6 || i > 12) kept.push_back(i);
+  }
+  gaps.points.erase(gaps.points.begin() + 6, gaps.points.begin() + 13);
+  gaps.values = Eigen::VectorXd(posterior.data().values(kept));
+  gaps.extra_variances = Eigen::VectorXd(posterior.data().extra_variances(kept));
+  gaps.common_errors.resize(gaps.values.size(), 0);
+  SequentialCalibration sequence =
+      sequence_of(posterior, gaps, {"6 months", 6, 0.0}, {.particles = 256});
+  for (int month = 0; month < kMonths; ++month) {
+    if (sequence.has_begun()) {
+      ASSERT_TRUE(sequence.forecast(month).has_value()) << month;
+    }
+    ASSERT_TRUE(sequence.take(month).has_value()) << month;
+    if (month == 12) {
+      EXPECT_FALSE(sequence.has_begun());
+    }
+  }
+  EXPECT_TRUE(sequence.has_begun());
+}
+
 TEST(SequentialCalibration, SameSeedSameBytes) {
   const Posterior posterior = calibration::small_posterior(0.03);
   const auto run = [&] {
