@@ -32,6 +32,7 @@ bus = "plant"
 unit = 1
 map = "counter.toml"
 rated_kW = 400
+poll = "60s"
 
 [[meter]]
 id = "cooling"
@@ -41,6 +42,7 @@ bus = "plant"
 unit = 2
 map = "counter.toml"
 rated_kW = 900
+poll = "60s"
 )";
 
 /// Since kRigStart: 60 kW with a daily course of 30 kW, and 100 kW all day.
