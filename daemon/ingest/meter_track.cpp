@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "core/metering/units.hpp"
@@ -22,6 +23,8 @@ using PollTime = std::chrono::sys_time<std::chrono::milliseconds>;
 constexpr std::chrono::seconds kNearBoundary{60};
 /// The open interval of a power-only meter is stored this often: a restart costs no more of it.
 constexpr std::chrono::seconds kKeepPowerEvery{60};
+/// A clock that is kept right steps back no further.
+constexpr std::chrono::seconds kClockSlew{2};
 
 Reason reason_of(const modbus::ReadFailure& failure) {
   switch (failure.fault) {
@@ -222,10 +225,14 @@ std::optional<double> MeterTrack::new_power_kW(const modbus::PlannedRead& read) 
 }
 
 void MeterTrack::take_power(StoreBatch& batch, double power_kW, Instant at) {
-  if (std::exchange(clock_was_set_, false)) since_sample_ |= Reason::clock;
+  const bool went_back = state_.power.next && at < state_.power.until - kClockSlew;
+  if (std::exchange(clock_was_set_, false) || went_back) {
+    since_sample_ |= Reason::clock;
+    if (relive_from(at, state_.power.next)) state_.power = {};
+  }
   for (const metering::Reading& reading : book_power(state_.power, meter_.number, {at, power_kW},
                                                      since_sample_, power_rules(meter_.booking))) {
-    batch.intervals.push_back({reading, false});
+    batch.intervals.push_back({reading, is_relived(reading)});
     usual_.observe(reading);
   }
   since_sample_ = Reason::none;
@@ -240,20 +247,40 @@ bool MeterTrack::is_worth_keeping(const RegisterSample& sample) const {
   return past < kNearBoundary || meter_.booking.interval - past <= kNearBoundary;
 }
 
+/// Times of two clocks cannot be subtracted: the counter starts anew, and the time between is
+/// missing. What is stamped later than now was stamped wrongly, and gives way to what comes.
+void MeterTrack::begin_anew(Instant now) {
+  state_.counter = {};
+  since_sample_ |= Reason::clock;
+  metering::IntervalBook& book = state_.book;
+  if (!book.next || now >= *book.next + meter_.booking.interval) return;
+  std::erase_if(book.pieces, [&](const auto& piece) { return piece.span.end > now; });
+  if (relive_from(now, book.next)) book = {};
+}
+
+/// Intervals before `next` have been handed out. @return whether some of them lie ahead of now.
+bool MeterTrack::relive_from(Instant now, std::optional<Instant> next) {
+  if (!next || now >= *next) return false;
+  relived_until_ = std::max(relived_until_, *next);
+  return true;
+}
+
+/// A doubtful reading, which has no value, takes no other's place.
+bool MeterTrack::is_relived(const metering::Reading& reading) const {
+  return reading.start < relived_until_ && std::isfinite(reading.mean_kW);
+}
+
 void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
   using metering::CounterPhase;
   const bool stands = state_.counter.phase != CounterPhase::empty;
   const Instant last =
       state_.counter.pending ? state_.counter.pending->last.time : state_.counter.baseline.time;
-  // Twice within a second, or the clock was set back: no interval is booked twice.
-  if (stands && sample.time <= last) return;
-  if (clock_was_set_) {
-    // Times of two clocks cannot be subtracted: the counter starts anew, the time between is
-    // missing.
-    state_.counter = {};
-    since_sample_ |= Reason::clock;
-    clock_was_set_ = false;
+  if (stands && sample.time <= last && !clock_was_set_) {
+    // Twice within a second. Further back, the clock was set while nobody ran.
+    if (last - sample.time <= kClockSlew) return;
+    clock_was_set_ = true;
   }
+  if (std::exchange(clock_was_set_, false)) begin_anew(sample.time);
 
   const metering::CounterState before = state_.counter;
   metering::CounterStep step =
@@ -266,7 +293,8 @@ void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
       book_intervals(state_.book, meter_.number, step, meter_.booking, usual_.shape());
   state_.counter = std::move(step.state);
   for (const metering::BookedInterval& interval : booked) {
-    batch.intervals.push_back({interval.reading, interval.supersedes});
+    batch.intervals.push_back(
+        {interval.reading, interval.supersedes || is_relived(interval.reading)});
     usual_.observe(interval.reading);
     if (watch_) watch_->take_interval(interval.reading);
   }

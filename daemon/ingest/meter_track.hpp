@@ -71,6 +71,9 @@ class MeterTrack {
                      metering::Instant at);
   void take_energy(StoreBatch& batch, std::chrono::sys_time<std::chrono::milliseconds> poll,
                    metering::Instant at);
+  void begin_anew(metering::Instant now);
+  bool relive_from(metering::Instant now, std::optional<metering::Instant> next);
+  [[nodiscard]] bool is_relived(const metering::Reading& reading) const;
   void take_sample(StoreBatch& batch, const metering::RegisterSample& sample);
   /// The power that this very read brought.
   [[nodiscard]] std::optional<double> new_power_kW(const modbus::PlannedRead& read) const;
@@ -89,6 +92,7 @@ class MeterTrack {
   std::optional<PowerWatch> watch_;  ///< Where the meter has both a counter and a power.
   metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads failed since.
   bool clock_was_set_ = false;
+  metering::Instant relived_until_ = metering::Instant::min();  ///< Stamps before a clock set back.
   metering::Instant power_kept_{};  ///< When the open interval of a power was last handed out.
   std::optional<std::string> other_identity_;  ///< Read once, not yet confirmed.
 };

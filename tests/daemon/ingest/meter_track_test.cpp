@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "daemon/config/register_map_file.hpp"
 
@@ -16,9 +17,11 @@ using metering::Validity;
 using modbus::ReadFault;
 using std::chrono::minutes;
 using std::chrono::seconds;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 const Instant kStart = std::chrono::sys_days{std::chrono::year{2024} / 3 / 1};
@@ -76,8 +79,10 @@ class Live {
     put(track.take(reads_.at(read), result, at, at));
   }
   void put(const StoreBatch& batch) {
-    for (const auto& interval : batch.intervals)
+    for (const auto& interval : batch.intervals) {
       intervals[interval.reading.start] = interval.reading;
+      if (interval.supersedes) superseding.insert(interval.reading.start);
+    }
     events.insert(events.end(), batch.events.begin(), batch.events.end());
     samples.insert(samples.end(), batch.samples.begin(), batch.samples.end());
     if (!batch.registers.empty()) stored = batch.registers.back().state;
@@ -100,6 +105,7 @@ class Live {
  public:
   MeterTrack track;
   std::map<Instant, metering::Reading> intervals;
+  std::set<Instant> superseding;
   std::vector<StoreEvent> events;
   std::vector<RawSample> samples;
   std::optional<RegisterState> stored;
@@ -242,10 +248,38 @@ TEST(MeterTrack, AClockSetBackBooksNothingTwice) {
   EXPECT_EQ(static_cast<int>(meter.intervals.size()), given);
   for (int minute = 41; minute <= 75; ++minute) meter.read(minutes{minute}, energy_kWh += 1.0);
   ASSERT_THAT(meter.intervals, SizeIs(5));
-  EXPECT_EQ(meter.quarter(2).validity, Validity::missing);
-  for (const int quarter : {0, 1, 3, 4}) {
+  for (const int quarter : {0, 1, 2, 3, 4}) {
     EXPECT_NEAR(meter.quarter(quarter).mean_kW, 60.0, 1e-9) << quarter;
   }
+  EXPECT_THAT(meter.superseding, IsEmpty());
+}
+
+// A clock that ran two hours ahead since the boot is put right: what bears stamps of the time to
+// come gives way to what is measured then, and nothing waits for the old time to return.
+TEST(MeterTrack, StampsOfATimeToComeGiveWay) {
+  Live meter;
+  double energy_kWh = 1000.0;
+  for (int minute = 120; minute <= 160; ++minute) meter.read(minutes{minute}, energy_kWh += 1.0);
+  EXPECT_NEAR(meter.quarter(8).mean_kW, 60.0, 1e-9);
+  meter.track.clock_was_set();
+  for (int minute = 41; minute <= 200; ++minute) meter.read(minutes{minute}, energy_kWh += 2.0);
+  for (int quarter = 3; quarter <= 12; ++quarter) {
+    EXPECT_NEAR(meter.quarter(quarter).mean_kW, 120.0, 1e-9) << quarter;
+  }
+  EXPECT_THAT(meter.superseding, Contains(kStart + 8 * kQuarter));
+  EXPECT_THAT(meter.superseding, Contains(kStart + 9 * kQuarter));
+  EXPECT_THAT(meter.superseding, Not(Contains(kStart + 10 * kQuarter)));
+}
+
+// The clock was set back while nobody ran: nobody but the stored register can tell.
+TEST(MeterTrack, AStoredRegisterOfATimeToComeBeginsAnew) {
+  Live meter;
+  double energy_kWh = 1000.0;
+  for (int minute = 120; minute <= 160; ++minute) meter.read(minutes{minute}, energy_kWh += 1.0);
+  meter.restart();
+  for (int minute = 41; minute <= 80; ++minute) meter.read(minutes{minute}, energy_kWh += 1.0);
+  EXPECT_NEAR(meter.quarter(3).mean_kW, 60.0, 1e-9);
+  EXPECT_NEAR(meter.quarter(4).mean_kW, 60.0, 1e-9);
 }
 
 // step_forward_2h: the hours that never were are missing; nothing is spread over them.
@@ -384,6 +418,22 @@ TEST(MeterTrack, APowerGoesOnOverARestart) {
       EXPECT_NEAR(meter.quarter(quarter).mean_kW, 40.0, 1e-9);
     }
   }
+}
+
+TEST(MeterTrack, APowerOfATimeToComeGivesWay) {
+  Live meter{kPowerMeter};
+  for (seconds t = minutes{120}; t <= minutes{140}; t += seconds{15}) {
+    meter.take(t, words_of_power(40'000.0));
+  }
+  meter.track.clock_was_set();
+  for (seconds t = minutes{60}; t <= minutes{140}; t += seconds{15}) {
+    meter.take(t, words_of_power(20'000.0));
+  }
+  for (int quarter = 4; quarter <= 8; ++quarter) {
+    EXPECT_NEAR(meter.quarter(quarter).mean_kW, 20.0, 1e-9) << quarter;
+  }
+  EXPECT_THAT(meter.superseding, Contains(kStart + 8 * kQuarter));
+  EXPECT_THAT(meter.superseding, Not(Contains(kStart + 9 * kQuarter)));
 }
 
 TEST(MeterTrack, APowerKnowsWhenTheClockWasSet) {

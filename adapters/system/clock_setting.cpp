@@ -1,0 +1,23 @@
+#include "adapters/system/clock_setting.hpp"
+
+#include <sys/timex.h>
+
+#include <chrono>
+#include <ctime>
+
+namespace recald::system {
+namespace {
+
+constexpr std::chrono::minutes kAfterBoot{10};
+
+}  // namespace
+
+bool is_clock_settling() {
+  timespec up{};
+  if (clock_gettime(CLOCK_BOOTTIME, &up) != 0) return false;
+  if (std::chrono::seconds{up.tv_sec} > kAfterBoot) return false;
+  timex asked{};  // modes 0: nothing is set
+  return adjtimex(&asked) == TIME_ERROR;
+}
+
+}  // namespace recald::system
