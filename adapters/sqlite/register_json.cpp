@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 namespace recald::sqlite {
 namespace {
@@ -14,7 +18,6 @@ using metering::Instant;
 using metering::RegisterSample;
 using Json = nlohmann::json;
 
-Json json_of(Instant t) { return t.time_since_epoch().count(); }
 Instant instant_of(const Json& json) {
   return Instant{std::chrono::seconds{json.get<long long>()}};
 }
@@ -24,20 +27,10 @@ double number_or(const Json& json, double absent) {
   return json.is_null() ? absent : json.get<double>();
 }
 
-Json json_of(const RegisterSample& sample) {
-  return {{"time", json_of(sample.time)}, {"kWh", sample.value_kWh}};
-}
 RegisterSample sample_of(const Json& json) {
   return {instant_of(json.at("time")), json.at("kWh").get<double>()};
 }
 
-Json json_of(const CounterBooking& piece) {
-  return {{"begin", json_of(piece.span.begin)},
-          {"end", json_of(piece.span.end)},
-          {"kWh", piece.energy_kWh},
-          {"validity", to_string(piece.validity)},
-          {"reasons", to_string(piece.reasons)}};
-}
 CounterBooking piece_of(const Json& json) {
   const auto validity = metering::parse_validity(json.at("validity").get<std::string>());
   const auto reasons = metering::parse_reasons(json.at("reasons").get<std::string>());
@@ -59,24 +52,6 @@ metering::CounterPhase phase_of(const Json& json) {
   throw std::invalid_argument("a counter has no phase '" + text + "'");
 }
 
-Json json_of(const CounterState& counter) {
-  Json json{{"phase", kPhases[static_cast<std::size_t>(counter.phase)]},
-            {"baseline", json_of(counter.baseline)}};
-  if (counter.previous) {
-    json["previous"] = {{"sample", json_of(counter.previous->sample)},
-                        {"expires", json_of(counter.previous->expires)}};
-  }
-  if (counter.pending) {
-    json["pending"] = {{"first", json_of(counter.pending->first)},
-                       {"last", json_of(counter.pending->last)},
-                       {"samples", counter.pending->samples}};
-  }
-  Json restarts = Json::array();
-  for (const Instant t : counter.restarts) restarts.push_back(json_of(t));
-  json["restarts"] = restarts;
-  return json;
-}
-
 CounterState counter_of(const Json& json) {
   CounterState counter;
   counter.phase = phase_of(json.at("phase"));
@@ -92,16 +67,6 @@ CounterState counter_of(const Json& json) {
   }
   for (const Json& t : json.at("restarts")) counter.restarts.push_back(instant_of(t));
   return counter;
-}
-
-Json json_of(const metering::PowerBook& power) {
-  return {{"next", power.next ? json_of(*power.next) : Json{}},
-          {"until", json_of(power.until)},
-          {"kW", power.power_kW ? Json(*power.power_kW) : Json{}},
-          {"kWh", power.energy_kWh},
-          {"covered_s", power.covered.count()},
-          {"hole_longest_s", power.hole_longest.count()},
-          {"reasons", to_string(power.reasons)}};
 }
 
 metering::PowerBook power_of(const Json& json) {
@@ -120,21 +85,98 @@ metering::PowerBook power_of(const Json& json) {
   return power;
 }
 
+/// Writes each state after each interval: a tree of JSON in between would be most of a commit.
+class Writer {
+ public:
+  [[nodiscard]] std::string text() && { return fmt::to_string(out_); }
+
+  Writer& raw(std::string_view text) {
+    out_.append(text);
+    return *this;
+  }
+  Writer& number(double value) {
+    if (!std::isfinite(value)) return raw("null");
+    fmt::format_to(std::back_inserter(out_), "{}", value);
+    return *this;
+  }
+  Writer& whole(std::int64_t value) {
+    fmt::format_to(std::back_inserter(out_), "{}", value);
+    return *this;
+  }
+  Writer& time(Instant t) { return whole(t.time_since_epoch().count()); }
+  Writer& time_or_null(const std::optional<Instant>& t) { return t ? time(*t) : raw("null"); }
+  /// Of known letters; anything else goes through `Json`.
+  Writer& word(std::string_view text) { return raw("\"").raw(text).raw("\""); }
+  Writer& text(const std::string& any) {
+    return raw(Json(any).dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+
+  Writer& sample(const RegisterSample& sample) {
+    return raw("{\"kWh\":").number(sample.value_kWh).raw(",\"time\":").time(sample.time).raw("}");
+  }
+  Writer& piece(const CounterBooking& piece) {
+    return raw("{\"begin\":")
+        .time(piece.span.begin)
+        .raw(",\"end\":")
+        .time(piece.span.end)
+        .raw(",\"kWh\":")
+        .number(piece.energy_kWh)
+        .raw(",\"reasons\":")
+        .word(to_string(piece.reasons))
+        .raw(",\"validity\":")
+        .word(to_string(piece.validity))
+        .raw("}");
+  }
+  Writer& counter(const CounterState& counter) {
+    raw("{\"baseline\":").sample(counter.baseline);
+    if (counter.pending) {
+      raw(",\"pending\":{\"first\":").sample(counter.pending->first);
+      raw(",\"last\":").sample(counter.pending->last);
+      raw(",\"samples\":").whole(counter.pending->samples).raw("}");
+    }
+    raw(",\"phase\":").word(kPhases[static_cast<std::size_t>(counter.phase)]);
+    if (counter.previous) {
+      raw(",\"previous\":{\"expires\":").time(counter.previous->expires);
+      raw(",\"sample\":").sample(counter.previous->sample).raw("}");
+    }
+    raw(",\"restarts\":[");
+    for (std::size_t i = 0; i < counter.restarts.size(); ++i) {
+      raw(i > 0 ? "," : "").time(counter.restarts[i]);
+    }
+    return raw("]}");
+  }
+  Writer& power(const metering::PowerBook& power) {
+    raw("{\"covered_s\":").whole(power.covered.count());
+    raw(",\"hole_longest_s\":").whole(power.hole_longest.count());
+    raw(",\"kW\":").number(power.power_kW.value_or(std::nan("")));
+    raw(",\"kWh\":").number(power.energy_kWh);
+    raw(",\"next\":").time_or_null(power.next);
+    raw(",\"reasons\":").word(to_string(power.reasons));
+    return raw(",\"until\":").time(power.until).raw("}");
+  }
+
+ private:
+  fmt::memory_buffer out_;
+};
+
 }  // namespace
 
 std::string to_json(const RegisterState& state) {
-  Json pieces = Json::array();
-  for (const CounterBooking& piece : state.book.pieces) pieces.push_back(json_of(piece));
-  Json json{{"field", state.field},
-            {"identity", state.identity},
-            {"counter", json_of(state.counter)},
-            {"pieces", pieces},
-            {"next", state.book.next ? json_of(*state.book.next) : Json{}},
-            {"rated_kW", state.settings.rated_kW},
-            {"resolution_kWh", state.settings.resolution_kWh},
-            {"modulus_kWh", state.settings.modulus_kWh}};
-  if (state.power.next) json["power"] = json_of(state.power);
-  return json.dump();
+  Writer json;
+  json.raw("{\"counter\":").counter(state.counter);
+  json.raw(",\"field\":").text(state.field);
+  json.raw(",\"identity\":").text(state.identity);
+  json.raw(",\"modulus_kWh\":").number(state.settings.modulus_kWh);
+  json.raw(",\"next\":").time_or_null(state.book.next);
+  json.raw(",\"pieces\":[");
+  for (std::size_t i = 0; i < state.book.pieces.size(); ++i) {
+    json.raw(i > 0 ? "," : "").piece(state.book.pieces[i]);
+  }
+  json.raw("]");
+  if (state.power.next) json.raw(",\"power\":").power(state.power);
+  json.raw(",\"rated_kW\":").number(state.settings.rated_kW);
+  json.raw(",\"resolution_kWh\":").number(state.settings.resolution_kWh).raw("}");
+  return std::move(json).text();
 }
 
 Result<RegisterState> register_from_json(std::string_view text) {
