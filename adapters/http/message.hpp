@@ -11,7 +11,7 @@
 
 namespace recald::http {
 
-enum class Method : std::uint8_t { get, head, post, other };
+enum class Method : std::uint8_t { get, head, post, remove, other };
 
 struct Request {
   Method method = Method::get;

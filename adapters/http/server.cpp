@@ -11,6 +11,8 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 
+#include <cassert>
+
 #include "adapters/http/session.hpp"
 
 namespace recald::http {
@@ -34,9 +36,9 @@ Response too_many() {
 }
 
 /// TLS 1.2 and 1.3, nothing older.
-Result<std::unique_ptr<boost::asio::ssl::context>> tls_context(const TlsFiles& files) {
+Result<std::shared_ptr<boost::asio::ssl::context>> tls_context(const TlsFiles& files) {
   using boost::asio::ssl::context;
-  auto tls = std::make_unique<context>(context::tls_server);
+  auto tls = std::make_shared<context>(context::tls_server);
   boost::system::error_code error;
   tls->set_options(context::default_workarounds | context::no_sslv2 | context::no_sslv3 |
                        context::no_tlsv1 | context::no_tlsv1_1 | context::single_dh_use,
@@ -82,7 +84,7 @@ struct Server::Shared {
   SessionRules rules;
   int connections_max = 0;
   tcp::acceptor acceptor;
-  std::unique_ptr<boost::asio::ssl::context> tls;
+  std::shared_ptr<boost::asio::ssl::context> tls;  ///< Of the next connection.
   Handler handler;
   std::set<tcp_stream*> open;  ///< Of the sessions that run.
 };
@@ -121,7 +123,8 @@ awaitable<void> serve_plain(std::shared_ptr<Shared> shared, tcp::socket socket, 
 
 template <class Shared>
 awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bool is_welcome) {
-  TlsStream stream{std::move(socket), *shared->tls};
+  const auto tls = shared->tls;
+  TlsStream stream{std::move(socket), *tls};
   const Known<Shared> known{shared, boost::beast::get_lowest_layer(stream)};
   set_deadline(stream, shared->rules.slow_client);
   boost::system::error_code error;
@@ -212,6 +215,14 @@ std::uint16_t Server::port() const {
 }
 
 void Server::set_token(std::string token) { shared_->rules.token = std::move(token); }
+
+Result<void> Server::set_tls(const TlsFiles& files) {
+  assert(shared_->tls != nullptr);
+  auto tls = tls_context(files);
+  if (!tls) return tl::unexpected(tls.error());
+  shared_->tls = std::move(*tls);
+  return {};
+}
 
 void Server::stop() {
   shared_->rules.is_stopping = true;

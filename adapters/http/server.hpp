@@ -60,6 +60,11 @@ class Server {
   /// Another token from now on, so that it can be changed without a restart.
   void set_token(std::string token);
 
+  /// Another certificate for connections to come; those that are open keep theirs.
+  /// @pre it was listened to with TLS
+  /// @return or why not, as `listen`; then the old one stays.
+  Result<void> set_tls(const TlsFiles& files);
+
   /// No new connections, and the present ones are closed. The handler is not called any more.
   void stop();
 

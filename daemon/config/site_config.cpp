@@ -179,8 +179,14 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
       table.number_or("steam_kWh_per_kg", config.units.steam_kWh_per_kg, kFactor);
   config.units.gas_kWh_per_m3 = table.number("gas_kWh_per_m3", kFactor);
   if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
-  if (auto counter = table.table("counter"))
+  if (auto counter = table.table("counter")) {
+    if (config.source == MeterSource::http) {
+      table.problem_at("counter",
+                       "what is sent are means of intervals; leave out 'counter', or send what the "
+                       "counter rose by");
+    }
     config.counter = read_counter(*counter, meter.rated_kW);
+  }
   config.end_uses = read_end_uses(table);
   config.text = table.toml();
   table.finish();

@@ -121,6 +121,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
     start(*bus);
     buses_.push_back(std::move(bus));
   }
+  keeper_.set_options(site.closing);
   return {};
 }
 
@@ -155,7 +156,9 @@ void Gateway::watch_clock(const Moment& now) {
   const milliseconds moved =
       wall_minus_monotonic_ ? offset - *wall_minus_monotonic_ : milliseconds{0};
   wall_minus_monotonic_ = offset;
-  const bool was_ok = std::exchange(clock_ok_, is_plausible_time(now.instant()));
+  // Once it has settled it is not asked again: a clock that loses its server still runs.
+  const bool is_settled = clock_ok_ || !ports_.is_clock_settling || !ports_.is_clock_settling();
+  const bool was_ok = std::exchange(clock_ok_, is_settled && is_plausible_time(now.instant()));
   if (!was_ok) {
     if (clock_ok_) release_held(now);
     return;
@@ -247,19 +250,39 @@ void Gateway::close_months() {
   if (!clock_ok_) return;
   // A month is closed out of the store: what still waits for it would be missing.
   if (!committer_.flush()) return;
-  std::vector<StoredMeter> stored;
-  for (const MeterProgress* const progress : all_progress()) stored.push_back(progress->stored);
-  const auto closed = keeper_.close_due(stored, ports_.loop.now().instant());
-  if (!closed) {
-    committer_.add({.events = {{ports_.loop.now().instant(), Severity::error, "month_not_closed",
-                                "", closed.error().message}}});
-    return;
+  std::vector<std::uint32_t> meters;
+  for (const MeterProgress* const progress : all_progress()) {
+    meters.push_back(progress->stored.number);
   }
-  for (const ClosedFigure& one : *closed) {
-    MeterProgress& progress = *find_progress(one.number);
+  std::ranges::reverse(meters);
+  close_months_of(std::move(meters));
+}
+
+/// The last one of them first, and the others after what else waits for the loop: a thousand months
+/// take seconds.
+void Gateway::close_months_of(std::vector<std::uint32_t> meters) {
+  if (meters.empty()) return;
+  const std::uint32_t number = meters.back();
+  meters.pop_back();
+  // A reload may have taken it away meanwhile.
+  if (const MeterProgress* const meter = find_progress(number)) close_months_of(*meter);
+  if (meters.empty()) return;
+  ports_.loop.post([weak = std::weak_ptr{self_}, meters = std::move(meters)]() mutable {
+    if (const auto self = weak.lock()) (*self)->close_months_of(std::move(meters));
+  });
+}
+
+void Gateway::close_months_of(const MeterProgress& meter) {
+  const Instant now = ports_.loop.now().instant();
+  const StoredMeter stored = meter.stored;
+  const auto closed = keeper_.close_due({&stored, 1}, now, [&](const ClosedFigure& one) {
+    MeterProgress& progress = *find_progress(stored.number);
     progress.closed_until =
         std::max(progress.closed_until, calendar_.month_span(one.figure.month).end);
-    if (on_month_) on_month_(progress.stored.meter, one.figure);
+    if (on_month_) on_month_(stored.meter, one.figure);
+  });
+  if (!closed) {
+    note({now, Severity::error, "month_not_closed", stored.meter.id, closed.error().message});
   }
 }
 
@@ -275,38 +298,64 @@ GatewayStatus Gateway::status() const {
                        .store = committer_.health(),
                        .waiting_intervals = committer_.waiting_intervals(),
                        .events = events_};
-  const Instant now = ports_.loop.now().instant();
   for (const auto& bus : buses_) {
     const BusRunner* const runner = bus->runner();
     if (runner == nullptr) continue;
     const BusCounters& counters = runner->counters();
     status.buses.push_back({bus->config().name, counters.duration, counters.lateness});
     for (std::size_t unit = 0; unit < bus->meters().size(); ++unit) {
-      const LiveMeter& meter = bus->meters()[unit];
-      status.meters.push_back({.id = meter.progress.stored.meter.id,
-                               .poll = PollStatus{.bus = bus->config().name,
-                                                  .state = runner->poller().state(unit),
-                                                  .skipped = runner->poller().skipped(unit),
-                                                  .requests = counters.requests[unit]},
-                               .live = meter.track.live(),
-                               .last_interval = meter.progress.last_interval,
-                               .counters = meter.progress.counters,
-                               .open_month_coverage = clock_ok_
-                                                          ? meter.progress.open_month.coverage(now)
-                                                          : std::nan("")});
+      status.meters.push_back(status_of(*bus, unit, *runner));
     }
   }
-  for (const PushedMeter& meter : pushed_) {
-    status.meters.push_back(
-        {.id = meter.progress.stored.meter.id,
-         .poll = std::nullopt,
-         .live = {.power_kW = {}, .register_kWh = {}, .read_at = meter.heard_at},
-         .last_interval = meter.progress.last_interval,
-         .counters = meter.progress.counters,
-         .open_month_coverage =
-             clock_ok_ ? meter.progress.open_month.coverage(now) : std::nan("")});
-  }
+  for (const PushedMeter& meter : pushed_) status.meters.push_back(status_of(meter));
   return status;
+}
+
+std::optional<MeterStatus> Gateway::meter_status(std::string_view id) const {
+  for (const auto& bus : buses_) {
+    const BusRunner* const runner = bus->runner();
+    if (runner == nullptr) continue;
+    const auto meters = std::span{bus->meters()};
+    const auto found = std::ranges::find(meters, id, [](const LiveMeter& one) {
+      return std::string_view{one.progress.stored.meter.id};
+    });
+    if (found != meters.end()) {
+      return status_of(*bus, static_cast<std::size_t>(found - meters.begin()), *runner);
+    }
+  }
+  const auto pushed = std::ranges::find(pushed_, id, [](const PushedMeter& one) {
+    return std::string_view{one.progress.stored.meter.id};
+  });
+  if (pushed == pushed_.end()) return std::nullopt;
+  return status_of(*pushed);
+}
+
+MeterStatus Gateway::status_of(const LiveBus& bus, std::size_t unit,
+                               const BusRunner& runner) const {
+  const LiveMeter& meter = bus.meters()[unit];
+  return {.id = meter.progress.stored.meter.id,
+          .poll = PollStatus{.bus = bus.config().name,
+                             .state = runner.poller().state(unit),
+                             .skipped = runner.poller().skipped(unit),
+                             .requests = runner.counters().requests[unit]},
+          .live = meter.track.live(),
+          .last_interval = meter.progress.last_interval,
+          .counters = meter.progress.counters,
+          .open_month_coverage = coverage_of(meter.progress)};
+}
+
+MeterStatus Gateway::status_of(const PushedMeter& meter) const {
+  return {.id = meter.progress.stored.meter.id,
+          .poll = std::nullopt,
+          .live = {.power_kW = {}, .register_kWh = {}, .read_at = meter.heard_at},
+          .last_interval = meter.progress.last_interval,
+          .counters = meter.progress.counters,
+          .open_month_coverage = coverage_of(meter.progress)};
+}
+
+double Gateway::coverage_of(const MeterProgress& progress) const {
+  if (!clock_ok_) return std::nan("");
+  return progress.open_month.coverage(ports_.loop.now().instant());
 }
 
 }  // namespace recald::daemon

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adapters/ports/bus.hpp"
@@ -40,6 +41,8 @@ struct GatewayPorts {
   std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
   std::string time_zone_release;
   std::uint64_t seed = 1;
+  /// The clock is about to be set; not asked any more once it has said no. Absent: never.
+  std::function<bool()> is_clock_settling = {};
 };
 
 /// A month has closed, or closed again.
@@ -113,6 +116,9 @@ class Gateway {
 
   [[nodiscard]] GatewayStatus status() const;
 
+  /// Of one meter, without looking at all. @return nothing for one that the store keeps nothing of.
+  [[nodiscard]] std::optional<MeterStatus> meter_status(std::string_view id) const;
+
  private:
   /// A meter with source = "http".
   struct PushedMeter {
@@ -143,7 +149,13 @@ class Gateway {
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
   void note_committed(const StoreBatch& batch, const CommitCounts& counts);
+  [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
+                                      const BusRunner& runner) const;
+  [[nodiscard]] MeterStatus status_of(const PushedMeter& meter) const;
+  [[nodiscard]] double coverage_of(const MeterProgress& progress) const;
   void close_months();
+  void close_months_of(std::vector<std::uint32_t> meters);
+  void close_months_of(const MeterProgress& meter);
   void close_months_every_hour();
 
   metering::LocalCalendar calendar_;

@@ -80,8 +80,9 @@ Result<std::vector<Month>> MonthKeeper::due(const StoredMeter& meter,
   return months;
 }
 
-Result<std::vector<ClosedFigure>> MonthKeeper::close_due(std::span<const StoredMeter> meters,
-                                                         Instant now) {
+Result<std::vector<ClosedFigure>> MonthKeeper::close_due(
+    std::span<const StoredMeter> meters, Instant now,
+    const std::function<void(const ClosedFigure&)>& on_closed) {
   const auto reopened = store_.reopened();
   if (!reopened) return tl::unexpected(reopened.error());
   std::vector<ClosedFigure> figures;
@@ -95,6 +96,7 @@ Result<std::vector<ClosedFigure>> MonthKeeper::close_due(std::span<const StoredM
       if (!revision) return tl::unexpected(revision.error());
       made->revision = *revision;
       figures.push_back({meter.number, std::move(*made)});
+      if (on_closed) on_closed(figures.back());
     }
   }
   return figures;

@@ -1,8 +1,10 @@
 /// Closes months out of the store when they are due, and again when late readings changed them.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adapters/ports/store.hpp"
@@ -42,10 +44,15 @@ class MonthKeeper {
 
   /// Closes the months of each meter that ended a watermark ago, from its first reading on, and
   /// those that were reopened.
+  /// @param on_closed  Is told of each as soon as it is stored; may be empty.
   /// @return the new figures in order of meter and month, or the store's failure; what was closed
   ///         before it stays closed.
-  [[nodiscard]] Result<std::vector<ClosedFigure>> close_due(std::span<const StoredMeter> meters,
-                                                            metering::Instant now);
+  [[nodiscard]] Result<std::vector<ClosedFigure>> close_due(
+      std::span<const StoredMeter> meters, metering::Instant now,
+      const std::function<void(const ClosedFigure&)>& on_closed = {});
+
+  /// Months that close from now on do so by other rules.
+  void set_options(metering::CloserOptions options) { options_ = std::move(options); }
 
  private:
   [[nodiscard]] Result<std::vector<metering::Month>> due(const StoredMeter& meter,

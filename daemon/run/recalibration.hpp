@@ -6,6 +6,7 @@
 #include <string>
 
 #include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
 #include "daemon/config/site_config.hpp"
 
 namespace recald::daemon {
@@ -22,8 +23,13 @@ class Recalibration {
   /// Waits for the times of the schedule, if it has any. A time at which nobody ran is over.
   void start();
 
+  /// Asks where the last month of all modelled meters has closed and nobody has asked since: the
+  /// process may have been killed in between, or the months were imported.
+  /// @return or the store's failure.
+  Result<void> catch_up(Store& store, const SiteConfig& site);
+
   /// A month of this meter has closed, or closed again. Months of several meters that close
-  /// together are one reason, not several.
+  /// within a minute are one reason, not several.
   void month_closed(const std::string& meter);
 
  private:

@@ -20,6 +20,7 @@
 #include "adapters/http/credentials.hpp"
 #include "adapters/http/server.hpp"
 #include "adapters/modbus/bus_thread.hpp"
+#include "adapters/system/clock_setting.hpp"
 #include "adapters/system/file_lock.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/system/worker_thread.hpp"
@@ -67,6 +68,9 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   if (now.closing.watermark != then.closing.watermark) return needs_restart("watermark");
   if (now.store.file != then.store.file) return needs_restart("[store] file");
   if (now.http.has_value() != then.http.has_value()) return needs_restart("[http]");
+  if (now.http && now.http->certificate_file.empty() != then.http->certificate_file.empty()) {
+    return needs_restart("choice of TLS");
+  }
   if (now.http && (now.http->address != then.http->address || now.http->port != then.http->port)) {
     return needs_restart("[http] listen");
   }
@@ -82,6 +86,7 @@ class Service {
         store_(std::move(store)),
         loop_(context_, options.trial),
         worker_(loop_),
+        options_(options),
         jobs_({loop_, store_, worker_}, make_site_work(site_),
               [](const StoredJob& job) { log_job(job); }),
         upkeep_(store_, site_.config.store, site_.calendar),
@@ -98,7 +103,8 @@ class Service {
                              return std::make_unique<modbus::BusThread>(bus.endpoint, loop_);
                            },
                        .time_zone_release = system::time_zone_release(),
-                       .seed = std::random_device{}()},  // for jitter only: no result has it
+                       .seed = std::random_device{}(),  // for jitter only: no result has it
+                       .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
                         recalibration_->month_closed(meter.id);
@@ -114,6 +120,7 @@ class Service {
                  site_.config.store.file.string());
     if (auto resumed = jobs_.resume(); !resumed) return resumed;
     schedule();
+    if (auto asked = recalibration_->catch_up(store_, site_.config); !asked) return asked;
     gateway_->start();
     keep_up();
     loop_.post([this] { watchdog_.ready(); });
@@ -140,17 +147,20 @@ class Service {
     if (!http->certificate_file.empty()) {
       options.tls = http::TlsFiles{http->certificate_file, http->key_file};
     }
-    const Served served{.site = site_.config,
-                        .calendar = site_.calendar,
-                        .store = store_,
-                        .status = [this] { return gateway_->status(); },
-                        .now = [this] { return loop_.now().instant(); },
-                        .started = loop_.now().instant(),
-                        .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
-                        .take_readings =
-                            [this](const std::string& meter, auto readings) {
-                              return gateway_->take_pushed(meter, std::move(readings));
-                            }};
+    const Served served{
+        .site = site_.config,
+        .calendar = site_.calendar,
+        .store = store_,
+        .status = [this] { return gateway_->status(); },
+        .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
+        .now = [this] { return loop_.now().instant(); },
+        .started = loop_.now().instant(),
+        .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
+        .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
+        .take_readings =
+            [this](const std::string& meter, auto readings) {
+              return gateway_->take_pushed(meter, std::move(readings));
+            }};
     auto server = http::Server::listen(context_, options, [served](const http::Request& request) {
       return answer(served, request);
     });
@@ -209,8 +219,13 @@ class Service {
       if (!read) return tl::unexpected(read.error());
       token = std::move(*read);
     }
+    if (server_ && !config->http->certificate_file.empty()) {
+      const http::TlsFiles files{config->http->certificate_file, config->http->key_file};
+      if (auto renewed = server_->set_tls(files); !renewed) return renewed;
+    }
     if (auto reloaded = gateway_->reload(*config); !reloaded) return reloaded;
     if (server_) server_->set_token(std::move(token));
+    upkeep_.set_config(config->store);
     site_.config = std::move(*config);
     jobs_.set_work(make_site_work(site_));
     schedule();
@@ -251,6 +266,7 @@ class Service {
   boost::asio::signal_set signals_{context_, SIGINT, SIGTERM, SIGHUP};
   asio::AsioLoop loop_;
   system::WorkerThread worker_;
+  ServiceOptions options_;
   JobRunner jobs_;  ///< Tells the worker's work to stop before the worker waits for it.
   std::unique_ptr<Recalibration> recalibration_;
   Upkeep upkeep_;

@@ -35,6 +35,10 @@ namespace recald::daemon {
 [[nodiscard]] http::Response post_job_of(JobKind kind, const Served& served,
                                          const http::Request& request);
 
+/// 202 with the job as it is; one that runs ends in a moment. 409 when it neither waits nor runs.
+[[nodiscard]] http::Response cancel_job_of(JobKind kind, const Served& served,
+                                           const std::string& id);
+
 template <JobKind kind>
 http::Response get_jobs(const Served& served, const http::Request& request) {
   return get_jobs_of(kind, served, request);
@@ -42,6 +46,10 @@ http::Response get_jobs(const Served& served, const http::Request& request) {
 template <JobKind kind>
 http::Response get_job(const Served& served, const std::string& id) {
   return get_job_of(kind, served, id);
+}
+template <JobKind kind>
+http::Response cancel_job(const Served& served, const std::string& id) {
+  return cancel_job_of(kind, served, id);
 }
 template <JobKind kind>
 http::Response post_job(const Served& served, const http::Request& request) {

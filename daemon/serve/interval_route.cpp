@@ -78,8 +78,8 @@ http::Response get_intervals(const Served& served, const http::Request& request)
 
   const metering::Meter& described = (*meter)->meter;
   Page page;
-  if ((*meter)
-          ->is_stored()) {  // a recorded meter has nothing in the store, and asking would enter it
+  // Asking would enter a meter that is read from its file; what was imported of it is for replays.
+  if ((*meter)->is_stored()) {
     const auto number = served.store.meter_number(described.id, described.interval);
     if (!number) return refusal(number.error()).value();
     auto read = read_page(served.store, *number, described, *span, *limit);

@@ -44,14 +44,26 @@ bool asks_for_nothing_more(const std::string& body) {
 }
 
 http::Response refused_job(const Error& error) {
-  switch (error.code) {
-    case ErrorCode::cancelled:
-      return http::error_response(429, "too_many_jobs", error.message);
-    case ErrorCode::io_failed:
-      return http::error_response(503, "store_unavailable", error.message);
-    default:
-      return http::error_response(409, "not_possible", error.message);
+  if (error.code == ErrorCode::io_failed) {
+    return http::error_response(503, "store_unavailable", error.message);
   }
+  return http::error_response(409, "not_possible", error.message);
+}
+
+/// The job of that kind that an id stands for, or the answer that there is none.
+tl::expected<StoredJob, http::Response> find_job(JobKind kind, const Served& served,
+                                                 const std::string& id) {
+  const auto number = number_in(id);
+  auto job = number ? served.store.job(*number) : Result<std::optional<StoredJob>>{};
+  if (!job) return tl::unexpected(refusal(job.error()).value());
+  if (!*job || (*job)->kind != kind) {
+    return tl::unexpected(
+        http::error_response(404, "not_found",
+                             fmt::format("there is no {} {}; GET /api/v1/{} lists them",
+                                         name_of(kind), csv::in_quotes(id), plural(kind)),
+                             "id"));
+  }
+  return std::move(**job);
 }
 
 }  // namespace
@@ -80,19 +92,27 @@ http::Response get_jobs_of(JobKind kind, const Served& served, const http::Reque
 }
 
 http::Response get_job_of(JobKind kind, const Served& served, const std::string& id) {
-  const auto number = number_in(id);
-  auto job = number ? served.store.job(*number) : Result<std::optional<StoredJob>>{};
-  if (!job) return refusal(job.error()).value();
-  if (!*job || (*job)->kind != kind) {
-    return http::error_response(404, "not_found",
-                                fmt::format("there is no {} {}; GET /api/v1/{} lists them",
-                                            name_of(kind), csv::in_quotes(id), plural(kind)),
-                                "id");
-  }
-  Json json = linked(**job);
-  const Json result = Json::parse((*job)->result, nullptr, false);
+  const auto job = find_job(kind, served, id);
+  if (!job) return job.error();
+  Json json = linked(*job);
+  const Json result = Json::parse(job->result, nullptr, false);
   json["result"] = result.is_discarded() ? Json() : result;
   return json_answer(json);
+}
+
+http::Response cancel_job_of(JobKind kind, const Served& served, const std::string& id) {
+  const auto job = find_job(kind, served, id);
+  if (!job) return job.error();
+  if (!served.cancel_job) {
+    return http::error_response(409, "not_possible",
+                                fmt::format("this daemon makes no {}", plural(kind)));
+  }
+  if (const auto cancelled = served.cancel_job(job->number); !cancelled) {
+    return refused_job(cancelled.error());
+  }
+  // One that runs ends in a moment, and is cancelled then.
+  const auto now = find_job(kind, served, id);
+  return now ? json_answer(linked(*now), 202) : now.error();
 }
 
 http::Response post_job_of(JobKind kind, const Served& served, const http::Request& request) {

@@ -1,5 +1,6 @@
-#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "daemon/serve/api.hpp"
 #include "daemon/serve/json_answer.hpp"
@@ -11,11 +12,6 @@ namespace recald::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json with_status(const MeterConfig& config, const GatewayStatus& status) {
-  const auto found = std::ranges::find(status.meters, config.meter.id, &MeterStatus::id);
-  return meter_json(config, found == status.meters.end() ? nullptr : &*found);
-}
 
 }  // namespace
 
@@ -34,10 +30,13 @@ http::Response get_sites(const Served& served, const http::Request& request) {
 
 http::Response get_meters(const Served& served, const http::Request& request) {
   if (const auto checked = has_only(request, {}); !checked) return checked.error();
-  const GatewayStatus status = served.status();
+  std::map<std::string, MeterStatus> known;
+  GatewayStatus all = served.status();
+  for (MeterStatus& status : all.meters) known.emplace(status.id, std::move(status));
   Json meters = Json::array();
   for (const MeterConfig& config : served.site.meters) {
-    meters.push_back(with_status(config, status));
+    const auto status = known.find(config.meter.id);
+    meters.push_back(meter_json(config, status == known.end() ? nullptr : &status->second));
   }
   return json_answer({{"meters", meters}, {"next", nullptr}});
 }
@@ -45,7 +44,8 @@ http::Response get_meters(const Served& served, const http::Request& request) {
 http::Response get_meter(const Served& served, const std::string& id) {
   const auto meter = meter_of(served.site, id);
   if (!meter) return meter.error();
-  return json_answer(with_status(**meter, served.status()));
+  const auto status = served.meter_status(id);
+  return json_answer(meter_json(**meter, status ? &*status : nullptr));
 }
 
 }  // namespace recald::daemon

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
+#include <vector>
 
 #include "daemon/serve/api.hpp"
 #include "daemon/serve/metrics.hpp"
@@ -24,6 +26,7 @@ struct Route {
   bool has_id;
   Response (*get)(const Served&, const Request&, const std::string& id);
   Response (*post)(const Served&, const Request&);
+  Response (*remove)(const Served&, const std::string& id) = nullptr;
 };
 
 template <Response (*list)(const Served&, const Request&)>
@@ -51,10 +54,12 @@ constexpr std::array kApiRoutes{
     Route{"drift", false, without_id<get_drift>, nullptr},
     Route{"calibrations", false, without_id<get_jobs<JobKind::calibration>>,
           post_job<JobKind::calibration>},
-    Route{"calibrations", true, with_id<get_job<JobKind::calibration>>, nullptr},
+    Route{"calibrations", true, with_id<get_job<JobKind::calibration>>, nullptr,
+          cancel_job<JobKind::calibration>},
     Route{"diagnoses", false, without_id<get_jobs<JobKind::diagnosis>>,
           post_job<JobKind::diagnosis>},
-    Route{"diagnoses", true, with_id<get_job<JobKind::diagnosis>>, nullptr},
+    Route{"diagnoses", true, with_id<get_job<JobKind::diagnosis>>, nullptr,
+          cancel_job<JobKind::diagnosis>},
     Route{"readings", false, nullptr, post_readings},
 };
 
@@ -71,9 +76,11 @@ constexpr std::array kOtherRoutes{
 Response not_allowed(const Route& route) {
   Response response =
       http::error_response(405, "method_not_allowed", "this method does nothing here");
-  std::string allowed = route.get != nullptr ? "GET, HEAD" : "";
-  if (route.post != nullptr) allowed += allowed.empty() ? "POST" : ", POST";
-  response.headers.emplace_back("Allow", allowed);
+  std::vector<std::string_view> allowed;
+  if (route.get != nullptr) allowed.emplace_back("GET, HEAD");
+  if (route.post != nullptr) allowed.emplace_back("POST");
+  if (route.remove != nullptr) allowed.emplace_back("DELETE");
+  response.headers.emplace_back("Allow", fmt::format("{}", fmt::join(allowed, ", ")));
   return response;
 }
 
@@ -82,6 +89,7 @@ Response take(const Route& route, const Served& served, const Request& request,
   const bool reads = request.method == Method::get || request.method == Method::head;
   if (reads && route.get != nullptr) return route.get(served, request, id);
   if (request.method == Method::post && route.post != nullptr) return route.post(served, request);
+  if (request.method == Method::remove && route.remove != nullptr) return route.remove(served, id);
   return not_allowed(route);
 }
 

@@ -17,11 +17,15 @@ struct Served {
   const metering::LocalCalendar& calendar;
   Store& store;
   std::function<GatewayStatus()> status;
+  /// Gateway::meter_status.
+  std::function<std::optional<MeterStatus>(const std::string& id)> meter_status;
   std::function<metering::Instant()> now;
   metering::Instant started{};
-  /// Asks for a job: its number, or why there is none (unsupported: the site has no model;
-  /// cancelled: too many wait already). Absent: nobody works here.
+  /// Asks for a job: its number, or why there is none (unsupported: the site has no model).
+  /// Absent: nobody works here.
   std::function<Result<std::int64_t>(JobKind kind)> ask_job = {};
+  /// JobRunner::cancel. Absent: nobody works here.
+  std::function<Result<void>(std::int64_t number)> cancel_job = {};
   /// Gateway::take_pushed. Absent: nothing is taken here.
   std::function<Result<CommitCounts>(const std::string& meter,
                                      std::vector<metering::Reading> readings)>

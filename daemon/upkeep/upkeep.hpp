@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "adapters/sqlite/backup.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
@@ -33,6 +34,9 @@ class Upkeep {
   /// once, and is tried again within the hour.
   /// @return when to call again: soon while there is work, within the hour otherwise.
   std::chrono::milliseconds maintain(metering::Instant now);
+
+  /// Other times, places and numbers of backups, and another retention. @pre the same file
+  void set_config(StoreConfig config) { config_ = std::move(config); }
 
  private:
   enum class Progress { more, done };

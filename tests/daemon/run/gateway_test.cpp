@@ -50,6 +50,7 @@ bus = "plant"
 unit = 1
 map = "counter.toml"
 rated_kW = 400
+poll = "60s"
 
 [[meter]]
 id = "cooling"
@@ -59,6 +60,7 @@ bus = "plant"
 unit = 2
 map = "counter.toml"
 rated_kW = 900
+poll = "60s"
 )";
 
 const Instant kStart = std::chrono::sys_days{std::chrono::year{2024} / 2 / 28};
@@ -93,7 +95,8 @@ class GatewayTest : public ::testing::Test {
          .store = store_,
          .make_bus =
              [this](const BusConfig&) { return std::make_unique<CounterBus>(loop_, devices_); },
-         .time_zone_release = "2025b"},
+         .time_zone_release = "2025b",
+         .is_clock_settling = is_clock_settling_},
         [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
           months_.push_back({meter.id, figure});
         });
@@ -140,6 +143,7 @@ class GatewayTest : public ::testing::Test {
   VirtualLoop loop_;
   SiteConfig site_;
   std::map<std::uint8_t, CounterDevice> devices_;
+  std::function<bool()> is_clock_settling_;
   std::unique_ptr<Gateway> gateway_;
   std::vector<std::pair<std::string, metering::MonthlyFigure>> months_;
 };
@@ -167,6 +171,9 @@ TEST_F(GatewayTest, AMonthFromRegistersToFigures) {
   EXPECT_EQ(status.meters[0].poll->state, UnitState::up);
   EXPECT_EQ(status.meters[0].last_interval->start, kStart + days{36} - minutes{15});
   EXPECT_NEAR(*status.meters[0].live.register_kWh, main_kWh(days{36}), 2.0);
+  EXPECT_EQ(gateway_->meter_status("cooling")->live.register_kWh,
+            status.meters[1].live.register_kWh);
+  EXPECT_FALSE(gateway_->meter_status("lift").has_value());
 }
 
 // The monthly energy of a month with outages is that of a month without.
@@ -269,6 +276,28 @@ TEST_F(GatewayTest, Clock1970ThenSync) {
   EXPECT_NEAR(stored_kWh("main", {kStart, kStart + hours{6}}),
               main_kWh(hours{6}) - main_kWh(minutes{0}), 25.0);
   EXPECT_EQ(count("main", Validity::missing), 0);
+}
+
+// Booted with a clock that looks right and is five hours ahead, until a time server is heard:
+// nothing bears a wrong stamp.
+TEST_F(GatewayTest, AClockThatIsAboutToBeSetIsNotBelieved) {
+  bool is_settling = true;
+  is_clock_settling_ = [&] { return is_settling; };
+  loop_.set_wall_clock(hours{5});
+  begin();
+  loop_.run_for(minutes{8});
+  EXPECT_FALSE(gateway_->status().clock_ok);
+  loop_.set_wall_clock(-hours{5});
+  is_settling = false;
+  loop_.run_for(hours{3} - minutes{8});
+  EXPECT_TRUE(gateway_->status().clock_ok);
+  EXPECT_GE(count("main", Validity::ok), 11);
+  EXPECT_EQ(count("main", Validity::missing), 0);
+  EXPECT_NEAR(stored_kWh("main", {kStart, kStart + hours{3}}),
+              main_kWh(hours{3} - minutes{15}) - main_kWh(minutes{0}), 1.0);
+  is_settling = true;  // a clock that loses its server still runs
+  loop_.run_for(hours{1});
+  EXPECT_TRUE(gateway_->status().clock_ok);
 }
 
 TEST_F(GatewayTest, StepBack20Min) {

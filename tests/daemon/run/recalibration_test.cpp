@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/virtual_loop.hpp"
 
 namespace recald::daemon {
@@ -38,10 +39,48 @@ TEST_F(RecalibrationTest, MonthsThatCloseTogetherAreOneReason) {
   recalibration_->month_closed("steam");
   EXPECT_THAT(asked_, IsEmpty());  // not before both are stored
   loop_.run_for(minutes{1});
-  EXPECT_THAT(asked_, ElementsAre("month 2026-03-28T00:00:00Z"));
+  EXPECT_THAT(asked_, ElementsAre("month 2026-03-28T00:01:00Z"));
   recalibration_->month_closed("steam");
   loop_.run_for(minutes{1});
   EXPECT_EQ(asked_.size(), 2U);
+}
+
+// Killed between a month and the calibration that it is a reason for.
+TEST_F(RecalibrationTest, AMonthThatNobodyHeardOfIsAReasonAtTheNextStart) {
+  auto store = sqlite::SqliteStore::open(":memory:").value();
+  const auto add_meter = [&](const char* id) {
+    site_.meters.push_back(
+        {.meter = {.id = id, .interval = minutes{15}}, .source = MeterSource::http});
+    return store.meter_number(id, minutes{15}).value();
+  };
+  const auto close = [&](std::uint32_t meter, unsigned month) {
+    metering::MonthlyFigure figure;
+    figure.month = std::chrono::year{2026} / std::chrono::month{month};
+    ASSERT_TRUE(store.put_month(meter, figure, "2025b", loop_.now().instant()).has_value());
+  };
+  const auto main = add_meter("main");
+  const auto steam = add_meter("steam");
+  site_.closing.watermark = hours{72};
+  begin("monthly");
+  const auto asks = [&] {
+    EXPECT_TRUE(recalibration_->catch_up(store, site_).has_value());
+    return !std::exchange(asked_, {}).empty();
+  };
+  EXPECT_FALSE(asks());  // nothing has closed
+  close(main, 2);
+  EXPECT_FALSE(asks());  // not for both
+  close(steam, 2);
+  EXPECT_TRUE(asks());
+  const metering::Instant closed =
+      std::chrono::sys_days{std::chrono::year{2026} / 3 / 1} + hours{71};
+  (void)store.add_job({.kind = JobKind::calibration, .asked = closed - minutes{1}});
+  EXPECT_TRUE(asks());  // that one could not know the month
+  (void)store.add_job({.kind = JobKind::calibration, .asked = closed});
+  EXPECT_FALSE(asks());
+  begin("never");
+  close(main, 3);
+  close(steam, 3);
+  EXPECT_FALSE(asks());
 }
 
 TEST_F(RecalibrationTest, MetersThatAreNotModelledAreNoReason) {

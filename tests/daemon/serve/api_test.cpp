@@ -270,12 +270,30 @@ TEST_F(Jobs, TheNewestComeFirst) {
   EXPECT_EQ(second["next"], nullptr);
 }
 
+TEST_F(Jobs, AreCancelled) {
+  work_on_jobs();
+  const auto cancel = [&](const std::string& path) {
+    return answer(served_, {.method = http::Method::remove, .path = path});
+  };
+  (void)post("/api/v1/diagnoses");
+  EXPECT_EQ(in_short(cancel("/api/v1/diagnoses/1")), "409 not_possible ");  // nobody works here
+  served_.cancel_job = [this](std::int64_t number) -> Result<void> {
+    StoredJob job = disk_.job(number).value().value();
+    if (job.state != JobState::waiting) return failure(ErrorCode::not_found, "it has ended");
+    job.state = JobState::cancelled;
+    return disk_.put_job(job);
+  };
+  EXPECT_EQ(in_short(cancel("/api/v1/calibrations/1")), "404 not_found id");
+  EXPECT_EQ(cancel("/api/v1/diagnoses/1").status, 202);
+  EXPECT_EQ(get_json("/api/v1/diagnoses/1")["state"], "cancelled");
+  EXPECT_EQ(in_short(cancel("/api/v1/diagnoses/1")), "409 not_possible ");
+  const http::Response nothing = cancel("/api/v1/diagnoses");
+  EXPECT_EQ(nothing.status, 405);
+  EXPECT_EQ(nothing.header("Allow"), "GET, HEAD, POST");
+}
+
 TEST_F(Jobs, AreRefusedWithTheirReason) {
   EXPECT_EQ(in_short(post("/api/v1/calibrations")), "409 not_possible ");
-  served_.ask_job = [](JobKind) -> Result<std::int64_t> {
-    return failure(ErrorCode::cancelled, "four calibrations wait already");
-  };
-  EXPECT_EQ(in_short(post("/api/v1/calibrations")), "429 too_many_jobs ");
   served_.ask_job = [](JobKind) -> Result<std::int64_t> {
     return failure(ErrorCode::unsupported, "the site has no [[model]]");
   };

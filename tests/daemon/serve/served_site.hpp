@@ -127,6 +127,7 @@ class ServedSite : public ::testing::Test {
                  .calendar = calendar_,
                  .store = store_,
                  .status = [this] { return gateway_->status(); },
+                 .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
                  .now = [this] { return loop_.now().instant(); },
                  .started = kStart,
                  .take_readings =
