@@ -203,6 +203,7 @@ struct Arguments {
   MetamodelArguments metamodel;
   DoeArguments doe;
   DiagnoseArguments diagnose;
+  DriftArguments drift;
   DetectabilityArguments detectability;
   StatusArguments status;
   ModelArguments model;
@@ -335,6 +336,20 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
                        "asking how probable it is, and nothing else");
   verbs.push_back(
       {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
+
+  CLI::App* drift =
+      app.add_subcommand("drift", "Forecast each month from those before: what has changed?");
+  add_site(*drift, given.drift);
+  drift->add_option("--out", given.drift.out, "Folder for drift.json");
+  drift->add_option("--model", given.drift.model, "epc or hourly; else as the site file says")
+      ->check(CLI::IsMember({"epc", "hourly"}));
+  drift->add_option("--particles", given.drift.particles, "That carry the posterior along")
+      ->check(CLI::Range(64, 100'000))
+      ->capture_default_str();
+  drift->add_option("--seed", given.drift.seed, "Seed of all random numbers")
+      ->capture_default_str();
+  drift->add_option("--threads", given.drift.threads, "0: as many as there are processors");
+  verbs.push_back({drift, [&](const Console& console) { return run_drift(given.drift, console); }});
 
   CLI::App* detectability = app.add_subcommand(
       "detectability", "How visible an effect of a given footprint is at a site without it");

@@ -1,5 +1,6 @@
 #include "core/drift/prequential.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace recald::drift {
@@ -25,31 +26,70 @@ ForecastRecord record_of(const Forecast& forecast, double measured) {
 }  // namespace
 
 Prequential::Prequential(SequentialCalibration calibration, calibration::PosteriorData all,
-                         const WatchOptions& options)
+                         std::vector<LevelOutput> levels, const WatchOptions& options)
     : calibration_(std::move(calibration)),
       all_(std::move(all)),
-      watch_(static_cast<int>(all_.scales.size()), options) {}
+      watch_(static_cast<int>(all_.scales.size()), options) {
+  for (LevelOutput& level : levels) levels_.push_back({std::move(level), LevelForecast{}});
+}
+
+Result<void> Prequential::look_at_points(PrequentialMonth& record) {
+  if (!calibration_.has_begun()) return {};
+  const auto forecasts = calibration_.forecast(record.month);
+  if (!forecasts) return tl::unexpected(forecasts.error());
+  std::size_t next = 0;  // forecasts come in the order of the month's points
+  for (std::size_t i = 0; i < all_.points.size(); ++i) {
+    if (all_.points[i].month != record.month) continue;
+    const auto output = static_cast<std::size_t>(all_.points[i].output);
+    const calibration::OutputScale& scale = all_.scales[output];
+    const double measured = scale.min + scale.range() * all_.values(static_cast<Eigen::Index>(i));
+    record.outputs[output] = record_of(in_units((*forecasts)[next++], scale), measured);
+  }
+  return {};
+}
+
+void Prequential::look_at_levels(PrequentialMonth& record) {
+  const auto month = static_cast<std::size_t>(record.month);
+  for (Level& level : levels_) {
+    const double modelled = level.output.modelled[month];
+    const double measured = level.output.measured[month];
+    if (std::isnan(measured)) continue;
+    record.outputs[static_cast<std::size_t>(level.output.output)] =
+        record_of(level.forecast.forecast(modelled), measured);
+    level.forecast.take(modelled, measured);
+  }
+}
+
+std::vector<LevelOutput> Prequential::levels() const {
+  std::vector<LevelOutput> levels;
+  for (const Level& level : levels_) levels.push_back(level.output);
+  return levels;
+}
+
+Result<void> Prequential::set_aside(int output, int since, const std::function<bool()>& proceed) {
+  std::erase_if(levels_, [&](const Level& level) { return level.output.output == output; });
+  if (auto aside = calibration_.set_aside(output, since, proceed); !aside) return aside;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < all_.points.size(); ++i) {
+    const bool is_doubted = all_.points[i].output == output && all_.points[i].month >= since;
+    if (!is_doubted) rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  all_ = select_points(all_, rows);
+  return {};
+}
 
 Result<PrequentialMonth> Prequential::step(int month, const std::function<bool()>& proceed) {
   PrequentialMonth record{.month = month, .outputs = {}, .taken = {.month = month}, .alarms = {}};
   record.outputs.resize(all_.scales.size());
-  std::vector<std::optional<double>> surprises(all_.scales.size());
-  if (calibration_.has_begun()) {
-    const auto forecasts = calibration_.forecast(month);
-    if (!forecasts) return tl::unexpected(forecasts.error());
-    std::size_t next = 0;  // forecasts come in the order of the month's points
-    for (std::size_t i = 0; i < all_.points.size(); ++i) {
-      if (all_.points[i].month != month) continue;
-      const auto output = static_cast<std::size_t>(all_.points[i].output);
-      const calibration::OutputScale& scale = all_.scales[output];
-      const double measured = scale.min + scale.range() * all_.values(static_cast<Eigen::Index>(i));
-      record.outputs[output] = record_of(in_units((*forecasts)[next++], scale), measured);
-      surprises[output] = record.outputs[output]->surprise.standardised;
-    }
-  }
+  if (auto looked = look_at_points(record); !looked) return tl::unexpected(looked.error());
   const auto taken = calibration_.take(month, proceed);
   if (!taken) return tl::unexpected(taken.error());
   record.taken = *taken;
+  look_at_levels(record);
+  std::vector<std::optional<double>> surprises;
+  for (const auto& output : record.outputs) {
+    surprises.push_back(output ? std::optional{output->surprise.standardised} : std::nullopt);
+  }
   record.alarms = watch_.observe(month, surprises);
   return record;
 }

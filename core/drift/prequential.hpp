@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/drift/forecast.hpp"
+#include "core/drift/level_forecast.hpp"
 #include "core/drift/sequential.hpp"
 #include "core/drift/watch.hpp"
 
@@ -30,26 +32,60 @@ struct PrequentialMonth {
   std::vector<Alarm> alarms;
 };
 
+/// An output that no parameter moves. (months) each; NaN: not measured.
+struct LevelOutput {
+  int output;                    ///< Index among the outputs; it has no points.
+  std::vector<double> modelled;  ///< > 0
+  std::vector<double> measured;
+};
+
 /// Dawid's prequential principle: a model is judged by what it said beforehand and by nothing else.
 /// Months are conditional on their weather, which is known by the time their figures are.
 class Prequential {
  public:
   /// @param calibration  Before its first month.
   /// @param all          The points it was made with.
+  /// @param levels       Outputs that are forecast by themselves.
   Prequential(SequentialCalibration calibration, calibration::PosteriorData all,
-              const WatchOptions& options);
+              std::vector<LevelOutput> levels, const WatchOptions& options);
+
+  /// The first months, which the model was made from: they are no test of it.
+  [[nodiscard]] Result<MonthTaken> learn(std::vector<int> months,
+                                         const std::function<bool()>& proceed = {}) {
+    return calibration_.learn(std::move(months), proceed);
+  }
 
   /// @param proceed  Asked now and then; false gives `cancelled`.
   /// @return or an error of forecasting or taking; then nothing has happened.
   /// @pre months ascend
   [[nodiscard]] Result<PrequentialMonth> step(int month, const std::function<bool()>& proceed = {});
 
+  /// As SequentialCalibration's: an alarm was found to be the building's …
+  Result<void> begin_at(int month, const std::function<bool()>& proceed = {}) {
+    return calibration_.begin_at(month, proceed);
+  }
+  /// … or a meter's, which is forecast no more.
+  Result<void> set_aside(int output, int since, const std::function<bool()>& proceed = {});
+
   [[nodiscard]] const SequentialCalibration& calibration() const { return calibration_; }
+  /// Those that are not set aside.
+  [[nodiscard]] const calibration::PosteriorData& data() const { return all_; }
+  [[nodiscard]] std::vector<LevelOutput> levels() const;
   [[nodiscard]] const Watch& watch() const { return watch_; }
 
  private:
   SequentialCalibration calibration_;
+  /// What the points say of a month. @return or an error of forecasting.
+  [[nodiscard]] Result<void> look_at_points(PrequentialMonth& record);
+  void look_at_levels(PrequentialMonth& record);
+
+  struct Level {
+    LevelOutput output;
+    LevelForecast forecast;
+  };
+
   calibration::PosteriorData all_;
+  std::vector<Level> levels_;
   Watch watch_;
 };
 

@@ -20,19 +20,6 @@ using calibration::PosteriorData;
 /// Fewer effective particles than this share stand for nothing that moves could repair.
 constexpr double kHopelessShare = 0.02;
 
-/// Rows of `data` with these indices.
-PosteriorData select(const PosteriorData& data, const std::vector<Eigen::Index>& rows) {
-  PosteriorData selected = data;
-  selected.points.clear();
-  for (const Eigen::Index row : rows) {
-    selected.points.push_back(data.points[static_cast<std::size_t>(row)]);
-  }
-  selected.values = data.values(rows);
-  selected.extra_variances = data.extra_variances(rows);
-  if (data.common_errors.cols() > 0) selected.common_errors = data.common_errors(rows, Eigen::all);
-  return selected;
-}
-
 /// log likelihood of every particle under a posterior.
 Result<Eigen::VectorXd> log_likelihoods(Posterior& posterior, const Particles& particles) {
   Eigen::VectorXd values(particles.count());
@@ -82,6 +69,18 @@ std::vector<Eigen::Index> spread_over(const Particles& particles, int count) {
 
 }  // namespace
 
+PosteriorData select_points(const PosteriorData& data, const std::vector<Eigen::Index>& rows) {
+  PosteriorData selected = data;
+  selected.points.clear();
+  for (const Eigen::Index row : rows) {
+    selected.points.push_back(data.points[static_cast<std::size_t>(row)]);
+  }
+  selected.values = data.values(rows);
+  selected.extra_variances = data.extra_variances(rows);
+  if (data.common_errors.cols() > 0) selected.common_errors = data.common_errors(rows, Eigen::all);
+  return selected;
+}
+
 SequentialCalibration::SequentialCalibration(const MonthlyModel& model,
                                              std::vector<Parameter> parameters, PosteriorData all,
                                              calibration::HyperPrior prior, Window window,
@@ -99,15 +98,14 @@ SequentialCalibration::SequentialCalibration(const MonthlyModel& model,
 }
 
 PosteriorData SequentialCalibration::points_seen_from(int newest, int added) const {
-  const int oldest =
-      window_.months > 0 ? newest - window_.months + 1 : std::numeric_limits<int>::min();
+  const int oldest = window_.months > 0 ? std::max(oldest_, newest - window_.months + 1) : oldest_;
   std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < all_.points.size(); ++i) {
     const int month = all_.points[i].month;
     const bool is_held = month >= oldest && std::ranges::binary_search(taken_, month);
     if (is_held || month == added) rows.push_back(static_cast<Eigen::Index>(i));
   }
-  PosteriorData data = select(all_, rows);
+  PosteriorData data = select_points(all_, rows);
   if (window_.half_life_months <= 0.0) return data;
   for (Eigen::Index i = 0; i < data.extra_variances.size(); ++i) {
     const int age = std::max(0, newest - data.points[static_cast<std::size_t>(i)].month);
@@ -186,6 +184,56 @@ Result<void> SequentialCalibration::begin_anew(Posterior& posterior, MonthTaken&
   return {};
 }
 
+Result<MonthTaken> SequentialCalibration::learn(std::vector<int> months,
+                                                const std::function<bool()>& proceed) {
+  assert(taken_.empty() && !months.empty() && std::ranges::is_sorted(months));
+  taken_ = std::move(months);
+  auto learnt = learn_again(proceed);
+  if (!learnt) taken_.clear();
+  return learnt;
+}
+
+Result<MonthTaken> SequentialCalibration::learn_again(const std::function<bool()>& proceed) {
+  MonthTaken taken{.month = taken_.back()};
+  PosteriorData data = points_seen_from(taken.month, taken.month);
+  if (data.points.size() < parameters_.size() + 2) {
+    particles_.reset();
+    return taken;
+  }
+  auto posterior = posterior_of(std::move(data));
+  if (!posterior) return tl::unexpected(posterior.error());
+  if (auto begun = begin_anew(*posterior, taken, proceed); !begun) {
+    return tl::unexpected(begun.error());
+  }
+  return taken;
+}
+
+Result<void> SequentialCalibration::begin_at(int month, const std::function<bool()>& proceed) {
+  const int before = std::exchange(oldest_, std::max(oldest_, month));
+  const auto learnt = learn_again(proceed);
+  if (learnt) return {};
+  oldest_ = before;
+  return tl::unexpected(learnt.error());
+}
+
+Result<void> SequentialCalibration::set_aside(int output, int since,
+                                              const std::function<bool()>& proceed) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < all_.points.size(); ++i) {
+    const auto& point = all_.points[i];
+    const bool is_doubted = point.output == output && point.month >= since;
+    if (!is_doubted) rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  PosteriorData all = std::exchange(all_, select_points(all_, rows));
+  Eigen::VectorXd variances =
+      std::exchange(prior_variances_, Eigen::VectorXd{prior_variances_(rows)});
+  const auto learnt = learn_again(proceed);
+  if (learnt) return {};
+  all_ = std::move(all);
+  prior_variances_ = std::move(variances);
+  return tl::unexpected(learnt.error());
+}
+
 Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bool()>& proceed) {
   assert(!std::ranges::binary_search(taken_, month));
   MonthTaken taken{.month = month};
@@ -241,6 +289,15 @@ Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bo
   particles_ = std::move(carried);
   months_since_anew_ = months_since_anew;
   return remember();
+}
+
+std::vector<Eigen::VectorXd> SequentialCalibration::spread(int count) const {
+  assert(has_begun());
+  std::vector<Eigen::VectorXd> positions;
+  for (const Eigen::Index i : spread_over(*particles_, count)) {
+    positions.emplace_back(particles_->positions.col(i));
+  }
+  return positions;
 }
 
 Eigen::MatrixXd SequentialCalibration::draw_parameters(int count) const {

@@ -29,8 +29,12 @@ struct SequentialOptions {
   double effective_share = 0.5;  ///< Below it the population is resampled and moved.
   double acceptance_min = 0.10;  ///< Moves that stall: the population begins anew at the prior.
   int anew_every_months = 12;
-  int forecast_particles = 512;  ///< That a forecast is made of, evenly from the population.
+  int forecast_particles = 128;  ///< That a forecast is made of, evenly from the population.
 };
+
+/// The points with these indices. @param rows  Ascending.
+[[nodiscard]] calibration::PosteriorData select_points(const calibration::PosteriorData& data,
+                                                       const std::vector<Eigen::Index>& rows);
 
 /// How a month was taken in.
 struct MonthTaken {
@@ -69,6 +73,11 @@ class SequentialCalibration {
   /// @return or an error of the model. @pre some month is taken; `month` is not
   [[nodiscard]] Result<std::vector<Forecast>> forecast(int month);
 
+  /// Takes several months in at once, the first ones: what the model was made from.
+  /// @return as `take`. @pre months ascend; none is taken yet
+  [[nodiscard]] Result<MonthTaken> learn(std::vector<int> months,
+                                         const std::function<bool()>& proceed = {});
+
   /// Takes a month in, whether it has points or not. The first ones are sampled together: before
   /// `q + 2` points there is no posterior, and nothing is sampled; a window that has fewer again
   /// has none again.
@@ -76,11 +85,21 @@ class SequentialCalibration {
   /// @return or an error of the model or of sampling; then everything is as it was.
   [[nodiscard]] Result<MonthTaken> take(int month, const std::function<bool()>& proceed = {});
 
+  /// From now on nothing before `month` is believed: the building has become another one.
+  /// @return as `take`. @pre some month is taken
+  Result<void> begin_at(int month, const std::function<bool()>& proceed = {});
+
+  /// Takes an output's points out from `since` on, those to come as well: its meter is doubted.
+  /// @return as `take`. @pre some month is taken
+  Result<void> set_aside(int output, int since, const std::function<bool()>& proceed = {});
+
   /// Whether there is a posterior.
   [[nodiscard]] bool has_begun() const { return particles_.has_value(); }
   [[nodiscard]] const calibration::Particles& particles() const { return *particles_; }
   /// Natural values of the calibration parameters, (count x q), evenly weighted.
   [[nodiscard]] Eigen::MatrixXd draw_parameters(int count) const;
+  /// `count` particles in unconstrained coordinates, evenly by weight.
+  [[nodiscard]] std::vector<Eigen::VectorXd> spread(int count) const;
   [[nodiscard]] const Window& window() const { return window_; }
 
  private:
@@ -90,6 +109,8 @@ class SequentialCalibration {
   /// Points of the months taken that the window holds when `newest` is the newest, and of `added`.
   [[nodiscard]] calibration::PosteriorData points_seen_from(int newest, int added) const;
   [[nodiscard]] Result<calibration::Posterior> posterior_of(calibration::PosteriorData data) const;
+  /// From the prior, on the months taken.
+  [[nodiscard]] Result<MonthTaken> learn_again(const std::function<bool()>& proceed);
   [[nodiscard]] Result<void> begin_anew(calibration::Posterior& posterior, MonthTaken& taken,
                                         const std::function<bool()>& proceed);
 
@@ -103,6 +124,7 @@ class SequentialCalibration {
   Eigen::VectorXd prior_variances_;  ///< (all points) under the prior means.
   std::vector<int> taken_;           ///< Months, ascending.
   int months_since_anew_ = 0;
+  int oldest_ = std::numeric_limits<int>::min();  ///< Month that is still believed.
   std::optional<calibration::Particles> particles_;
 };
 

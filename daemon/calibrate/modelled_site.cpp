@@ -44,11 +44,16 @@ Result<SiteRecording> record_site(const OpenSite& site, const ReplayOptions& opt
   return SiteRecording{std::move(*recording), live ? live->digest() : ""};
 }
 
-Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now) {
+Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
+                                        const ChoosePeriod& choose) {
   VirtualClock clock{metering::Instant{}};
   auto recorded = record_site(site, {}, clock, {});
   if (!recorded) return tl::unexpected(recorded.error());
-  if (!site.config.period) {
+  if (choose) {
+    const auto period = choose(site, recorded->recording, now);
+    if (!period) return tl::unexpected(period.error());
+    site.config.period = *period;
+  } else if (!site.config.period) {
     const auto months = latest_months(site, recorded->recording, now);
     if (!months) return tl::unexpected(months.error());
     site.config.period = PeriodConfig{*months, {}};

@@ -2,6 +2,8 @@
 /// along.
 #pragma once
 
+#include <functional>
+
 #include "core/metering/civil_time.hpp"
 #include "daemon/config/site_config.hpp"
 #include "daemon/replay/recording.hpp"
@@ -37,10 +39,16 @@ struct SiteRecording {
                                                 VirtualClock& clock,
                                                 const OnMonthClosed& on_month_closed);
 
+/// The months to model, from what was recorded until `now`.
+using ChoosePeriod = std::function<Result<PeriodConfig>(
+    const OpenSite& site, const Recording& recording, metering::Instant now)>;
+
 /// Reads everything.
-/// @param now  A site without a [period] is modelled on the latest months that are closed then.
+/// @param now     A site without a [period] is modelled on the latest months that are closed then.
+/// @param choose  In the place of both; absent: as the site file says.
 /// @return or what is missing. @pre the site has a model
-[[nodiscard]] Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now);
+[[nodiscard]] Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
+                                                      const ChoosePeriod& choose = {});
 
 /// The last `recalibration.months` months that all modelled meters have closed.
 /// @return not_enough_data when they have no closed month in common.

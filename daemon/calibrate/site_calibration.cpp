@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "core/model/epc/prepare.hpp"
@@ -25,6 +26,8 @@ constexpr double kHeatShareSd = 0.15;
 // The same of a meter's peaks: schedules are means over many days, and a month's highest quarter
 // hour is not on a mean day. Their own scatter lifts measured peaks by about 8 %.
 constexpr double kPeakSd = 0.08;
+// Of lights and plugs, for how everything else follows them.
+constexpr double kMoreUse = 0.1;
 
 /// A model needs at least one month with weather; without, later steps would blame the meters.
 Result<void> require_months(const SiteMonths& months, const PeriodConfig& period,
@@ -166,25 +169,36 @@ Result<void> take_effects(const SiteConfig& site, const metering::LocalCalendar&
   return {};
 }
 
-/// The model of all months. Effects are told dates, so an hourly one of theirs runs in order of
-/// time.
-Result<std::unique_ptr<MonthlyModel>> whole_model_of(const SiteConfig& site,
-                                                     const SiteModelParts& parts,
-                                                     const SiteMonths& months,
-                                                     const model::epc::Place& place) {
-  const auto of = [&](const std::vector<Month>& some) -> Result<std::unique_ptr<MonthlyModel>> {
-    const auto make = model_of(site, parts, some, place);
-    if (!make) return tl::unexpected(make.error());
-    return (*make)(*site.building);
-  };
+/// Makes the model of all months. Effects are told dates, so an hourly one of theirs runs in order
+/// of time.
+Result<ModelFactory> whole_model_of(const SiteConfig& site, const SiteModelParts& parts,
+                                    const SiteMonths& months, const model::epc::Place& place) {
   if (!parts.effects || !is_hourly(site) || std::ranges::is_sorted(months.all)) {
-    return of(months.all);
+    return model_of(site, parts, months.all, place);
   }
-  auto first = of(months.calibration);
+  auto first = model_of(site, parts, months.calibration, place);
   if (!first) return first;
-  auto second = of({months.all.begin() + std::ssize(months.calibration), months.all.end()});
+  auto second = model_of(
+      site, parts, {months.all.begin() + std::ssize(months.calibration), months.all.end()}, place);
   if (!second) return second;
-  return std::make_unique<JoinedMonthsModel>(std::move(*first), std::move(*second));
+  return [first = std::move(*first), second = std::move(*second)](const model::Building& building) {
+    return std::make_unique<JoinedMonthsModel>(first(building), second(building));
+  };
+}
+
+/// By how much everything moves when lights and plugs take more.
+Result<std::vector<double>> electricity_use_of(const SiteConfig& site, SiteModelParts parts,
+                                               const SiteMonths& months,
+                                               const model::epc::Place& place, MonthlyModel& whole,
+                                               std::span<const Parameter> parameters) {
+  for (double& factor : parts.loads.month_factor) factor *= 1.0 + kMoreUse;
+  const auto make = whole_model_of(site, parts, months, place);
+  if (!make) return tl::unexpected(make.error());
+  const std::vector<double> modes = prior_modes(parameters);
+  const std::vector<double> base = evaluate(whole, modes);
+  std::vector<double> use = evaluate(*(*make)(*site.building), modes);
+  for (std::size_t i = 0; i < use.size(); ++i) use[i] = (use[i] - base[i]) / kMoreUse;
+  return use;
 }
 
 void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weather,
@@ -195,14 +209,13 @@ void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weat
   prepared.inputs = also_in(weather::monthly_inputs(series, calendar, months.all), inputs.names);
 }
 
-void add_common_errors(const model::Building& building, const ModelFactory& make,
-                       PreparedSite& prepared) {
-  const std::vector<double> modes = prior_modes(prepared.so_far.parameters);
-  auto& errors = prepared.problem.common_errors;
-  errors.push_back(heat_share_error(building, make, modes));
-  for (Eigen::VectorXd& error : peak_errors(prepared.so_far.outputs, *prepared.model, modes)) {
-    errors.push_back(std::move(error));
-  }
+std::vector<Eigen::VectorXd> common_errors_of(const model::Building& building,
+                                              const ModelFactory& make, const SiteCalibration& site,
+                                              MonthlyModel& model) {
+  const std::vector<double> modes = prior_modes(site.parameters);
+  std::vector<Eigen::VectorXd> errors{heat_share_error(building, make, modes)};
+  std::ranges::move(peak_errors(site.outputs, model, modes), std::back_inserter(errors));
+  return errors;
 }
 
 }  // namespace
@@ -299,11 +312,17 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   prepared.model = (*make)(*site.building);
   auto whole = whole_model_of(site, parts, months, place);
   if (!whole) return tl::unexpected(whole.error());
-  prepared.whole_model = std::move(*whole);
+  prepared.whole_model = (*whole)(*site.building);
+
+  auto use =
+      electricity_use_of(site, parts, months, place, *prepared.whole_model, result.parameters);
+  if (!use) return tl::unexpected(use.error());
+  prepared.electricity_use = std::move(*use);
 
   prepared.problem = problem_of(result, months.calibration.size());
   add_inputs(calendar, weather, months, prepared);
-  add_common_errors(*site.building, *make, prepared);
+  prepared.problem.common_errors = common_errors_of(*site.building, *make, result, *prepared.model);
+  prepared.common_errors = common_errors_of(*site.building, *whole, result, *prepared.whole_model);
   return prepared;
 }
 

@@ -90,6 +90,14 @@ struct DiagnoseArguments : SiteArguments {
   std::vector<std::string> assumed;  ///< Effects known to be there, "scale_fault:steam".
 };
 
+struct DriftArguments : SiteArguments {
+  std::filesystem::path out;  ///< Folder for drift.json, or empty.
+  std::string model;          ///< "epc", "hourly", or empty: as the site file says.
+  int particles = 512;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+};
+
 struct CheckArguments : SiteArguments {
   bool meters = false;  ///< Try each live meter once.
 };
@@ -166,6 +174,8 @@ int run_metamodel(const MetamodelArguments& arguments, const Console& console);
 int run_doe(const DoeArguments& arguments, const Console& console);
 /// Locates, names and shows what the model lacks; with `apply` the model gets it.
 int run_diagnose(const DiagnoseArguments& arguments, const Console& console);
+/// Forecasts each month from those before and says where and since when the building left them.
+int run_drift(const DriftArguments& arguments, const Console& console);
 /// How visible an effect of a given footprint is at the site, whose data must be without it.
 int run_detectability(const DetectabilityArguments& arguments, const Console& console);
 /// The versions of the site's model, the one in force marked.

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "tests/core/calibration/small_case.hpp"
 
@@ -43,17 +45,22 @@ struct Case {
 /// RampModel of a year, year after year, in units.
 class YearlyRamp final : public MonthlyModel {
  public:
+  /// @param outputs  All but the first are of no account.
+  explicit YearlyRamp(int outputs = 1) : outputs_(outputs) {}
   [[nodiscard]] std::unique_ptr<MonthlyModel> clone() const override {
     return std::make_unique<YearlyRamp>(*this);
   }
   [[nodiscard]] int parameter_count() const override { return 1; }
-  [[nodiscard]] int output_count() const override { return 1; }
+  [[nodiscard]] int output_count() const override { return outputs_; }
   [[nodiscard]] int month_count() const override { return kLong; }
   void evaluate(std::span<const double> theta, std::span<double> outputs) override {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
-      outputs[i] = 10.0 + 50.0 * theta[0] * Case::slope(static_cast<int>(i));
+      outputs[i] = 10.0 + 50.0 * theta[0] * Case::slope(static_cast<int>(i) % kLong);
     }
   }
+
+ private:
+  int outputs_;
 };
 
 std::vector<PrequentialMonth> record_of(const Case& built, int months = kLong) {
@@ -65,6 +72,7 @@ std::vector<PrequentialMonth> record_of(const Case& built, int months = kLong) {
                            {.particles = 512, .forecast_particles = 256},
                            17},
                           built.data,
+                          {},
                           {}};
   std::vector<PrequentialMonth> record;
   for (int month = 0; month < months; ++month) {
@@ -118,6 +126,76 @@ TEST(Prequential, AMissingMonthHasNoForecastAndStopsNothing) {
   const auto record = record_of(built);
   EXPECT_FALSE(record[20].outputs[0].has_value());
   EXPECT_TRUE(record[21].outputs[0].has_value());
+}
+
+// What a model was made from is no test of it.
+TEST(Prequential, WhatIsLearntIsNotForecast) {
+  const Case built{0.0};
+  const auto make = [&] {
+    return Prequential{{YearlyRamp{},
+                        built.parameters,
+                        built.data,
+                        built.prior,
+                        {},
+                        {.particles = 512, .forecast_particles = 256},
+                        17},
+                       built.data,
+                       {},
+                       {}};
+  };
+  Prequential prequential = make();
+  std::vector<int> months(12);
+  std::iota(months.begin(), months.end(), 0);
+  const auto learnt = prequential.learn(months);
+  ASSERT_TRUE(learnt.has_value());
+  EXPECT_TRUE(learnt->anew);
+  // The same posterior as months taken in one by one, to what the particles know.
+  Prequential stepped = make();
+  for (int month = 0; month < 12; ++month) ASSERT_TRUE(stepped.step(month).has_value());
+  EXPECT_NEAR(prequential.calibration().draw_parameters(256).mean(),
+              stepped.calibration().draw_parameters(256).mean(), 0.02);
+  const auto next = prequential.step(12);
+  ASSERT_TRUE(next.has_value());
+  EXPECT_TRUE(next->outputs[0].has_value());
+}
+
+// An output that no parameter moves is watched all the same.
+TEST(Prequential, AnOutputWithoutParametersHasItsOwnForecasts) {
+  Case built{0.0};
+  built.data.scales.push_back({0.0, 1.0});
+  built.data.weights.push_back(1.0);
+  LevelOutput level{.output = 1, .modelled = {}, .measured = {}};
+  Rng rng{8};
+  for (int month = 0; month < kLong; ++month) {
+    level.modelled.push_back(100.0 + month % 12);
+    const double factor = (month < 24 ? 1.0 : 1.15) + 0.01 * rng.normal();
+    level.measured.push_back(month == 15 ? std::nan("") : factor * level.modelled.back());
+  }
+  Prequential prequential{{YearlyRamp{2},
+                           built.parameters,
+                           built.data,
+                           built.prior,
+                           {},
+                           {.particles = 512, .forecast_particles = 256},
+                           17},
+                          built.data,
+                          {level},
+                          {}};
+  std::vector<int> first(12);
+  std::iota(first.begin(), first.end(), 0);
+  ASSERT_TRUE(prequential.learn(first).has_value());
+  std::vector<Alarm> alarms;
+  for (int month = 12; month < kLong; ++month) {
+    const auto one = prequential.step(month);
+    ASSERT_TRUE(one.has_value());
+    EXPECT_EQ(one->outputs[1].has_value(), month != 15);
+    alarms.insert(alarms.end(), one->alarms.begin(), one->alarms.end());
+  }
+  ASSERT_FALSE(alarms.empty());
+  EXPECT_EQ(alarms[0].output, 1);
+  EXPECT_EQ(alarms[0].direction, 1);
+  EXPECT_LE(alarms[0].month, 28);
+  EXPECT_NEAR(alarms[0].since, 24, 1);
 }
 
 }  // namespace

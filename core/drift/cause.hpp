@@ -1,0 +1,81 @@
+/// What has changed: a parameter of the building, a meter, or something that the model lacks?
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/calibration/posterior.hpp"
+#include "core/drift/prequential.hpp"
+#include "core/drift/sequential.hpp"
+
+namespace recald::drift {
+
+/// A way in which all points may move together that no parameter stands for.
+struct Direction {
+  std::string name;  ///< "electricity use"
+  /// (outputs * months) in units, output-major, for an amplitude of 1 (a change by 100 %).
+  std::vector<double> change;
+};
+
+enum class CauseKind : std::uint8_t {
+  nothing,    ///< A false alarm.
+  parameter,  ///< A calibration parameter has another value since.
+  direction,  ///< The building moved along a known direction.
+  meter,      ///< One output's figures are multiplied by a factor: the meter, not the building.
+  unknown,    ///< Outputs moved by themselves, each as it likes: an effect that the model lacks.
+};
+
+struct Cause {
+  CauseKind kind = CauseKind::nothing;
+  int index = 0;  ///< Of the parameter, direction or output.
+  double probability = 0.0;
+  double log_evidence = 0.0;  ///< Of the months since the change.
+  /// The value since, or the factor; 90 % interval. NaN where there is none.
+  double mean;
+  double q05;
+  double q95;
+};
+
+struct CauseOptions {
+  int particles = 96;      ///< Of the posterior before the change.
+  int values = 32;         ///< Tried of what changed, a particle.
+  double factor_sd = 0.3;  ///< Of a meter's factor or a direction's amplitude, on the log scale.
+  /// Of an unknown effect: each output moves by this share of itself.
+  double unknown_sd = 0.15;
+  /// Prior odds of the kinds, each shared among its members.
+  double nothing = 0.10, building = 0.45, meters = 0.25, unknown = 0.20;
+};
+
+/// What a change is sought in.
+struct ChangeCase {
+  const MonthlyModel& model;  ///< Of all months.
+  const std::vector<Parameter>& parameters;
+  const calibration::PosteriorData& data;  ///< Of all months.
+  const calibration::HyperPrior& prior;
+  std::vector<LevelOutput> levels;
+  const std::vector<Direction>& directions;
+  int learning_months;  ///< That levels have learnt nothing from.
+  int first;            ///< Month that is still believed: the building was another one before.
+  int since;            ///< First month of the change …
+  int until;            ///< … and the last one known.
+};
+
+/// Competing refits of the months since the change, given those before it:
+///
+///     p(y_since | y_before, h) = E[ N(y_since; f(theta', s) + shift(theta, phi), Sigma(theta,
+///     phi)) ]
+///
+/// over the posterior of the months before and the prior of what h says has changed. Everything
+/// else stays as it was, hence a building that changed in one thing earns more than one that may
+/// have changed in all.
+///
+/// @return all causes, the likeliest first, probabilities adding up to 1; or an error of the model
+///         or of sampling; not_enough_data before there is a posterior.
+[[nodiscard]] Result<std::vector<Cause>> weigh_causes(const ChangeCase& change,
+                                                      const CauseOptions& options,
+                                                      std::uint64_t seed,
+                                                      const std::function<bool()>& proceed = {});
+
+}  // namespace recald::drift

@@ -1,0 +1,204 @@
+#include "daemon/drift/drift_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "daemon/drift/drift_words.hpp"
+
+namespace recald::daemon {
+namespace {
+
+// Keys in the order they are written: files are read by people too.
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json record_json(const drift::ForecastRecord& record, const std::string& month) {
+  return {{"month", month},
+          {"measured", number(record.measured)},
+          {"mean", number(record.mean)},
+          {"sd", number(record.sd)},
+          {"q05", number(record.q05)},
+          {"q50", number(record.q50)},
+          {"q95", number(record.q95)},
+          {"pit", number(record.surprise.pit)},
+          {"standardised", number(record.surprise.standardised)},
+          {"log_score", number(record.surprise.log_score)},
+          {"crps", number(record.surprise.crps)}};
+}
+
+Json state_json(const drift::WatchState& state) {
+  Json json = {{"log_evidence", number(state.log_evidence)},
+               {"log_threshold", number(state.log_threshold)},
+               {"cusum_upper", number(state.cusum_upper)},
+               {"cusum_lower", number(state.cusum_lower)},
+               {"change_within_year", number(state.change_within_year)},
+               {"calibration", nullptr}};
+  if (const auto& check = state.calibration) {
+    json["calibration"] = {{"mean", number(check->mean)},
+                           {"sd", number(check->sd)},
+                           {"lag_one", number(check->lag_one)},
+                           {"pvalue", number(check->pvalue)}};
+  }
+  return json;
+}
+
+Json outputs_json(const SiteDrift& drift) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
+    const FollowedOutput& output = drift.outputs[k];
+    Json months = Json::array();
+    for (const drift::PrequentialMonth& month : drift.record) {
+      if (!month.outputs[k]) continue;
+      months.push_back(record_json(*month.outputs[k], drift.month_name(month.month)));
+    }
+    list.push_back({{"name", output.name},
+                    {"meter", output.meter},
+                    {"unit", output.unit},
+                    {"forecast_by", output.by_level ? "level" : "model"},
+                    {"state", state_json(output.state)},
+                    {"months", months}});
+  }
+  return list;
+}
+
+const char* kind_word(drift::CauseKind kind) {
+  switch (kind) {
+    case drift::CauseKind::nothing:
+      return "nothing";
+    case drift::CauseKind::parameter:
+      return "parameter";
+    case drift::CauseKind::direction:
+      return "use";
+    case drift::CauseKind::meter:
+      return "meter";
+    case drift::CauseKind::unknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+/// The parameter, use or meter that a cause speaks of.
+Json subject_json(const SiteDrift& drift, const drift::Cause& cause) {
+  const auto at = static_cast<std::size_t>(cause.index);
+  switch (cause.kind) {
+    case drift::CauseKind::parameter:
+      return drift.parameters[at].name;
+    case drift::CauseKind::direction:
+      return drift.directions[at].name;
+    case drift::CauseKind::meter:
+      return drift.outputs[at].name;
+    case drift::CauseKind::nothing:
+    case drift::CauseKind::unknown:
+      break;
+  }
+  return nullptr;
+}
+
+Json causes_json(const SiteDrift& drift, const ExplainedAlarm& alarm) {
+  Json list = Json::array();
+  for (const drift::Cause& cause : alarm.causes) {
+    list.push_back({{"kind", kind_word(cause.kind)},
+                    {"subject", subject_json(drift, cause)},
+                    {"probability", number(cause.probability)},
+                    {"log_evidence", number(cause.log_evidence)},
+                    {"mean", number(cause.mean)},
+                    {"q05", number(cause.q05)},
+                    {"q95", number(cause.q95)},
+                    {"words", cause_words(drift, cause)}});
+  }
+  return list;
+}
+
+const char* consequence_word(ExplainedAlarm::Consequence consequence) {
+  switch (consequence) {
+    case ExplainedAlarm::Consequence::none:
+      return "none";
+    case ExplainedAlarm::Consequence::began_anew:
+      return "began_anew";
+    case ExplainedAlarm::Consequence::meter_set_aside:
+      return "meter_set_aside";
+  }
+  return "none";
+}
+
+Json alarms_json(const SiteDrift& drift) {
+  Json list = Json::array();
+  for (const ExplainedAlarm& explained : drift.alarms) {
+    const drift::Alarm& alarm = explained.alarm;
+    list.push_back({{"month", drift.month_name(alarm.month)},
+                    {"output", drift.outputs[static_cast<std::size_t>(alarm.output)].name},
+                    {"direction", alarm.direction > 0 ? "more" : "less"},
+                    {"evidence", number(alarm.evidence)},
+                    {"since", drift.month_name(alarm.since)},
+                    {"since_earliest", drift.month_name(alarm.since_earliest)},
+                    {"since_latest", drift.month_name(alarm.since_latest)},
+                    {"forecasts_are_true", alarm.is_calibrated},
+                    {"causes", causes_json(drift, explained)},
+                    {"consequence", consequence_word(explained.consequence)},
+                    {"sentence", explained_sentence(drift, explained)}});
+  }
+  return list;
+}
+
+Json windows_json(const SiteDrift& drift) {
+  Json list = Json::array();
+  const auto first = static_cast<std::size_t>(drift.learning_months - 1);
+  for (const FollowedWindow& window : drift.windows) {
+    Json parameters = Json::array();
+    for (std::size_t j = 0; j < window.paths.size(); ++j) {
+      Json months = Json::array();
+      for (std::size_t i = 0; i < window.paths[j].mean.size(); ++i) {
+        months.push_back({{"month", drift.months[first + i]},
+                          {"mean", number(window.paths[j].mean[i])},
+                          {"q05", number(window.paths[j].q05[i])},
+                          {"q95", number(window.paths[j].q95[i])}});
+      }
+      parameters.push_back({{"name", drift.parameters[j].name},
+                            {"unit", drift.parameters[j].unit},
+                            {"months", months}});
+    }
+    int anew = 0;
+    for (const drift::MonthTaken& taken : window.taken) anew += taken.anew ? 1 : 0;
+    list.push_back({{"name", window.name},
+                    {"log_score", number(window.log_score)},
+                    {"sampled_anew", anew},
+                    {"parameters", parameters}});
+  }
+  return list;
+}
+
+Json shifts_json(const SiteDrift& drift) {
+  Json list = Json::array();
+  for (std::size_t j = 0; j < drift.last_year.size(); ++j) {
+    const drift::Shift& shift = drift.last_year[j];
+    list.push_back({{"name", drift.parameters[j].name},
+                    {"standardised", number(shift.standardised)},
+                    {"hellinger", number(shift.hellinger)},
+                    {"wasserstein", number(shift.wasserstein)},
+                    {"probability_of_increase", number(shift.increased)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
+  const Json json = {{"model", drift.model},
+                     {"months", drift.months},
+                     {"learning_months", drift.learning_months},
+                     {"alarms", alarms_json(drift)},
+                     {"outputs", outputs_json(drift)},
+                     {"windows", windows_json(drift)},
+                     {"last_year", shifts_json(drift)},
+                     {"warnings", drift.warnings},
+                     {"seed", facts.seed},
+                     {"data_revision", facts.data_revision},
+                     {"model_version", facts.model_version},
+                     {"recald_version", facts.recald_version},
+                     {"tzdata", facts.time_zone_data},
+                     {"wall_s", facts.wall_s}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace recald::daemon

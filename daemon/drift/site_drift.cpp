@@ -1,0 +1,367 @@
+#include "daemon/drift/site_drift.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/problem.hpp"
+#include "core/drift/emulator.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using drift::Prequential;
+using drift::SequentialCalibration;
+using metering::Month;
+using metering::MonthRange;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kPathDraws = 512;
+constexpr int kYear = 12;
+
+const std::vector<drift::Window>& windows() {
+  static const std::vector<drift::Window> all{{.name = "expanding"},
+                                              {.name = "24 months", .months = 24},
+                                              {.name = "12 months", .months = 12},
+                                              {.name = "forgetting", .half_life_months = 12.0}};
+  return all;
+}
+
+/// What all windows of a site share.
+struct Followed {
+  const MonthlyModel& model;
+  const std::vector<Parameter>& parameters;
+  calibration::PosteriorData data;  ///< Of all months.
+  std::vector<drift::LevelOutput> levels;
+  calibration::HyperPrior prior;
+  std::vector<drift::Direction> directions;
+};
+
+/// Each column by its range over the first `learning` months: later ones must not change what was
+/// said of earlier ones, so they may leave [0, 1].
+Eigen::MatrixXd scaled_by_first(const Eigen::MatrixXd& values, Eigen::Index learning) {
+  Eigen::MatrixXd scaled = values;
+  for (Eigen::Index j = 0; j < values.cols(); ++j) {
+    const auto first = values.col(j).head(learning);
+    const double low = first.minCoeff();
+    scaled.col(j) = (values.col(j).array() - low) / (first.maxCoeff() - low);
+  }
+  return scaled;
+}
+
+/// All months on the scale that the learning months' design gives.
+calibration::PosteriorData data_of_all(const PreparedSite& prepared,
+                                       const calibration::Normalisation& normalisation,
+                                       const Eigen::VectorXd& error_sd) {
+  const SiteCalibration& site = prepared.so_far;
+  calibration::CalibrationProblem all = problem_of(site, site.month_names.size());
+  for (std::size_t k = 0; k < all.outputs.size(); ++k) {
+    if (!site.outputs[k].calibrated) std::ranges::fill(all.outputs[k].values, kUnknown);
+  }
+  all.inputs = {prepared.inputs.names, prepared.inputs.values};
+  all.common_errors = prepared.common_errors;
+  calibration::PosteriorData data = calibration::normalise_problem(all, normalisation);
+  data.month_inputs = scaled_by_first(prepared.inputs.values, prepared.model->month_count());
+  const auto months = static_cast<Eigen::Index>(site.month_names.size());
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const auto& [output, month] = data.points[i];
+    const double sd = error_sd(output * months + month);
+    data.extra_variances(static_cast<Eigen::Index>(i)) +=
+        data.scales[static_cast<std::size_t>(output)].normalise_variance(sd * sd);
+  }
+  return data;
+}
+
+std::vector<drift::LevelOutput> levels_of(const PreparedSite& prepared) {
+  const SiteCalibration& site = prepared.so_far;
+  const std::vector<double> modelled =
+      evaluate(*prepared.whole_model, prior_modes(site.parameters));
+  const auto months = static_cast<std::ptrdiff_t>(site.month_names.size());
+  std::vector<drift::LevelOutput> levels;
+  for (std::size_t k = 0; k < site.outputs.size(); ++k) {
+    if (site.outputs[k].calibrated) continue;
+    const auto first = modelled.begin() + static_cast<std::ptrdiff_t>(k) * months;
+    if (std::any_of(first, first + months, [](double value) { return !(value > 0.0); })) continue;
+    levels.push_back({static_cast<int>(k), {first, first + months}, site.outputs[k].measured});
+  }
+  return levels;
+}
+
+void extend(FollowedWindow& window, const SequentialCalibration& sequence) {
+  if (!sequence.has_begun()) {
+    for (ParameterPath& path : window.paths) {
+      for (auto* values : {&path.mean, &path.q05, &path.q95}) values->push_back(kUnknown);
+    }
+    return;
+  }
+  const Eigen::MatrixXd draws = sequence.draw_parameters(kPathDraws);
+  for (std::size_t j = 0; j < window.paths.size(); ++j) {
+    Eigen::VectorXd sorted = draws.col(static_cast<Eigen::Index>(j));
+    std::sort(sorted.begin(), sorted.end());
+    const auto at = [&](double share) { return sorted(std::lround(share * (kPathDraws - 1))); };
+    window.paths[j].mean.push_back(sorted.mean());
+    window.paths[j].q05.push_back(at(0.05));
+    window.paths[j].q95.push_back(at(0.95));
+  }
+}
+
+/// One window through all months. `step` takes a month in; the first ones are learnt together.
+template <class Learn, class Step>
+Result<FollowedWindow> follow(const std::string& name, const Followed& followed, int learning,
+                              const SequentialCalibration& sequence, Learn learn, Step step) {
+  FollowedWindow window{.name = name, .paths = {}, .taken = {}};
+  window.paths.resize(followed.parameters.size());
+  std::vector<int> first(static_cast<std::size_t>(learning));
+  std::iota(first.begin(), first.end(), 0);
+  if (const auto learnt = learn(std::move(first)); !learnt) {
+    return tl::unexpected(learnt.error());
+  }
+  extend(window, sequence);
+  const auto months = static_cast<int>(followed.data.month_inputs.rows());
+  for (int month = learning; month < months; ++month) {
+    const Result<drift::MonthTaken> taken = step(month);
+    if (!taken) return tl::unexpected(taken.error());
+    window.log_score += taken->log_score;
+    window.taken.push_back(*taken);
+    extend(window, sequence);
+  }
+  return window;
+}
+
+/// Parameters from the year before the last to the last, from windows that share no month.
+std::vector<drift::Shift> shift_of_last_year(const Eigen::MatrixXd& then,
+                                             const Eigen::MatrixXd& now) {
+  std::vector<drift::Shift> shifts;
+  for (Eigen::Index j = 0; j < now.cols() && then.rows() > 1; ++j) {
+    shifts.push_back(drift::shift_between(then.col(j), now.col(j)));
+  }
+  return shifts;
+}
+
+SequentialCalibration sequence_of(const Followed& followed, const drift::Window& window,
+                                  const DriftOptions& options, std::uint64_t seed) {
+  return {followed.model, followed.parameters, followed.data, followed.prior,
+          window,         options.sequential,  seed};
+}
+
+/// The first month that the record's model still believes.
+int began_at(const SiteDrift& drift) {
+  int month = 0;
+  for (const ExplainedAlarm& one : drift.alarms) {
+    if (one.consequence == ExplainedAlarm::Consequence::began_anew) month = one.alarm.since;
+  }
+  return month;
+}
+
+/// Where an alarm comes from, and what follows from that for the months to come.
+Result<ExplainedAlarm> explain(const drift::Alarm& alarm, const Followed& followed,
+                               const SiteDrift& drift, const DriftOptions& options,
+                               std::uint64_t seed, Prequential& prequential) {
+  ExplainedAlarm explained{.alarm = alarm, .causes = {}};
+  const drift::ChangeCase change{.model = followed.model,
+                                 .parameters = followed.parameters,
+                                 .data = prequential.data(),
+                                 .prior = followed.prior,
+                                 .levels = prequential.levels(),
+                                 .directions = followed.directions,
+                                 .learning_months = drift.learning_months,
+                                 .first = began_at(drift),
+                                 .since = alarm.since,
+                                 .until = alarm.month};
+  auto causes = drift::weigh_causes(change, options.causes, seed);
+  if (!causes) {
+    if (causes.error().code == ErrorCode::not_enough_data) return explained;
+    return tl::unexpected(causes.error());
+  }
+  explained.causes = std::move(*causes);
+  const drift::Cause& first = explained.causes.front();
+  if (first.probability < options.act_at) return explained;
+  Result<void> done;
+  if (first.kind == drift::CauseKind::meter) {
+    done = prequential.set_aside(first.index, alarm.since);
+    explained.consequence = ExplainedAlarm::Consequence::meter_set_aside;
+  } else if (first.kind != drift::CauseKind::nothing) {
+    done = prequential.begin_at(alarm.since);
+    explained.consequence = ExplainedAlarm::Consequence::began_anew;
+  }
+  if (!done) return tl::unexpected(done.error());
+  return explained;
+}
+
+/// Makes the record, too.
+Result<FollowedWindow> follow_expanding(const Followed& followed, const DriftOptions& options,
+                                        const calibration::RunContext& context, SiteDrift& drift) {
+  Prequential prequential{sequence_of(followed, windows().front(), options, context.seed),
+                          followed.data, followed.levels, options.watch};
+  const auto proceed = [&] {
+    return !context.observer || context.observer({calibration::Progress::Stage::sampling, 0,
+                                                  static_cast<int>(drift.record.size()),
+                                                  static_cast<int>(drift.months.size())});
+  };
+  auto window = follow(
+      windows().front().name, followed, drift.learning_months, prequential.calibration(),
+      [&](std::vector<int> first) { return prequential.learn(std::move(first), proceed); },
+      [&](int month) -> Result<drift::MonthTaken> {
+        auto one = prequential.step(month, proceed);
+        if (!one) return tl::unexpected(one.error());
+        drift.record.push_back(std::move(*one));
+        for (const drift::Alarm& alarm : drift.record.back().alarms) {
+          auto explained = explain(alarm, followed, drift, options, context.seed, prequential);
+          if (!explained) return tl::unexpected(explained.error());
+          drift.alarms.push_back(std::move(*explained));
+        }
+        return drift.record.back().taken;
+      });
+  for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
+    drift.outputs[k].state = prequential.watch().state(static_cast<int>(k));
+  }
+  return window;
+}
+
+Result<FollowedWindow> follow_beside(const Followed& followed, const drift::Window& which,
+                                     const DriftOptions& options,
+                                     const calibration::RunContext& context, SiteDrift& drift) {
+  SequentialCalibration sequence = sequence_of(followed, which, options, context.seed);
+  const auto months = static_cast<int>(drift.months.size());
+  Eigen::MatrixXd then;
+  auto window = follow(
+      which.name, followed, drift.learning_months, sequence,
+      [&](std::vector<int> first) { return sequence.learn(std::move(first)); },
+      [&](int month) {
+        auto taken = sequence.take(month);
+        const bool is_year_before = which.months == kYear && month + 1 == months - kYear;
+        if (taken && is_year_before && sequence.has_begun()) {
+          then = sequence.draw_parameters(kPathDraws);
+        }
+        return taken;
+      });
+  if (which.months == kYear && sequence.has_begun()) {
+    drift.last_year = shift_of_last_year(then, sequence.draw_parameters(kPathDraws));
+  }
+  return window;
+}
+
+/// Windows beside each other, each by itself.
+Result<void> follow_all(const Followed& followed, const DriftOptions& options,
+                        const calibration::RunContext& context, SiteDrift& drift) {
+  const std::size_t count = windows().size();
+  std::vector<Result<FollowedWindow>> done(count, FollowedWindow{});
+  context.executor(count, [&](std::size_t i) {
+    done[i] = i == 0 ? follow_expanding(followed, options, context, drift)
+                     : follow_beside(followed, windows()[i], options, context, drift);
+  });
+  for (Result<FollowedWindow>& window : done) {
+    if (!window) return tl::unexpected(window.error());
+    drift.windows.push_back(std::move(*window));
+  }
+  return {};
+}
+
+SiteDrift drift_of(const PreparedSite& prepared) {
+  const SiteCalibration& site = prepared.so_far;
+  SiteDrift drift{.model = site.model,
+                  .months = site.month_names,
+                  .learning_months = prepared.model->month_count(),
+                  .parameters = site.parameters,
+                  .outputs = {},
+                  .record = {},
+                  .alarms = {},
+                  .directions = {},
+                  .windows = {},
+                  .last_year = {},
+                  .warnings = site.warnings};
+  for (const OutputCalibration& output : site.outputs) {
+    drift.outputs.push_back({.name = output.name,
+                             .meter = output.label,
+                             .unit = output.unit,
+                             .by_level = !output.calibrated,
+                             .measured = output.measured,
+                             .state = {}});
+  }
+  return drift;
+}
+
+bool has_points_after(const Followed& followed, int learning) {
+  return std::ranges::any_of(followed.data.points,
+                             [&](const auto& point) { return point.month >= learning; });
+}
+
+}  // namespace
+
+Result<PeriodConfig> followed_period(const OpenSite& site, const Recording& recording,
+                                     metering::Instant now, int learning_months) {
+  std::optional<MonthRange> common;
+  for (const std::string& id : site.config.model->outputs) {
+    const MeterRecord& record = recording.meters[*site.config.meter_index(id)];
+    for (const metering::MonthlyFigure& figure : record.figures) {
+      const bool is_closed =
+          site.calendar.month_span(figure.month).end + site.config.closing.watermark <= now;
+      if (!figure.usable || !is_closed) continue;
+      if (!common) common = MonthRange{figure.month, figure.month};
+      common->last = std::max(common->last, figure.month);
+    }
+    const auto first = std::ranges::find(record.figures, true, &metering::MonthlyFigure::usable);
+    if (first == record.figures.end()) {
+      return failure(ErrorCode::not_enough_data,
+                     fmt::format("meter '{}' has no usable month yet", id));
+    }
+    if (common) common->first = std::max(common->first, first->month);
+  }
+  const auto needed = learning_months + 1;
+  if (!common || common->first + std::chrono::months{needed - 1} > common->last) {
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("to follow a site takes {} months of all modelled meters: {} to "
+                               "learn from and one to forecast",
+                               needed, learning_months));
+  }
+  const Month last_learnt = common->first + std::chrono::months{learning_months - 1};
+  return PeriodConfig{MonthRange{common->first, last_learnt},
+                      MonthRange{last_learnt + std::chrono::months{1}, common->last}};
+}
+
+Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& options,
+                              std::vector<diagnosis::AddedEffect> added,
+                              const calibration::RunContext& context) {
+  auto prepared = prepare_site(modelled.site.config, modelled.site.calendar, modelled.recording,
+                               modelled.weather, std::move(added));
+  if (!prepared) return tl::unexpected(prepared.error());
+  auto design =
+      calibration::run_design(*prepared->model, prepared->problem, options.design_runs, context);
+  if (!design) return tl::unexpected(design.error());
+  set_aside_unresponsive(*design, prepared->so_far, prepared->problem);
+  if (auto ok = check_problem(prepared->problem, *prepared->model); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  const auto normalisation = calibration::normalise_design(
+      design->outputs, prepared->problem.outputs, prepared->model->month_count());
+  if (!normalisation) return tl::unexpected(normalisation.error());
+
+  // A posterior that is carried on is evaluated a million times.
+  const auto emulator = drift::emulate(*prepared->whole_model, prepared->so_far.parameters,
+                                       design->theta, context.executor);
+  if (!emulator) return tl::unexpected(emulator.error());
+
+  SiteDrift drift = drift_of(*prepared);
+  const Followed followed{emulator->model,
+                          prepared->so_far.parameters,
+                          data_of_all(*prepared, *normalisation, emulator->error_sd),
+                          levels_of(*prepared),
+                          calibration::make_hyper_prior(calibration::HyperPriorProfile::scaled,
+                                                        normalisation->pooled_variance),
+                          {{.name = "electricity use", .change = prepared->electricity_use}}};
+  drift.directions = followed.directions;
+  if (!has_points_after(followed, drift.learning_months)) {
+    drift.warnings.emplace_back("No month after the learning ones has a figure to compare.");
+  }
+  if (auto done = follow_all(followed, options, context, drift); !done) {
+    return tl::unexpected(done.error());
+  }
+  return drift;
+}
+
+}  // namespace recald::daemon
