@@ -322,8 +322,9 @@ std::vector<int> meters_of(const ChangeCase& change, const Since& since,
 
 }  // namespace
 
-Result<std::vector<Cause>> weigh_causes(const ChangeCase& change, const CauseOptions& options,
-                                        std::uint64_t seed, const std::function<bool()>& proceed) {
+Result<std::vector<Eigen::VectorXd>> known_before(const ChangeCase& change,
+                                                  const CauseOptions& options, std::uint64_t seed,
+                                                  const std::function<bool()>& proceed) {
   SequentialCalibration before{change.model, change.parameters,  change.data, change.prior,
                                {},           {.particles = 512}, seed};
   std::vector<int> months(static_cast<std::size_t>(std::max(0, change.since - change.first)));
@@ -337,6 +338,12 @@ Result<std::vector<Cause>> weigh_causes(const ChangeCase& change, const CauseOpt
   if (!before.has_begun()) {
     return failure(ErrorCode::not_enough_data, "too few months lie before the change");
   }
+  return before.spread(options.particles);
+}
+
+Result<std::vector<Cause>> weigh_causes(const ChangeCase& change,
+                                        const std::vector<Eigen::VectorXd>& before,
+                                        const CauseOptions& options, std::uint64_t seed) {
   auto posterior =
       Posterior::make(change.model, change.parameters, known_points(change), change.prior);
   if (!posterior) return tl::unexpected(posterior.error());
@@ -348,8 +355,7 @@ Result<std::vector<Cause>> weigh_causes(const ChangeCase& change, const CauseOpt
   Rng rng{seed, kStream};
   Eigen::VectorXd theta(posterior->parameter_count());
   calibration::Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(posterior->kernel_dimension())};
-  for (const Eigen::VectorXd& position : before.spread(options.particles)) {
-    if (proceed && !proceed()) return failure(ErrorCode::cancelled, "cancelled");
+  for (const Eigen::VectorXd& position : before) {
     posterior->to_natural(position, theta, hyper);
     if (!since.place(theta, hyper)) continue;
     for (Contest& contest : contests) trial.run(contest, rng);

@@ -62,6 +62,12 @@ struct ChangeCase {
   int until;            ///< … and the last one known.
 };
 
+/// Points of the posterior of the months before the change, evenly by weight.
+/// @return or an error of the model or of sampling; not_enough_data before there is a posterior.
+[[nodiscard]] Result<std::vector<Eigen::VectorXd>> known_before(
+    const ChangeCase& change, const CauseOptions& options, std::uint64_t seed,
+    const std::function<bool()>& proceed = {});
+
 /// Competing refits of the months since the change, given those before it:
 ///
 ///     p(y_since | y_before, h) = E[ N(y_since; f(theta', s) + shift(theta, phi), Sigma(theta,
@@ -71,11 +77,11 @@ struct ChangeCase {
 /// else stays as it was, hence a building that changed in one thing earns more than one that may
 /// have changed in all.
 ///
-/// @return all causes, the likeliest first, probabilities adding up to 1; or an error of the model
-///         or of sampling; not_enough_data before there is a posterior.
+/// @param before  Of `known_before`; the same for every later `until`.
+/// @return all causes, the likeliest first, probabilities adding up to 1; or an error of the model.
 [[nodiscard]] Result<std::vector<Cause>> weigh_causes(const ChangeCase& change,
+                                                      const std::vector<Eigen::VectorXd>& before,
                                                       const CauseOptions& options,
-                                                      std::uint64_t seed,
-                                                      const std::function<bool()>& proceed = {});
+                                                      std::uint64_t seed);
 
 }  // namespace recald::drift

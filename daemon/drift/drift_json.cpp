@@ -1,5 +1,6 @@
 #include "daemon/drift/drift_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -135,6 +136,7 @@ Json alarms_json(const SiteDrift& drift) {
                     {"since_latest", drift.month_name(alarm.since_latest)},
                     {"forecasts_are_true", alarm.is_calibrated},
                     {"causes", causes_json(drift, explained)},
+                    {"explained_until", drift.month_name(explained.explained_until)},
                     {"consequence", consequence_word(explained.consequence)},
                     {"sentence", explained_sentence(drift, explained)}});
   }
@@ -181,7 +183,35 @@ Json shifts_json(const SiteDrift& drift) {
   return list;
 }
 
+/// The newest month of an output, and how near its watch is to an alarm.
+Json newest_json(const SiteDrift& drift, std::size_t k) {
+  const drift::WatchState& state = drift.outputs[k].state;
+  Json json = {{"output", drift.outputs[k].name},
+               {"month", nullptr},
+               {"pvalue", nullptr},
+               {"log_evidence", number(state.log_evidence)},
+               {"log_threshold", number(state.log_threshold)},
+               {"change_within_year", number(state.change_within_year)}};
+  for (const drift::PrequentialMonth& month : drift.record) {
+    if (!month.outputs[k]) continue;
+    const double pit = month.outputs[k]->surprise.pit;
+    json["month"] = drift.month_name(month.month);
+    json["pvalue"] = number(2.0 * std::min(pit, 1.0 - pit));
+  }
+  return json;
+}
+
 }  // namespace
+
+std::string with_drift(const std::string& calibration, const SiteDrift& drift) {
+  Json json = Json::parse(calibration);
+  json["drift"] = Json::array();
+  for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
+    json["drift"].push_back(newest_json(drift, k));
+  }
+  json["alarms"] = alarms_json(drift);
+  return json.dump(2) + "\n";
+}
 
 std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
   const Json json = {{"model", drift.model},

@@ -11,4 +11,9 @@ namespace recald::daemon {
 /// Ends with a line feed; the same bytes for the same site, readings and seed, but for `wall_s`.
 [[nodiscard]] std::string drift_json(const SiteDrift& drift, const RunFacts& facts);
 
+/// calibration.json with what the site's months say of it: "drift", one entry an output, and
+/// "alarms".
+/// @param calibration  As calibration_json made it.
+[[nodiscard]] std::string with_drift(const std::string& calibration, const SiteDrift& drift);
+
 }  // namespace recald::daemon

@@ -158,46 +158,106 @@ int began_at(const SiteDrift& drift) {
   return month;
 }
 
-/// Where an alarm comes from, and what follows from that for the months to come.
-Result<ExplainedAlarm> explain(const drift::Alarm& alarm, const Followed& followed,
-                               const SiteDrift& drift, const DriftOptions& options,
-                               std::uint64_t seed, Prequential& prequential) {
-  ExplainedAlarm explained{.alarm = alarm, .causes = {}};
-  const drift::ChangeCase change{.model = followed.model,
-                                 .parameters = followed.parameters,
-                                 .data = prequential.data(),
-                                 .prior = followed.prior,
-                                 .levels = prequential.levels(),
-                                 .directions = followed.directions,
-                                 .learning_months = drift.learning_months,
-                                 .first = began_at(drift),
-                                 .since = alarm.since,
-                                 .until = alarm.month};
-  auto causes = drift::weigh_causes(change, options.causes, seed);
-  if (!causes) {
-    if (causes.error().code == ErrorCode::not_enough_data) return explained;
-    return tl::unexpected(causes.error());
+/// Alarms of a record, from the month that raises one until it is known what it comes from.
+class Inquiries {
+ public:
+  Inquiries(const Followed& followed, const DriftOptions& options, std::uint64_t seed,
+            SiteDrift& drift, Prequential& prequential)
+      : followed_(followed),
+        options_(options),
+        seed_(seed),
+        drift_(drift),
+        prequential_(prequential) {}
+
+  /// After a month was taken in.
+  Result<void> look(const drift::PrequentialMonth& month) {
+    for (const drift::Alarm& alarm : month.alarms) {
+      if (is_known(alarm)) continue;
+      auto before = drift::known_before(case_of(alarm, month.month), options_.causes, seed_);
+      if (!before && before.error().code != ErrorCode::not_enough_data) {
+        return tl::unexpected(before.error());
+      }
+      drift_.alarms.push_back({.alarm = alarm, .causes = {}, .explained_until = month.month});
+      if (before) open_.push_back({drift_.alarms.size() - 1, std::move(*before)});
+    }
+    for (std::size_t i = 0; i < open_.size();) {
+      const auto is_over = weigh(open_[i], month.month);
+      if (!is_over) return tl::unexpected(is_over.error());
+      if (*is_over) {
+        // What was believed before has changed: the others are asked anew if they go on.
+        open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(i));
+      } else {
+        ++i;
+      }
+    }
+    return {};
   }
-  explained.causes = std::move(*causes);
-  const drift::Cause& first = explained.causes.front();
-  if (first.probability < options.act_at) return explained;
-  Result<void> done;
-  if (first.kind == drift::CauseKind::meter) {
-    done = prequential.set_aside(first.index, alarm.since);
-    explained.consequence = ExplainedAlarm::Consequence::meter_set_aside;
-  } else if (first.kind != drift::CauseKind::nothing) {
-    done = prequential.begin_at(alarm.since);
-    explained.consequence = ExplainedAlarm::Consequence::began_anew;
+
+ private:
+  struct Open {
+    std::size_t alarm;
+    std::vector<Eigen::VectorXd> before;
+  };
+
+  /// The same output's alarm is still being looked into: it is one change, not two.
+  [[nodiscard]] bool is_known(const drift::Alarm& alarm) const {
+    return std::ranges::any_of(open_, [&](const Open& one) {
+      return drift_.alarms[one.alarm].alarm.output == alarm.output;
+    });
   }
-  if (!done) return tl::unexpected(done.error());
-  return explained;
-}
+
+  [[nodiscard]] drift::ChangeCase case_of(const drift::Alarm& alarm, int until) const {
+    return {.model = followed_.model,
+            .parameters = followed_.parameters,
+            .data = prequential_.data(),
+            .prior = followed_.prior,
+            .levels = prequential_.levels(),
+            .directions = followed_.directions,
+            .learning_months = drift_.learning_months,
+            .first = began_at(drift_),
+            .since = alarm.since,
+            .until = until};
+  }
+
+  /// @return whether nothing more is to be asked.
+  Result<bool> weigh(const Open& open, int month) {
+    ExplainedAlarm& alarm = drift_.alarms[open.alarm];
+    auto causes =
+        drift::weigh_causes(case_of(alarm.alarm, month), open.before, options_.causes, seed_);
+    if (!causes) return tl::unexpected(causes.error());
+    alarm.causes = std::move(*causes);
+    alarm.explained_until = month;
+    const int months = month - alarm.alarm.since + 1;
+    const drift::Cause& first = alarm.causes.front();
+    if (months < options_.months_to_act || first.probability < options_.act_at) {
+      return months >= kYear;
+    }
+    Result<void> done;
+    if (first.kind == drift::CauseKind::meter) {
+      done = prequential_.set_aside(first.index, alarm.alarm.since);
+      alarm.consequence = ExplainedAlarm::Consequence::meter_set_aside;
+    } else if (first.kind != drift::CauseKind::nothing) {
+      done = prequential_.begin_at(alarm.alarm.since);
+      alarm.consequence = ExplainedAlarm::Consequence::began_anew;
+    }
+    if (!done) return tl::unexpected(done.error());
+    return true;
+  }
+
+  const Followed& followed_;
+  const DriftOptions& options_;
+  std::uint64_t seed_;
+  SiteDrift& drift_;
+  Prequential& prequential_;
+  std::vector<Open> open_;
+};
 
 /// Makes the record, too.
 Result<FollowedWindow> follow_expanding(const Followed& followed, const DriftOptions& options,
                                         const calibration::RunContext& context, SiteDrift& drift) {
   Prequential prequential{sequence_of(followed, windows().front(), options, context.seed),
                           followed.data, followed.levels, options.watch};
+  Inquiries inquiries{followed, options, context.seed, drift, prequential};
   const auto proceed = [&] {
     return !context.observer || context.observer({calibration::Progress::Stage::sampling, 0,
                                                   static_cast<int>(drift.record.size()),
@@ -210,10 +270,8 @@ Result<FollowedWindow> follow_expanding(const Followed& followed, const DriftOpt
         auto one = prequential.step(month, proceed);
         if (!one) return tl::unexpected(one.error());
         drift.record.push_back(std::move(*one));
-        for (const drift::Alarm& alarm : drift.record.back().alarms) {
-          auto explained = explain(alarm, followed, drift, options, context.seed, prequential);
-          if (!explained) return tl::unexpected(explained.error());
-          drift.alarms.push_back(std::move(*explained));
+        if (auto looked = inquiries.look(drift.record.back()); !looked) {
+          return tl::unexpected(looked.error());
         }
         return drift.record.back().taken;
       });

@@ -20,6 +20,9 @@ struct DriftOptions {
   drift::CauseOptions causes;
   /// A cause as likely as this is acted upon: the model begins anew, or the meter is set aside.
   double act_at = 0.8;
+  /// A season shows one meter alone: causes are weighed again with each month, acted upon after so
+  /// many, and left open after a year.
+  int months_to_act = 4;
 };
 
 /// One output, in the order of the model's.
@@ -50,6 +53,7 @@ struct FollowedWindow {
 struct ExplainedAlarm {
   drift::Alarm alarm;
   std::vector<drift::Cause> causes;  ///< The likeliest first; empty: too little was known before.
+  int explained_until = 0;           ///< The last month that the causes were weighed with.
   enum class Consequence { none, began_anew, meter_set_aside } consequence = Consequence::none;
 };
 

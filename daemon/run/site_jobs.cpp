@@ -2,18 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "adapters/system/write_file.hpp"
+#include "daemon/calibrate/active_effects.hpp"
 #include "daemon/calibrate/finished_calibration.hpp"
 #include "daemon/calibrate/site_on_design.hpp"
 #include "daemon/diagnose/diagnosis_files.hpp"
 #include "daemon/diagnose/site_diagnosis.hpp"
+#include "daemon/drift/drift_json.hpp"
+#include "daemon/drift/site_drift.hpp"
 #include "daemon/results/calibration_files.hpp"
 
 namespace recald::daemon {
 namespace {
 
+constexpr int kDriftParticles = 256;
 constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
 
 std::filesystem::path folder_of(const SiteConfig& site, const StoredJob& job) {
@@ -44,9 +49,33 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
   return outcome;
 }
 
+/// What all months say, as far as there are enough of them.
+/// @return nothing for a site that is too young to be followed, or whose model cannot be.
+Result<std::optional<SiteDrift>> follow(OpenSite site, metering::Instant now,
+                                        const calibration::RunContext& context,
+                                        const std::filesystem::path& folder) {
+  const DriftOptions options{.sequential = {.particles = kDriftParticles}};
+  auto modelled = load_modelled_site(
+      std::move(site), now,
+      [&](const OpenSite& open, const Recording& recording, metering::Instant until) {
+        return followed_period(open, recording, until, options.learning_months);
+      });
+  if (!modelled) return std::nullopt;
+  auto version = active_version(modelled->site.config);
+  if (!version) return tl::unexpected(version.error());
+  auto drift = follow_site(*modelled, options, std::move(version->effects), context);
+  if (!drift && drift.error().code == ErrorCode::cancelled) return tl::unexpected(drift.error());
+  if (!drift) return std::nullopt;
+  modelled->facts.seed = context.seed;
+  auto written = system::write_file(folder / "drift.json", drift_json(*drift, modelled->facts));
+  if (!written) return tl::unexpected(written.error());
+  return std::move(*drift);
+}
+
 Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
                              const GoesOn& goes_on) {
   const auto folder = folder_of(site.config, job);
+  const OpenSite whole = site;
   auto modelled = load_modelled_site(std::move(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
   const calibration::RunContext context{
@@ -59,6 +88,9 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   JobOutcome outcome = outcome_of(done->calibration, done->modelled.facts, folder);
   const auto written = write_calibration(*done, outcome.result, metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
+  const auto drift = follow(whole, now, context, folder);
+  if (!drift) return tl::unexpected(drift.error());
+  if (*drift) outcome.result = with_drift(outcome.result, **drift);
   return outcome;
 }
 

@@ -144,13 +144,15 @@ http::Response get_drift(const Served& served, const http::Request& request) {
   const auto job = served.store.last_accepted(JobKind::calibration);
   if (!job) return refusal(job.error()).value();
   Json drift;
+  Json alarms;
   Json calibration;
   if (*job) {
     calibration = location(**job);
     const Json result = Json::parse((*job)->result, nullptr, false);
     if (result.is_object() && result.contains("drift")) drift = result["drift"];
+    if (result.is_object() && result.contains("alarms")) alarms = result["alarms"];
   }
-  return json_answer({{"calibration", calibration}, {"drift", drift}});
+  return json_answer({{"calibration", calibration}, {"drift", drift}, {"alarms", alarms}});
 }
 
 }  // namespace recald::daemon

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -139,6 +140,22 @@ void write_drift(PrometheusText& text, const Json& result, const std::string& mo
   }
 }
 
+/// Who wants to be woken up watches this.
+void write_alarms(PrometheusText& text, const Json& result, const std::string& model) {
+  if (!result.contains("alarms") || !result["alarms"].is_array()) return;
+  std::map<std::string, int> alarms;
+  for (const Json& one : result["alarms"]) {
+    if (one.is_object() && one.contains("output") && one["output"].is_string()) {
+      ++alarms[one["output"].get<std::string>()];
+    }
+  }
+  text.begin("recald_drift_alarms", "gauge",
+             "Alarms among the months that were followed: the building or a meter has changed.");
+  for (const auto& [output, count] : alarms) {
+    text.sample(count, {{"model", model}, {"output", output}});
+  }
+}
+
 /// The calibration in use. Without one, or while the store cannot be read, nothing is said of it.
 void write_calibration(PrometheusText& text, const Served& served) {
   const auto job = served.store.last_accepted(JobKind::calibration);
@@ -154,6 +171,7 @@ void write_calibration(PrometheusText& text, const Served& served) {
     text.sample(rhat, {{"model", model}});
   }
   write_drift(text, result, model);
+  write_alarms(text, result, model);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -128,6 +130,21 @@ void write_jobs(Html& html, const Served& served, JobKind kind, std::string capt
   table.write(html);
 }
 
+/// What the months after a calibration have said against it.
+void write_alarms(Html& html, const Served& served) {
+  const auto job = served.store.last_accepted(JobKind::calibration);
+  if (!job || !*job) return;
+  const auto result = nlohmann::json::parse((*job)->result, nullptr, false);
+  if (!result.is_object() || !result.contains("alarms") || !result["alarms"].is_array()) return;
+  Table table{"What has changed"};
+  table.columns({"Since", "What", "In words"});
+  for (const auto& alarm : result["alarms"]) {
+    table.row(
+        {{alarm.value("since", "")}, {alarm.value("output", "")}, {alarm.value("sentence", "")}});
+  }
+  if (!result["alarms"].empty()) table.write(html);
+}
+
 Cell severity_cell(Severity severity) {
   switch (severity) {
     case Severity::info:
@@ -200,6 +217,7 @@ http::Response status_page(const Served& served) {
                "muted");
   write_verdict(html, served, status);
   write_meters(html, served, status);
+  write_alarms(html, served);
   write_jobs(html, served, JobKind::calibration, "Last calibrations");
   write_jobs(html, served, JobKind::diagnosis, "Last diagnoses");
   write_events(html, served);

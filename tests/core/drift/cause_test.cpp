@@ -118,7 +118,9 @@ Found causes_in(const World& world, std::uint64_t seed, bool with_level = false)
                           .first = 0,
                           .since = kChanged,
                           .until = kWatched - 1};
-  auto causes = weigh_causes(change, {}, seed);
+  const auto known = known_before(change, {}, seed);
+  EXPECT_TRUE(known.has_value()) << known.error().message;
+  auto causes = weigh_causes(change, *known, {}, seed);
   EXPECT_TRUE(causes.has_value()) << causes.error().message;
   return {causes.value_or(std::vector<Cause>{})};
 }

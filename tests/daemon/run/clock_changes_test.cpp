@@ -69,6 +69,7 @@ bus = "plant"
 unit = 1
 map = "counter.toml"
 rated_kW = 400
+poll = "60s"
 )",
                        folder_ / "site.toml")
                 .value();

@@ -238,7 +238,9 @@ TEST_F(Jobs, AreAskedForAndFollowed) {
   done.state = JobState::done;
   done.accepted = true;
   done.ended = kStart + hours{1};
-  done.result = R"({"model":"epc","drift":[{"output":"main_daily_kWh","pvalue":0.5}]})";
+  done.result =
+      R"({"model":"epc","drift":[{"output":"main_daily_kWh","pvalue":0.5}],)"
+      R"("alarms":[{"output":"main_daily_kWh","since":"2023-02","sentence":"More <b>."}]})";
   ASSERT_TRUE(disk_.put_job(done));
   job = get_json(where);
   EXPECT_EQ(job["state"], "done");
@@ -247,6 +249,13 @@ TEST_F(Jobs, AreAskedForAndFollowed) {
   const Json drift = get_json("/api/v1/drift");
   EXPECT_EQ(drift["calibration"], where);
   EXPECT_EQ(drift["drift"][0]["pvalue"], 0.5);
+  EXPECT_EQ(drift["alarms"][0]["since"], "2023-02");
+  // People and monitoring are told as well.
+  const http::Response page = answer(served_, {.path = "/"});
+  EXPECT_THAT(page.body, HasSubstr("What has changed"));
+  EXPECT_THAT(page.body, HasSubstr("More &lt;b&gt;."));
+  EXPECT_THAT(answer(served_, {.path = "/metrics"}).body,
+              HasSubstr("recald_drift_alarms{model=\"\",output=\"main_daily_kWh\"} 1"));
 }
 
 TEST_F(Jobs, OfOneKindAreNotOfTheOther) {

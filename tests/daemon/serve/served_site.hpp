@@ -36,6 +36,7 @@ bus = "plant"
 unit = 1
 map = "counter.toml"
 rated_kW = 400
+poll = "60s"
 
 [[meter]]
 id = "cooling"
@@ -45,6 +46,7 @@ bus = "plant"
 unit = 2
 map = "counter.toml"
 rated_kW = 900
+poll = "60s"
 
 [[meter]]
 id = "old"

@@ -1,0 +1,101 @@
+/// recald drift on a simulated building of which one meter is tampered with.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "command_line.hpp"
+#include "simulators/scenario/building_feed.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using Json = nlohmann::json;
+using recald::testing::read_text;
+using recald::testing::write_text;
+using ::testing::HasSubstr;
+using testing::run;
+
+/// Readings of one meter multiplied from an instant on: somebody changed a transformer.
+std::string multiplied(const std::string& readings, const std::string& meter,
+                       const std::string& from, double factor) {
+  std::istringstream in{readings};
+  std::string text;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream fields{line};
+    std::string stamp, name, value, unit;
+    std::getline(fields, stamp, ',');
+    std::getline(fields, name, ',');
+    std::getline(fields, value, ',');
+    std::getline(fields, unit, ',');
+    if (name == meter && stamp >= from && !value.empty()) {
+      text += stamp + "," + name + "," + std::to_string(factor * std::stod(value)) + "," + unit;
+    } else {
+      text += line;
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+class DriftCommand : public ::testing::Test {
+ protected:
+  DriftCommand() {
+    const auto written =
+        simulators::write_building_feed({.out = folder_.path(), .scenario = {}, .seed = 7});
+    EXPECT_TRUE(written.has_value()) << written.error().message;
+  }
+  testing::Outcome drift(const std::string& out, const char* threads) {
+    return run({"drift", folder_ / "site.toml", "--out", folder_ / out, "--particles", "128",
+                "--threads", threads});
+  }
+  [[nodiscard]] Json result(const std::string& out) const {
+    Json json = Json::parse(read_text(folder_ / out / "drift.json"));
+    json.erase("wall_s");
+    return json;
+  }
+
+  recald::testing::TemporaryFolder folder_;
+};
+
+TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
+  const std::string readings = read_text(folder_ / "readings.csv");
+  const std::string first = readings.substr(readings.find('\n') + 1, 4);  // its year
+  const std::string year = std::to_string(std::stoi(first) + 2);
+  write_text(folder_ / "readings.csv",
+             multiplied(readings, "chilled_water", year + "-06-01T04:00:00Z", 1.4));
+  const auto done = drift("once", "2");
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  const Json json = result("once");
+  EXPECT_EQ(json["learning_months"], 12);
+  EXPECT_EQ(json["windows"].size(), 4U);
+  EXPECT_EQ(json["windows"][0]["parameters"][0]["months"].size(), 25U);
+  ASSERT_FALSE(json["alarms"].empty()) << done.out;
+  const Json& alarm = json["alarms"][0];
+  EXPECT_EQ(alarm["output"], "chilled_water_daily_kWh");
+  EXPECT_EQ(alarm["direction"], "more");
+  EXPECT_EQ(alarm["since"], year + "-06");
+  EXPECT_THAT(alarm["sentence"].get<std::string>(), HasSubstr("chilled_water_daily_kWh is more"));
+  double sum = 0.0;
+  for (const Json& cause : alarm["causes"]) sum += cause["probability"].get<double>();
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+  EXPECT_THAT(done.out, HasSubstr(alarm["sentence"].get<std::string>()));
+
+  ASSERT_EQ(drift("again", "1").exit_code, kSuccess);
+  EXPECT_EQ(result("again"), json);
+}
+
+TEST_F(DriftCommand, AYoungSiteIsTold) {
+  std::istringstream in{read_text(folder_ / "readings.csv")};
+  std::string year;
+  for (std::string line; std::getline(in, line) && year.size() < 2'500'000;) year += line + "\n";
+  write_text(folder_ / "readings.csv", year);
+  const auto refused = drift("out", "1");
+  EXPECT_EQ(refused.exit_code, kFailure);
+  EXPECT_THAT(refused.err, HasSubstr("takes 13 months of all modelled meters"));
+}
+
+}  // namespace
+}  // namespace recald::daemon
