@@ -43,7 +43,8 @@ std::vector<LevelBlock> level_blocks(const ChangeCase& change) {
   for (const LevelOutput& output : change.levels) {
     LevelForecast learnt;
     std::vector<double> since;
-    for (int month = change.learning_months; month <= change.until; ++month) {
+    for (int month = std::max(change.learning_months, change.first); month <= change.until;
+         ++month) {
       const auto i = static_cast<std::size_t>(month);
       if (std::isnan(output.measured[i])) continue;
       if (month < change.since) {

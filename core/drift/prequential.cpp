@@ -60,6 +60,20 @@ void Prequential::look_at_levels(PrequentialMonth& record) {
   }
 }
 
+Result<void> Prequential::begin_at(int month, const std::function<bool()>& proceed) {
+  if (auto begun = calibration_.begin_at(month, proceed); !begun) return begun;
+  for (Level& level : levels_) {
+    level.forecast = LevelForecast{};
+    for (int i = month; i <= last_; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (std::isnan(level.output.measured[at])) continue;
+      level.forecast.take(level.output.modelled[at], level.output.measured[at]);
+    }
+  }
+  watch_.begin_anew();
+  return {};
+}
+
 std::vector<LevelOutput> Prequential::levels() const {
   std::vector<LevelOutput> levels;
   for (const Level& level : levels_) levels.push_back(level.output);
@@ -91,6 +105,7 @@ Result<PrequentialMonth> Prequential::step(int month, const std::function<bool()
     surprises.push_back(output ? std::optional{output->surprise.standardised} : std::nullopt);
   }
   record.alarms = watch_.observe(month, surprises);
+  last_ = month;
   return record;
 }
 

@@ -61,9 +61,7 @@ class Prequential {
   [[nodiscard]] Result<PrequentialMonth> step(int month, const std::function<bool()>& proceed = {});
 
   /// As SequentialCalibration's: an alarm was found to be the building's …
-  Result<void> begin_at(int month, const std::function<bool()>& proceed = {}) {
-    return calibration_.begin_at(month, proceed);
-  }
+  Result<void> begin_at(int month, const std::function<bool()>& proceed = {});
   /// … or a meter's, which is forecast no more.
   Result<void> set_aside(int output, int since, const std::function<bool()>& proceed = {});
 
@@ -86,6 +84,7 @@ class Prequential {
 
   calibration::PosteriorData all_;
   std::vector<Level> levels_;
+  int last_ = 0;  ///< Month looked at.
   Watch watch_;
 };
 

@@ -21,11 +21,18 @@ double cusum_limit(double months) {
 
 }  // namespace
 
-Watch::Watch(int outputs, const WatchOptions& options) : options_(options) {
+Watch::Watch(int outputs, const WatchOptions& options)
+    : options_(options), outputs_(static_cast<std::size_t>(outputs), watched(outputs, options)) {
   assert(outputs > 0 && options.months_between_false_alarms > 1.0);
+}
+
+Watch::Watched Watch::watched(int outputs, const WatchOptions& options) {
   const double months = options.months_between_false_alarms * outputs;
-  outputs_.assign(static_cast<std::size_t>(outputs),
-                  {EDetector{1.0 / months}, Cusum{cusum_limit(months)}, ChangePoint{}, {}, {}});
+  return {EDetector{1.0 / months}, Cusum{cusum_limit(months)}, ChangePoint{}, {}, {}};
+}
+
+void Watch::begin_anew() {
+  std::ranges::fill(outputs_, watched(static_cast<int>(outputs_.size()), options_));
 }
 
 std::vector<Alarm> Watch::observe(int month, const std::vector<std::optional<double>>& surprises) {

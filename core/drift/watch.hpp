@@ -59,6 +59,9 @@ class Watch {
 
   [[nodiscard]] WatchState state(int output) const;
 
+  /// Forecasts come from another model now: what was noticed of the old one says nothing of it.
+  void begin_anew();
+
  private:
   struct Watched {
     EDetector detector;
@@ -68,6 +71,7 @@ class Watch {
     std::vector<int> months;  ///< Of the surprises.
   };
   [[nodiscard]] bool is_calibrated(const Watched& watched) const;
+  [[nodiscard]] static Watched watched(int outputs, const WatchOptions& options);
 
   WatchOptions options_;
   std::vector<Watched> outputs_;

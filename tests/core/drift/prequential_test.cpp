@@ -198,5 +198,66 @@ TEST(Prequential, AnOutputWithoutParametersHasItsOwnForecasts) {
   EXPECT_NEAR(alarms[0].since, 24, 1);
 }
 
+// Once it is known that the building has changed, months after the change are no surprise any more.
+TEST(Prequential, AfterAChangeItBeginsAnew) {
+  Case built{0.3};
+  built.data.scales.push_back({0.0, 1.0});
+  built.data.weights.push_back(1.0);
+  LevelOutput level{.output = 1, .modelled = {}, .measured = {}};
+  for (int month = 0; month < kLong; ++month) {
+    level.modelled.push_back(100.0);
+    level.measured.push_back(month < 24 ? 100.0 : 140.0);
+  }
+  Prequential prequential{{YearlyRamp{2},
+                           built.parameters,
+                           built.data,
+                           built.prior,
+                           {},
+                           {.particles = 512, .forecast_particles = 128},
+                           17},
+                          built.data,
+                          {level},
+                          {}};
+  std::vector<int> first(12);
+  std::iota(first.begin(), first.end(), 0);
+  ASSERT_TRUE(prequential.learn(first).has_value());
+  for (int month = 12; month < 28; ++month) ASSERT_TRUE(prequential.step(month).has_value());
+  ASSERT_TRUE(prequential.begin_at(24).has_value());
+  for (int month = 28; month < kLong; ++month) {
+    const auto one = prequential.step(month);
+    ASSERT_TRUE(one.has_value());
+    EXPECT_TRUE(one->alarms.empty()) << month;
+    for (const auto& output : one->outputs) {
+      EXPECT_LT(std::abs(output->surprise.standardised), 2.5) << month;
+    }
+  }
+}
+
+// A meter that is doubted is not heard any more, and says nothing of the parameters.
+TEST(Prequential, AMeterSetAsideIsNotForecast) {
+  const Case built{0.3};
+  Prequential prequential{{YearlyRamp{},
+                           built.parameters,
+                           built.data,
+                           built.prior,
+                           {},
+                           {.particles = 512, .forecast_particles = 128},
+                           17},
+                          built.data,
+                          {},
+                          {}};
+  std::vector<int> first(12);
+  std::iota(first.begin(), first.end(), 0);
+  ASSERT_TRUE(prequential.learn(first).has_value());
+  for (int month = 12; month < 30; ++month) ASSERT_TRUE(prequential.step(month).has_value());
+  const double misled = prequential.calibration().draw_parameters(256).mean();
+  EXPECT_GT(std::abs(misled - 0.5), 0.03);
+  ASSERT_TRUE(prequential.set_aside(0, 24).has_value());
+  EXPECT_NEAR(prequential.calibration().draw_parameters(256).mean(), 0.5, 0.03);
+  const auto next = prequential.step(30);
+  ASSERT_TRUE(next.has_value());
+  EXPECT_FALSE(next->outputs[0].has_value());
+}
+
 }  // namespace
 }  // namespace recald::drift
