@@ -62,11 +62,12 @@ std::vector<LevelBlock> level_blocks(const ChangeCase& change) {
   return blocks;
 }
 
-double log_likelihood(const LevelBlock& block, double moved_by, double more_sd = 0.0) {
+double log_likelihood(const LevelBlock& block, double moved_by, double more_sd = 0.0,
+                      double monthly_sd = 0.0) {
   const Eigen::Index n = block.differences.size();
   const double shared = block.level_sd * block.level_sd + more_sd * more_sd;
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, shared);
-  covariance.diagonal().array() += block.sd * block.sd;
+  covariance.diagonal().array() += block.sd * block.sd + monthly_sd * monthly_sd;
   return log_normal(block.differences.array() - block.level - moved_by,
                     Eigen::LLT<Eigen::MatrixXd>{covariance});
 }
@@ -163,13 +164,15 @@ class Since {
     return log_normal(residual, factor_);
   }
 
-  /// Each output moved by a share of itself.
-  [[nodiscard]] double with_unknown(double sd) const {
+  /// Each output, or one, moved by a share of itself that is not quite the same in all months.
+  /// @param only  -1: each.
+  [[nodiscard]] double with_unknown(double sd, int only, double monthly_sd) const {
     Eigen::MatrixXd covariance = covariance_;
     for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
       for (Eigen::Index j = 0; j < covariance.cols(); ++j) {
-        if (output_of(i) != output_of(j)) continue;
-        covariance(i, j) += sd * sd * in_own_range(i) * in_own_range(j);
+        if (output_of(i) != output_of(j) || (only >= 0 && output_of(i) != only)) continue;
+        const double share = sd * sd + (i == j ? monthly_sd * monthly_sd : 0.0);
+        covariance(i, j) += share * in_own_range(i) * in_own_range(j);
       }
     }
     return log_normal(residual_, Eigen::LLT<Eigen::MatrixXd>{covariance});
@@ -211,7 +214,7 @@ class Since {
 std::vector<Contest> contests_of(const ChangeCase& change, const CauseOptions& options,
                                  const std::vector<int>& meters) {
   std::vector<Contest> contests{{CauseKind::nothing, 0, options.nothing},
-                                {CauseKind::unknown, 0, options.unknown}};
+                                {CauseKind::unknown, -1, 0.5 * options.unknown}};
   const std::size_t building = change.parameters.size() + change.directions.size();
   for (std::size_t j = 0; j < change.parameters.size(); ++j) {
     contests.push_back({CauseKind::parameter, static_cast<int>(j),
@@ -222,8 +225,9 @@ std::vector<Contest> contests_of(const ChangeCase& change, const CauseOptions& o
                         options.building / static_cast<double>(building)});
   }
   for (const int output : meters) {
-    contests.push_back(
-        {CauseKind::meter, output, options.meters / static_cast<double>(meters.size())});
+    const auto count = static_cast<double>(meters.size());
+    contests.push_back({CauseKind::unknown, output, 0.5 * options.unknown / count});
+    contests.push_back({CauseKind::meter, output, options.meters / count});
   }
   return contests;
 }
@@ -238,18 +242,16 @@ class Trial {
   void run(Contest& contest, Rng& rng) {
     switch (contest.kind) {
       case CauseKind::nothing:
-        contest.log_likelihoods.push_back(since_.unchanged() + of_levels(-1, 0.0, 0.0));
+        contest.log_likelihoods.push_back(since_.unchanged() + of_levels(-1, 0.0));
         return;
       case CauseKind::unknown:
-        contest.log_likelihoods.push_back(since_.with_unknown(options_.unknown_sd) +
-                                          of_levels(-1, 0.0, options_.unknown_sd));
+        contest.log_likelihoods.push_back(with_unknown(contest.index));
         return;
       case CauseKind::parameter:
         return try_values(contest, rng, [&](double u) {
           const Prior& prior = change_.parameters[static_cast<std::size_t>(contest.index)].prior;
           const double value = prior.quantile(u);
-          return std::pair{value,
-                           since_.with_parameter(contest.index, value) + of_levels(-1, 0.0, 0.0)};
+          return std::pair{value, since_.with_parameter(contest.index, value) + of_levels(-1, 0.0)};
         });
       case CauseKind::direction:
         return try_values(contest, rng, [&](double u) {
@@ -265,7 +267,7 @@ class Trial {
         return try_values(contest, rng, [&](double u) {
           const double factor = factor_at(u);
           return std::pair{factor, since_.with_factor(contest.index, factor) +
-                                       of_levels(contest.index, factor - 1.0, 0.0)};
+                                       of_levels(contest.index, factor - 1.0)};
         });
     }
   }
@@ -274,11 +276,21 @@ class Trial {
   [[nodiscard]] double factor_at(double u) const {
     return std::exp(options_.factor_sd * boost::math::quantile(boost::math::normal{}, u));
   }
+  [[nodiscard]] double with_unknown(int only) const {
+    const double sd = only < 0 ? options_.unknown_sd : options_.factor_sd;
+    const double monthly_sd = only < 0 ? 0.0 : options_.monthly_sd;
+    double sum = since_.with_unknown(sd, only, monthly_sd);
+    for (const LevelBlock& block : blocks_) {
+      const bool moved = only < 0 || block.output == only;
+      sum += log_likelihood(block, 0.0, moved ? sd : 0.0, moved ? monthly_sd : 0.0);
+    }
+    return sum;
+  }
   /// @param output  That moved; -1: none.
-  [[nodiscard]] double of_levels(int output, double moved_by, double more_sd) const {
+  [[nodiscard]] double of_levels(int output, double moved_by) const {
     double sum = 0.0;
     for (const LevelBlock& block : blocks_) {
-      sum += log_likelihood(block, block.output == output ? moved_by : 0.0, more_sd);
+      sum += log_likelihood(block, block.output == output ? moved_by : 0.0);
     }
     return sum;
   }

@@ -24,12 +24,14 @@ enum class CauseKind : std::uint8_t {
   parameter,  ///< A calibration parameter has another value since.
   direction,  ///< The building moved along a known direction.
   meter,      ///< One output's figures are multiplied by a factor: the meter, not the building.
-  unknown,    ///< Outputs moved by themselves, each as it likes: an effect that the model lacks.
+  /// An effect that the model lacks: all outputs moved, each by a share of its own, or one alone and
+  /// in no month by quite the same share, which a meter's factor is.
+  unknown,
 };
 
 struct Cause {
   CauseKind kind = CauseKind::nothing;
-  int index = 0;  ///< Of the parameter, direction or output.
+  int index = 0;  ///< Of the parameter, direction or output; -1: an unknown effect on all outputs.
   double probability = 0.0;
   double log_evidence = 0.0;  ///< Of the months since the change.
   /// The value since, or the factor; 90 % interval. NaN where there is none.
@@ -44,6 +46,7 @@ struct CauseOptions {
   double factor_sd = 0.3;  ///< Of a meter's factor or a direction's amplitude, on the log scale.
   /// Of an unknown effect: each output moves by this share of itself.
   double unknown_sd = 0.15;
+  double monthly_sd = 0.10;  ///< By which an unknown effect on one output differs between months.
   /// Prior odds of the kinds, each shared among its members.
   double nothing = 0.10, building = 0.45, meters = 0.25, unknown = 0.20;
 };

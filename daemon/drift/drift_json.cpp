@@ -87,10 +87,11 @@ Json subject_json(const SiteDrift& drift, const drift::Cause& cause) {
       return drift.parameters[at].name;
     case drift::CauseKind::direction:
       return drift.directions[at].name;
+    case drift::CauseKind::unknown:
+      return cause.index < 0 ? Json(nullptr) : Json(drift.outputs[at].name);
     case drift::CauseKind::meter:
       return drift.outputs[at].name;
     case drift::CauseKind::nothing:
-    case drift::CauseKind::unknown:
       break;
   }
   return nullptr;

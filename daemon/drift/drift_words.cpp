@@ -67,7 +67,9 @@ std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
     case drift::CauseKind::nothing:
       return "chance: nothing has changed";
     case drift::CauseKind::unknown:
-      return "something that the model lacks";
+      if (cause.index < 0) return "something that the model lacks";
+      return fmt::format("something that the model lacks and that {} alone shows",
+                         drift.outputs[at].meter);
     case drift::CauseKind::parameter:
       return fmt::format("{} is {:.3g} {} since (90 %: {:.3g} to {:.3g})",
                          drift.parameters[at].name, cause.mean, drift.parameters[at].unit,
