@@ -18,7 +18,7 @@ std::string slurp(const fs::path& path) {
   return text.str();
 }
 
-class RecaldSim : public testing::Test {
+class RecaldSim : public ::testing::Test {
  protected:
   RecaldSim() {
     std::string pattern = (fs::temp_directory_path() / "recald-sim-XXXXXX").string();

@@ -11,7 +11,7 @@
 
 #include "core/random/rng.hpp"
 
-namespace recald::csv {
+namespace recald::csv::fields_test {
 namespace {
 
 using metering::Instant;
@@ -160,4 +160,4 @@ TEST(ParseTimestamp, EverythingElseIsRefusedWithItsReason) {
 }
 
 }  // namespace
-}  // namespace recald::csv
+}  // namespace recald::csv::fields_test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace recald::csv {
+namespace recald::csv::line_reader_test {
 namespace {
 
 struct Seen {
@@ -87,4 +87,4 @@ TEST(OpenFile, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace recald::csv
+}  // namespace recald::csv::line_reader_test

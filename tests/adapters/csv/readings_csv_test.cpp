@@ -8,7 +8,7 @@
 #include <fstream>
 #include <map>
 
-namespace recald::csv {
+namespace recald::csv::readings_csv_test {
 namespace {
 
 using metering::Instant;
@@ -427,4 +427,4 @@ TEST(ReadingsCsv, AFileOnDiskReadsLikeItsText) {
 }
 
 }  // namespace
-}  // namespace recald::csv
+}  // namespace recald::csv::readings_csv_test

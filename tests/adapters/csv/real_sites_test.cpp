@@ -14,7 +14,7 @@
 #include "core/metering/level_change.hpp"
 #include "core/metering/month_closer.hpp"
 
-namespace recald {
+namespace recald::real_sites_test {
 namespace {
 
 using metering::LevelChange;
@@ -241,4 +241,4 @@ TEST(RealSites, CambridgeWeatherReportsItsGaps) {
 }
 
 }  // namespace
-}  // namespace recald
+}  // namespace recald::real_sites_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace recald::csv {
+namespace recald::csv::weather_csv_test {
 namespace {
 
 using std::chrono::hours;
@@ -120,4 +120,4 @@ TEST(WeatherCsvBadInput, CutAtEveryByteNothingIsInvented) {
 }
 
 }  // namespace
-}  // namespace recald::csv
+}  // namespace recald::csv::weather_csv_test

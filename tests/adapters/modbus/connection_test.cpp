@@ -9,7 +9,7 @@
 
 #include "tests/support/scripted_device.hpp"
 
-namespace recald::modbus {
+namespace recald::modbus::connection_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -361,4 +361,4 @@ TEST(ModbusRtu, ACharacterTakesElevenBitsAt8E1) {
 }
 
 }  // namespace
-}  // namespace recald::modbus
+}  // namespace recald::modbus::connection_test

@@ -6,7 +6,7 @@
 #include "adapters/modbus/connection.hpp"
 #include "tests/support/scripted_device.hpp"
 
-namespace recald::modbus {
+namespace recald::modbus::device_identification_test {
 namespace {
 
 using recald::testing::Bytes;
@@ -118,4 +118,4 @@ TEST(DeviceIdentification, ADeviceThatAlwaysHasMoreIsLeft) {
 }
 
 }  // namespace
-}  // namespace recald::modbus
+}  // namespace recald::modbus::device_identification_test

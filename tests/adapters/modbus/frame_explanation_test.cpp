@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace recald::modbus {
+namespace recald::modbus::frame_explanation_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -180,4 +180,4 @@ TEST(FramedRequest, EveryOtherIsRefused) {
 }
 
 }  // namespace
-}  // namespace recald::modbus
+}  // namespace recald::modbus::frame_explanation_test

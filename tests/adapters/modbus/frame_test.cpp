@@ -4,11 +4,11 @@
 
 #include <string>
 
-namespace recald::modbus {
+namespace recald::modbus::frame_test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -184,4 +184,4 @@ TEST(ModbusReply, ExceptionOfAnotherLengthOrFunction) {
 }
 
 }  // namespace
-}  // namespace recald::modbus
+}  // namespace recald::modbus::frame_test

@@ -4,12 +4,12 @@
 
 #include <set>
 
-namespace recald::modbus {
+namespace recald::modbus::register_map_test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::SizeIs;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
 
 RegisterField field(const std::string& name, int address, RegisterType type) {
   return {.name = name,
@@ -131,4 +131,4 @@ TEST(ReadPlan, PowersOfTenMayChangeFromReadToRead) {
 }
 
 }  // namespace
-}  // namespace recald::modbus
+}  // namespace recald::modbus::register_map_test

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <limits>
 
-namespace recald::modbus {
+namespace recald::modbus::register_value_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Register words of a value whose bytes, highest first, are `bytes`, as each order sends them.
 /// Written out by hand so that no shift of the decoder meets its mirror image.
@@ -173,4 +173,4 @@ TEST(RegisterValue, NamesOfTypesAndOrders) {
 }
 
 }  // namespace
-}  // namespace recald::modbus
+}  // namespace recald::modbus::register_value_test

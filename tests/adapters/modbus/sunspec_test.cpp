@@ -7,7 +7,7 @@
 #include "adapters/modbus/sunspec_bus.hpp"
 #include "tests/support/register_device.hpp"
 
-namespace recald::modbus {
+namespace recald::modbus::sunspec_test {
 namespace {
 
 using recald::testing::put_words;
@@ -222,4 +222,4 @@ TEST(SunSpecBus, WhatIsUnderWayAtItsEndIsNotTold) {
 }
 
 }  // namespace
-}  // namespace recald::modbus
+}  // namespace recald::modbus::sunspec_test

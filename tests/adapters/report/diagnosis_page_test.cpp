@@ -15,8 +15,8 @@ namespace recald::report {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string markup_of(const DiagnosisData& data) { return own_markup(render_diagnosis(data)); }
 

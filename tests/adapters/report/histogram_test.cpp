@@ -9,7 +9,7 @@
 namespace recald::report {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 TEST(Histogram, CountsByHand) {
   const std::vector<double> values{0.0, 0.4, 1.0, 1.9, 2.0, 4.0};

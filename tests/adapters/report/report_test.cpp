@@ -15,8 +15,8 @@ namespace recald::report {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr std::string_view kHostile = "</script><script>alert(\"&'\")</script><!--";
 

@@ -10,7 +10,7 @@
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::sqlite {
+namespace recald::sqlite::io_error_test {
 namespace {
 
 using metering::Instant;
@@ -158,4 +158,4 @@ INSTANTIATE_TEST_SUITE_P(AllOf, IoError,
                          });
 
 }  // namespace
-}  // namespace recald::sqlite
+}  // namespace recald::sqlite::io_error_test

@@ -6,7 +6,7 @@
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::sqlite {
+namespace recald::sqlite::job_table_test {
 namespace {
 
 using metering::Instant;
@@ -150,4 +150,4 @@ TEST_F(JobTable, AStoreFromBeforeJobsIsUpgraded) {
 }
 
 }  // namespace
-}  // namespace recald::sqlite
+}  // namespace recald::sqlite::job_table_test

@@ -7,7 +7,7 @@
 #include "tests/support/damage.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::sqlite {
+namespace recald::sqlite::recovery_test {
 namespace {
 
 using metering::Instant;
@@ -171,4 +171,4 @@ TEST_F(RecoveryTest, AnotherProgramsDatabaseIsLeftAlone) {
 }
 
 }  // namespace
-}  // namespace recald::sqlite
+}  // namespace recald::sqlite::recovery_test

@@ -10,7 +10,7 @@
 #include "tests/support/damage.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::sqlite {
+namespace recald::sqlite::sqlite_store_test {
 namespace {
 
 using metering::Instant;
@@ -452,4 +452,4 @@ TEST(StoreOpening, DamageIsFound) {
 }
 
 }  // namespace
-}  // namespace recald::sqlite
+}  // namespace recald::sqlite::sqlite_store_test

@@ -9,7 +9,7 @@
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::sqlite {
+namespace recald::sqlite::store_tables_test {
 namespace {
 
 using metering::Instant;
@@ -191,4 +191,4 @@ TEST_F(StoreTables, AReaderDoesNotUpgrade) {
 }
 
 }  // namespace
-}  // namespace recald::sqlite
+}  // namespace recald::sqlite::store_tables_test

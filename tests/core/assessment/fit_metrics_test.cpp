@@ -7,10 +7,10 @@
 #include <limits>
 #include <vector>
 
-namespace recald::assessment {
+namespace recald::assessment::fit_metrics_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // By hand: measured 100, 120, 80 (mean 100), simulated 110, 126, 78: differences s - m 10, 6, -2.
@@ -83,4 +83,4 @@ TEST(Guideline14, JudgesBothFiguresAgainstTheLimitsOfTheGrain) {
 }
 
 }  // namespace
-}  // namespace recald::assessment
+}  // namespace recald::assessment::fit_metrics_test

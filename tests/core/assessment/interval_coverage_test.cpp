@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace recald::assessment {
+namespace recald::assessment::interval_coverage_test {
 namespace {
 
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -38,4 +38,4 @@ TEST(IntervalCoverage, RefusesBrokenBounds) {
 }
 
 }  // namespace
-}  // namespace recald::assessment
+}  // namespace recald::assessment::interval_coverage_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace recald::assessment {
+namespace recald::assessment::output_assessment_test {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
@@ -153,4 +153,4 @@ TEST(AddDiscrepancyAndError, SameSeedSameNumbers) {
 }
 
 }  // namespace
-}  // namespace recald::assessment
+}  // namespace recald::assessment::output_assessment_test

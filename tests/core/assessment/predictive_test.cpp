@@ -9,7 +9,7 @@
 
 #include "core/statistics/quantile.hpp"
 
-namespace recald::assessment {
+namespace recald::assessment::predictive_test {
 namespace {
 
 // Quartiles 2 and 4, so the whiskers may reach from -1 to 7: 100 is an outlier, 1 is not.
@@ -70,4 +70,4 @@ TEST(Crps, MovesAndScalesWithTheUnit) {
 }
 
 }  // namespace
-}  // namespace recald::assessment
+}  // namespace recald::assessment::predictive_test

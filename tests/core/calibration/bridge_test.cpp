@@ -15,7 +15,7 @@
 namespace recald::calibration {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Independent draws of the posterior of `target`.
 Eigen::MatrixXd exact_draws(const ConjugateLinear& target, Eigen::Index count, Rng& rng) {

@@ -11,10 +11,10 @@
 
 #include "tests/core/calibration/toy_models.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::calibration_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 CalibrationOptions short_options(int iterations = 4000, int burn_in = 1000) {
   CalibrationOptions options;
@@ -63,8 +63,8 @@ TEST(Calibrate, FindsTheParametersOfTheToyBuilding) {
   EXPECT_EQ(c->hyper_prior.error_precision.rate, 0.03 * c->normalisation.pooled_variance);
   std::vector<std::string> names;
   for (const Summary& s : c->hyperparameters) names.push_back(s.name);
-  EXPECT_THAT(names, testing::ElementsAre("lambda_delta", "lambda_eps", "beta_dry_bulb",
-                                          "beta_humidity", "beta_out"));
+  EXPECT_THAT(names, ::testing::ElementsAre("lambda_delta", "lambda_eps", "beta_dry_bulb",
+                                            "beta_humidity", "beta_out"));
   for (const ChainDraws& chain : c->chains) {
     EXPECT_GE(chain.theta.col(0).minCoeff(), 0.5);
     EXPECT_LE(chain.theta.col(0).maxCoeff(), 2.0);
@@ -241,4 +241,4 @@ TEST(Calibrate, AGivenDesignHasToFit) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::calibration_test

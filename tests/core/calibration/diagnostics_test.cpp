@@ -9,7 +9,7 @@
 
 #include "core/random/rng.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::diagnostics_test {
 namespace {
 
 /// Draws that R can repeat to the last bit: Park and Miller's generator is exact in doubles.
@@ -159,4 +159,4 @@ TEST(Diagnostics, DrawsThatNeverMoveAreWorthNothing) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::diagnostics_test

@@ -9,7 +9,7 @@
 
 #include "core/random/rng.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::discrepancy_test {
 namespace {
 
 std::vector<PointIndex> all_points(int outputs, int months) {
@@ -94,4 +94,4 @@ TEST(DiscrepancyKernel, LimitsOfBeta) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::discrepancy_test

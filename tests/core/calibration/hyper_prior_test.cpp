@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-namespace recald::calibration {
+namespace recald::calibration::hyper_prior_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(GammaPrior, DensityMomentsAndQuantiles) {
   const GammaPrior gamma{2.0, 0.5};
@@ -108,4 +108,4 @@ TEST(HyperPrior, ValuesOfOnesOwnHaveToBePositive) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::hyper_prior_test

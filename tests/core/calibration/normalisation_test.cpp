@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-namespace recald::calibration {
+namespace recald::calibration::normalisation_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Two outputs of two months, three runs.
@@ -101,4 +101,4 @@ TEST(RangeCheck, ValuesAtTheEdgeAreInside) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::normalisation_test

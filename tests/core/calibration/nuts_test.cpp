@@ -19,9 +19,9 @@
 namespace recald::calibration {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 Result<Chain> run_nuts(Target& target, const SamplerOptions& options, Rng& rng,
                        const SamplerObserver& observer) {

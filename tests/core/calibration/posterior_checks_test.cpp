@@ -10,10 +10,10 @@
 #include "core/calibration/weak_directions.hpp"
 #include "tests/core/calibration/toy_models.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::posterior_checks_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const HyperPrior kPrior{"test", {10.0, 0.02}, {10.0, 0.002}, {1.0, 0.3}};
 
@@ -126,4 +126,4 @@ TEST(WeakDirections, NamesTheCombinationThatNoMeterSees) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::posterior_checks_test

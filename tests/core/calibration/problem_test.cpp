@@ -9,10 +9,10 @@
 
 #include "tests/core/calibration/toy_models.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::problem_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 const double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -30,7 +30,7 @@ struct Fault {
 
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
-class FaultyProblem : public testing::TestWithParam<Fault> {};
+class FaultyProblem : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(FaultyProblem, IsExplainedInOneSentence) {
   CalibrationProblem problem = toy_problem(2, 12);
@@ -91,7 +91,7 @@ const Fault kFaults[] = {
      ErrorCode::not_enough_data, "needs at least 4 usable monthly figures, but there are 2"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Each, FaultyProblem, testing::ValuesIn(kFaults),
+INSTANTIATE_TEST_SUITE_P(Each, FaultyProblem, ::testing::ValuesIn(kFaults),
                          [](const auto& param) { return std::string(param.param.name); });
 
 TEST(CalibrationProblem, NormalisesValuesVariancesAndCommonErrors) {
@@ -127,4 +127,4 @@ TEST(CalibrationProblem, WeightsAreRelativeToTheLargestMeasuredOne) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::problem_test

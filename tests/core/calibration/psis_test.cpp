@@ -12,7 +12,7 @@
 namespace recald::calibration {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Normal log densities of 6 units under 400 draws of a logistic quantity, laid out by the
 /// golden-ratio sequence so that R makes the same numbers:

@@ -13,7 +13,7 @@
 namespace recald::calibration {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(Samplers, AllAreFoundByTheirNames) {
   std::set<std::string_view> names;

@@ -12,7 +12,7 @@
 namespace recald::calibration {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kOneHill = 0.03;
 constexpr double kTwoHills = 0.065;
@@ -47,7 +47,7 @@ Eigen::MatrixXd in_coordinates(const SampledPosterior& sampled, Eigen::Index coo
   return draws;
 }
 
-class EverySampler : public testing::TestWithParam<const char*> {};
+class EverySampler : public ::testing::TestWithParam<const char*> {};
 
 // The answer comes from the trapezoid rule on a grid, not from another sampler.
 TEST_P(EverySampler, ReproducesQuadrature) {
@@ -66,7 +66,7 @@ TEST_P(EverySampler, ReproducesQuadrature) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, EverySampler,
-                         testing::Values("", "nuts", "dram", "smc", "seed_rwm"),
+                         ::testing::Values("", "nuts", "dram", "smc", "seed_rwm"),
                          [](const auto& given) {
                            return std::string(given.param).empty() ? "left_to_itself" : given.param;
                          });

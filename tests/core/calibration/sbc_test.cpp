@@ -7,7 +7,7 @@
 
 #include "tests/core/calibration/sbc_cases.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::sbc_test {
 namespace {
 
 /// Every quantity's ranks even, every interval's coverage within four binomial standard errors:
@@ -80,4 +80,4 @@ TEST(SimulationBasedCalibration, SeesAPosteriorThatIsTooWide) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::sbc_test

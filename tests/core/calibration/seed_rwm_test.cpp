@@ -8,7 +8,7 @@
 #include "tests/core/calibration/chain_checks.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::seed_rwm_test {
 namespace {
 
 TEST(SeedRwm, FindsTheMomentsOfACorrelatedNormal) {
@@ -99,4 +99,4 @@ TEST(SeedRwm, BurnInHasToLeaveDraws) { expect_refusals_of_options(seed_rwm); }
 TEST(SeedRwm, StatesOfOtherModelsAreRefused) { expect_refusals_of_states(seed_rwm); }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::seed_rwm_test

@@ -18,12 +18,12 @@
 #include "core/calibration/sampling.hpp"
 #include "core/statistics/quantile.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::seedcase_test {
 namespace {
 
 using nlohmann::json;
 
-class SeedcaseTest : public testing::Test {
+class SeedcaseTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(seedcase_folder() / "metamodel.csv")) {
@@ -170,7 +170,7 @@ TEST_F(SeedcaseTest, AVanishingWeightRemovesThePeaks) {
 // The long-run reference (Stan's NUTS, 100 000 draws): every mean, sd and quantile of all thirteen
 // quantities within four combined standard errors.
 class ReferencePosterior : public SeedcaseTest,
-                           public testing::WithParamInterface<std::tuple<const char*, bool>> {};
+                           public ::testing::WithParamInterface<std::tuple<const char*, bool>> {};
 
 TEST_P(ReferencePosterior, IsReproduced) {
   const auto [sampler, scaled] = GetParam();
@@ -199,14 +199,14 @@ TEST_P(ReferencePosterior, IsReproduced) {
   EXPECT_TRUE(sampled->converged);
 }
 
-INSTANTIATE_TEST_SUITE_P(BySampler, ReferencePosterior,
-                         testing::Combine(testing::Values("", "nuts", "dram", "smc", "seed_rwm"),
-                                          testing::Bool()),
-                         [](const auto& given) {
-                           const std::string name = std::get<0>(given.param);
-                           return (name.empty() ? "left_to_itself" : name) +
-                                  (std::get<1>(given.param) ? "_scaled" : "_wide");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    BySampler, ReferencePosterior,
+    ::testing::Combine(::testing::Values("", "nuts", "dram", "smc", "seed_rwm"), ::testing::Bool()),
+    [](const auto& given) {
+      const std::string name = std::get<0>(given.param);
+      return (name.empty() ? "left_to_itself" : name) +
+             (std::get<1>(given.param) ? "_scaled" : "_wide");
+    });
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::seedcase_test

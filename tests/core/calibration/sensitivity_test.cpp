@@ -7,7 +7,7 @@
 
 #include "tests/core/calibration/toy_models.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::sensitivity_test {
 namespace {
 
 CalibrationOptions options() {
@@ -51,7 +51,7 @@ TEST(PriorSensitivity, AGapThatEitherCanExplainIsPriorDriven) {
     return f.kind == FindingKind::prior_driven;
   });
   ASSERT_NE(finding, s.findings.end());
-  EXPECT_THAT(finding->sentence, testing::HasSubstr("is prior-driven"));
+  EXPECT_THAT(finding->sentence, ::testing::HasSubstr("is prior-driven"));
 }
 
 TEST(PriorSensitivity, CanBeCancelled) {
@@ -66,4 +66,4 @@ TEST(PriorSensitivity, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::sensitivity_test

@@ -14,7 +14,7 @@
 namespace recald::calibration {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 Result<Chain> run_smc(Target& target, const SamplerOptions& options, Rng& rng,
                       const SamplerObserver& observer) {

@@ -10,11 +10,11 @@
 #include "core/calibration/draws.hpp"
 #include "core/calibration/posterior_findings.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::summary_test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 TEST(Quantile, InterpolatesLikeR) {
   const Eigen::VectorXd sorted = Eigen::Vector4d(1.0, 2.0, 4.0, 8.0);
@@ -133,4 +133,4 @@ TEST(Findings, HaveMachineNames) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::summary_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace recald::design {
+namespace recald::design::latin_hypercube_test {
 namespace {
 
 std::vector<Parameter> parameters() {
@@ -80,4 +80,4 @@ TEST(LargestCorrelation, OfKnownColumns) {
 }
 
 }  // namespace
-}  // namespace recald::design
+}  // namespace recald::design::latin_hypercube_test

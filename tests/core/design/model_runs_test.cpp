@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-namespace recald::design {
+namespace recald::design::model_runs_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Output k in month i is theta_k + i, NaN in the last month when theta_0 exceeds `limit`.
 class StepModel final : public MonthlyModel {
@@ -91,4 +91,4 @@ TEST(ModelRuns, StopsWhenToldAtAnyRun) {
 }
 
 }  // namespace
-}  // namespace recald::design
+}  // namespace recald::design::model_runs_test

@@ -10,7 +10,7 @@
 
 #include "core/random/rng.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::block_noise_test {
 namespace {
 
 constexpr double log_two_pi = 1.8378770664093454836;
@@ -295,4 +295,4 @@ TEST_F(ChooseGates, GatesAtMostTwoInAHundred) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::block_noise_test

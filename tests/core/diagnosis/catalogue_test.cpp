@@ -10,7 +10,7 @@
 #include "core/model/hourly/hourly.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::catalogue_test {
 namespace {
 
 using metering::Utility;
@@ -237,4 +237,4 @@ TEST_F(Catalogue, NamesItsClasses) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::catalogue_test

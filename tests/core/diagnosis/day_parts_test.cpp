@@ -6,7 +6,7 @@
 
 #include "tests/support/sample_building.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::day_parts_test {
 namespace {
 
 TEST(DayParts, EveryHourStandsInExactlyOnePart) {
@@ -93,4 +93,4 @@ TEST(PartRoles, AWeekLiesBetweenFittedAndHeldParts) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::day_parts_test

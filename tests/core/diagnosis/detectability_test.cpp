@@ -9,7 +9,7 @@
 #include "core/random/rng.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::detectability_test {
 namespace {
 
 using metering::Utility;
@@ -271,4 +271,4 @@ TEST(FootprintGauge, NeedsReadingsToCalibrateTo) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::detectability_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/sample_problem.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::diagnose_test {
 namespace {
 
 /// The sample building as its own meters, with what `hidden` adds and noise. The calibrated model
@@ -97,4 +97,4 @@ TEST(Diagnose, AMeterWithHardlyAnyReadingsIsExplained) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::diagnose_test

@@ -10,8 +10,7 @@
 #include "core/model/hourly/hourly.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::diagnosis {
-namespace effects {
+namespace recald::diagnosis::effects {
 Effect after_hours();
 Effect constant_flow_pumps();
 Effect constant_speed_fans();
@@ -32,8 +31,9 @@ Effect simultaneous_heating_cooling();
 Effect supply_reset_missing();
 Effect vacancy();
 Effect weekend_operation();
-}  // namespace effects
+}  // namespace recald::diagnosis::effects
 
+namespace recald::diagnosis::effects_operation_test {
 namespace {
 
 using metering::Utility;
@@ -464,4 +464,4 @@ TEST(EffectsOfOperation, HybridWorkEchoesInChilledWater) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::effects_operation_test

@@ -12,7 +12,7 @@
 #include "core/weather/psychrometrics.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::effects_plant_test {
 namespace {
 
 using metering::Utility;
@@ -397,4 +397,4 @@ TEST_F(PlantEffects, DaylightSavingShiftsSummerOnAllMeters) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::effects_plant_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::false_discovery_test {
 namespace {
 
 // By hand: m = 4, c = 1 + 1/2 + 1/3 + 1/4 = 25/12, m c = 25/3. Sorted 0.001, 0.01, 0.02, 0.5 give
@@ -46,4 +46,4 @@ TEST(Findings, AFamilyStaysShutWithoutItsOmnibusTest) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::false_discovery_test

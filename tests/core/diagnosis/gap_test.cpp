@@ -7,7 +7,7 @@
 #include "core/diagnosis/null_scale.hpp"
 #include "tests/support/sample_problem.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::gap_test {
 namespace {
 
 constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint"};
@@ -155,4 +155,4 @@ TEST(NullScale, NeverFlattersAnEffect) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::gap_test

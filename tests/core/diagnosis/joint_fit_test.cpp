@@ -8,7 +8,7 @@
 #include "core/diagnosis/ground.hpp"
 #include "tests/support/sample_problem.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::joint_fit_test {
 namespace {
 
 constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint"};
@@ -162,4 +162,4 @@ TEST(Diagnose, AnAssumedEffectThatIsNoneIsExplained) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::joint_fit_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/sample_problem.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::monthly_effect_test {
 namespace {
 
 using metering::Utility;
@@ -205,4 +205,4 @@ TEST(AlteredMonthlyModel, AddsEffectsAndAltersRecordsLast) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::monthly_effect_test

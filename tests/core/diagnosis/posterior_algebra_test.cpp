@@ -13,7 +13,7 @@
 #include "core/diagnosis/false_discovery.hpp"
 #include "core/random/rng.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::posterior_algebra_test {
 namespace {
 
 Eigen::MatrixXd normals(Eigen::Index rows, Eigen::Index columns, Rng& rng) {
@@ -342,4 +342,4 @@ TEST(NullCalibration, ScanPValuesAreUniformAndDiscoveriesRare) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::posterior_algebra_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/sample_building.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::residual_map_test {
 namespace {
 
 /// Three months of day parts, two meters that read 100 and 50 kW throughout. January 2021 begins on
@@ -132,4 +132,4 @@ TEST(Signature, SeparatesNightsFromDays) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::residual_map_test

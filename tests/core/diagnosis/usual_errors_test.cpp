@@ -9,7 +9,7 @@
 #include "core/diagnosis/ground.hpp"
 #include "tests/support/sample_problem.hpp"
 
-namespace recald::diagnosis {
+namespace recald::diagnosis::usual_errors_test {
 namespace {
 
 constexpr std::array kParameters{"outdoor_airflow", "cooling_setpoint"};
@@ -172,4 +172,4 @@ TEST(CandidateShapes, OfSeveralAmountsEachIsTriedAlone) {
 }
 
 }  // namespace
-}  // namespace recald::diagnosis
+}  // namespace recald::diagnosis::usual_errors_test

@@ -5,7 +5,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::civil_time_test {
 namespace {
 
 using std::chrono::hours;
@@ -155,4 +155,4 @@ TEST(ParseDay, TakesOnlyDaysOfTheCalendar) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::civil_time_test

@@ -4,7 +4,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::close_month_test {
 namespace {
 
 using std::chrono::seconds;
@@ -192,4 +192,4 @@ TEST(CloseMonth, ShareOfSuspectsStandsInTheWords) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::close_month_test

@@ -6,7 +6,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::counter_test {
 namespace {
 
 using std::chrono::minutes;
@@ -205,4 +205,4 @@ TEST(Counter, AnExchangedMeterStartsAnew) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::counter_test

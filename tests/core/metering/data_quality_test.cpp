@@ -7,7 +7,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::data_quality_test {
 namespace {
 
 using std::chrono::hours;
@@ -239,4 +239,4 @@ TEST(DescribeData, CountsOfRefusedReadings) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::data_quality_test

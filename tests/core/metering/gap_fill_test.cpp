@@ -4,7 +4,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::gap_fill_test {
 namespace {
 
 using testing::kBlank;
@@ -169,4 +169,4 @@ TEST(GapFill, ScaledSlotsCountAsTheyAreButTeachNothing) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::gap_fill_test

@@ -9,7 +9,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::interval_book_test {
 namespace {
 
 using std::chrono::minutes;
@@ -266,4 +266,4 @@ TEST(LiveRegister, SumsAreThoseOfTheRegisterThroughAnySilence) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::interval_book_test

@@ -7,7 +7,7 @@
 #include "core/random/rng.hpp"
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::level_change_test {
 namespace {
 
 using testing::month;
@@ -168,4 +168,4 @@ TEST(LevelChange, StableMetersRarelyAlarm) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::level_change_test

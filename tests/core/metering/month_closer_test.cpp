@@ -6,7 +6,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::month_closer_test {
 namespace {
 
 using std::chrono::days;
@@ -299,4 +299,4 @@ TEST(MonthCloser, SameReadingsSameFigures) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::month_closer_test

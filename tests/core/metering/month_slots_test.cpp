@@ -6,7 +6,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::month_slots_test {
 namespace {
 
 using std::chrono::seconds;
@@ -108,4 +108,4 @@ TEST(MonthGrid, MonthsTileTheYearWithoutHoleOrOverlap) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::month_slots_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace recald::metering {
+namespace recald::metering::placement_test {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -56,4 +56,4 @@ TEST(Placement, ACorrectionReplacesWhatItIsWeakerThan) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::placement_test

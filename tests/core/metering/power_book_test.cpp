@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace recald::metering {
+namespace recald::metering::power_book_test {
 namespace {
 
 using std::chrono::minutes;
@@ -168,4 +168,4 @@ TEST(PowerBook, EnergyIsThatOfTheLine) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::power_book_test

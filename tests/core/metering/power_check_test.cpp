@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace recald::metering {
+namespace recald::metering::power_check_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -121,4 +121,4 @@ TEST(PowerCheck, AFewStepsOfTheCounterAreNoDifference) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::power_check_test

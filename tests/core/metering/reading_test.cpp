@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::metering {
+namespace recald::metering::reading_test {
 namespace {
 
 TEST(Reading, UtilitiesAndValiditiesSurviveTheirNames) {
@@ -28,4 +28,4 @@ TEST(Reading, ReasonsAreASetWithStableNames) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::reading_test

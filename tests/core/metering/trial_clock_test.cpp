@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::metering {
+namespace recald::metering::trial_clock_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -51,4 +51,4 @@ TEST(TrialClock, EveryOtherTextIsRefusedAndTheFormIsShown) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::trial_clock_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::metering {
+namespace recald::metering::units_test {
 namespace {
 
 using std::chrono::seconds;
@@ -80,4 +80,4 @@ TEST(Units, WhatIsNotEnergySaysWhatToDo) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::units_test

@@ -4,7 +4,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::usual_day_test {
 namespace {
 
 using testing::calendar;
@@ -66,4 +66,4 @@ TEST(UsualDay, RunningBackwardsIsNoShape) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::usual_day_test

@@ -6,7 +6,7 @@
 
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::validation_test {
 namespace {
 
 using std::chrono::hours;
@@ -217,4 +217,4 @@ TEST(Validation, WhatTheSourceSaidIsLeftAlone) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::validation_test

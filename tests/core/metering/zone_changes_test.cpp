@@ -9,7 +9,7 @@
 #include "core/metering/civil_time.hpp"
 #include "month_builder.hpp"
 
-namespace recald::metering {
+namespace recald::metering::zone_changes_test {
 namespace {
 
 using std::chrono::days;
@@ -170,4 +170,4 @@ TEST(MidnightMissing, TheDayBeginsAtItsFirstInstant) {
 }
 
 }  // namespace
-}  // namespace recald::metering
+}  // namespace recald::metering::zone_changes_test

@@ -13,7 +13,7 @@
 namespace recald {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -76,7 +76,7 @@ struct Named {
   Prior prior;
 };
 
-class AnyPrior : public testing::TestWithParam<Named> {
+class AnyPrior : public ::testing::TestWithParam<Named> {
  protected:
   const Prior& prior() const { return GetParam().prior; }
   double low() const { return std::max(prior().min(), prior().quantile(1e-4)); }
@@ -154,15 +154,15 @@ TEST_P(AnyPrior, ScoreGivesTheQuantileAndItsSlope) {
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, AnyPrior,
-    testing::Values(Named{"skewed", {0.3, 1.0, 1.2}}, Named{"mode_at_low_end", {0.0, 0.0, 2.0}},
-                    Named{"mode_at_high_end", {-5.0, 3.0, 3.0}},
-                    Named{"set_point", {20.0, 23.5, 28.0}},
-                    Named{"uniform", UniformPrior{-1.0, 4.0}},
-                    Named{"normal", TruncatedNormalPrior{3.0, 2.0}},
-                    Named{"cut_below", TruncatedNormalPrior{1.0, 2.0, 0.0}},
-                    Named{"cut_both", TruncatedNormalPrior{24.0, 1.5, 22.0, 25.0}},
-                    Named{"log_normal", LogNormalPrior{0.4, 0.5}},
-                    Named{"log_normal_cut", LogNormalPrior{0.4, 0.9, 0.1, 1.0}}),
+    ::testing::Values(Named{"skewed", {0.3, 1.0, 1.2}}, Named{"mode_at_low_end", {0.0, 0.0, 2.0}},
+                      Named{"mode_at_high_end", {-5.0, 3.0, 3.0}},
+                      Named{"set_point", {20.0, 23.5, 28.0}},
+                      Named{"uniform", UniformPrior{-1.0, 4.0}},
+                      Named{"normal", TruncatedNormalPrior{3.0, 2.0}},
+                      Named{"cut_below", TruncatedNormalPrior{1.0, 2.0, 0.0}},
+                      Named{"cut_both", TruncatedNormalPrior{24.0, 1.5, 22.0, 25.0}},
+                      Named{"log_normal", LogNormalPrior{0.4, 0.5}},
+                      Named{"log_normal_cut", LogNormalPrior{0.4, 0.9, 0.1, 1.0}}),
     [](const auto& given) { return given.param.name; });
 
 TEST(Prior, AcceptsAModeAtEitherEnd) {

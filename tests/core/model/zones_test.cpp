@@ -6,7 +6,7 @@
 
 #include "tests/support/sample_building.hpp"
 
-namespace recald::model {
+namespace recald::model::zones_test {
 namespace {
 
 using testing::sample_building;
@@ -78,4 +78,4 @@ TEST(Zones, LeakageByHand) {
 }
 
 }  // namespace
-}  // namespace recald::model
+}  // namespace recald::model::zones_test

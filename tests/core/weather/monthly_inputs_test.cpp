@@ -11,7 +11,7 @@ namespace {
 using std::chrono::hours;
 using std::chrono::sys_days;
 using std::chrono::year;
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 const std::vector<metering::Month> kMonths = {year{2021} / std::chrono::January,
                                               year{2021} / std::chrono::February};

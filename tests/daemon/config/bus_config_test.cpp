@@ -7,7 +7,7 @@
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::bus_config_test {
 namespace {
 
 using recald::testing::edited;
@@ -226,4 +226,4 @@ TEST(BusConfig, PollTimeOfASerialLine) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::bus_config_test

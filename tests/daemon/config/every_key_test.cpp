@@ -8,7 +8,7 @@
 
 #include "daemon/config/site_config.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::every_key_test {
 namespace {
 
 using ::testing::AllOf;
@@ -158,4 +158,4 @@ TEST_F(EveryKey, RequiredOnesAreMissed) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::every_key_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::hyper_prior_file_test {
 namespace {
 
 using calibration::BetaPrior;
@@ -89,4 +89,4 @@ TEST_F(HyperPriorFile, AChoiceIsAProfileOrAFile) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::hyper_prior_file_test

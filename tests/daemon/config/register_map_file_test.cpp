@@ -9,7 +9,7 @@
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::register_map_file_test {
 namespace {
 
 using recald::testing::edited;
@@ -244,4 +244,4 @@ TEST(RegisterMapFile, SeveralMistakesAreAllSaid) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::register_map_file_test

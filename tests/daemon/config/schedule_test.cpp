@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace recald::daemon {
+namespace recald::daemon::schedule_test {
 namespace {
 
 using metering::Instant;
@@ -95,4 +95,4 @@ TEST(Schedule, WhatIsNotUnderstoodIsNamed) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::schedule_test

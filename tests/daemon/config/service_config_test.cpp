@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace recald::daemon {
+namespace recald::daemon::service_config_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -92,4 +92,4 @@ TEST(RecalibrationConfig, MistakesAreNamedWithTheirKey) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::service_config_test

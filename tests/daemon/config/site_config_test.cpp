@@ -13,7 +13,7 @@
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::site_config_test {
 namespace {
 
 using recald::testing::edited;
@@ -400,4 +400,4 @@ TEST(SiteConfig, MissingFileAndFolderAreOneSentence) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::site_config_test

@@ -4,7 +4,7 @@
 
 #include "daemon/config/site_config.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::store_config_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -58,4 +58,4 @@ TEST(StoreConfig, EachMistakeHasItsSentence) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::store_config_test

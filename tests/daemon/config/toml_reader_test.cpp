@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace recald::daemon {
+namespace recald::daemon::toml_reader_test {
 namespace {
 
 using std::chrono::days;
@@ -150,4 +150,4 @@ TEST(TomlReader, FinishSuggestsTheNearestOfTheKeysThatWereAskedFor) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::toml_reader_test

@@ -7,7 +7,7 @@
 #include "tests/support/failing_store.hpp"
 #include "tests/support/virtual_loop.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::committer_test {
 namespace {
 
 using metering::Instant;
@@ -169,4 +169,4 @@ TEST_F(CommitterTest, ConflictsAreCounted) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::committer_test

@@ -8,7 +8,7 @@
 
 #include "daemon/config/register_map_file.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::meter_track_test {
 namespace {
 
 using metering::Instant;
@@ -523,4 +523,4 @@ register.t2 = { at = 100, type = "u32", unit = "Wh" }
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::meter_track_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace recald::daemon {
+namespace recald::daemon::open_month_test {
 namespace {
 
 using metering::Instant;
@@ -63,4 +63,4 @@ TEST_F(OpenMonthTest, ANewMonthBeginsWithNothing) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::open_month_test

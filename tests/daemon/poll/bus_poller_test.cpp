@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 
-namespace recald::daemon {
+namespace recald::daemon::bus_poller_test {
 namespace {
 
 using modbus::ReadFailure;
@@ -452,4 +452,4 @@ TEST(UnitHealth, FallsByMissesAndRisesByOneAnswer) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::bus_poller_test

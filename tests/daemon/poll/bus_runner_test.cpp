@@ -5,7 +5,7 @@
 
 #include "tests/support/virtual_loop.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::bus_runner_test {
 namespace {
 
 using recald::testing::VirtualLoop;
@@ -141,4 +141,4 @@ TEST(BusRunner, MayEndAtAnyTime) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::bus_runner_test

@@ -4,7 +4,7 @@
 
 #include "daemon/poll/bus_counters.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::latency_histogram_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -57,4 +57,4 @@ TEST(RequestResult, NoConnectionIsATimeout) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::latency_histogram_test

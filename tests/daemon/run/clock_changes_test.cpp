@@ -11,7 +11,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/virtual_loop.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::clock_changes_test {
 namespace {
 
 using metering::Instant;
@@ -238,4 +238,4 @@ TEST(GatewayClock, StepForwardADay) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::clock_changes_test

@@ -14,7 +14,7 @@
 #include "tests/support/failing_store.hpp"
 #include "tests/support/faulty_disk.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::crash_test {
 namespace {
 
 using recald::testing::FailingStore;
@@ -180,4 +180,4 @@ TEST_F(Crash, AMonthOfKillsCostsNothing) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::crash_test

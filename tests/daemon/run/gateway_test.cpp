@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/virtual_loop.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::gateway_test {
 namespace {
 
 using metering::Instant;
@@ -351,4 +351,4 @@ TEST_F(GatewayTest, AStoreThatCannotBeReadAtTheStartIsToldAtOnce) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::gateway_test

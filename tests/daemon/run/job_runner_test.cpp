@@ -10,7 +10,7 @@
 #include "tests/support/virtual_loop.hpp"
 #include "tests/support/virtual_worker.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::job_runner_test {
 namespace {
 
 using recald::testing::FailingStore;
@@ -215,4 +215,4 @@ TEST_F(JobRunnerTest, AJobThatCannotBeginWaitsForTheStore) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::job_runner_test

@@ -15,7 +15,7 @@
 #include "tests/support/scripted_device.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::kill_command_test {
 namespace {
 
 using metering::Instant;
@@ -121,4 +121,4 @@ TEST_F(KillCommand, KillsOfTheRealProgramLoseNothing) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::kill_command_test

@@ -9,7 +9,7 @@
 #include "core/random/rng.hpp"
 #include "tests/support/failing_store.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::month_keeper_test {
 namespace {
 
 using metering::Instant;
@@ -177,4 +177,4 @@ TEST_F(MonthKeeperTest, TzdataChanged) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::month_keeper_test

@@ -7,7 +7,7 @@
 #include "tests/support/failing_store.hpp"
 #include "tests/support/faulty_disk.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::power_cut_test {
 namespace {
 
 using recald::testing::FailingStore;
@@ -105,4 +105,4 @@ TEST_F(PowerCut, WithoutAnySyncTheFileItselfIsDamaged) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::power_cut_test

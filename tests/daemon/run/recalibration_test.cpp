@@ -5,7 +5,7 @@
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/virtual_loop.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::recalibration_test {
 namespace {
 
 using recald::testing::VirtualLoop;
@@ -124,4 +124,4 @@ TEST_F(RecalibrationTest, AClockThatIsSetMovesTheNextTime) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::recalibration_test

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/virtual_loop.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::reload_test {
 namespace {
 
 using metering::Instant;
@@ -203,4 +203,4 @@ TEST_F(Reload, WithAFullDiskEverythingStaysAsItWas) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::reload_test

@@ -9,7 +9,7 @@
 #include "tests/support/scripted_device.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::run_command_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -175,4 +175,4 @@ TEST_F(RunCommand, CheckTellsHowBusyTheBusIs) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::run_command_test

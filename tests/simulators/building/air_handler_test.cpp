@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::simulators {
+namespace recald::simulators::air_handler_test {
 namespace {
 
 AirHandlerDesign design() {
@@ -135,4 +135,4 @@ TEST(Fan, PowerRisesSteeplyWithFlow) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::air_handler_test

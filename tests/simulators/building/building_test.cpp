@@ -7,7 +7,7 @@
 #include "simulators/feed/recording.hpp"
 #include "simulators/scenario/archetypes.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::building_test {
 namespace {
 
 using namespace std::chrono;
@@ -58,7 +58,7 @@ struct Look {
   seconds step;
 };
 
-class EveryZone : public testing::TestWithParam<Look> {};
+class EveryZone : public ::testing::TestWithParam<Look> {};
 
 // What each zone takes up from gains, air, neighbours and constructions is what it stores.
 TEST_P(EveryZone, HeatBalanceClosesOverAWeek) {
@@ -89,7 +89,7 @@ TEST_P(EveryZone, HeatBalanceClosesOverAWeek) {
 
 INSTANTIATE_TEST_SUITE_P(
     Buildings, EveryZone,
-    testing::Values(
+    ::testing::Values(
         Look{"laboratory",
              {.use = Use::laboratory, .climate = ClimateKind::hot_humid, .storeys = 3},
              300s},
@@ -184,4 +184,4 @@ TEST(Recording, CoversLocalYearsWithLeapDaysAndClockChanges) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::building_test

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace recald::simulators {
+namespace recald::simulators::calendar_test {
 namespace {
 
 using namespace std::chrono;
@@ -48,4 +48,4 @@ TEST(Calendar, SchoolsAreClosedInSummerAndOfficesAreNot) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::calendar_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::simulators {
+namespace recald::simulators::cooling_coil_test {
 namespace {
 
 constexpr CoolingCoil kCoil{.capacity_W = 500e3,
@@ -59,4 +59,4 @@ TEST(CoolingCoil, SlowerAirIsTreatedMoreThoroughly) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::cooling_coil_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::simulators {
+namespace recald::simulators::envelope_test {
 namespace {
 
 Outdoors still_night(double air_C) {
@@ -135,4 +135,4 @@ TEST(Envelope, SkylightLightsTheCoreBelowTheRoof) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::envelope_test

@@ -4,7 +4,7 @@
 
 #include "simulators/building/calendar.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::people_test {
 namespace {
 
 using namespace std::chrono;
@@ -102,4 +102,4 @@ TEST(People, WhoIsKeptAwayLeavesEverybodyElseAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::people_test

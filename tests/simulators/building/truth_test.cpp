@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace recald::simulators {
+namespace recald::simulators::truth_test {
 namespace {
 
 TEST(Truth, StaysInsideTheUsersPriors) {
@@ -76,4 +76,4 @@ TEST(Drawings, ZonesFillTheFloor) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::truth_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace recald::simulators {
+namespace recald::simulators::wall_test {
 namespace {
 
 constexpr double kRoomFilm_W_m2K = 7.7;
@@ -75,4 +75,4 @@ TEST(Wall, MasslessPaneFollowsAtOnce) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::wall_test

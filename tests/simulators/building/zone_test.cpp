@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace recald::simulators {
+namespace recald::simulators::zone_test {
 namespace {
 
 Zone small_room(double start_C) {
@@ -82,4 +82,4 @@ TEST(Zone, SunOnTheFloorArrivesLaterThanHeatInTheAir) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::zone_test

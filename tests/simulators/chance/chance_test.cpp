@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace recald::simulators {
+namespace recald::simulators::chance_test {
 namespace {
 
 TEST(Chance, TriangularQuantilesMeetClosedForm) {
@@ -52,4 +52,4 @@ TEST(Chance, StreamsOfOneSeedDiffer) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::chance_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::simulators {
+namespace recald::simulators::air_test {
 namespace {
 
 // ASHRAE Handbook Fundamentals 2017, chapter 1, table 3, over liquid water. Buck's formula is
@@ -101,4 +101,4 @@ TEST(Air, RelativeHumidityIsCappedAtSaturation) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::air_test

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace recald::simulators {
+namespace recald::simulators::climate_statistics_test {
 namespace {
 
 using namespace std::chrono;
@@ -77,4 +77,4 @@ TEST(ClimateStatistics, TableNamesEveryClimateAndItsCity) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::climate_statistics_test

@@ -6,7 +6,7 @@
 
 #include "simulators/climate/climate_statistics.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::climates_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -103,4 +103,4 @@ TEST(Climates, StatisticsDoNotDependOnTheStep) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::climates_test

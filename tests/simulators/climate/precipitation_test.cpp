@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace recald::simulators {
+namespace recald::simulators::precipitation_test {
 namespace {
 
 constexpr double kHour_s = 3600.0;
@@ -109,4 +109,4 @@ TEST(Snow, BrightensTheGround) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::precipitation_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::simulators {
+namespace recald::simulators::sun_test {
 namespace {
 
 using namespace std::chrono;
@@ -71,4 +71,4 @@ TEST(Sun, GlazingPassesLessAtGrazingIncidence) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::sun_test

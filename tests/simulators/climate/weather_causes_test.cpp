@@ -11,7 +11,7 @@
 #include "simulators/climate/weather.hpp"
 #include "tests/simulators/climate/run_years.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::weather_causes_test {
 namespace {
 
 using namespace std::chrono;
@@ -276,4 +276,4 @@ TEST(WeatherCauses, RainLeavesTheOtherWeatherAlone) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::weather_causes_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace recald::simulators {
+namespace recald::simulators::weather_test {
 namespace {
 
 using namespace std::chrono;
@@ -185,4 +185,4 @@ TEST(Weather, NothingIsImpossible) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::weather_test

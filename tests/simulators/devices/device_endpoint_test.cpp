@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace recald::simulators {
+namespace recald::simulators::device_endpoint_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -174,4 +174,4 @@ TEST(DeviceEndpoint, KnowsWhenItIsAway) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::device_endpoint_test

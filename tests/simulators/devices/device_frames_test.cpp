@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace recald::simulators {
+namespace recald::simulators::device_frames_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -97,4 +97,4 @@ TEST(DeviceFrames, RepliesAreClosed) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::device_frames_test

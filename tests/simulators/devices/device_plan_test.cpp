@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::device_plan_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -145,4 +145,4 @@ TEST_F(DevicePlan, TheFirstMistakeIsNamed) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::device_plan_test

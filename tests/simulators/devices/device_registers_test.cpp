@@ -6,7 +6,7 @@
 
 #include "daemon/config/register_map_file.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::device_registers_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -59,4 +59,4 @@ TEST(SimulatedDevices, OutsideItsRegistersThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::device_registers_test

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace recald::simulators {
+namespace recald::simulators::fault_script_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -79,4 +79,4 @@ TEST(FaultScript, EveryWrongLineIsNamed) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::fault_script_test

@@ -4,7 +4,7 @@
 #include "tests/simulators/devices/layout_words.hpp"
 #include "tests/support/simulated_meters.hpp"
 
-namespace recald {
+namespace recald::independent_client_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,4 +90,4 @@ TEST_F(IndependentClient, PymodbusReadsEveryLayout) {
 }
 
 }  // namespace
-}  // namespace recald
+}  // namespace recald::independent_client_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::simulators {
+namespace recald::simulators::load_shape_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -43,4 +43,4 @@ TEST(LoadShape, RecordingIsPlayedOnce) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::load_shape_test

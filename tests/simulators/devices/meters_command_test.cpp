@@ -11,7 +11,7 @@
 #include "tests/simulators/devices/layout_words.hpp"
 #include "tests/support/simulated_meters.hpp"
 
-namespace recald {
+namespace recald::meters_command_test {
 namespace {
 
 using recald::testing::eventually;
@@ -286,4 +286,4 @@ TEST(MetersCommand, WhatCannotBeOpenedIsSaid) {
 }
 
 }  // namespace
-}  // namespace recald
+}  // namespace recald::meters_command_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::recorded_load_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -71,4 +71,4 @@ TEST_F(RecordedLoad, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::recorded_load_test

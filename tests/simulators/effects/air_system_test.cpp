@@ -15,6 +15,9 @@ EffectKind constant_flow_pumps();
 EffectKind deep_drying();
 EffectKind humidifier();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::air_system_test {
 namespace {
 
 TEST(SimultaneousHeatingCooling, LeaksInSummerTooAndWandersABit) {
@@ -119,4 +122,4 @@ TEST(Humidifier, StandsStillOnSomeDays) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::air_system_test

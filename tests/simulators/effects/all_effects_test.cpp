@@ -5,7 +5,7 @@
 
 #include "tests/simulators/effects/hand_made_year.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::all_effects_test {
 namespace {
 
 using namespace hand_made;
@@ -112,4 +112,4 @@ TEST(Effects, AreTheSameForTheSameSeed) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::all_effects_test

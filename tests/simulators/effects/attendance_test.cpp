@@ -12,6 +12,9 @@ EffectKind vacancy();
 EffectKind hybrid_work();
 EffectKind missing_holidays();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::attendance_test {
 namespace {
 
 TEST(SemesterCalendar, PeopleAreAwayBetweenTermsEveryYear) {
@@ -169,4 +172,4 @@ TEST(MissingHolidays, AHeavySnowfallAtNightKeepsPeopleHomeOnSomeMornings) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::attendance_test

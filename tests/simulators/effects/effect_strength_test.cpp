@@ -13,7 +13,7 @@
 #include "simulators/climate/weather.hpp"
 #include "tests/simulators/effects/by_hand.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::effect_strength_test {
 namespace {
 
 const metering::Day kFirst = day_of(2021, 1, 1);
@@ -102,7 +102,7 @@ EffectSettings settings_for(const EffectKind& kind, double strength) {
   return settings;
 }
 
-class EffectStrength : public testing::TestWithParam<EffectKind> {
+class EffectStrength : public ::testing::TestWithParam<EffectKind> {
  protected:
   /// What people, controls and plant do when nothing is hidden.
   static const std::vector<std::vector<double>>& nothing() {
@@ -153,8 +153,8 @@ TEST_P(EffectStrength, IsExplainedAndWithinItsRange) {
   EXPECT_EQ(find_effect_kind(kind.id)->id, kind.id);
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EffectStrength, testing::ValuesIn(effect_kinds()),
+INSTANTIATE_TEST_SUITE_P(Catalogue, EffectStrength, ::testing::ValuesIn(effect_kinds()),
                          [](const auto& tested) { return std::string(tested.param.id); });
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::effect_strength_test

@@ -14,6 +14,9 @@ EffectKind server_room();
 EffectKind exterior_lighting();
 EffectKind demand_limit();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::electrical_effects_test {
 namespace {
 
 using namespace hand_made;
@@ -194,4 +197,4 @@ TEST(DemandLimit, GrowsFromNothingWithTheCap) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::electrical_effects_test

@@ -13,6 +13,9 @@ EffectKind solar_gain_change();
 EffectKind thermal_mass();
 EffectKind ground_coupling();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::envelope_effects_test {
 namespace {
 
 using namespace hand_made;
@@ -121,4 +124,4 @@ TEST(GroundCoupling, BringsTheSeasonsUnderTheFloorAMonthLate) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::envelope_effects_test

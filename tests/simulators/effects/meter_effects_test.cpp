@@ -15,6 +15,9 @@ EffectKind phase_lost();
 EffectKind clock_offset();
 EffectKind dst_misapplied();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::meter_effects_test {
 namespace {
 
 using namespace hand_made;
@@ -213,4 +216,4 @@ TEST(DstMisapplied, ChangesTheClockWhereNobodyDoes) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::meter_effects_test

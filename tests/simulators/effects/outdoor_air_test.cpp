@@ -12,6 +12,9 @@ EffectKind economiser_failed();
 EffectKind economiser_changeover();
 EffectKind demand_ventilation();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::outdoor_air_test {
 namespace {
 
 TEST(DamperStuckOpen, LeaksDayAndNightNearItsStrength) {
@@ -77,4 +80,4 @@ TEST(DemandVentilation, ControlsOnlyItsShareOfTheAir) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::outdoor_air_test

@@ -9,6 +9,9 @@ EffectKind open_windows();
 EffectKind cooking();
 EffectKind event_evenings();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::people_habits_test {
 namespace {
 
 /// Open at three in the afternoon of a working day, people in since eight.
@@ -186,4 +189,4 @@ TEST(EventEvenings, SmallEventsGetAirForPartOfTheEvening) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::people_habits_test

@@ -13,6 +13,9 @@ EffectKind seasonal_hot_water();
 EffectKind steam_trap_leak();
 EffectKind heat_pump_defrost();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::plant_effects_test {
 namespace {
 
 using namespace hand_made;
@@ -147,4 +150,4 @@ TEST(HeatPumpDefrost, HardlyDependsOnTheStep) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::plant_effects_test

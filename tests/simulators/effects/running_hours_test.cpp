@@ -10,6 +10,9 @@ EffectKind after_hours();
 EffectKind early_start();
 EffectKind round_the_clock_zone();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::running_hours_test {
 namespace {
 
 TEST(WeekendOperation, CopiesTheWorkdayToSaturdayFirstThenToSunday) {
@@ -136,4 +139,4 @@ TEST(RoundTheClockZone, WorksOnWhenTheOthersHaveLeft) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::running_hours_test

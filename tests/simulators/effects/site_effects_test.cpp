@@ -18,6 +18,9 @@ EffectKind backup_generator_test();
 EffectKind swimming_pool();
 EffectKind data_backup_nights();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::site_effects_test {
 namespace {
 
 using namespace hand_made;
@@ -308,4 +311,4 @@ TEST(SiteEffects, ScaleEachStepWithTheirStrength) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::site_effects_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::simulators {
+namespace recald::simulators::slow_value_test {
 namespace {
 
 TEST(SlowValue, StartsAtItsFirstTarget) {
@@ -39,4 +39,4 @@ TEST(Ramp, RisesOrFallsBetweenItsEnds) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::slow_value_test

@@ -9,6 +9,9 @@ EffectKind night_purge();
 EffectKind tariff_load_shift();
 EffectKind ice_storage();
 
+}  // namespace recald::simulators
+
+namespace recald::simulators::stores_and_shifts_test {
 namespace {
 
 /// The share that purges at this hour after a day and a half of this warmth.
@@ -132,4 +135,4 @@ TEST(IceStorage, RestsOnWeekendsAndWithoutLoad) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::stores_and_shifts_test

@@ -7,7 +7,7 @@
 
 #include "simulators/scenario/scenario_files.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::feed_files_test {
 namespace {
 
 Scenario one_year() {
@@ -135,4 +135,4 @@ TEST(FeedFiles, TruthDeclaresEveryFault) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::feed_files_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace recald::simulators {
+namespace recald::simulators::meters_test {
 namespace {
 
 using namespace std::chrono;
@@ -196,4 +196,4 @@ TEST(WeatherStation, ReadsNearTheTruthAndDeclaresItsGaps) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::meters_test

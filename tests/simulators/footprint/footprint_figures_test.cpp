@@ -16,7 +16,7 @@
 #include "simulators/footprint/svg.hpp"
 #include "tests/simulators/footprint/well_formed.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::footprint_figures_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -209,4 +209,4 @@ TEST(FootprintFigures, AFileThatCannotBeWrittenIsToldInOneSentence) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::footprint_figures_test

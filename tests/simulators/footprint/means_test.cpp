@@ -6,7 +6,7 @@
 #include <chrono>
 #include <numeric>
 
-namespace recald::simulators {
+namespace recald::simulators::means_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -150,4 +150,4 @@ TEST(Means, AWeekHasItsHoursInSequence) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::means_test

@@ -8,7 +8,7 @@
 
 #include "core/random/rng.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::plot_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -109,4 +109,4 @@ TEST(Plot, MarksStandWhereTheyBelong) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::plot_test

@@ -7,7 +7,7 @@
 
 #include "tests/simulators/footprint/well_formed.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::svg_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -102,4 +102,4 @@ TEST(Svg, TheTestKnowsBadXml) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::svg_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::scenario_file_test {
 namespace {
 
 using namespace std::chrono;
@@ -143,4 +143,4 @@ TEST_F(ScenarioFile, RefusesEffectsThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::scenario_file_test

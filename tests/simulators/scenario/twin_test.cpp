@@ -6,7 +6,7 @@
 
 #include "simulators/scenario/archetypes.hpp"
 
-namespace recald::simulators {
+namespace recald::simulators::twin_test {
 namespace {
 
 using namespace std::chrono;
@@ -59,7 +59,7 @@ double moved_share(const std::vector<std::vector<double>>& footprint_kW, const S
   return moved;
 }
 
-class EveryEffect : public testing::TestWithParam<const EffectKind*> {};
+class EveryEffect : public ::testing::TestWithParam<const EffectKind*> {};
 
 // A twin run differs through the effect alone: not at all at strength 0, the weather never, before
 // its first day never, and more at its typical strength than at half of it.
@@ -110,7 +110,7 @@ std::vector<const EffectKind*> all_kinds() {
   return kinds;
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EveryEffect, testing::ValuesIn(all_kinds()),
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryEffect, ::testing::ValuesIn(all_kinds()),
                          [](const auto& tested) { return std::string(tested.param->id); });
 
 TEST(Decoys, OfferAWindThatNeverBlewAndAMeterThatIsNotOurs) {
@@ -140,4 +140,4 @@ TEST(Decoys, OfferAWindThatNeverBlewAndAMeterThatIsNotOurs) {
 }
 
 }  // namespace
-}  // namespace recald::simulators
+}  // namespace recald::simulators::twin_test

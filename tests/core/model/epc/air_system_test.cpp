@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::model::epc {
+namespace recald::model::epc::air_system_test {
 namespace {
 
 constexpr double kHeatCapacity_J_m3K = 1200.0;
@@ -41,7 +41,7 @@ TEST(AirSystem, ZoneBalanceClosesInEveryRegime) {
   for (const double load_W : {0.0, 5e3, 20e3, 33e3, 90e3}) {
     for (const double shortage_W : {0.0, 15e3, 80e3}) {
       if (load_W > 0.0 && shortage_W > 0.0) continue;
-      SCOPED_TRACE(testing::Message() << load_W << " " << shortage_W);
+      SCOPED_TRACE(::testing::Message() << load_W << " " << shortage_W);
       ZoneDemand demand = worked_demand();
       demand.cooling_load_W = load_W;
       demand.shortage_W = shortage_W;
@@ -114,4 +114,4 @@ TEST(AirSystem, FanCurveEndsNearOneAndNearZero) {
 }
 
 }  // namespace
-}  // namespace recald::model::epc
+}  // namespace recald::model::epc::air_system_test

@@ -10,7 +10,7 @@
 #include "tests/support/allocations.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::model::epc {
+namespace recald::model::epc::epc_test {
 namespace {
 
 using testing::allocation_count;
@@ -224,4 +224,4 @@ TEST(EpcModel, EvaluationDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace recald::model::epc
+}  // namespace recald::model::epc::epc_test

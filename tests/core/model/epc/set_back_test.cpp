@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace recald::model::epc {
+namespace recald::model::epc::set_back_test {
 namespace {
 
 // A night: 21 °C let go, held at 16 °C, free temperature 3 °C, τ = 30 h, 12 h long.
@@ -34,7 +34,7 @@ TEST(SetBack, AgreesWithSmallSteps) {
   for (const Case& c :
        {Case{21, 16, 3, 30, 12}, Case{21, 16, 19, 30, 60}, Case{24, 28, 35, 20, 62},
         Case{24, 28, 26, 20, 12}, Case{21, 16, 23, 40, 12}, Case{24, 30, 12, 40, 12}}) {
-    SCOPED_TRACE(testing::Message() << c.start_C << " -> " << c.free_C);
+    SCOPED_TRACE(::testing::Message() << c.start_C << " -> " << c.free_C);
     EXPECT_NEAR(mean_drift_temperature_C(c.start_C, c.limit_C, c.free_C, c.tau_h, c.length_h),
                 stepped_mean_C(c.start_C, c.limit_C, c.free_C, c.tau_h, c.length_h), 2e-3);
   }
@@ -45,4 +45,4 @@ TEST(SetBack, LimitAtTheStartHoldsTheStart) {
 }
 
 }  // namespace
-}  // namespace recald::model::epc
+}  // namespace recald::model::epc::set_back_test

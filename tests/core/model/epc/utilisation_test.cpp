@@ -5,7 +5,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 
-namespace recald::model::epc {
+namespace recald::model::epc::utilisation_test {
 namespace {
 
 // Wide enough that the textbook form's cancellation leaves fifty digits even at γ^100 = e^300.
@@ -22,7 +22,7 @@ double textbook_need_share(double u, double a) {
 TEST(Utilisation, EqualsTheTextbookFormInWideArithmetic) {
   for (const double a : {1.0, 1.5, 4.236817, 20.0, 100.0}) {
     for (const double u : {-3.0, -0.5, -1e-3, -1e-9, 0.0, 1e-9, 1e-3, 0.5, 3.0}) {
-      SCOPED_TRACE(testing::Message() << "a = " << a << ", u = " << u);
+      SCOPED_TRACE(::testing::Message() << "a = " << a << ", u = " << u);
       const double expected = textbook_need_share(u, a);
       EXPECT_NEAR(need_share(u, a), expected, 1e-7 * expected);
       if (std::abs(u) > 1e-8) {
@@ -66,7 +66,7 @@ TEST(Utilisation, WorkedCoolingMonths) {
 TEST(Utilisation, ClosesTheBalanceAtEqualSetPoints) {
   for (const double transfer : {-300.0, -1.0, 1e-6, 10.0, 500.0}) {
     for (const double gains : {-200.0, -1e-6, 0.0, 5.0, 500.0, 5000.0}) {
-      SCOPED_TRACE(testing::Message() << transfer << " " << gains);
+      SCOPED_TRACE(::testing::Message() << transfer << " " << gains);
       const double heating = heating_need_kWh(transfer, gains, 3.0);
       const double cooling = cooling_need_kWh(transfer, gains, 3.0);
       EXPECT_NEAR(heating - cooling, transfer - gains, 1e-9);
@@ -90,4 +90,4 @@ TEST(Utilisation, MassDecidesHowMuchGainsHelp) {
 }
 
 }  // namespace
-}  // namespace recald::model::epc
+}  // namespace recald::model::epc::utilisation_test

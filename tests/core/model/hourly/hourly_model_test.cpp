@@ -5,7 +5,7 @@
 #include "tests/support/allocations.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::model::hourly {
+namespace recald::model::hourly::hourly_model_test {
 namespace {
 
 using testing::sample_building;
@@ -87,4 +87,4 @@ TEST(HourlyModel, RespondsToItsParametersAndDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace recald::model::hourly
+}  // namespace recald::model::hourly::hourly_model_test

@@ -10,7 +10,7 @@
 #include "tests/support/allocations.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::model::hourly {
+namespace recald::model::hourly::hourly_test {
 namespace {
 
 using testing::sample_building;
@@ -377,4 +377,4 @@ TEST(Hourly, ASecondRunDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace recald::model::hourly
+}  // namespace recald::model::hourly::hourly_test

@@ -5,7 +5,7 @@
 #include "core/model/hourly/hourly.hpp"
 #include "tests/support/sample_building.hpp"
 
-namespace recald::model::hourly {
+namespace recald::model::hourly::prepare_test {
 namespace {
 
 // Made with the model's own fans, pumps and chiller, the meter must give back the loads that went
@@ -50,4 +50,4 @@ TEST(FitProfileWithoutPlant, FindsTheLoadsBesideAnOwnChiller) {
 }
 
 }  // namespace
-}  // namespace recald::model::hourly
+}  // namespace recald::model::hourly::prepare_test

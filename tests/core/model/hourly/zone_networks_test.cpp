@@ -7,7 +7,7 @@
 
 #include "tests/support/sample_building.hpp"
 
-namespace recald::model::hourly {
+namespace recald::model::hourly::zone_networks_test {
 namespace {
 
 using testing::sample_building;
@@ -361,4 +361,4 @@ TEST(ZoneNetworks, FourteenDaysForgetTheStart) {
 }
 
 }  // namespace
-}  // namespace recald::model::hourly
+}  // namespace recald::model::hourly::zone_networks_test
