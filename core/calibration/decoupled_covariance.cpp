@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -23,7 +24,7 @@ Eigen::MatrixXd helmert(Eigen::Index outputs) {
   return turn;
 }
 
-/// s R / lambda_delta + noise I, of n months.
+/// s R / lambda_delta + diag(noise), of n months.
 struct Block {
   double share = 0.0;      ///< s
   double variance = 0.0;   ///< s / lambda_delta
@@ -35,13 +36,24 @@ struct Block {
 
 class DecoupledCovariance final : public ErrorCovariance {
  public:
-  DecoupledCovariance(DiscrepancyKernel kernel, double extra_variance)
+  DecoupledCovariance(DiscrepancyKernel kernel, Eigen::VectorXd month_variances,
+                      const Eigen::MatrixXd& common_errors)
       : kernel_(std::move(kernel)),
-        extra_variance_(extra_variance),
+        month_variances_(std::move(month_variances)),
         months_(kernel_.month_count()),
         outputs_(kernel_.output_count()),
-        turn_(helmert(outputs_)) {
-    assert(kernel_.is_complete());
+        turn_(helmert(outputs_)),
+        turned_errors_(months_ * outputs_, common_errors.cols()) {
+    assert(kernel_.is_complete() && month_variances_.size() == months_);
+    assert(common_errors.cols() == 0 || common_errors.rows() == months_ * outputs_);
+    for (Eigen::Index d = 0; d < common_errors.cols(); ++d) {
+      by_output(turned_errors_, d) = by_output(common_errors, d) * turn_;
+    }
+    white_errors_.setZero(months_ * outputs_, common_errors.cols());
+    error_weights_.setZero(months_ * outputs_, common_errors.cols());
+    between_errors_.setZero(common_errors.cols(), common_errors.cols());
+    error_factor_ = Eigen::LLT<Eigen::MatrixXd>(common_errors.cols());
+    explained_.setZero(common_errors.cols());
     blocks_[0].count = 1;
     blocks_[1].first = 1;
     blocks_[1].count = outputs_ - 1;
@@ -67,19 +79,19 @@ class DecoupledCovariance final : public ErrorCovariance {
         kernel_.has_output_dimension() ? std::exp(-hyper.beta(kernel_.input_count())) : 1.0;
     blocks_[0].share = 1.0 + static_cast<double>(outputs_ - 1) * between_outputs_;
     blocks_[1].share = 1.0 - between_outputs_;
-    const double noise = error_variance_ + extra_variance_ + jitter;
+    const double noise = error_variance_ + jitter;
     for (Block& block : blocks_) {
       if (block.count == 0) continue;
       block.variance = block.share / hyper.discrepancy_precision;
       const double* packed = kernel_.month_correlations().data();
       for (Eigen::Index j = 0; j < months_; ++j) {
         double* column = block.factor.col(j).data();
-        column[j] = block.variance + noise;
+        column[j] = block.variance + noise + month_variances_(j);
         for (Eigen::Index i = j + 1; i < months_; ++i) column[i] = block.variance * *packed++;
       }
       if (!factorise_in_place(block.factor)) return false;
     }
-    return true;
+    return factorise_errors();
   }
 
   [[nodiscard]] double log_determinant() const override {
@@ -88,19 +100,21 @@ class DecoupledCovariance final : public ErrorCovariance {
       if (block.count == 0) continue;
       sum += static_cast<double>(block.count) * log_determinant_of_factor(block.factor);
     }
+    for (Eigen::Index d = 0; d < error_count(); ++d) {
+      sum += 2.0 * std::log(error_factor_.matrixLLT()(d, d));
+    }
     return sum;
   }
 
   [[nodiscard]] double squared_norm(const Eigen::VectorXd& residual) override {
-    const Eigen::Map<const Eigen::MatrixXd> by_output(residual.data(), months_, outputs_);
-    whitened_.noalias() = by_output.lazyProduct(turn_);
-    for (Block& block : blocks_) {
-      for (Eigen::Index k = block.first; k < block.first + block.count; ++k) {
-        auto column = whitened_.col(k);
-        block.factor.triangularView<Eigen::Lower>().solveInPlace(column);
-      }
-    }
-    return whitened_.squaredNorm();
+    whitened_.noalias() = Shaped(residual.data(), months_, outputs_).lazyProduct(turn_);
+    whiten(whitened_);
+    const double norm = whitened_.squaredNorm();
+    if (error_count() == 0) return norm;
+    const Eigen::Map<const Eigen::VectorXd> white(whitened_.data(), whitened_.size());
+    explained_.noalias() = white_errors_.transpose() * white;
+    error_factor_.matrixL().solveInPlace(explained_);
+    return norm - explained_.squaredNorm();
   }
 
   void precision(Eigen::MatrixXd& inverse) override {
@@ -117,11 +131,23 @@ class DecoupledCovariance final : public ErrorCovariance {
         }
       }
     }
+    weigh_errors();
+    for (Eigen::Index d = 0; d < error_count(); ++d) {
+      const Eigen::MatrixXd back = by_output(error_weights_, d) * turn_.transpose();
+      const Eigen::Map<const Eigen::VectorXd> column(back.data(), back.size());
+      inverse.noalias() -= column * column.transpose();
+    }
   }
 
   double squared_norm_and_gradient(const Eigen::VectorXd& residual,
                                    LikelihoodGradient& gradient) override {
     const double norm = squared_norm(residual);
+    weigh_errors();
+    if (error_count() > 0) {  // Sigma^-1 r is B^-1 of what the common errors do not explain
+      error_factor_.matrixU().solveInPlace(explained_);
+      Eigen::Map<Eigen::VectorXd>(whitened_.data(), whitened_.size()).noalias() -=
+          white_errors_ * explained_;
+    }
     double trace = 0.0;
     by_pair_.setZero();
     std::array<double, 2> products{};  // sum_ij W_ij R_ij / 2 of each block
@@ -149,6 +175,60 @@ class DecoupledCovariance final : public ErrorCovariance {
   }
 
  private:
+  using Shaped = Eigen::Map<const Eigen::MatrixXd>;
+
+  /// Column `d` as (months x outputs).
+  [[nodiscard]] Shaped by_output(const Eigen::MatrixXd& columns, Eigen::Index d) const {
+    return {columns.col(d).data(), months_, outputs_};
+  }
+  [[nodiscard]] Eigen::Map<Eigen::MatrixXd> by_output(Eigen::MatrixXd& columns,
+                                                      Eigen::Index d) const {
+    return {columns.col(d).data(), months_, outputs_};
+  }
+  [[nodiscard]] Eigen::Index error_count() const { return turned_errors_.cols(); }
+
+  /// L^-1 of what is turned, (months x outputs), in place.
+  template <class Turned>
+  void whiten(Turned& turned) const {
+    for (const Block& block : blocks_) {
+      for (Eigen::Index k = block.first; k < block.first + block.count; ++k) {
+        auto column = turned.col(k);
+        block.factor.template triangularView<Eigen::Lower>().solveInPlace(column);
+      }
+    }
+  }
+
+  /// L^-1 g, and the factor of I + g' B^-1 g.
+  [[nodiscard]] bool factorise_errors() {
+    if (error_count() == 0) return true;
+    white_errors_ = turned_errors_;
+    for (Eigen::Index d = 0; d < error_count(); ++d) {
+      auto turned = by_output(white_errors_, d);
+      whiten(turned);
+    }
+    between_errors_.noalias() = white_errors_.transpose() * white_errors_;
+    between_errors_.diagonal().array() += 1.0;
+    error_factor_.compute(between_errors_);
+    return error_factor_.info() == Eigen::Success;
+  }
+
+  /// U with  Sigma^-1 = B^-1 - U U',  turned.
+  void weigh_errors() {
+    if (error_count() == 0) return;
+    // U' = K^-1 (L^-1 g)' L^-1, with K the factor above.
+    error_weights_ = white_errors_;
+    error_factor_.matrixU().solveInPlace<Eigen::OnTheRight>(error_weights_);
+    for (Eigen::Index d = 0; d < error_count(); ++d) {
+      auto turned = by_output(error_weights_, d);
+      for (const Block& block : blocks_) {
+        for (Eigen::Index k = block.first; k < block.first + block.count; ++k) {
+          auto column = turned.col(k);
+          block.factor.triangularView<Eigen::Lower>().transpose().solveInPlace(column);
+        }
+      }
+    }
+  }
+
   /// W of a block, and Sigma^-1 r in its columns.
   void weigh(Block& block) {
     invert_factor(block.factor, scratch_, block.weights);
@@ -157,9 +237,18 @@ class DecoupledCovariance final : public ErrorCovariance {
       auto alpha = weighted_.col(k);
       alpha = whitened_.col(k);
       block.factor.triangularView<Eigen::Lower>().transpose().solveInPlace(alpha);
-      for (Eigen::Index j = 0; j < months_; ++j) {
-        block.weights.col(j).tail(months_ - j) -= alpha(j) * alpha.tail(months_ - j);
+      subtract_square(alpha, block.weights);
+      for (Eigen::Index d = 0; d < error_count(); ++d) {
+        subtract_square(by_output(error_weights_, d).col(k), block.weights);
       }
+    }
+  }
+
+  /// v v' from the lower triangle.
+  template <class Vector>
+  void subtract_square(const Vector& v, Eigen::MatrixXd& weights) const {
+    for (Eigen::Index j = 0; j < months_; ++j) {
+      weights.col(j).tail(months_ - j) -= v(j) * v.tail(months_ - j);
     }
   }
 
@@ -180,7 +269,7 @@ class DecoupledCovariance final : public ErrorCovariance {
   }
 
   DiscrepancyKernel kernel_;
-  double extra_variance_;
+  Eigen::VectorXd month_variances_;
   Eigen::Index months_;
   Eigen::Index outputs_;
   Eigen::MatrixXd turn_;
@@ -191,13 +280,22 @@ class DecoupledCovariance final : public ErrorCovariance {
   Eigen::MatrixXd whitened_;  ///< (months x outputs) turned, then L^-1 of it.
   Eigen::MatrixXd weighted_;  ///< (months x outputs) turned Sigma^-1 r.
   Eigen::VectorXd by_pair_;
+
+  Eigen::MatrixXd turned_errors_;  ///< (m x d) g, turned, by months and outputs; the next two, too.
+  Eigen::MatrixXd white_errors_;   ///< L^-1 g
+  Eigen::MatrixXd error_weights_;  ///< U
+  Eigen::MatrixXd between_errors_;            ///< (d x d) I + g' B^-1 g
+  Eigen::LLT<Eigen::MatrixXd> error_factor_;  ///< Of it.
+  Eigen::VectorXd explained_;                 ///< (d) Of the last residual, by the common errors.
 };
 
 }  // namespace
 
 std::unique_ptr<ErrorCovariance> make_decoupled_covariance(DiscrepancyKernel kernel,
-                                                           double extra_variance) {
-  return std::make_unique<DecoupledCovariance>(std::move(kernel), extra_variance);
+                                                           Eigen::VectorXd month_variances,
+                                                           Eigen::MatrixXd common_errors) {
+  return std::make_unique<DecoupledCovariance>(std::move(kernel), std::move(month_variances),
+                                               common_errors);
 }
 
 }  // namespace recald::calibration

@@ -50,18 +50,24 @@ class ErrorCovariance {
 [[nodiscard]] std::unique_ptr<ErrorCovariance> make_dense_covariance(DiscrepancyKernel kernel,
                                                                      Eigen::MatrixXd fixed);
 
-/// Every output measured in every month, each point with the same known extra variance v. Then
+/// Every output measured in every month, with known extra variances v that differ between months
+/// and not between outputs, and d errors g common to all points:
 ///
-///     Sigma = (c 1 1' + (1 - c) I) (x) R / lambda_delta + (1 / lambda_epsilon + v) I
+///     Sigma = B + g g',   B = (c 1 1' + (1 - c) I) (x) R / lambda_delta + I (x) (I /
+///     lambda_epsilon
+///                             + diag v)
 ///
-/// with R the correlation of months and c = exp(-beta_out) that of outputs. The outputs' mean and
-/// their contrasts decouple: an orthogonal turn over outputs leaves one block with
-/// s = 1 + (K - 1) c and K - 1 equal ones with s = 1 - c, each  s R / lambda_delta + (…) I  of the
-/// size of one output. Two factors of n x n instead of one of K n x K n: for two outputs a quarter
-/// of the multiplications, and exact.
+/// with R the correlation of months and c = exp(-beta_out) that of outputs. In B the outputs' mean
+/// and their contrasts decouple: an orthogonal turn over outputs leaves one block with
+/// s = 1 + (K - 1) c and K - 1 equal ones with s = 1 - c, each  s R / lambda_delta + diag(…)  of
+/// the size of one output. Two factors of n x n instead of one of K n x K n: for two outputs a
+/// quarter of the multiplications, for three a thirteenth, and exact. The common errors take a
+/// triangular solve each (Woodbury).
 ///
+/// @param month_variances  (months) v
+/// @param common_errors    (m x d) g; no column: there are none.
 /// @pre kernel.is_complete()
-[[nodiscard]] std::unique_ptr<ErrorCovariance> make_decoupled_covariance(DiscrepancyKernel kernel,
-                                                                         double extra_variance);
+[[nodiscard]] std::unique_ptr<ErrorCovariance> make_decoupled_covariance(
+    DiscrepancyKernel kernel, Eigen::VectorXd month_variances, Eigen::MatrixXd common_errors);
 
 }  // namespace recald::calibration

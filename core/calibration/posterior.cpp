@@ -56,9 +56,13 @@ std::unique_ptr<ErrorCovariance> make_covariance(const PosteriorData& data,
                                                  const HyperPrior& prior) {
   DiscrepancyKernel kernel(data.month_inputs, data.points);
   const Eigen::VectorXd& extra = data.extra_variances;
-  const bool equal = extra.minCoeff() == extra.maxCoeff();
-  if (equal && kernel.is_complete() && data.common_errors.cols() == 0 && !any_weight(data)) {
-    return make_decoupled_covariance(std::move(kernel), extra(0));
+  if (kernel.is_complete() && !any_weight(data)) {
+    const auto by_output =
+        extra.reshaped(kernel.month_count(), kernel.output_count());  // points are in that order
+    if ((by_output.colwise() - by_output.col(0)).isZero(0.0)) {
+      const Eigen::VectorXd by_month = by_output.col(0);
+      return make_decoupled_covariance(std::move(kernel), by_month, data.common_errors);
+    }
   }
   Eigen::MatrixXd fixed(extra.asDiagonal());
   if (data.common_errors.cols() > 0) {

@@ -55,14 +55,18 @@ TEST(Allocation, NoneInAGradient) {
   for (int i = 0; i < n; ++i) general.points.push_back({0, i});
   general.values = Eigen::VectorXd::Constant(n, 0.4);
   general.extra_variances = Eigen::VectorXd::LinSpaced(n, 0.0, 1e-3);
-  general.common_errors.resize(n, 0);
+  general.common_errors = Eigen::VectorXd::Constant(n, 0.01);
   general.scales = {{0.0, 1.0}};
-  general.weights = {1.0};
-  Posterior dense = Posterior::make(RampModel(n), {{"level", "-", {0.0, 0.5, 1.0}}}, general,
-                                    make_hyper_prior(HyperPriorProfile::scaled, 0.05))
-                        .value();
+  const auto weighted = [&](double weight) {
+    general.weights = {weight};
+    return Posterior::make(RampModel(n), {{"level", "-", {0.0, 0.5, 1.0}}}, general,
+                           make_hyper_prior(HyperPriorProfile::scaled, 0.05))
+        .value();
+  };
+  Posterior dense = weighted(0.5);
+  Posterior with_common_errors = weighted(1.0);
   Posterior decoupled = small_posterior(0.03);
-  for (Posterior* posterior : {&dense, &decoupled}) {
+  for (Posterior* posterior : {&dense, &with_common_errors, &decoupled}) {
     Rng rng(1);
     Eigen::VectorXd point = posterior->draw_start(rng);
     Eigen::VectorXd gradient(point.size());

@@ -8,7 +8,7 @@
 #include "core/calibration/cholesky.hpp"
 #include "core/calibration/posterior.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::gradient_test {
 namespace {
 
 const HyperPrior kPrior{"test", {10.0, 0.02}, {10.0, 0.002}, {1.0, 0.3}};
@@ -58,12 +58,15 @@ std::vector<Parameter> parameters() {
           {"gain", "-", LogNormalPrior{1.5, 0.4}}};
 }
 
+/// Known errors beside the discrepancy: of each point, or of each month and common to all points.
+enum class Extras { none, by_point, by_month };
+
 struct Case {
   const char* name;
   int outputs;
   int months;
   bool missing;
-  bool extras;
+  Extras extras;
   HyperPrior prior;
 };
 
@@ -76,21 +79,26 @@ PosteriorData data_of(const Case& c, Rng& rng) {
       if (!c.missing || rng.uniform() < 0.7) data.points.push_back({k, i});
     }
     data.scales.push_back({1.0 + k, 4.0 + 2.0 * k});
-    data.weights.push_back(c.extras && k > 0 ? 0.4 : 1.0);
+    data.weights.push_back(c.extras == Extras::by_point && k > 0 ? 0.4 : 1.0);
   }
   const auto m = static_cast<Eigen::Index>(data.points.size());
   data.values.resize(m);
   for (double& y : data.values) y = rng.uniform(0.2, 0.8);
   data.extra_variances.setConstant(m, 1e-3);
-  data.common_errors.resize(m, c.extras ? 2 : 0);
-  if (c.extras) {
+  data.common_errors.resize(m, c.extras == Extras::none ? 0 : 2);
+  if (c.extras != Extras::none) {
     for (double& v : data.extra_variances) v = 0.01 * rng.uniform();
     for (double& g : data.common_errors.reshaped()) g = 0.1 * rng.normal();
+  }
+  if (c.extras == Extras::by_month) {
+    for (Eigen::Index i = c.months; i < m; ++i) {
+      data.extra_variances(i) = data.extra_variances(i - c.months);
+    }
   }
   return data;
 }
 
-class Gradient : public testing::TestWithParam<Case> {};
+class Gradient : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Gradient, MatchesCentralDifferencesTo1e6) {
   const Case& c = GetParam();
@@ -138,14 +146,16 @@ TEST_P(Gradient, PrecisionIsTheInverseOfWhatTheLikelihoodUses) {
               0.5 * residual.dot(precision * residual), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Gradient,
-                         testing::Values(Case{"one_output", 1, 12, false, false, kPrior},
-                                         Case{"two_outputs", 2, 24, false, false, kPrior},
-                                         Case{"three_outputs", 3, 12, false, false, kOtherPrior},
-                                         Case{"missing_months", 2, 24, true, false, kPrior},
-                                         Case{"weights_and_common_errors", 3, 12, true, true,
-                                              kOtherPrior}),
-                         [](const auto& given) { return given.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, Gradient,
+    ::testing::Values(Case{"one_output", 1, 12, false, Extras::none, kPrior},
+                      Case{"two_outputs", 2, 24, false, Extras::none, kPrior},
+                      Case{"three_outputs", 3, 12, false, Extras::none, kOtherPrior},
+                      Case{"missing_months", 2, 24, true, Extras::none, kPrior},
+                      Case{"common_errors", 3, 12, false, Extras::by_month, kOtherPrior},
+                      Case{"weights_and_common_errors", 3, 12, true, Extras::by_point,
+                           kOtherPrior}),
+    [](const auto& given) { return given.param.name; });
 
 TEST(Cholesky, InverseOfAFactor) {
   Rng rng(1);
@@ -169,4 +179,4 @@ TEST(Cholesky, InverseOfAFactor) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::gradient_test

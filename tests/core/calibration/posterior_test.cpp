@@ -11,10 +11,10 @@
 
 #include "tests/core/calibration/toy_models.hpp"
 
-namespace recald::calibration {
+namespace recald::calibration::posterior_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const HyperPrior kPrior{"test", {10.0, 0.02}, {10.0, 0.002}, {1.0, 0.3}};
 
@@ -68,11 +68,14 @@ TEST(Posterior, WeightOfHalfOnTheThirdPoint) {
 
 // ---- against a covariance written out element by element and a full-pivoting inverse ----
 
+/// Known errors beside the discrepancy: of each point, or of each month and common to all points.
+enum class Extras { none, by_point, by_month };
+
 struct Case {
   int outputs;
   int months;
   bool missing;
-  bool extras;
+  Extras extras;
 };
 
 PosteriorData random_data(const Case& c, Rng& rng) {
@@ -84,16 +87,21 @@ PosteriorData random_data(const Case& c, Rng& rng) {
       if (!c.missing || rng.uniform() < 0.7) data.points.push_back({k, i});
     }
     data.scales.push_back({1.0 + k, 3.0 + 2.0 * k});
-    data.weights.push_back(c.extras && k > 0 ? 0.4 : 1.0);
+    data.weights.push_back(c.extras == Extras::by_point && k > 0 ? 0.4 : 1.0);
   }
   const auto m = static_cast<Eigen::Index>(data.points.size());
   data.values.resize(m);
   for (double& y : data.values) y = rng.uniform(-0.1, 1.1);
   data.extra_variances.setZero(m);
-  data.common_errors.resize(m, c.extras ? 2 : 0);
-  if (c.extras) {
+  data.common_errors.resize(m, c.extras == Extras::none ? 0 : 2);
+  if (c.extras != Extras::none) {
     for (double& v : data.extra_variances) v = 0.01 * rng.uniform();
     for (double& g : data.common_errors.reshaped()) g = 0.1 * rng.normal();
+  }
+  if (c.extras == Extras::by_month) {
+    for (Eigen::Index i = c.months; i < m; ++i) {
+      data.extra_variances(i) = data.extra_variances(i - c.months);
+    }
   }
   return data;
 }
@@ -147,7 +155,7 @@ double log_normal_density(const Eigen::VectorXd& residual, const Eigen::MatrixXd
                  static_cast<double>(residual.size()) * std::log(2.0 * std::numbers::pi));
 }
 
-class LikelihoodByBruteForce : public testing::TestWithParam<Case> {};
+class LikelihoodByBruteForce : public ::testing::TestWithParam<Case> {};
 
 TEST_P(LikelihoodByBruteForce, AgreesTo1e9) {
   const Case c = GetParam();
@@ -184,11 +192,13 @@ TEST_P(LikelihoodByBruteForce, AgreesTo1e9) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, LikelihoodByBruteForce,
-                         testing::Values(Case{1, 12, false, false}, Case{2, 24, false, false},
-                                         Case{2, 24, true, false}, Case{3, 12, false, false},
-                                         Case{3, 12, true, false}, Case{3, 12, true, true},
-                                         Case{1, 12, true, true}));
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, LikelihoodByBruteForce,
+    ::testing::Values(Case{1, 12, false, Extras::none}, Case{2, 24, false, Extras::none},
+                      Case{2, 24, true, Extras::none}, Case{3, 12, false, Extras::none},
+                      Case{3, 12, true, Extras::none}, Case{3, 12, true, Extras::by_point},
+                      Case{1, 12, true, Extras::by_point}, Case{1, 12, false, Extras::by_month},
+                      Case{3, 12, false, Extras::by_month}));
 
 // ---- the unconstrained density ----
 
@@ -338,4 +348,4 @@ TEST(Posterior, ACovarianceWithoutFactorIsRefusedAtTheStart) {
 }
 
 }  // namespace
-}  // namespace recald::calibration
+}  // namespace recald::calibration::posterior_test
