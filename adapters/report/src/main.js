@@ -5,6 +5,7 @@
 import { drawCandidates } from "./candidates_figure.js";
 import { drawCvrmse } from "./cvrmse_figure.js";
 import { addDownloads } from "./csv.js";
+import { drawBelieved, drawForecast } from "./forecast_figure.js";
 import { drawLoad } from "./load_figure.js";
 import { drawMonths } from "./months_figure.js";
 import { drawParameter } from "./parameter_figure.js";
@@ -15,8 +16,10 @@ import { drawSignature } from "./signature_figure.js";
 import { drawSteps, writeStepKey } from "./steps_figure.js";
 
 const drawings = {
+  believed: drawBelieved,
   candidates: drawCandidates,
   cvrmse: drawCvrmse,
+  forecast: drawForecast,
   load: drawLoad,
   months: drawMonths,
   parameter: drawParameter,

@@ -5,6 +5,21 @@ import { axisLabel, ink, mutedInk, rule } from "./theme.js";
 
 export const monthSlotWidth = 28; // Pixels a month needs for "Mar" and "12 %".
 
+/** Years alone, where months have no room. @param keys  "2021-03" … */
+export function yearAxis(keys) {
+  return {
+    type: "category",
+    data: keys,
+    axisTick: { show: false },
+    axisLine: { lineStyle: { color: rule } },
+    axisLabel: {
+      ...axisLabel,
+      interval: (i) => monthNumber(keys[i]) === 1,
+      formatter: yearOf,
+    },
+  };
+}
+
 /** @param keys  "2021-03" …; @param below  one short text a month, or null for none. */
 export function monthAxis(keys, { below = null, initials = false } = {}) {
   const isYearStart = (i) => i === 0 || yearOf(keys[i]) !== yearOf(keys[i - 1]);

@@ -61,5 +61,7 @@ expect diagnosis '>Before</text>' "the maps before are not labelled"
 expect diagnosis '>Something else</text>' "the unknown does not stand among the candidates"
 check_figures "$1" unconfirmed
 check_figures "$1" empty-handed
+check_figures "$1" drift
+expect drift '>Alarm</text>' "the months of the alarm are not labelled"
 
 exit "$failed"

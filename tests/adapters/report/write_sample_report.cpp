@@ -5,8 +5,10 @@
 #include <string>
 
 #include "adapters/report/diagnosis_page.hpp"
+#include "adapters/report/drift_page.hpp"
 #include "adapters/report/report.hpp"
 #include "tests/adapters/report/sample_diagnosis.hpp"
+#include "tests/adapters/report/sample_drift.hpp"
 #include "tests/adapters/report/sample_report.hpp"
 
 namespace {
@@ -20,6 +22,7 @@ const std::map<std::string, Page>& pages() {
       {"readings-only", [] { return render_report(readings_only_report()); }},
       {"diagnosis", [] { return render_diagnosis(sample_diagnosis()); }},
       {"unconfirmed", [] { return render_diagnosis(unconfirmed_diagnosis()); }},
+      {"drift", [] { return render_drift(sample_drift()); }},
       {"empty-handed", [] { return render_diagnosis(empty_handed_diagnosis()); }},
   };
   return kPages;
