@@ -26,6 +26,7 @@ EffectKind constant_flow_pumps();
 EffectKind constant_speed_fans();
 EffectKind deep_drying();
 EffectKind humidifier();
+EffectKind setpoint_raised();
 EffectKind simultaneous_heating_cooling();
 EffectKind supply_reset_missing();
 EffectKind ground_coupling();
@@ -79,6 +80,8 @@ std::string_view to_string(EffectClass group) {
       return "electrical";
     case EffectClass::meters:
       return "meters";
+    case EffectClass::operators:
+      return "operators";
     case EffectClass::outside_catalogue:
       return "outside_catalogue";
   }
@@ -166,6 +169,8 @@ std::span<const EffectKind> effect_kinds() {
       phase_lost(),
       scale_fault(),
       stuck_meter(),
+      // operators
+      setpoint_raised(),
       // outside catalogue
       backup_generator_test(),
       cooking(),

@@ -21,6 +21,7 @@ enum class EffectClass {
   plant,
   electrical,
   meters,
+  operators,          ///< What a calibration parameter stands for: a drift, not a missing effect.
   outside_catalogue,  ///< Real, but no diagnosis is told that it exists.
 };
 

@@ -33,6 +33,7 @@ std::uint64_t seed_of(std::string_view population, std::uint64_t seed) {
 std::vector<const EffectKind*> kinds_in_catalogue(bool in_catalogue) {
   std::vector<const EffectKind*> kinds;
   for (const EffectKind& kind : effect_kinds()) {
+    if (kind.group == EffectClass::operators) continue;  // a base parameter's, no effect is missing
     if ((kind.group != EffectClass::outside_catalogue) == in_catalogue) kinds.push_back(&kind);
   }
   return kinds;

@@ -1,0 +1,37 @@
+#include "simulators/effects/effect_kind.hpp"
+
+namespace recald::simulators {
+namespace {
+
+/// From one date rooms are kept warmer in summer: to save, or because people asked for it.
+class SetpointRaised final : public HiddenEffect {
+ public:
+  SetpointRaised(const EffectSettings& settings, const Drawings& /*drawings*/)
+      : settings_(settings) {}
+
+  void operate(const Moment& now, Operation& operation) override {
+    if (!settings_.covers(now.local.date)) return;
+    operation.rooms.cooling_C += settings_.strength;
+  }
+
+ private:
+  EffectSettings settings_;
+};
+
+}  // namespace
+
+EffectKind setpoint_raised() {
+  return {
+      .id = "setpoint_raised",
+      .title = "Cooling set-point raised",
+      .group = EffectClass::operators,
+      .sentence =
+          "From one date rooms are cooled to a higher temperature (or a lower one): cooling falls "
+          "(or rises) whenever it is needed, heating hardly changes.",
+      .strength = {-2.0, 1.5, 3.0, "K added to the occupied cooling set-point"},
+      .turns = "cooling set-point",
+      .dated = true,
+      .make = make_effect<SetpointRaised>};
+}
+
+}  // namespace recald::simulators
