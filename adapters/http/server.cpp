@@ -35,28 +35,6 @@ Response too_many() {
   return response;
 }
 
-/// TLS 1.2 and 1.3, nothing older.
-Result<std::shared_ptr<boost::asio::ssl::context>> tls_context(const TlsFiles& files) {
-  using boost::asio::ssl::context;
-  auto tls = std::make_shared<context>(context::tls_server);
-  boost::system::error_code error;
-  tls->set_options(context::default_workarounds | context::no_sslv2 | context::no_sslv3 |
-                       context::no_tlsv1 | context::no_tlsv1_1 | context::single_dh_use,
-                   error);
-  if (!error) tls->use_certificate_chain_file(files.certificate.string(), error);
-  if (error) {
-    return failure(ErrorCode::io_failed, "certificate '" + files.certificate.string() +
-                                             "' cannot be used: " + error.message());
-  }
-  // Checks as well that the key belongs to the certificate.
-  tls->use_private_key_file(files.key.string(), context::pem, error);
-  if (error) {
-    return failure(ErrorCode::io_failed,
-                   "key '" + files.key.string() + "' cannot be used: " + error.message());
-  }
-  return tls;
-}
-
 Result<tcp::endpoint> endpoint_of(const ServerOptions& options) {
   boost::system::error_code error;
   const auto address = boost::asio::ip::make_address(options.address, error);
@@ -84,7 +62,7 @@ struct Server::Shared {
   SessionRules rules;
   int connections_max = 0;
   tcp::acceptor acceptor;
-  std::shared_ptr<boost::asio::ssl::context> tls;  ///< Of the next connection.
+  Tls tls;  ///< Of the next connection.
   Handler handler;
   std::set<tcp_stream*> open;  ///< Of the sessions that run.
 };
@@ -176,13 +154,35 @@ awaitable<void> accept_all(std::shared_ptr<Shared> shared) {
 
 }  // namespace
 
+/// TLS 1.2 and 1.3, nothing older.
+Result<Tls> read_tls(const TlsFiles& files) {
+  using boost::asio::ssl::context;
+  auto tls = std::make_shared<context>(context::tls_server);
+  boost::system::error_code error;
+  tls->set_options(context::default_workarounds | context::no_sslv2 | context::no_sslv3 |
+                       context::no_tlsv1 | context::no_tlsv1_1 | context::single_dh_use,
+                   error);
+  if (!error) tls->use_certificate_chain_file(files.certificate.string(), error);
+  if (error) {
+    return failure(ErrorCode::io_failed, "certificate '" + files.certificate.string() +
+                                             "' cannot be used: " + error.message());
+  }
+  // Checks as well that the key belongs to the certificate.
+  tls->use_private_key_file(files.key.string(), context::pem, error);
+  if (error) {
+    return failure(ErrorCode::io_failed,
+                   "key '" + files.key.string() + "' cannot be used: " + error.message());
+  }
+  return tls;
+}
+
 Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& context,
                                                const ServerOptions& options, Handler handler) {
   const auto endpoint = endpoint_of(options);
   if (!endpoint) return tl::unexpected(endpoint.error());
   auto shared = std::make_shared<Shared>(context, std::move(handler));
   if (options.tls) {
-    auto tls = tls_context(*options.tls);
+    auto tls = read_tls(*options.tls);
     if (!tls) return tl::unexpected(tls.error());
     shared->tls = std::move(*tls);
   }
@@ -216,12 +216,9 @@ std::uint16_t Server::port() const {
 
 void Server::set_token(std::string token) { shared_->rules.token = std::move(token); }
 
-Result<void> Server::set_tls(const TlsFiles& files) {
-  assert(shared_->tls != nullptr);
-  auto tls = tls_context(files);
-  if (!tls) return tl::unexpected(tls.error());
-  shared_->tls = std::move(*tls);
-  return {};
+void Server::set_tls(Tls tls) {
+  assert(shared_->tls != nullptr && tls != nullptr);
+  shared_->tls = std::move(tls);
 }
 
 void Server::stop() {

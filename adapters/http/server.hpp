@@ -15,7 +15,10 @@
 
 namespace boost::asio {
 class io_context;
+namespace ssl {
+class context;
 }
+}  // namespace boost::asio
 
 namespace recald::http {
 
@@ -23,6 +26,11 @@ struct TlsFiles {
   std::filesystem::path certificate;  ///< PEM, the whole chain, own certificate first.
   std::filesystem::path key;          ///< PEM.
 };
+
+/// A certificate with its key, read and found to belong together; empty: none.
+using Tls = std::shared_ptr<boost::asio::ssl::context>;
+/// @return or io_failed: one of them cannot be read, or they do not belong together.
+[[nodiscard]] Result<Tls> read_tls(const TlsFiles& files);
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric, IPv4 or IPv6.
@@ -61,9 +69,8 @@ class Server {
   void set_token(std::string token);
 
   /// Another certificate for connections to come; those that are open keep theirs.
-  /// @pre it was listened to with TLS
-  /// @return or why not, as `listen`; then the old one stays.
-  Result<void> set_tls(const TlsFiles& files);
+  /// @pre it was listened to with TLS; `tls` is not empty
+  void set_tls(Tls tls);
 
   /// No new connections, and the present ones are closed. The handler is not called any more.
   void stop();

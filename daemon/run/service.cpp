@@ -219,16 +219,22 @@ class Service {
       if (!read) return tl::unexpected(read.error());
       token = std::move(*read);
     }
+    Result<http::Tls> tls;
     if (server_ && !config->http->certificate_file.empty()) {
-      const http::TlsFiles files{config->http->certificate_file, config->http->key_file};
-      if (auto renewed = server_->set_tls(files); !renewed) return renewed;
+      tls = http::read_tls({config->http->certificate_file, config->http->key_file});
+      if (!tls) return tl::unexpected(tls.error());
     }
     if (auto reloaded = gateway_->reload(*config); !reloaded) return reloaded;
     if (server_) server_->set_token(std::move(token));
+    if (*tls) server_->set_tls(std::move(*tls));
     upkeep_.set_config(config->store);
     site_.config = std::move(*config);
     jobs_.set_work(make_site_work(site_));
     schedule();
+    // A month that closed within the last minute was to be asked for by the old schedule.
+    if (const auto asked = recalibration_->catch_up(store_, site_.config); !asked) {
+      spdlog::warn("event=not_caught_up why=\"{}\"", asked.error().message);
+    }
     return {};
   }
 
