@@ -340,9 +340,12 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   CLI::App* drift =
       app.add_subcommand("drift", "Forecast each month from those before: what has changed?");
   add_site(*drift, given.drift);
-  drift->add_option("--out", given.drift.out, "Folder for drift.json");
+  drift->add_option("--out", given.drift.out, "Folder for drift.json and the page drift.html");
   drift->add_option("--model", given.drift.model, "epc or hourly; else as the site file says")
       ->check(CLI::IsMember({"epc", "hourly"}));
+  drift->add_option("--learn", given.drift.learning_months, "Months that the model is made from")
+      ->check(CLI::Range(6, 60))
+      ->capture_default_str();
   drift->add_option("--particles", given.drift.particles, "That carry the posterior along")
       ->check(CLI::Range(64, 100'000))
       ->capture_default_str();

@@ -24,8 +24,8 @@ enum class CauseKind : std::uint8_t {
   parameter,  ///< A calibration parameter has another value since.
   direction,  ///< The building moved along a known direction.
   meter,      ///< One output's figures are multiplied by a factor: the meter, not the building.
-  /// An effect that the model lacks: all outputs moved, each by a share of its own, or one alone and
-  /// in no month by quite the same share, which a meter's factor is.
+  /// An effect that the model lacks: all outputs moved, each by a share of its own, or one alone
+  /// and in no month by quite the same share, which a meter's factor is.
   unknown,
 };
 

@@ -11,10 +11,32 @@ namespace {
 
 /// Beyond some 8 sd a double's probability is 0 or 1 and its normal score infinite.
 constexpr double kTail = 1e-15;
-constexpr double kReach_sd = 8.0;
-constexpr int kGridPoints = 400;
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+/// E|X| of X ~ N(mean, sd^2).
+double mean_distance(double mean, double sd) {
+  const double z = mean / sd;
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+  return 2.0 * sd * density + mean * (2.0 * normal_cdf(z) - 1.0);
+}
+
+/// Continuous ranked probability score, E|X - y| - E|X - X'| / 2, of a mixture of normals.
+/// @see Grimit, Gneiting, Berrocal, Johnson (2006), Q. J. R. Meteorol. Soc. 132, eq. (5).
+double crps_of(const Forecast& forecast, double measured) {
+  double score = 0.0;
+  for (Eigen::Index i = 0; i < forecast.means.size(); ++i) {
+    score += forecast.weights[i] * mean_distance(measured - forecast.means[i], forecast.sds[i]);
+    double among =
+        0.5 * forecast.weights[i] * mean_distance(0.0, std::numbers::sqrt2 * forecast.sds[i]);
+    for (Eigen::Index j = 0; j < i; ++j) {
+      among += forecast.weights[j] * mean_distance(forecast.means[i] - forecast.means[j],
+                                                   std::hypot(forecast.sds[i], forecast.sds[j]));
+    }
+    score -= forecast.weights[i] * among;
+  }
+  return score;
+}
 
 }  // namespace
 
@@ -59,20 +81,7 @@ Surprise surprise_of(const Forecast& forecast, double measured) {
                               forecast.sds.array().log() - 0.5 * std::log(2.0 * std::numbers::pi);
   const double largest = logs.maxCoeff();
   surprise.log_score = largest + std::log((logs - largest).exp().sum());
-
-  // The integral of (F(x) - 1{x >= y})^2 by the midpoint rule on either side of the jump.
-  const double low = std::min(measured, (forecast.means - kReach_sd * forecast.sds).minCoeff());
-  const double high = std::max(measured, (forecast.means + kReach_sd * forecast.sds).maxCoeff());
-  const auto integral = [&](double from, double to, double step_height) {
-    const double width = (to - from) / kGridPoints;
-    double sum = 0.0;
-    for (int i = 0; i < kGridPoints && width > 0.0; ++i) {
-      const double off = forecast.cdf(from + (i + 0.5) * width) - step_height;
-      sum += off * off * width;
-    }
-    return sum;
-  };
-  surprise.crps = integral(low, measured, 0.0) + integral(measured, high, 1.0);
+  surprise.crps = crps_of(forecast, measured);
   return surprise;
 }
 

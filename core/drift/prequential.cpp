@@ -6,6 +6,9 @@
 namespace recald::drift {
 namespace {
 
+/// A building that has become another one uses by another factor, and nobody knows which.
+constexpr LevelForecast::Prior kLevelAfterAChange{.level_sd = 0.3};
+
 /// From the normalised scale to the output's unit.
 Forecast in_units(Forecast forecast, const calibration::OutputScale& scale) {
   forecast.means = scale.min + scale.range() * forecast.means.array();
@@ -29,6 +32,7 @@ Prequential::Prequential(SequentialCalibration calibration, calibration::Posteri
                          std::vector<LevelOutput> levels, const WatchOptions& options)
     : calibration_(std::move(calibration)),
       all_(std::move(all)),
+      spreads_(all_.scales.size()),
       watch_(static_cast<int>(all_.scales.size()), options) {
   for (LevelOutput& level : levels) levels_.push_back({std::move(level), LevelForecast{}});
 }
@@ -43,7 +47,10 @@ Result<void> Prequential::look_at_points(PrequentialMonth& record) {
     const auto output = static_cast<std::size_t>(all_.points[i].output);
     const calibration::OutputScale& scale = all_.scales[output];
     const double measured = scale.min + scale.range() * all_.values(static_cast<Eigen::Index>(i));
-    record.outputs[output] = record_of(in_units((*forecasts)[next++], scale), measured);
+    const Forecast forecast = in_units((*forecasts)[next++], scale);
+    const double level = scale.normalise(forecast.mean());
+    record.outputs[output] = record_of(spreads_[output].adapt(forecast, level), measured);
+    spreads_[output].take(level, surprise_of(forecast, measured).standardised);
   }
   return {};
 }
@@ -63,7 +70,7 @@ void Prequential::look_at_levels(PrequentialMonth& record) {
 Result<void> Prequential::begin_at(int month, const std::function<bool()>& proceed) {
   if (auto begun = calibration_.begin_at(month, proceed); !begun) return begun;
   for (Level& level : levels_) {
-    level.forecast = LevelForecast{};
+    level.forecast = LevelForecast{kLevelAfterAChange};
     for (int i = month; i <= last_; ++i) {
       const auto at = static_cast<std::size_t>(i);
       if (std::isnan(level.output.measured[at])) continue;
@@ -81,14 +88,9 @@ std::vector<LevelOutput> Prequential::levels() const {
 }
 
 Result<void> Prequential::set_aside(int output, int since, const std::function<bool()>& proceed) {
-  std::erase_if(levels_, [&](const Level& level) { return level.output.output == output; });
   if (auto aside = calibration_.set_aside(output, since, proceed); !aside) return aside;
-  std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < all_.points.size(); ++i) {
-    const bool is_doubted = all_.points[i].output == output && all_.points[i].month >= since;
-    if (!is_doubted) rows.push_back(static_cast<Eigen::Index>(i));
-  }
-  all_ = select_points(all_, rows);
+  std::erase_if(levels_, [&](const Level& level) { return level.output.output == output; });
+  all_ = select_points(all_, rows_without(all_, output, since));
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include "core/drift/forecast.hpp"
 #include "core/drift/level_forecast.hpp"
 #include "core/drift/sequential.hpp"
+#include "core/drift/spread.hpp"
 #include "core/drift/watch.hpp"
 
 namespace recald::drift {
@@ -83,6 +84,7 @@ class Prequential {
   };
 
   calibration::PosteriorData all_;
+  std::vector<Spread> spreads_;  ///< (outputs) Of those that have points.
   std::vector<Level> levels_;
   int last_ = 0;  ///< Month looked at.
   Watch watch_;

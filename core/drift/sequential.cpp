@@ -81,6 +81,15 @@ PosteriorData select_points(const PosteriorData& data, const std::vector<Eigen::
   return selected;
 }
 
+std::vector<Eigen::Index> rows_without(const PosteriorData& data, int output, int since) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const bool is_doubted = data.points[i].output == output && data.points[i].month >= since;
+    if (!is_doubted) rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  return rows;
+}
+
 SequentialCalibration::SequentialCalibration(const MonthlyModel& model,
                                              std::vector<Parameter> parameters, PosteriorData all,
                                              calibration::HyperPrior prior, Window window,
@@ -218,12 +227,7 @@ Result<void> SequentialCalibration::begin_at(int month, const std::function<bool
 
 Result<void> SequentialCalibration::set_aside(int output, int since,
                                               const std::function<bool()>& proceed) {
-  std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < all_.points.size(); ++i) {
-    const auto& point = all_.points[i];
-    const bool is_doubted = point.output == output && point.month >= since;
-    if (!is_doubted) rows.push_back(static_cast<Eigen::Index>(i));
-  }
+  const std::vector<Eigen::Index> rows = rows_without(all_, output, since);
   PosteriorData all = std::exchange(all_, select_points(all_, rows));
   Eigen::VectorXd variances =
       std::exchange(prior_variances_, Eigen::VectorXd{prior_variances_(rows)});

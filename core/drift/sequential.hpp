@@ -36,6 +36,10 @@ struct SequentialOptions {
 [[nodiscard]] calibration::PosteriorData select_points(const calibration::PosteriorData& data,
                                                        const std::vector<Eigen::Index>& rows);
 
+/// All but an output's from `since` on: its meter is doubted.
+[[nodiscard]] std::vector<Eigen::Index> rows_without(const calibration::PosteriorData& data,
+                                                     int output, int since);
+
 /// How a month was taken in.
 struct MonthTaken {
   int month;

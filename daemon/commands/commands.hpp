@@ -93,6 +93,7 @@ struct DiagnoseArguments : SiteArguments {
 struct DriftArguments : SiteArguments {
   std::filesystem::path out;  ///< Folder for drift.json, or empty.
   std::string model;          ///< "epc", "hourly", or empty: as the site file says.
+  int learning_months = 12;
   int particles = 512;
   std::uint64_t seed = 1;
   unsigned threads = 0;

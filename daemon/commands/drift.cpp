@@ -1,13 +1,14 @@
 #include <chrono>
 
 #include "adapters/system/parallel_for.hpp"
-#include "adapters/system/write_file.hpp"
 #include "daemon/calibrate/active_effects.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/drift/drift_json.hpp"
+#include "daemon/drift/drift_report.hpp"
 #include "daemon/drift/drift_words.hpp"
 
 namespace recald::daemon {
@@ -29,6 +30,7 @@ tl::expected<ModelledSite, int> open_followed_site(const DriftArguments& argumen
 int run_drift(const DriftArguments& arguments, const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
   DriftOptions options;
+  options.learning_months = arguments.learning_months;
   options.sequential.particles = arguments.particles;
   auto modelled = open_followed_site(arguments, options, console);
   if (!modelled) return modelled.error();
@@ -51,10 +53,9 @@ int run_drift(const DriftArguments& arguments, const Console& console) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string json = drift_json(*drift, modelled->facts);
   if (!arguments.out.empty()) {
-    if (auto made = system::make_folder(arguments.out); !made) return console.fail(made.error());
-    if (auto written = system::write_file(arguments.out / "drift.json", json); !written) {
-      return console.fail(written.error());
-    }
+    const auto written = write_drift(modelled->site.config, *drift, modelled->facts, generated_at(),
+                                     json, arguments.out);
+    if (!written) return console.fail(written.error());
   }
   console.out << (arguments.json ? json : drift_words(*drift));
   return kSuccess;

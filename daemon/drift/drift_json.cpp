@@ -184,6 +184,17 @@ Json shifts_json(const SiteDrift& drift) {
   return list;
 }
 
+Json meter_changes_json(const SiteDrift& drift) {
+  Json list = Json::array();
+  for (const MeterChange& change : drift.meter_changes) {
+    list.push_back({{"meter", change.meter},
+                    {"since", change.since},
+                    {"factor", number(change.factor)},
+                    {"sentence", change.sentence}});
+  }
+  return list;
+}
+
 /// The newest month of an output, and how near its watch is to an alarm.
 Json newest_json(const SiteDrift& drift, std::size_t k) {
   const drift::WatchState& state = drift.outputs[k].state;
@@ -211,6 +222,13 @@ std::string with_drift(const std::string& calibration, const SiteDrift& drift) {
     json["drift"].push_back(newest_json(drift, k));
   }
   json["alarms"] = alarms_json(drift);
+  json["meter_changes"] = meter_changes_json(drift);
+  return json.dump(2) + "\n";
+}
+
+std::string without_drift(const std::string& calibration, const std::string& why) {
+  Json json = Json::parse(calibration);
+  json["drift_not_followed"] = why;
   return json.dump(2) + "\n";
 }
 
@@ -219,6 +237,7 @@ std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
                      {"months", drift.months},
                      {"learning_months", drift.learning_months},
                      {"alarms", alarms_json(drift)},
+                     {"meter_changes", meter_changes_json(drift)},
                      {"outputs", outputs_json(drift)},
                      {"windows", windows_json(drift)},
                      {"last_year", shifts_json(drift)},

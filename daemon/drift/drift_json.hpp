@@ -16,4 +16,7 @@ namespace recald::daemon {
 /// @param calibration  As calibration_json made it.
 [[nodiscard]] std::string with_drift(const std::string& calibration, const SiteDrift& drift);
 
+/// The same for a site that could not be followed: "drift_not_followed", why not.
+[[nodiscard]] std::string without_drift(const std::string& calibration, const std::string& why);
+
 }  // namespace recald::daemon

@@ -33,16 +33,6 @@ std::pair<int, int> inside_90(const SiteDrift& drift, std::size_t output) {
   return {inside, all};
 }
 
-std::string output_line(const SiteDrift& drift, std::size_t k) {
-  const FollowedOutput& output = drift.outputs[k];
-  const auto [inside, all] = inside_90(drift, k);
-  if (all == 0) return fmt::format("{:<28} no month to compare\n", output.name);
-  const auto& check = output.state.calibration;
-  const std::string checked =
-      check ? fmt::format("forecasts true with p = {:.2g}", check->pvalue) : "too few to check";
-  return fmt::format("{:<28} {} of {} months within 90 %; {}\n", output.name, inside, all, checked);
-}
-
 }  // namespace
 
 std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm) {
@@ -85,9 +75,7 @@ std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
   return "";
 }
 
-namespace {
-
-const char* advice(drift::CauseKind kind) {
+std::string advice_words(drift::CauseKind kind) {
   switch (kind) {
     case drift::CauseKind::nothing:
       return "Wait for another month.";
@@ -102,7 +90,18 @@ const char* advice(drift::CauseKind kind) {
   return "";
 }
 
-}  // namespace
+std::string trust_words(const SiteDrift& drift, std::size_t output) {
+  const auto [inside, all] = inside_90(drift, output);
+  if (all == 0) return "No month to compare.";
+  const auto& check = drift.outputs[output].state.calibration;
+  return fmt::format("{} of {} months within 90 %; {}.", inside, all,
+                     check ? fmt::format("forecasts true with p = {:.2g}", check->pvalue)
+                           : "too few since the last change to check");
+}
+
+std::string meter_change_words(const MeterChange& change) {
+  return change.sentence + ". Its months since then are not compared.";
+}
 
 std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& alarm) {
   std::string sentence = alarm_sentence(drift, alarm.alarm);
@@ -115,18 +114,23 @@ std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& ala
     sentence += fmt::format("; else ({:.0f} %): {}", 100.0 * second.probability,
                             cause_words(drift, second));
   }
-  return sentence + ". " + advice(first.kind);
+  return sentence + ". " + advice_words(first.kind);
 }
 
 std::string drift_words(const SiteDrift& drift) {
   std::string words =
       fmt::format("{} months from {} to {}, the first {} to learn from.\n", drift.months.size(),
                   drift.months.front(), drift.months.back(), drift.learning_months);
-  for (std::size_t k = 0; k < drift.outputs.size(); ++k) words += output_line(drift, k);
+  for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
+    words += fmt::format("{:<28} {}\n", drift.outputs[k].name, trust_words(drift, k));
+  }
   for (const ExplainedAlarm& alarm : drift.alarms) {
     words += explained_sentence(drift, alarm) + "\n";
   }
   if (drift.alarms.empty()) words += "No alarm.\n";
+  for (const MeterChange& change : drift.meter_changes) {
+    words += meter_change_words(change) + "\n";
+  }
   for (std::size_t j = 0; j < drift.last_year.size(); ++j) {
     const drift::Shift& shift = drift.last_year[j];
     const ParameterPath& path = drift.windows.front().paths[j];

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -19,6 +21,7 @@ using drift::Prequential;
 using drift::SequentialCalibration;
 using metering::Month;
 using metering::MonthRange;
+using Proceed = std::function<bool()>;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPathDraws = 512;
@@ -27,7 +30,7 @@ constexpr int kYear = 12;
 const std::vector<drift::Window>& windows() {
   static const std::vector<drift::Window> all{{.name = "expanding"},
                                               {.name = "24 months", .months = 24},
-                                              {.name = "12 months", .months = 12},
+                                              {.name = std::string{kLastYearWindow}, .months = 12},
                                               {.name = "forgetting", .half_life_months = 12.0}};
   return all;
 }
@@ -54,6 +57,22 @@ Eigen::MatrixXd scaled_by_first(const Eigen::MatrixXd& values, Eigen::Index lear
   return scaled;
 }
 
+/// What is known of each point's error, as the mean over the outputs of its month: then the
+/// covariance comes apart by outputs, and its factor, of which a sequence takes a million, costs a
+/// tenth. The known part (filled gaps, the emulator) is small beside what is learnt.
+void share_by_month(calibration::PosteriorData& data) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(data.month_inputs.rows());
+  Eigen::VectorXd counts = sums;
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    sums(data.points[i].month) += data.extra_variances(static_cast<Eigen::Index>(i));
+    counts(data.points[i].month) += 1.0;
+  }
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const int month = data.points[i].month;
+    data.extra_variances(static_cast<Eigen::Index>(i)) = sums(month) / counts(month);
+  }
+}
+
 /// All months on the scale that the learning months' design gives.
 calibration::PosteriorData data_of_all(const PreparedSite& prepared,
                                        const calibration::Normalisation& normalisation,
@@ -74,6 +93,7 @@ calibration::PosteriorData data_of_all(const PreparedSite& prepared,
     data.extra_variances(static_cast<Eigen::Index>(i)) +=
         data.scales[static_cast<std::size_t>(output)].normalise_variance(sd * sd);
   }
+  share_by_month(data);
   return data;
 }
 
@@ -110,10 +130,37 @@ void extend(FollowedWindow& window, const SequentialCalibration& sequence) {
   }
 }
 
+/// Tells and asks the observer, who does not expect that windows have threads of their own.
+class Pace {
+ public:
+  Pace(const calibration::RunContext& context, int months) : context_(context), months_(months) {}
+
+  [[nodiscard]] std::function<bool()> proceed() {
+    return [this] { return goes_on(0); };
+  }
+  void month_is_done() { (void)goes_on(1); }
+
+ private:
+  bool goes_on(int more) {
+    const std::lock_guard lock{asking_};
+    done_ += more;
+    if (stopped_ || !context_.observer) return !stopped_;
+    stopped_ = !context_.observer({calibration::Progress::Stage::sampling, 0, done_, months_});
+    return !stopped_;
+  }
+
+  const calibration::RunContext& context_;
+  int months_;
+  std::mutex asking_;
+  int done_ = 0;
+  bool stopped_ = false;
+};
+
 /// One window through all months. `step` takes a month in; the first ones are learnt together.
 template <class Learn, class Step>
 Result<FollowedWindow> follow(const std::string& name, const Followed& followed, int learning,
-                              const SequentialCalibration& sequence, Learn learn, Step step) {
+                              const SequentialCalibration& sequence, Pace& pace, Learn learn,
+                              Step step) {
   FollowedWindow window{.name = name, .paths = {}, .taken = {}};
   window.paths.resize(followed.parameters.size());
   std::vector<int> first(static_cast<std::size_t>(learning));
@@ -129,6 +176,7 @@ Result<FollowedWindow> follow(const std::string& name, const Followed& followed,
     window.log_score += taken->log_score;
     window.taken.push_back(*taken);
     extend(window, sequence);
+    pace.month_is_done();
   }
   return window;
 }
@@ -162,18 +210,20 @@ int began_at(const SiteDrift& drift) {
 class Inquiries {
  public:
   Inquiries(const Followed& followed, const DriftOptions& options, std::uint64_t seed,
-            SiteDrift& drift, Prequential& prequential)
+            SiteDrift& drift, Prequential& prequential, const Proceed& proceed)
       : followed_(followed),
         options_(options),
         seed_(seed),
         drift_(drift),
-        prequential_(prequential) {}
+        prequential_(prequential),
+        proceed_(proceed) {}
 
   /// After a month was taken in.
   Result<void> look(const drift::PrequentialMonth& month) {
     for (const drift::Alarm& alarm : month.alarms) {
       if (is_known(alarm)) continue;
-      auto before = drift::known_before(case_of(alarm, month.month), options_.causes, seed_);
+      auto before =
+          drift::known_before(case_of(alarm, month.month), options_.causes, seed_, proceed_);
       if (!before && before.error().code != ErrorCode::not_enough_data) {
         return tl::unexpected(before.error());
       }
@@ -183,8 +233,10 @@ class Inquiries {
     for (std::size_t i = 0; i < open_.size();) {
       const auto is_over = weigh(open_[i], month.month);
       if (!is_over) return tl::unexpected(is_over.error());
-      if (*is_over) {
+      if (drift_.alarms[open_[i].alarm].consequence != ExplainedAlarm::Consequence::none) {
         // What was believed before has changed: the others are asked anew if they go on.
+        open_.clear();
+      } else if (*is_over) {
         open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(i));
       } else {
         ++i;
@@ -234,10 +286,10 @@ class Inquiries {
     }
     Result<void> done;
     if (first.kind == drift::CauseKind::meter) {
-      done = prequential_.set_aside(first.index, alarm.alarm.since);
+      done = prequential_.set_aside(first.index, alarm.alarm.since, proceed_);
       alarm.consequence = ExplainedAlarm::Consequence::meter_set_aside;
     } else if (first.kind != drift::CauseKind::nothing) {
-      done = prequential_.begin_at(alarm.alarm.since);
+      done = prequential_.begin_at(alarm.alarm.since, proceed_);
       alarm.consequence = ExplainedAlarm::Consequence::began_anew;
     }
     if (!done) return tl::unexpected(done.error());
@@ -249,22 +301,19 @@ class Inquiries {
   std::uint64_t seed_;
   SiteDrift& drift_;
   Prequential& prequential_;
+  const Proceed& proceed_;
   std::vector<Open> open_;
 };
 
 /// Makes the record, too.
 Result<FollowedWindow> follow_expanding(const Followed& followed, const DriftOptions& options,
-                                        const calibration::RunContext& context, SiteDrift& drift) {
-  Prequential prequential{sequence_of(followed, windows().front(), options, context.seed),
-                          followed.data, followed.levels, options.watch};
-  Inquiries inquiries{followed, options, context.seed, drift, prequential};
-  const auto proceed = [&] {
-    return !context.observer || context.observer({calibration::Progress::Stage::sampling, 0,
-                                                  static_cast<int>(drift.record.size()),
-                                                  static_cast<int>(drift.months.size())});
-  };
+                                        std::uint64_t seed, Pace& pace, SiteDrift& drift) {
+  const Proceed proceed = pace.proceed();
+  Prequential prequential{sequence_of(followed, windows().front(), options, seed), followed.data,
+                          followed.levels, options.watch};
+  Inquiries inquiries{followed, options, seed, drift, prequential, proceed};
   auto window = follow(
-      windows().front().name, followed, drift.learning_months, prequential.calibration(),
+      windows().front().name, followed, drift.learning_months, prequential.calibration(), pace,
       [&](std::vector<int> first) { return prequential.learn(std::move(first), proceed); },
       [&](int month) -> Result<drift::MonthTaken> {
         auto one = prequential.step(month, proceed);
@@ -282,16 +331,17 @@ Result<FollowedWindow> follow_expanding(const Followed& followed, const DriftOpt
 }
 
 Result<FollowedWindow> follow_beside(const Followed& followed, const drift::Window& which,
-                                     const DriftOptions& options,
-                                     const calibration::RunContext& context, SiteDrift& drift) {
-  SequentialCalibration sequence = sequence_of(followed, which, options, context.seed);
+                                     const DriftOptions& options, std::uint64_t seed, Pace& pace,
+                                     SiteDrift& drift) {
+  const Proceed proceed = pace.proceed();
+  SequentialCalibration sequence = sequence_of(followed, which, options, seed);
   const auto months = static_cast<int>(drift.months.size());
   Eigen::MatrixXd then;
   auto window = follow(
-      which.name, followed, drift.learning_months, sequence,
-      [&](std::vector<int> first) { return sequence.learn(std::move(first)); },
+      which.name, followed, drift.learning_months, sequence, pace,
+      [&](std::vector<int> first) { return sequence.learn(std::move(first), proceed); },
       [&](int month) {
-        auto taken = sequence.take(month);
+        auto taken = sequence.take(month, proceed);
         const bool is_year_before = which.months == kYear && month + 1 == months - kYear;
         if (taken && is_year_before && sequence.has_begun()) {
           then = sequence.draw_parameters(kPathDraws);
@@ -308,10 +358,12 @@ Result<FollowedWindow> follow_beside(const Followed& followed, const drift::Wind
 Result<void> follow_all(const Followed& followed, const DriftOptions& options,
                         const calibration::RunContext& context, SiteDrift& drift) {
   const std::size_t count = windows().size();
+  const auto months = drift.months.size() - static_cast<std::size_t>(drift.learning_months);
+  Pace pace{context, static_cast<int>(count * months)};
   std::vector<Result<FollowedWindow>> done(count, FollowedWindow{});
   context.executor(count, [&](std::size_t i) {
-    done[i] = i == 0 ? follow_expanding(followed, options, context, drift)
-                     : follow_beside(followed, windows()[i], options, context, drift);
+    done[i] = i == 0 ? follow_expanding(followed, options, context.seed, pace, drift)
+                     : follow_beside(followed, windows()[i], options, context.seed, pace, drift);
   });
   for (Result<FollowedWindow>& window : done) {
     if (!window) return tl::unexpected(window.error());
@@ -320,7 +372,19 @@ Result<void> follow_all(const Followed& followed, const DriftOptions& options,
   return {};
 }
 
-SiteDrift drift_of(const PreparedSite& prepared) {
+std::vector<MeterChange> meter_changes_of(const Recording& recording) {
+  std::vector<MeterChange> changes;
+  for (const MeterRecord& record : recording.meters) {
+    for (const metering::LevelChange& change : record.level_changes) {
+      if (change.kind != metering::LevelChangeKind::scale) continue;
+      changes.push_back(
+          {record.meter.id, metering::to_string(change.since), change.factor, change.words});
+    }
+  }
+  return changes;
+}
+
+SiteDrift drift_of(const PreparedSite& prepared, const Recording& recording) {
   const SiteCalibration& site = prepared.so_far;
   SiteDrift drift{.model = site.model,
                   .months = site.month_names,
@@ -329,6 +393,7 @@ SiteDrift drift_of(const PreparedSite& prepared) {
                   .outputs = {},
                   .record = {},
                   .alarms = {},
+                  .meter_changes = meter_changes_of(recording),
                   .directions = {},
                   .windows = {},
                   .last_year = {},
@@ -354,21 +419,23 @@ bool has_points_after(const Followed& followed, int learning) {
 Result<PeriodConfig> followed_period(const OpenSite& site, const Recording& recording,
                                      metering::Instant now, int learning_months) {
   std::optional<MonthRange> common;
+  const auto is_followed = [&](const metering::MonthlyFigure& figure) {
+    const auto end = site.calendar.month_span(figure.month).end;
+    return figure.usable && end + site.config.closing.watermark <= now;
+  };
   for (const std::string& id : site.config.model->outputs) {
     const MeterRecord& record = recording.meters[*site.config.meter_index(id)];
     for (const metering::MonthlyFigure& figure : record.figures) {
-      const bool is_closed =
-          site.calendar.month_span(figure.month).end + site.config.closing.watermark <= now;
-      if (!figure.usable || !is_closed) continue;
+      if (!is_followed(figure)) continue;
       if (!common) common = MonthRange{figure.month, figure.month};
       common->last = std::max(common->last, figure.month);
     }
-    const auto first = std::ranges::find(record.figures, true, &metering::MonthlyFigure::usable);
+    const auto first = std::ranges::find_if(record.figures, is_followed);
     if (first == record.figures.end()) {
       return failure(ErrorCode::not_enough_data,
                      fmt::format("meter '{}' has no usable month yet", id));
     }
-    if (common) common->first = std::max(common->first, first->month);
+    common->first = std::max(common->first, first->month);
   }
   const auto needed = learning_months + 1;
   if (!common || common->first + std::chrono::months{needed - 1} > common->last) {
@@ -392,7 +459,10 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
       calibration::run_design(*prepared->model, prepared->problem, options.design_runs, context);
   if (!design) return tl::unexpected(design.error());
   set_aside_unresponsive(*design, prepared->so_far, prepared->problem);
-  if (auto ok = check_problem(prepared->problem, *prepared->model); !ok) {
+  // Outputs that no parameter moves are followed by their own level, even if all are such.
+  const bool is_calibrated =
+      std::ranges::any_of(prepared->so_far.outputs, &OutputCalibration::calibrated);
+  if (auto ok = check_problem(prepared->problem, *prepared->model); is_calibrated && !ok) {
     return tl::unexpected(ok.error());
   }
   const auto normalisation = calibration::normalise_design(
@@ -404,14 +474,15 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
                                        design->theta, context.executor);
   if (!emulator) return tl::unexpected(emulator.error());
 
-  SiteDrift drift = drift_of(*prepared);
-  const Followed followed{emulator->model,
-                          prepared->so_far.parameters,
-                          data_of_all(*prepared, *normalisation, emulator->error_sd),
-                          levels_of(*prepared),
-                          calibration::make_hyper_prior(calibration::HyperPriorProfile::scaled,
-                                                        normalisation->pooled_variance),
-                          {{.name = "electricity use", .change = prepared->electricity_use}}};
+  SiteDrift drift = drift_of(*prepared, modelled.recording);
+  const Followed followed{
+      emulator->model,
+      prepared->so_far.parameters,
+      data_of_all(*prepared, *normalisation, emulator->error_sd),
+      levels_of(*prepared),
+      calibration::make_hyper_prior(calibration::HyperPriorProfile::scaled,
+                                    is_calibrated ? normalisation->pooled_variance : 1.0),
+      {{.name = "electricity use", .change = prepared->electricity_use}}};
   drift.directions = followed.directions;
   if (!has_points_after(followed, drift.learning_months)) {
     drift.warnings.emplace_back("No month after the learning ones has a figure to compare.");

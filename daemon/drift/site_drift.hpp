@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/drift/cause.hpp"
@@ -11,6 +12,9 @@
 #include "daemon/calibrate/site_calibration.hpp"
 
 namespace recald::daemon {
+
+/// The window that shares no month with the same one a year before.
+inline constexpr std::string_view kLastYearWindow = "12 months";
 
 struct DriftOptions {
   int learning_months = 12;  ///< That the model is made from; the first test is the month after.
@@ -57,6 +61,15 @@ struct ExplainedAlarm {
   enum class Consequence { none, began_anew, meter_set_aside } consequence = Consequence::none;
 };
 
+/// A meter that counts in another unit since: seen in its readings, without any model. The months
+/// are not the building's and have no forecast.
+struct MeterChange {
+  std::string meter;
+  std::string since;  ///< "2018-06"
+  double factor;      ///< Of its figures.
+  std::string sentence;
+};
+
 struct SiteDrift {
   std::string model;
   std::vector<std::string> months;  ///< "2019-03", ascending, the learning ones first.
@@ -65,8 +78,9 @@ struct SiteDrift {
   std::vector<FollowedOutput> outputs;
   std::vector<drift::PrequentialMonth> record;  ///< Of the months after the learning ones.
   std::vector<ExplainedAlarm> alarms;           ///< Of the record, in order of time.
-  std::vector<drift::Direction> directions;     ///< That causes speak of.
-  std::vector<FollowedWindow> windows;          ///< Expanding first: it makes the record.
+  std::vector<MeterChange> meter_changes;
+  std::vector<drift::Direction> directions;  ///< That causes speak of.
+  std::vector<FollowedWindow> windows;       ///< Expanding first: it makes the record.
   /// (q) From the last year but one to the last; empty before there are two years to compare.
   std::vector<drift::Shift> last_year;
   std::vector<std::string> warnings;

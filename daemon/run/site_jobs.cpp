@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <utility>
 
 #include "adapters/system/write_file.hpp"
@@ -12,6 +11,7 @@
 #include "daemon/diagnose/diagnosis_files.hpp"
 #include "daemon/diagnose/site_diagnosis.hpp"
 #include "daemon/drift/drift_json.hpp"
+#include "daemon/drift/drift_report.hpp"
 #include "daemon/drift/site_drift.hpp"
 #include "daemon/results/calibration_files.hpp"
 
@@ -49,27 +49,27 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
   return outcome;
 }
 
-/// What all months say, as far as there are enough of them.
-/// @return nothing for a site that is too young to be followed, or whose model cannot be.
-Result<std::optional<SiteDrift>> follow(OpenSite site, metering::Instant now,
-                                        const calibration::RunContext& context,
-                                        const std::filesystem::path& folder) {
+/// What all months say, beside a calibration that stands by itself.
+/// @return or why there is nothing to say: too few months, a model that cannot be followed.
+Result<SiteDrift> follow(OpenSite site, metering::Instant now,
+                         const calibration::RunContext& context,
+                         const std::filesystem::path& folder) {
   const DriftOptions options{.sequential = {.particles = kDriftParticles}};
   auto modelled = load_modelled_site(
       std::move(site), now,
       [&](const OpenSite& open, const Recording& recording, metering::Instant until) {
         return followed_period(open, recording, until, options.learning_months);
       });
-  if (!modelled) return std::nullopt;
+  if (!modelled) return tl::unexpected(modelled.error());
   auto version = active_version(modelled->site.config);
   if (!version) return tl::unexpected(version.error());
   auto drift = follow_site(*modelled, options, std::move(version->effects), context);
-  if (!drift && drift.error().code == ErrorCode::cancelled) return tl::unexpected(drift.error());
-  if (!drift) return std::nullopt;
+  if (!drift) return drift;
   modelled->facts.seed = context.seed;
-  auto written = system::write_file(folder / "drift.json", drift_json(*drift, modelled->facts));
+  auto written = write_drift(modelled->site.config, *drift, modelled->facts,
+                             metering::to_string(now), drift_json(*drift, modelled->facts), folder);
   if (!written) return tl::unexpected(written.error());
-  return std::move(*drift);
+  return drift;
 }
 
 Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
@@ -89,8 +89,9 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   const auto written = write_calibration(*done, outcome.result, metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
   const auto drift = follow(whole, now, context, folder);
-  if (!drift) return tl::unexpected(drift.error());
-  if (*drift) outcome.result = with_drift(outcome.result, **drift);
+  if (!drift && drift.error().code == ErrorCode::cancelled) return tl::unexpected(drift.error());
+  outcome.result = drift ? with_drift(outcome.result, *drift)
+                         : without_drift(outcome.result, drift.error().message);
   return outcome;
 }
 

@@ -301,4 +301,5 @@ def main():
     {"derive": derive, "table": table}[command](pathlib.Path(out))
 
 
-main()
+if __name__ == "__main__":
+    main()
