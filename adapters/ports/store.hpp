@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -71,6 +72,23 @@ struct StoredJob {
   std::string message;    ///< Why it failed, or was not accepted; else empty.
   std::string folder;     ///< With its files, beside the store; empty: none.
   std::string result;     ///< JSON as calibration.json or diagnosis.json; empty until done.
+};
+
+/// What was expected of one month of one output before its figure was looked at, and how it did.
+struct StoredForecast {
+  std::string output;  ///< "steam_daily_kWh"
+  metering::Month month;
+  int revision = 0;  ///< Given by the store: of this output and month.
+  std::string model_version;
+  std::string data_revision;  ///< Of the readings when it was made.
+  metering::Instant made;
+  double mean = 0.0, sd = 0.0;  ///< In the output's unit, as the next four.
+  double q05 = 0.0, q50 = 0.0, q95 = 0.0;
+  double measured = 0.0;
+  double pit = 0.0;
+  double standardised = 0.0;
+  double log_score = 0.0;
+  double crps = 0.0;
 };
 
 /// "calibration", "running" and so on, as files and people read them.
@@ -167,6 +185,13 @@ class Store {
 
   /// Waiting or running, the oldest first.
   virtual Result<std::vector<StoredJob>> unfinished_jobs() = 0;
+
+  /// Those that are new: a forecast of a figure that the same model version made before stays as it
+  /// was. Another figure or model version adds a revision.
+  virtual Result<void> add_forecasts(std::span<const StoredForecast> forecasts) = 0;
+
+  /// By output, month and revision.
+  virtual Result<std::vector<StoredForecast>> forecasts() = 0;
 };
 
 }  // namespace recald

@@ -159,7 +159,7 @@ const std::vector<SalvagedTable>& salvaged_tables() {
       {"interval", true, "t_start", 900}, {"register", true, nullptr, 0},
       {"sample", true, "t", 900},         {"month", true, nullptr, 0},
       {"reopened", true, nullptr, 0},     {"event", false, "number", 1},
-      {"job", false, "number", 1}};
+      {"job", false, "number", 1},        {"forecast", false, "number", 1}};
   return tables;
 }
 

@@ -110,6 +110,28 @@ CREATE TABLE edit (
   sha256 TEXT    NOT NULL
 ) STRICT;
 ALTER TABLE interval ADD COLUMN edit INTEGER REFERENCES edit (number);
+)sql",
+    R"sql(
+CREATE TABLE forecast (
+  number        INTEGER PRIMARY KEY AUTOINCREMENT,
+  output        TEXT    NOT NULL,
+  month         TEXT    NOT NULL,
+  revision      INTEGER NOT NULL,
+  model_version TEXT    NOT NULL,
+  data_revision TEXT    NOT NULL,
+  made          INTEGER NOT NULL,
+  mean          REAL    NOT NULL,
+  sd            REAL    NOT NULL,
+  q05           REAL    NOT NULL,
+  q50           REAL    NOT NULL,
+  q95           REAL    NOT NULL,
+  measured      REAL    NOT NULL,
+  pit           REAL    NOT NULL,
+  standardised  REAL    NOT NULL,
+  log_score     REAL    NOT NULL,
+  crps          REAL    NOT NULL,
+  UNIQUE (output, month, revision)
+) STRICT;
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {

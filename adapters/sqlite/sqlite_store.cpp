@@ -5,6 +5,7 @@
 #include <cassert>
 #include <utility>
 
+#include "adapters/sqlite/forecast_table.hpp"
 #include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/job_table.hpp"
 #include "adapters/sqlite/month_table.hpp"
@@ -182,5 +183,11 @@ Result<std::optional<StoredJob>> SqliteStore::last_accepted(JobKind kind) {
 Result<std::vector<StoredJob>> SqliteStore::unfinished_jobs() {
   return sqlite::unfinished_jobs(database_);
 }
+
+Result<void> SqliteStore::add_forecasts(std::span<const StoredForecast> forecasts) {
+  return database_.transaction([&] { return insert_forecasts(database_, forecasts); });
+}
+
+Result<std::vector<StoredForecast>> SqliteStore::forecasts() { return stored_forecasts(database_); }
 
 }  // namespace recald::sqlite

@@ -37,6 +37,8 @@ class SqliteStore final : public Store {
   Result<std::vector<StoredJob>> jobs(JobKind kind, int limit) override;
   Result<std::optional<StoredJob>> last_accepted(JobKind kind) override;
   Result<std::vector<StoredJob>> unfinished_jobs() override;
+  Result<void> add_forecasts(std::span<const StoredForecast> forecasts) override;
+  Result<std::vector<StoredForecast>> forecasts() override;
 
   /// The number of a meter that is stored already; works on a store opened to read.
   [[nodiscard]] Result<std::optional<std::uint32_t>> find_meter(const std::string& id);

@@ -102,6 +102,8 @@ void JobRunner::finish(Result<JobOutcome> outcome) {
     current_.message = std::move(outcome->message);
     current_.folder = std::move(outcome->folder);
     current_.result = std::move(outcome->result);
+    forecasts_ = std::move(outcome->forecasts);
+    next_ = outcome->next;
   } else {
     current_.state = cancelled_ ? JobState::cancelled : JobState::failed;
     current_.message = cancelled_ ? "" : outcome.error().message;
@@ -112,7 +114,12 @@ void JobRunner::finish(Result<JobOutcome> outcome) {
 
 /// A result is not lost to a disk that is full for a while.
 void JobRunner::keep() {
-  if (ports_.store.put_job(current_)) {
+  // The job last: if the process ends in between it is done again, and the rest is there already.
+  const bool is_kept = ports_.store.add_forecasts(forecasts_) && (!next_ || ask(*next_, "drift")) &&
+                       ports_.store.put_job(current_);
+  if (is_kept) {
+    forecasts_.clear();
+    next_.reset();
     stage_ = Stage::idle;
     if (on_job_) on_job_(current_);
     begin_next();

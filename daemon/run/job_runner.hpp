@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
@@ -21,6 +22,8 @@ struct JobOutcome {
   std::string message;    ///< Which gate failed; else empty.
   std::string folder;     ///< With its files.
   std::string result;     ///< JSON
+  std::vector<StoredForecast> forecasts;  ///< For the record.
+  std::optional<JobKind> next;            ///< What it gives reason for; "drift" asks for it.
 };
 
 /// False as soon as the job is to end early. Safe from any thread.
@@ -77,8 +80,10 @@ class JobRunner {
   DoJob work_;
   OnJob on_job_;
   Stage stage_ = Stage::idle;
-  StoredJob current_;       ///< Unless idle.
-  bool cancelled_ = false;  ///< Somebody took `current_` back.
+  StoredJob current_;                      ///< Unless idle.
+  std::vector<StoredForecast> forecasts_;  ///< Of `current_`, to be kept.
+  std::optional<JobKind> next_;            ///< To be asked for before `current_` is kept.
+  bool cancelled_ = false;                 ///< Somebody took `current_` back.
   std::shared_ptr<std::atomic<bool>> running_goes_on_;
   std::shared_ptr<JobRunner*> self_;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "adapters/system/write_file.hpp"
@@ -49,11 +50,47 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
   return outcome;
 }
 
+/// For the record: what was said of each month before it was looked at.
+std::vector<StoredForecast> forecasts_of(const SiteDrift& drift, const RunFacts& facts,
+                                         metering::Instant now) {
+  std::vector<StoredForecast> forecasts;
+  for (const drift::PrequentialMonth& month : drift.record) {
+    for (std::size_t k = 0; k < month.outputs.size(); ++k) {
+      const auto& one = month.outputs[k];
+      if (!one) continue;
+      forecasts.push_back({.output = drift.outputs[k].name,
+                           .month = metering::parse_month(drift.month_name(month.month)).value(),
+                           .model_version = facts.model_version,
+                           .data_revision = facts.data_revision,
+                           .made = now,
+                           .mean = one->mean,
+                           .sd = one->sd,
+                           .q05 = one->q05,
+                           .q50 = one->q50,
+                           .q95 = one->q95,
+                           .measured = one->measured,
+                           .pit = one->surprise.pit,
+                           .standardised = one->surprise.standardised,
+                           .log_score = one->surprise.log_score,
+                           .crps = one->surprise.crps});
+    }
+  }
+  return forecasts;
+}
+
+/// The newest month has settled an alarm on something that the model lacks: it wants a name.
+bool asks_for_a_name(const SiteDrift& drift) {
+  return std::ranges::any_of(drift.alarms, [&](const ExplainedAlarm& alarm) {
+    return alarm.consequence == ExplainedAlarm::Consequence::began_anew &&
+           alarm.causes.front().kind == drift::CauseKind::unknown &&
+           alarm.explained_until == drift.record.back().month;
+  });
+}
+
 /// What all months say, beside a calibration that stands by itself.
 /// @return or why there is nothing to say: too few months, a model that cannot be followed.
-Result<SiteDrift> follow(OpenSite site, metering::Instant now,
-                         const calibration::RunContext& context,
-                         const std::filesystem::path& folder) {
+Result<void> follow(OpenSite site, metering::Instant now, const calibration::RunContext& context,
+                    const std::filesystem::path& folder, JobOutcome& outcome) {
   const DriftOptions options{.sequential = {.particles = kDriftParticles}};
   auto modelled = load_modelled_site(
       std::move(site), now,
@@ -63,13 +100,17 @@ Result<SiteDrift> follow(OpenSite site, metering::Instant now,
   if (!modelled) return tl::unexpected(modelled.error());
   auto version = active_version(modelled->site.config);
   if (!version) return tl::unexpected(version.error());
-  auto drift = follow_site(*modelled, options, std::move(version->effects), context);
-  if (!drift) return drift;
+  modelled->facts.model_version = version_name(*version, modelled->facts.model_version);
   modelled->facts.seed = context.seed;
+  auto drift = follow_site(*modelled, options, std::move(version->effects), context);
+  if (!drift) return tl::unexpected(drift.error());
   auto written = write_drift(modelled->site.config, *drift, modelled->facts,
                              metering::to_string(now), drift_json(*drift, modelled->facts), folder);
-  if (!written) return tl::unexpected(written.error());
-  return drift;
+  if (!written) return written;
+  outcome.result = with_drift(outcome.result, *drift);
+  outcome.forecasts = forecasts_of(*drift, modelled->facts, now);
+  if (asks_for_a_name(*drift)) outcome.next = JobKind::diagnosis;
+  return {};
 }
 
 Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
@@ -88,10 +129,10 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   JobOutcome outcome = outcome_of(done->calibration, done->modelled.facts, folder);
   const auto written = write_calibration(*done, outcome.result, metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
-  const auto drift = follow(whole, now, context, folder);
-  if (!drift && drift.error().code == ErrorCode::cancelled) return tl::unexpected(drift.error());
-  outcome.result = drift ? with_drift(outcome.result, *drift)
-                         : without_drift(outcome.result, drift.error().message);
+  const auto followed = follow(whole, now, context, folder, outcome);
+  if (followed) return outcome;
+  if (followed.error().code == ErrorCode::cancelled) return tl::unexpected(followed.error());
+  outcome.result = without_drift(outcome.result, followed.error().message);
   return outcome;
 }
 

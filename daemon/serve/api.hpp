@@ -24,6 +24,7 @@ namespace recald::daemon {
 [[nodiscard]] http::Response get_events(const Served& served, const http::Request& request);
 
 /// What the calibration in use says of new months; null until one does.
+[[nodiscard]] http::Response get_forecasts(const Served& served, const http::Request& request);
 [[nodiscard]] http::Response get_drift(const Served& served, const http::Request& request);
 
 /// ?limit &cursor, the newest first, without results.

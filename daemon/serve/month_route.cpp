@@ -1,9 +1,6 @@
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "adapters/csv/fields.hpp"
 #include "daemon/serve/api.hpp"
 #include "daemon/serve/json_answer.hpp"
 #include "daemon/serve/parameters.hpp"
@@ -14,19 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using metering::Month;
-
-Checked<std::optional<Month>> month_of(const http::Request& request, const std::string& name) {
-  const auto text = text_of(request, name);
-  if (!text) return std::optional<Month>{};
-  const auto month = metering::parse_month(*text);
-  if (!month) {
-    return refusal(
-        400, "invalid_value",
-        fmt::format("'{}' is {}; write a month such as 2026-03", name, csv::in_quotes(*text)),
-        name);
-  }
-  return std::optional{*month};
-}
 
 /// What is asked for, and from where on: meters have their order in the site file.
 struct MonthQuery {

@@ -77,6 +77,20 @@ Checked<std::optional<std::int64_t>> whole_number_of(const http::Request& reques
   return std::optional{number};
 }
 
+Checked<std::optional<metering::Month>> month_of(const http::Request& request,
+                                                 const std::string& name) {
+  const auto text = text_of(request, name);
+  if (!text) return std::optional<metering::Month>{};
+  const auto month = metering::parse_month(*text);
+  if (!month) {
+    return refusal(
+        400, "invalid_value",
+        fmt::format("'{}' is {}; write a month such as 2026-03", name, csv::in_quotes(*text)),
+        name);
+  }
+  return std::optional{*month};
+}
+
 Checked<int> limit_of(const http::Request& request) {
   constexpr std::string_view kWhat = "a whole number from 1 to 10000";
   const auto limit = whole_number_of(request, "limit", kWhat);

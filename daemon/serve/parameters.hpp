@@ -33,6 +33,10 @@ inline constexpr int kLimitUsual = 1'000;
 /// `from` and `to`, half open; absent ends are as early and as late as can be.
 [[nodiscard]] Checked<metering::TimeSpan> span_of(const http::Request& request);
 
+/// `name` as a month; nothing where it is absent.
+[[nodiscard]] Checked<std::optional<metering::Month>> month_of(const http::Request& request,
+                                                               const std::string& name);
+
 /// `limit`, 1 to 10 000; 1 000 where it is absent.
 [[nodiscard]] Checked<int> limit_of(const http::Request& request);
 

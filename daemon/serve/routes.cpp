@@ -51,6 +51,7 @@ constexpr std::array kApiRoutes{
     Route{"intervals", false, without_id<get_intervals>, nullptr},
     Route{"months", false, without_id<get_months>, nullptr},
     Route{"events", false, without_id<get_events>, nullptr},
+    Route{"forecasts", false, without_id<get_forecasts>, nullptr},
     Route{"drift", false, without_id<get_drift>, nullptr},
     Route{"calibrations", false, without_id<get_jobs<JobKind::calibration>>,
           post_job<JobKind::calibration>},

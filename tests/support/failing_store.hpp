@@ -80,6 +80,14 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.unfinished_jobs();
   }
+  Result<void> add_forecasts(std::span<const StoredForecast> forecasts) override {
+    if (refuses) return refusal();
+    return behind_.add_forecasts(forecasts);
+  }
+  Result<std::vector<StoredForecast>> forecasts() override {
+    if (refuses) return refusal();
+    return behind_.forecasts();
+  }
 
  private:
   static tl::unexpected<Error> refusal() {

@@ -140,6 +140,7 @@ TEST_F(JobTable, AStoreFromBeforeJobsIsUpgraded) {
   ASSERT_TRUE(number.has_value());
   const auto made_old = store_->database().execute(
       "ALTER TABLE interval DROP COLUMN edit; DROP TABLE edit; DROP TABLE job;"
+      "DROP TABLE forecast;"
       "PRAGMA user_version = 1");
   ASSERT_TRUE(made_old.has_value()) << made_old.error().message;
   reopen();

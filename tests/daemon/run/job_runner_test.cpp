@@ -56,7 +56,9 @@ class JobRunnerTest : public ::testing::Test {
     return JobOutcome{.accepted = accepts_,
                       .message = accepts_ ? "" : "not converged",
                       .folder = "calibration-" + std::to_string(job.number),
-                      .result = "{\"job\": " + std::to_string(job.number) + "}"};
+                      .result = "{\"job\": " + std::to_string(job.number) + "}",
+                      .forecasts = forecasts_,
+                      .next = job.kind == JobKind::calibration ? next_ : std::nullopt};
   }
   std::int64_t ask(JobKind kind = JobKind::calibration) {
     const auto number = runner_->ask(kind, "api");
@@ -74,6 +76,8 @@ class JobRunnerTest : public ::testing::Test {
   int runs_ = 0;
   bool fails_ = false;
   bool accepts_ = true;
+  std::vector<StoredForecast> forecasts_;
+  std::optional<JobKind> next_;
   std::vector<std::string> told_;
   std::unique_ptr<VirtualLoop> loop_;
   std::unique_ptr<VirtualWorker> worker_;
@@ -93,6 +97,22 @@ TEST_F(JobRunnerTest, AJobRunsAndItsResultIsKept) {
   ASSERT_TRUE(job.started && job.ended);
   EXPECT_EQ(*job.ended - *job.started, minutes{1});
   EXPECT_THAT(told_, ElementsAre("1 waiting", "1 running", "1 done"));
+}
+
+TEST_F(JobRunnerTest, ForecastsAreKeptAndWhatTheResultGivesReasonForIsAskedFor) {
+  forecasts_ = {{.output = "main_daily_kWh", .month = std::chrono::year{2026} / 1}};
+  next_ = JobKind::diagnosis;
+  ask();
+  failing_->refuses = true;  // a full disk, just when the calibration ends
+  loop_->run_for(seconds{70});
+  failing_->refuses = false;
+  loop_->run_for(minutes{3});
+  EXPECT_EQ(stored(1).state, JobState::done);
+  EXPECT_EQ(stored(2).kind, JobKind::diagnosis);
+  EXPECT_EQ(stored(2).asked_by, "drift");
+  EXPECT_EQ(stored(2).state, JobState::done);
+  EXPECT_EQ(store_->forecasts().value().size(), 1U);
+  EXPECT_EQ(runs_, 2);  // a diagnosis gives no reason for another
 }
 
 TEST_F(JobRunnerTest, OneAtATimeInTheOrderOfAsking) {

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "tests/daemon/serve/served_site.hpp"
 
 namespace recald::daemon {
@@ -256,6 +258,32 @@ TEST_F(Jobs, AreAskedForAndFollowed) {
   EXPECT_THAT(page.body, HasSubstr("More &lt;b&gt;."));
   EXPECT_THAT(answer(served_, {.path = "/metrics"}).body,
               HasSubstr("recald_drift_alarms{model=\"\",output=\"main_daily_kWh\"} 1"));
+}
+
+TEST_F(Jobs, ForecastsAreToldAsTheyWereMade) {
+  const auto forecast = [](unsigned month, double mean) {
+    return StoredForecast{.output = "main_daily_kWh",
+                          .month = std::chrono::year{2024} / std::chrono::month{month},
+                          .model_version = "epc-1",
+                          .made = kStart,
+                          .mean = mean,
+                          .measured = 97.0};
+  };
+  ASSERT_TRUE(disk_.add_forecasts(std::array{forecast(1, 100.0), forecast(2, 90.0)}));
+  ASSERT_TRUE(disk_.add_forecasts(std::array{forecast(1, 98.0)}));  // wiser after the event
+  const Json all = get_json("/api/v1/forecasts");
+  ASSERT_THAT(all["forecasts"], SizeIs(2));
+  EXPECT_EQ(all["forecasts"][0]["month"], "2024-01");
+  EXPECT_EQ(all["forecasts"][0]["mean"], 100.0);
+  EXPECT_EQ(all["forecasts"][0]["revision"], 0);
+  EXPECT_EQ(all["next"], nullptr);
+  const Json first = get_json("/api/v1/forecasts", {{"limit", "1"}});
+  EXPECT_THAT(first["forecasts"], SizeIs(1));
+  const Json second = get_json("/api/v1/forecasts", {{"limit", "1"}, {"cursor", first["next"]}});
+  EXPECT_EQ(second["forecasts"][0]["month"], "2024-02");
+  EXPECT_THAT(get_json("/api/v1/forecasts", {{"from", "2024-02"}})["forecasts"], SizeIs(1));
+  EXPECT_THAT(get_json("/api/v1/forecasts", {{"output", "other"}})["forecasts"], SizeIs(0));
+  EXPECT_EQ(refused("/api/v1/forecasts", {{"meter", "main"}}), "400 unknown_parameter meter");
 }
 
 TEST_F(Jobs, OfOneKindAreNotOfTheOther) {
