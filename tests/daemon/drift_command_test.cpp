@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "command_line.hpp"
@@ -36,6 +37,18 @@ std::string multiplied(const std::string& readings, const std::string& meter,
       text += line;
     }
     text += '\n';
+  }
+  return text;
+}
+
+/// Readings without those of one meter in some months: nobody came to read it.
+std::string without(const std::string& readings, const std::string& meter,
+                    const std::set<std::string>& months) {
+  std::istringstream in{readings};
+  std::string text;
+  for (std::string line; std::getline(in, line);) {
+    const bool is_meters = line.find("," + meter + ",") != std::string::npos;
+    if (!is_meters || !months.contains(line.substr(0, 7))) text += line + '\n';
   }
   return text;
 }
@@ -85,6 +98,29 @@ TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
 
   ASSERT_EQ(drift("again", "1").exit_code, kSuccess);
   EXPECT_EQ(result("again"), json);
+}
+
+TEST_F(DriftCommand, MissingMonthsHaveNoForecastAndStopNothing) {
+  const std::string readings = read_text(folder_ / "readings.csv");
+  const std::string first = readings.substr(readings.find('\n') + 1, 4);
+  const std::string year = std::to_string(std::stoi(first) + 1);
+  const std::set<std::string> missing{year + "-03", year + "-08", year + "-09", year + "-10"};
+  write_text(folder_ / "readings.csv", without(readings, "chilled_water", missing));
+  const auto done = run({"drift", folder_ / "site.toml", "--out", folder_ / "out", "--particles",
+                         "64", "--learn", "9", "--threads", "2"});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  const Json json = result("out");
+  EXPECT_EQ(json["learning_months"], 9);
+  for (const Json& output : json["outputs"]) {
+    std::set<std::string> forecast;
+    for (const Json& month : output["months"]) forecast.insert(month["month"]);
+    for (const std::string& month : missing) {
+      EXPECT_EQ(forecast.contains(month), output["meter"] != "chilled_water") << month;
+    }
+    EXPECT_TRUE(forecast.contains(year + "-04"));
+    EXPECT_TRUE(forecast.contains(year + "-11"));
+  }
+  EXPECT_THAT(read_text(folder_ / "out" / "drift.html"), HasSubstr("data-figure=\"forecast\""));
 }
 
 TEST_F(DriftCommand, AYoungSiteIsTold) {

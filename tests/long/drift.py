@@ -47,14 +47,17 @@ def run(scenario, seed, out):
         years = ["--years", YEARS] if change_of(scenario) is None else []
         subprocess.run([BUILD / "simulators/recald-sim", "building", "--scenario", scenario, "--seed",
                         str(seed), "--out", folder] + years, check=True, stdout=subprocess.DEVNULL)
+        # The monthly model has no chiller of its own.
+        own_chiller = tomllib.loads(scenario.read_text()).get("plant", {}).get("cooling") == "chiller"
+        model = ["--model", "hourly"] if own_chiller else []
         done = subprocess.run([BUILD / "daemon/recald", "drift", folder / "site.toml", "--out", folder,
-                               "--particles", PARTICLES, "--threads", "1"],
+                               "--particles", PARTICLES, "--threads", "1"] + model,
                               capture_output=True, text=True)
         if done.returncode != 0:
-            return {"scenario": scenario.stem, "seed": seed, "error": done.stderr.strip()}
+            return {"scenario": scenario.stem, "seed": seed, "error": done.stderr.strip().splitlines()[-1]}
         for name in ("readings.csv", "weather.csv"):
             (folder / name).unlink()
-    return {"scenario": scenario.stem, "seed": seed, **json.loads(result.read_text())}
+    return {**json.loads(result.read_text()), "scenario": scenario.stem, "seed": seed}
 
 
 def change_of(scenario):

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "core/calibration/log_sum.hpp"
 #include "core/calibration/smc.hpp"
@@ -75,11 +78,21 @@ TEST(SequentialCalibration, ArrivesAtThePosteriorOfAllMonths) {
   EXPECT_NEAR(log_score, exact.log_evidence - begun, 0.6);
 }
 
-// Draws the truth from the prior and the months from the truth: then the forecasts have to be true.
+/// Whether the 90 % interval of the only parameter has the truth.
+bool covers(const SequentialCalibration& sequence, double truth) {
+  Eigen::VectorXd draws = sequence.draw_parameters(200).col(0);
+  std::sort(draws.begin(), draws.end());
+  return draws(9) <= truth && truth <= draws(190);
+}
+
+// Draws the truth from the prior and the months from the truth: then the forecasts have to be true,
+// and intervals of the parameter have it as often as they say, early and late.
 TEST(SequentialCalibration, ForecastsAreCalibratedWhereTheModelIsTrue) {
   const Posterior shape = calibration::small_posterior(0.0);
   std::vector<double> surprises;
-  for (std::uint64_t world = 0; world < 40; ++world) {
+  constexpr int kWorlds = 40;
+  std::map<int, int> covered;  // by month
+  for (std::uint64_t world = 0; world < kWorlds; ++world) {
     Rng rng{400, world};
     PosteriorData data = shape.data();
     Posterior truth = shape;
@@ -107,7 +120,15 @@ TEST(SequentialCalibration, ForecastsAreCalibratedWhereTheModelIsTrue) {
         surprises.push_back(surprise_of(forecast->front(), data.values(month)).standardised);
       }
       ASSERT_TRUE(sequence.take(month).has_value());
+      if (month == 5 || month == 11 || month + 1 == kMonths) {
+        covered[month] += covers(sequence, theta(0)) ? 1 : 0;
+      }
     }
+  }
+  for (const auto& [month, count] : covered) {
+    // Three standard errors of 90 % of forty.
+    EXPECT_GE(count, 30) << "after month " << month;
+    RecordProperty("covered_after_" + std::to_string(month), count);
   }
   const auto check = check_calibration(surprises);
   ASSERT_TRUE(check.has_value());

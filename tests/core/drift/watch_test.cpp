@@ -28,6 +28,7 @@ TEST(Watch, AFamilyOfMetersKeepsToTheStatedRate) {
       alarms += static_cast<int>(watch.observe(month, normals(rng, 3)).size());
     }
   }
+  RecordProperty("alarms", alarms);
   EXPECT_GT(alarms, 0);
   EXPECT_LT(alarms, kSites * kSiteMonths / 240.0);
 }
