@@ -409,8 +409,13 @@ SiteDrift drift_of(const PreparedSite& prepared, const Recording& recording) {
   return drift;
 }
 
-bool has_points_after(const Followed& followed, int learning) {
-  return std::ranges::any_of(followed.data.points,
+bool has_figures_after(const Followed& followed, int learning) {
+  const auto has_level = [&](const drift::LevelOutput& level) {
+    return std::any_of(level.measured.begin() + learning, level.measured.end(),
+                       [](double value) { return !std::isnan(value); });
+  };
+  return std::ranges::any_of(followed.levels, has_level) ||
+         std::ranges::any_of(followed.data.points,
                              [&](const auto& point) { return point.month >= learning; });
 }
 
@@ -484,7 +489,7 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
                                     is_calibrated ? normalisation->pooled_variance : 1.0),
       {{.name = "electricity use", .change = prepared->electricity_use}}};
   drift.directions = followed.directions;
-  if (!has_points_after(followed, drift.learning_months)) {
+  if (!has_figures_after(followed, drift.learning_months)) {
     drift.warnings.emplace_back("No month after the learning ones has a figure to compare.");
   }
   if (auto done = follow_all(followed, options, context, drift); !done) {

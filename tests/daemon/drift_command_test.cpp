@@ -117,8 +117,7 @@ TEST_F(DriftCommand, MissingMonthsHaveNoForecastAndStopNothing) {
     for (const std::string& month : missing) {
       EXPECT_EQ(forecast.contains(month), output["meter"] != "chilled_water") << month;
     }
-    EXPECT_TRUE(forecast.contains(year + "-04"));
-    EXPECT_TRUE(forecast.contains(year + "-11"));
+    EXPECT_TRUE(forecast.contains(year + "-11"));  // and goes on
   }
   EXPECT_THAT(read_text(folder_ / "out" / "drift.html"), HasSubstr("data-figure=\"forecast\""));
 }

@@ -5,13 +5,17 @@ import { axisLabel, ink, mutedInk, rule } from "./theme.js";
 
 export const monthSlotWidth = 28; // Pixels a month needs for "Mar" and "12 %".
 
+const categoryAxis = (keys) => ({
+  type: "category",
+  data: keys,
+  axisTick: { show: false },
+  axisLine: { lineStyle: { color: rule } },
+});
+
 /** Years alone, where months have no room. @param keys  "2021-03" … */
 export function yearAxis(keys) {
   return {
-    type: "category",
-    data: keys,
-    axisTick: { show: false },
-    axisLine: { lineStyle: { color: rule } },
+    ...categoryAxis(keys),
     axisLabel: {
       ...axisLabel,
       interval: (i) => monthNumber(keys[i]) === 1,
@@ -24,10 +28,7 @@ export function yearAxis(keys) {
 export function monthAxis(keys, { below = null, initials = false } = {}) {
   const isYearStart = (i) => i === 0 || yearOf(keys[i]) !== yearOf(keys[i - 1]);
   return {
-    type: "category",
-    data: keys,
-    axisTick: { show: false },
-    axisLine: { lineStyle: { color: rule } },
+    ...categoryAxis(keys),
     axisLabel: {
       ...axisLabel,
       interval: 0,
