@@ -63,17 +63,26 @@ class YearlyRamp final : public MonthlyModel {
   int outputs_;
 };
 
+/// @param levels  Of outputs after the first.
+Prequential before_any_month(const Case& built, std::vector<LevelOutput> levels) {
+  const YearlyRamp model{1 + static_cast<int>(levels.size())};
+  SequentialCalibration calibration{model,      built.parameters,
+                                    built.data, built.prior,
+                                    {},         {.particles = 512, .forecast_particles = 256},
+                                    17};
+  return {std::move(calibration), built.data, std::move(levels), {}};
+}
+
+Prequential after_a_year(const Case& built, std::vector<LevelOutput> levels) {
+  Prequential prequential = before_any_month(built, std::move(levels));
+  std::vector<int> first(12);
+  std::iota(first.begin(), first.end(), 0);
+  EXPECT_TRUE(prequential.learn(first).has_value());
+  return prequential;
+}
+
 std::vector<PrequentialMonth> record_of(const Case& built, int months = kLong) {
-  Prequential prequential{{YearlyRamp{},
-                           built.parameters,
-                           built.data,
-                           built.prior,
-                           {},
-                           {.particles = 512, .forecast_particles = 256},
-                           17},
-                          built.data,
-                          {},
-                          {}};
+  Prequential prequential = before_any_month(built, {});
   std::vector<PrequentialMonth> record;
   for (int month = 0; month < months; ++month) {
     auto one = prequential.step(month);
@@ -171,19 +180,7 @@ TEST(Prequential, AnOutputWithoutParametersHasItsOwnForecasts) {
     const double factor = (month < 24 ? 1.0 : 1.15) + 0.01 * rng.normal();
     level.measured.push_back(month == 15 ? std::nan("") : factor * level.modelled.back());
   }
-  Prequential prequential{{YearlyRamp{2},
-                           built.parameters,
-                           built.data,
-                           built.prior,
-                           {},
-                           {.particles = 512, .forecast_particles = 256},
-                           17},
-                          built.data,
-                          {level},
-                          {}};
-  std::vector<int> first(12);
-  std::iota(first.begin(), first.end(), 0);
-  ASSERT_TRUE(prequential.learn(first).has_value());
+  Prequential prequential = after_a_year(built, {level});
   std::vector<Alarm> alarms;
   for (int month = 12; month < kLong; ++month) {
     const auto one = prequential.step(month);
@@ -208,19 +205,7 @@ TEST(Prequential, AfterAChangeItBeginsAnew) {
     level.modelled.push_back(100.0);
     level.measured.push_back(month < 24 ? 100.0 : 140.0);
   }
-  Prequential prequential{{YearlyRamp{2},
-                           built.parameters,
-                           built.data,
-                           built.prior,
-                           {},
-                           {.particles = 512, .forecast_particles = 128},
-                           17},
-                          built.data,
-                          {level},
-                          {}};
-  std::vector<int> first(12);
-  std::iota(first.begin(), first.end(), 0);
-  ASSERT_TRUE(prequential.learn(first).has_value());
+  Prequential prequential = after_a_year(built, {level});
   for (int month = 12; month < 28; ++month) ASSERT_TRUE(prequential.step(month).has_value());
   ASSERT_TRUE(prequential.begin_at(24).has_value());
   for (int month = 28; month < kLong; ++month) {
@@ -236,19 +221,7 @@ TEST(Prequential, AfterAChangeItBeginsAnew) {
 // A meter that is doubted is not heard any more, and says nothing of the parameters.
 TEST(Prequential, AMeterSetAsideIsNotForecast) {
   const Case built{0.3};
-  Prequential prequential{{YearlyRamp{},
-                           built.parameters,
-                           built.data,
-                           built.prior,
-                           {},
-                           {.particles = 512, .forecast_particles = 128},
-                           17},
-                          built.data,
-                          {},
-                          {}};
-  std::vector<int> first(12);
-  std::iota(first.begin(), first.end(), 0);
-  ASSERT_TRUE(prequential.learn(first).has_value());
+  Prequential prequential = after_a_year(built, {});
   for (int month = 12; month < 30; ++month) ASSERT_TRUE(prequential.step(month).has_value());
   const double misled = prequential.calibration().draw_parameters(256).mean();
   EXPECT_GT(std::abs(misled - 0.5), 0.03);
