@@ -60,6 +60,7 @@ Result<Url> parse_url(std::string_view text) {
   const std::size_t colon = authority.find(':', bracket);
   url.host = bracket > 0 ? authority.substr(1, bracket - 1) : authority.substr(0, colon);
   if (url.host.empty()) return wrong("it names no host");
+  if (url.host.find_first_of("[]") != std::string::npos) return wrong("its host has a bracket");
   if (bracket > 0 && bracket + 1 != std::min(colon, authority.size())) {
     return wrong("something stands between ']' and the port");
   }

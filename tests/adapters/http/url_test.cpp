@@ -43,6 +43,8 @@ TEST(Url, WhatIsWrongIsSaid) {
   EXPECT_THAT(why_not("http://a:8x"), HasSubstr("1 to 65535"));
   EXPECT_THAT(why_not("http://[::1"), HasSubstr("not closed"));
   EXPECT_THAT(why_not("http://[::1]x:80"), HasSubstr("between ']' and the port"));
+  EXPECT_THAT(why_not("https://[[4]/"), HasSubstr("its host has a bracket"));
+  EXPECT_THAT(why_not("http://a[:80"), HasSubstr("its host has a bracket"));
   EXPECT_THAT(why_not("http://a/\r\nb"), HasSubstr("a character that no address has"));
   EXPECT_THAT(why_not("http://a/\x1B[2J"), HasSubstr("'http://a/\\x1B[2J'"));
   EXPECT_THAT(why_not("http://me@a/"), HasSubstr("a character that no address has"));
