@@ -1,5 +1,4 @@
-// What a sampler does ten thousand times must not touch the heap: Eigen asserts on malloc
-// (EIGEN_RUNTIME_NO_MALLOC), everything else is seen by a counting operator new.
+// What a sampler does ten thousand times must not touch the heap.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +18,7 @@ namespace {
 class HeapWatch {
  public:
   explicit HeapWatch(int from) : from_(from) {}
-  ~HeapWatch() { Eigen::internal::set_is_malloc_allowed(true); }
+  ~HeapWatch() { testing::let_eigen_allocate(true); }
   HeapWatch(const HeapWatch&) = delete;
   HeapWatch& operator=(const HeapWatch&) = delete;
 
@@ -27,7 +26,7 @@ class HeapWatch {
     if (done < from_) return true;
     if (first_ < 0) first_ = testing::allocation_count();
     last_ = testing::allocation_count();
-    Eigen::internal::set_is_malloc_allowed(done == total);
+    testing::let_eigen_allocate(done == total);
     return true;
   }
   [[nodiscard]] long allocations() const { return last_ - first_; }
@@ -53,7 +52,7 @@ TEST(SamplerAllocation, NoneWhileNutsCollectsAWindow) {
   HeapWatch watch(451);
   const SamplerObserver observer = [&](int done, int total) {
     if (done < 949) return watch(done, total);
-    Eigen::internal::set_is_malloc_allowed(true);
+    testing::let_eigen_allocate(true);
     return true;
   };
   ASSERT_TRUE(nuts(target, {1'010, 1'000, {}}, rng, observer).has_value());
@@ -77,9 +76,9 @@ TEST(SamplerAllocation, NoneInASweepOfParticles) {
   ParticleMover mover(target, rng, particles.count(), {});
   ASSERT_TRUE(mover.set_shape(covariance(particles)).has_value());
   const long before = testing::allocation_count();
-  Eigen::internal::set_is_malloc_allowed(false);
+  testing::let_eigen_allocate(false);
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(mover.move(particles, 0.5).has_value());
-  Eigen::internal::set_is_malloc_allowed(true);
+  testing::let_eigen_allocate(true);
   EXPECT_EQ(testing::allocation_count() - before, 0);
 }
 

@@ -96,7 +96,6 @@ TEST(QuadraticModel, JacobianAgreesWithCentralDifferences) {
   }
 }
 
-// Eigen allocates through malloc, which a counting operator new does not see: it asserts.
 TEST(QuadraticModel, EvaluatesWithoutTheHeap) {
   QuadraticModel model = random_model(3, true);
   Rng rng(4);
@@ -104,12 +103,12 @@ TEST(QuadraticModel, EvaluatesWithoutTheHeap) {
   std::vector<double> outputs(kRows);
   std::vector<double> jacobian(kRows * kParameters);
   const long before = testing::allocation_count();
-  Eigen::internal::set_is_malloc_allowed(false);
+  testing::let_eigen_allocate(false);
   for (int i = 0; i < 10; ++i) {
     model.evaluate(theta, outputs);
     model.evaluate_with_jacobian(theta, outputs, jacobian);
   }
-  Eigen::internal::set_is_malloc_allowed(true);
+  testing::let_eigen_allocate(true);
   EXPECT_EQ(testing::allocation_count(), before);
 }
 
