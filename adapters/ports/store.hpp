@@ -187,7 +187,8 @@ class Store {
   virtual Result<std::vector<StoredJob>> unfinished_jobs() = 0;
 
   /// Those that are new: a forecast of a figure that the same model version made before stays as it
-  /// was. Another figure or model version adds a revision.
+  /// was. Another figure or model version adds a revision. One with a NaN is left out: there would
+  /// be nothing to compare, and whoever asks again after a failure would ask for ever.
   virtual Result<void> add_forecasts(std::span<const StoredForecast> forecasts) = 0;
 
   /// By output, month and revision.

@@ -1,5 +1,9 @@
 #include "adapters/sqlite/forecast_table.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "adapters/sqlite/interval_row.hpp"
 
 namespace recald::sqlite {
@@ -13,6 +17,13 @@ SELECT NULL, ?1, ?2, coalesce((SELECT max(revision) + 1 FROM forecast WHERE outp
 WHERE NOT EXISTS (SELECT 1 FROM forecast WHERE output = ?1 AND month = ?2 AND model_version = ?3
                   AND measured = ?11)
 )sql";
+
+/// A NaN would be a NULL, which the table refuses.
+bool is_storable(const StoredForecast& one) {
+  const std::array figures{one.mean,     one.sd,  one.q05,          one.q50,       one.q95,
+                           one.measured, one.pit, one.standardised, one.log_score, one.crps};
+  return std::ranges::none_of(figures, [](double figure) { return std::isnan(figure); });
+}
 
 void bind_forecast(Statement& insert, const StoredForecast& one) {
   insert.bind(0, std::string_view{one.output})
@@ -60,6 +71,7 @@ Result<void> insert_forecasts(Database& database, std::span<const StoredForecast
   auto insert = database.prepare(kInsert);
   if (!insert) return tl::unexpected(insert.error());
   for (const StoredForecast& one : forecasts) {
+    if (!is_storable(one)) continue;
     bind_forecast(*insert, one);
     if (auto done = insert->run(); !done) return tl::unexpected(done.error());
   }
@@ -68,10 +80,9 @@ Result<void> insert_forecasts(Database& database, std::span<const StoredForecast
 
 Result<std::vector<StoredForecast>> stored_forecasts(Database& database) {
   auto query = database.prepare(
-      "SELECT output, month, revision, model_version, data_revision, made, mean, sd, q05, q50, "
-      "q95, "
-      "measured, pit, standardised, log_score, crps FROM forecast ORDER BY output, month, "
-      "revision");
+      "SELECT output, month, revision, model_version, data_revision, made, mean, sd, q05, q50, q95,"
+      " measured, pit, standardised, log_score, crps FROM forecast"
+      " ORDER BY output, month, revision");
   if (!query) return tl::unexpected(query.error());
   std::vector<StoredForecast> forecasts;
   for (;;) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <limits>
 
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -62,6 +63,15 @@ TEST_F(ForecastTable, EveryPartIsKept) {
   EXPECT_EQ(kept[0].standardised, -0.67);
   EXPECT_EQ(kept[0].log_score, -2.5);
   EXPECT_EQ(kept[0].crps, 1.5);
+}
+
+TEST_F(ForecastTable, WhatIsNoNumberIsLeftOutAndStopsNothing) {
+  StoredForecast broken = january(100.0, 97.0);
+  broken.log_score = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_TRUE(store_.add_forecasts(std::array{broken, january(99.0, 96.0)}));
+  const auto kept = store_.forecasts().value();
+  ASSERT_THAT(kept, SizeIs(1));
+  EXPECT_EQ(kept[0].mean, 99.0);
 }
 
 TEST_F(ForecastTable, WhatWasSaidIsNotSaidAgainOtherwise) {
