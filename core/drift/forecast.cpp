@@ -14,6 +14,12 @@ constexpr double kTail = 1e-15;
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
+double pit_of(const Forecast& forecast, double measured) {
+  return std::clamp(forecast.cdf(measured), kTail, 1.0 - kTail);
+}
+
+double normal_score(double pit) { return boost::math::quantile(boost::math::normal{}, pit); }
+
 /// E|X| of X ~ N(mean, sd^2).
 double mean_distance(double mean, double sd) {
   const double z = mean / sd;
@@ -70,11 +76,15 @@ double Forecast::quantile(double probability) const {
   return 0.5 * (low + high);
 }
 
+double standardised_surprise(const Forecast& forecast, double measured) {
+  return normal_score(pit_of(forecast, measured));
+}
+
 Surprise surprise_of(const Forecast& forecast, double measured) {
   assert(forecast.means.size() > 0);
   Surprise surprise{};
-  surprise.pit = std::clamp(forecast.cdf(measured), kTail, 1.0 - kTail);
-  surprise.standardised = boost::math::quantile(boost::math::normal{}, surprise.pit);
+  surprise.pit = pit_of(forecast, measured);
+  surprise.standardised = normal_score(surprise.pit);
 
   const Eigen::ArrayXd z = (measured - forecast.means.array()) / forecast.sds.array();
   const Eigen::ArrayXd logs = forecast.weights.array().max(1e-300).log() - 0.5 * z.square() -

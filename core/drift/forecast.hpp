@@ -27,9 +27,12 @@ struct Surprise {
   double crps;          ///< Continuous ranked probability score, in the unit; smaller is better.
 };
 
-/// @note  O(n) a grid point, some 400 of them for the CRPS.
+/// Surprise::standardised alone, O(n).
+[[nodiscard]] double standardised_surprise(const Forecast& forecast, double measured);
+
+/// @note  O(n^2), for the CRPS.
 /// @see   Dawid (1984), J. R. Stat. Soc. A 147, on the prequential approach; Gneiting, Raftery
-///        (2007), J. Am. Stat. Assoc. 102, eq. (20) for the CRPS, integrated numerically.
+///        (2007), J. Am. Stat. Assoc. 102, eq. (20) for the CRPS.
 [[nodiscard]] Surprise surprise_of(const Forecast& forecast, double measured);
 
 }  // namespace recald::drift

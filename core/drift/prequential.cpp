@@ -50,7 +50,7 @@ Result<void> Prequential::look_at_points(PrequentialMonth& record) {
     const Forecast forecast = in_units((*forecasts)[next++], scale);
     const double level = scale.normalise(forecast.mean());
     record.outputs[output] = record_of(spreads_[output].adapt(forecast, level), measured);
-    spreads_[output].take(level, surprise_of(forecast, measured).standardised);
+    spreads_[output].take(level, standardised_surprise(forecast, measured));
   }
   return {};
 }

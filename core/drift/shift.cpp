@@ -18,6 +18,13 @@ std::vector<double> sorted(const Eigen::VectorXd& draws) {
   return values;
 }
 
+/// How far the mean of draws scatters from sample to sample of months, for a normal posterior; as
+/// many draws have an error of their own.
+double scatter_of_mean(double variance, double prior_variance, Eigen::Index draws) {
+  return variance * std::max(0.0, 1.0 - variance / prior_variance) +
+         variance / static_cast<double>(draws);
+}
+
 /// The area between two empirical distribution functions.
 double area_between(const std::vector<double>& a, const std::vector<double>& b) {
   const double step_a = 1.0 / static_cast<double>(a.size());
@@ -48,7 +55,8 @@ double share_above(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-Shift shift_between(const Eigen::VectorXd& then, const Eigen::VectorXd& now) {
+Shift shift_between(const Eigen::VectorXd& then, const Eigen::VectorXd& now,
+                    double prior_variance) {
   assert(then.size() >= 2 && now.size() >= 2);
   const double variance_then = variance_of(then);
   const double variance_now = variance_of(now);
@@ -57,12 +65,15 @@ Shift shift_between(const Eigen::VectorXd& then, const Eigen::VectorXd& now) {
   const double difference = now.mean() - then.mean();
   const double overlap = std::sqrt(2.0 * std::sqrt(variance_then * variance_now) / both) *
                          std::exp(-0.25 * difference * difference / both);
+  const double scatter = scatter_of_mean(variance_then, prior_variance, then.size()) +
+                         scatter_of_mean(variance_now, prior_variance, now.size());
   const auto before = sorted(then);
   const auto after = sorted(now);
   return {.standardised = difference / std::sqrt(both),
           .hellinger = std::sqrt(std::max(0.0, 1.0 - overlap)),
           .wasserstein = area_between(before, after),
-          .increased = share_above(before, after)};
+          .increased = share_above(before, after),
+          .pvalue = std::erfc(std::abs(difference) / std::sqrt(2.0 * scatter))};
 }
 
 }  // namespace recald::drift

@@ -1,4 +1,4 @@
-/// How far a posterior has moved.
+/// How far a posterior has moved, and whether it would have anyway.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,10 +12,17 @@ struct Shift {
   double hellinger;     ///< Of normals with these means and sds, 0 equal … 1 nothing in common.
   double wasserstein;   ///< Mean distance that draws must be moved, in the quantity's unit.
   double increased;     ///< P(now > then).
+  /// Of a difference as large where nothing has moved. Two posteriors of the same truth differ by
+  /// less than their sds say, as both lean on one prior: a mean scatters by S (1 - S / V) about the
+  /// truth's share of it, S and V the posterior's and the prior's variance.
+  double pvalue;
 };
 
-/// @param then, now  Equally weighted draws, any numbers of them, at least 2 each; not all equal.
+/// @param then, now       Equally weighted draws, any numbers of them, at least 2 each; not all
+/// equal.
+/// @param prior_variance  Of the prior that both started from.
 /// @note  O(n log n).
-[[nodiscard]] Shift shift_between(const Eigen::VectorXd& then, const Eigen::VectorXd& now);
+[[nodiscard]] Shift shift_between(const Eigen::VectorXd& then, const Eigen::VectorXd& now,
+                                  double prior_variance);
 
 }  // namespace recald::drift

@@ -179,7 +179,8 @@ Json shifts_json(const SiteDrift& drift) {
                     {"standardised", number(shift.standardised)},
                     {"hellinger", number(shift.hellinger)},
                     {"wasserstein", number(shift.wasserstein)},
-                    {"probability_of_increase", number(shift.increased)}});
+                    {"probability_of_increase", number(shift.increased)},
+                    {"pvalue", number(shift.pvalue)}});
   }
   return list;
 }

@@ -134,9 +134,10 @@ std::string drift_words(const SiteDrift& drift) {
   for (std::size_t j = 0; j < drift.last_year.size(); ++j) {
     const drift::Shift& shift = drift.last_year[j];
     const ParameterPath& path = drift.windows.front().paths[j];
-    words += fmt::format("{:<28} {:.4g} {}; from the last year but one to the last {:+.2f} sd\n",
-                         drift.parameters[j].name, path.mean.back(), drift.parameters[j].unit,
-                         shift.standardised);
+    words += fmt::format(
+        "{:<28} {:.4g} {}; from the last year but one to the last {:+.2f} sd (p {:.2f})\n",
+        drift.parameters[j].name, path.mean.back(), drift.parameters[j].unit, shift.standardised,
+        shift.pvalue);
   }
   return words;
 }

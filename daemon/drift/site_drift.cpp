@@ -183,10 +183,12 @@ Result<FollowedWindow> follow(const std::string& name, const Followed& followed,
 
 /// Parameters from the year before the last to the last, from windows that share no month.
 std::vector<drift::Shift> shift_of_last_year(const Eigen::MatrixXd& then,
-                                             const Eigen::MatrixXd& now) {
+                                             const Eigen::MatrixXd& now,
+                                             const std::vector<Parameter>& parameters) {
   std::vector<drift::Shift> shifts;
   for (Eigen::Index j = 0; j < now.cols() && then.rows() > 1; ++j) {
-    shifts.push_back(drift::shift_between(then.col(j), now.col(j)));
+    shifts.push_back(drift::shift_between(
+        then.col(j), now.col(j), parameters[static_cast<std::size_t>(j)].prior.variance()));
   }
   return shifts;
 }
@@ -349,7 +351,8 @@ Result<FollowedWindow> follow_beside(const Followed& followed, const drift::Wind
         return taken;
       });
   if (which.months == kYear && sequence.has_begun()) {
-    drift.last_year = shift_of_last_year(then, sequence.draw_parameters(kPathDraws));
+    drift.last_year =
+        shift_of_last_year(then, sequence.draw_parameters(kPathDraws), drift.parameters);
   }
   return window;
 }
