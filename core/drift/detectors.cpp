@@ -23,16 +23,21 @@ double normal_density(double x, double variance) {
 
 }  // namespace
 
-EDetector::EDetector(double alpha)
-    : log_threshold_(-std::log(alpha)), log_evidence_(kMinusInfinity) {
-  assert(alpha > 0.0 && alpha < 1.0);
+EDetector::EDetector(double alpha, double largest_shift)
+    : largest_shift_(largest_shift),
+      log_threshold_(-std::log(alpha)),
+      log_evidence_(kMinusInfinity) {
+  assert(alpha > 0.0 && alpha < 1.0 && largest_shift >= 0.25);
   log_processes_.fill(kMinusInfinity);
 }
 
 bool EDetector::observe(double standardised) {
   double largest = kMinusInfinity;
+  double count = 0.0;
   for (std::size_t i = 0; i < kShifts.size(); ++i) {
     const double shift = kShifts[i];
+    if (std::abs(shift) > largest_shift_) continue;
+    count += 1.0;
     log_processes_[i] =
         log_one_plus_exp(log_processes_[i]) + shift * standardised - 0.5 * shift * shift;
     if (log_processes_[i] <= largest) continue;
@@ -41,7 +46,7 @@ bool EDetector::observe(double standardised) {
   }
   double sum = 0.0;
   for (const double log_process : log_processes_) sum += std::exp(log_process - largest);
-  log_evidence_ = largest + std::log(sum / static_cast<double>(kShifts.size()));
+  log_evidence_ = largest + std::log(sum / count);
   if (log_evidence_ < log_threshold_) return false;
   log_processes_.fill(kMinusInfinity);
   return true;

@@ -24,8 +24,9 @@ class EDetector {
   /// Shifts in standard deviations, to either side.
   static constexpr std::array<double, 8> kShifts{-2.0, -1.0, -0.5, -0.25, 0.25, 0.5, 1.0, 2.0};
 
-  /// @pre 0 < alpha < 1
-  explicit EDetector(double alpha);
+  /// @param largest_shift  Those beyond it are left out: they answer to a few odd values.
+  /// @pre 0 < alpha < 1, largest_shift >= 0.25
+  explicit EDetector(double alpha, double largest_shift = kShifts.back());
 
   /// One more surprise. @return whether it raises the alarm; then the detector begins anew.
   bool observe(double standardised);
@@ -41,6 +42,7 @@ class EDetector {
   void restore(const std::array<double, 8>& log_processes) { log_processes_ = log_processes; }
 
  private:
+  double largest_shift_;
   double log_threshold_;
   double log_evidence_;
   double likeliest_shift_ = 0.0;

@@ -11,11 +11,6 @@ namespace {
 
 using std::chrono::seconds;
 
-Instant interval_start(Instant t, seconds interval) {
-  const seconds past = t.time_since_epoch() % interval;
-  return t - past;
-}
-
 std::vector<double> lengths_h(std::span<const CounterBooking> pieces) {
   std::vector<double> lengths;
   for (const CounterBooking& piece : pieces) lengths.push_back(in_hours(piece.span.length()));

@@ -10,13 +10,6 @@ namespace {
 
 using std::chrono::seconds;
 
-double hours(seconds span) { return static_cast<double>(span.count()) / 3600.0; }
-
-Instant interval_start(Instant t, seconds interval) {
-  const seconds past = t.time_since_epoch() % interval;
-  return t - past;
-}
-
 /// From one sample to the next.
 struct Stretch {
   PowerSample from;
@@ -25,7 +18,7 @@ struct Stretch {
 
   /// On the straight line between the two.
   [[nodiscard]] double power_kW(Instant t) const {
-    const double share = hours(t - from.time) / hours(to.time - from.time);
+    const double share = in_hours(t - from.time) / in_hours(to.time - from.time);
     return from.power_kW + share * (to.power_kW - from.power_kW);
   }
 };
@@ -39,15 +32,15 @@ void account(PowerBook& book, const Stretch& stretch, Instant begin, Instant end
     return;
   }
   book.covered += length;
-  book.energy_kWh += hours(length) * (stretch.power_kW(begin) + stretch.power_kW(end)) / 2.0;
+  book.energy_kWh += in_hours(length) * (stretch.power_kW(begin) + stretch.power_kW(end)) / 2.0;
 }
 
 Reading close_interval(PowerBook& book, std::uint32_t meter, const PowerRules& rules) {
   Reading reading{meter, *book.next, std::numeric_limits<double>::quiet_NaN(), Validity::missing,
                   book.reasons};
-  const double coverage = hours(book.covered) / hours(rules.interval);
+  const double coverage = in_hours(book.covered) / in_hours(rules.interval);
   if (coverage >= rules.coverage_min && book.hole_longest <= rules.hole_max) {
-    reading.mean_kW = book.energy_kWh / hours(book.covered);
+    reading.mean_kW = book.energy_kWh / in_hours(book.covered);
     reading.validity = Validity::ok;
   } else {
     reading.reasons |= Reason::partial;
