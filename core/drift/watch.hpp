@@ -7,6 +7,7 @@
 
 #include "core/drift/calibration_check.hpp"
 #include "core/drift/detectors.hpp"
+#include "core/metering/civil_time.hpp"
 
 namespace recald::drift {
 
@@ -15,6 +16,15 @@ struct WatchOptions {
   double months_between_false_alarms = 240.0;
   /// Below it surprises are not what forecasts promise, and alarms say so.
   double calibrated_pvalue_min = 0.01;
+};
+
+/// To the day, where days were watched.
+struct AlarmDays {
+  metering::Day raised;
+  metering::Day since;  ///< Likeliest first day of the change …
+  metering::Day since_earliest;
+  metering::Day since_latest;  ///< … and its 90 % interval.
+  double excess;  ///< Of what was measured since then over what was expected, relative.
 };
 
 /// What was noticed of one output.
@@ -26,8 +36,9 @@ struct Alarm {
   double evidence;  ///< e-value: how many times likelier a change makes these months.
   int since;        ///< Likeliest first month of the change …
   int since_earliest;
-  int since_latest;    ///< … and its 90 % interval.
-  bool is_calibrated;  ///< Whether the stated rate of false alarms may be believed.
+  int since_latest;                    ///< … and its 90 % interval.
+  bool is_calibrated;                  ///< Whether the stated rate of false alarms may be believed.
+  std::optional<AlarmDays> days = {};  ///< Raised by its days; absent: by its months.
 };
 
 /// How one output stands, for a page or a metric.

@@ -233,7 +233,8 @@ std::vector<std::string> data_words(const SiteConfig& site, const Recording& rec
 
 Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                       const metering::LocalCalendar& calendar,
-                                      const Recording& recording, const SiteWeather& weather) {
+                                      const Recording& recording, const SiteWeather& weather,
+                                      std::optional<Month> last_taught) {
   SiteProblem problem;
   problem.nominal = *site.building;
   std::vector<std::string> said_elsewhere;
@@ -252,7 +253,9 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   // The months to be shown must not tell their own electricity.
   std::vector<Month> told;
   for (std::size_t i = 0; i < months.size(); ++i) {
-    if (problem.month_roles[i] != diagnosis::Role::show) told.push_back(months[i]);
+    const bool is_told =
+        last_taught ? months[i] <= *last_taught : problem.month_roles[i] != diagnosis::Role::show;
+    if (is_told) told.push_back(months[i]);
   }
   auto profile = model::hourly::fit_profile_without_plant(loads_of(**electricity, told),
                                                           *site.building, place, months);

@@ -2,6 +2,7 @@
 /// parameters.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,13 @@ namespace recald::daemon {
 
 /// The site over all months of its calibration and validation that have weather. Humidity or wind
 /// that the whole record lacks is assumed; months without readings are neither held nor shown.
+/// @param last_taught  Of the months that the electricity profile is read from; absent: all that
+/// are
+///                     not kept to be shown.
 /// @return not_enough_data  fewer than six months, no modelled meter with readings, no electricity
 ///                          meter, weather with holes.
 [[nodiscard]] Result<diagnosis::SiteProblem> make_site_problem(
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
-    const SiteWeather& weather);
+    const SiteWeather& weather, std::optional<metering::Month> last_taught = {});
 
 }  // namespace recald::daemon

@@ -44,6 +44,23 @@ Json state_json(const drift::WatchState& state) {
   return json;
 }
 
+Json daily_json(const std::optional<DailyState>& daily) {
+  if (!daily) return nullptr;
+  return {{"log_evidence", number(daily->log_evidence)},
+          {"log_threshold", number(daily->log_threshold)},
+          {"lag_one", number(daily->lag_one)},
+          {"month_factor", number(daily->month_factor)}};
+}
+
+Json days_json(const std::optional<drift::AlarmDays>& days) {
+  if (!days) return nullptr;
+  return {{"raised", metering::to_string(days->raised)},
+          {"since", metering::to_string(days->since)},
+          {"since_earliest", metering::to_string(days->since_earliest)},
+          {"since_latest", metering::to_string(days->since_latest)},
+          {"excess", number(days->excess)}};
+}
+
 Json outputs_json(const SiteDrift& drift) {
   Json list = Json::array();
   for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
@@ -58,6 +75,7 @@ Json outputs_json(const SiteDrift& drift) {
                     {"unit", output.unit},
                     {"forecast_by", output.by_level ? "level" : "model"},
                     {"state", state_json(output.state)},
+                    {"daily", daily_json(output.daily)},
                     {"months", months}});
   }
   return list;
@@ -135,6 +153,7 @@ Json alarms_json(const SiteDrift& drift) {
                     {"since", drift.month_name(alarm.since)},
                     {"since_earliest", drift.month_name(alarm.since_earliest)},
                     {"since_latest", drift.month_name(alarm.since_latest)},
+                    {"days", days_json(alarm.days)},
                     {"forecasts_are_true", alarm.is_calibrated},
                     {"causes", causes_json(drift, explained)},
                     {"explained_until", drift.month_name(explained.explained_until)},

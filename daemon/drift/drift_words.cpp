@@ -33,16 +33,28 @@ std::pair<int, int> inside_90(const SiteDrift& drift, std::size_t output) {
   return {inside, all};
 }
 
+/// "2020-04 (90 %: 2020-03 to 2020-05)", to the day where days were watched.
+std::string since_words(const SiteDrift& drift, const drift::Alarm& alarm) {
+  if (const auto& days = alarm.days) {
+    return fmt::format("{} (90 %: {} to {})", metering::to_string(days->since),
+                       metering::to_string(days->since_earliest),
+                       metering::to_string(days->since_latest));
+  }
+  return fmt::format("{} (90 %: {} to {})", drift.month_name(alarm.since),
+                     drift.month_name(alarm.since_earliest), drift.month_name(alarm.since_latest));
+}
+
 }  // namespace
 
 std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm) {
   const FollowedOutput& output = drift.outputs[static_cast<std::size_t>(alarm.output)];
-  std::string sentence = fmt::format(
-      "{} is {} than forecast since {} (90 %: {} to {}), by {:+.0f} %; raised after {}, evidence "
-      "{:.3g} to 1.",
-      output.name, alarm.direction > 0 ? "more" : "less", drift.month_name(alarm.since),
-      drift.month_name(alarm.since_earliest), drift.month_name(alarm.since_latest),
-      100.0 * relative_excess(drift, alarm), drift.month_name(alarm.month), alarm.evidence);
+  std::string sentence =
+      fmt::format("{} is {} than forecast since {}, by {:+.0f} %; raised {}, evidence {:.3g} to 1.",
+                  output.name, alarm.direction > 0 ? "more" : "less", since_words(drift, alarm),
+                  100.0 * (alarm.days ? alarm.days->excess : relative_excess(drift, alarm)),
+                  alarm.days ? "by its days on " + metering::to_string(alarm.days->raised)
+                             : "after " + drift.month_name(alarm.month),
+                  alarm.evidence);
   if (!alarm.is_calibrated) {
     sentence +=
         " The forecasts before were not true to their own spread, so false alarms are more "

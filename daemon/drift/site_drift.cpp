@@ -13,6 +13,7 @@
 #include "core/calibration/hyper_prior.hpp"
 #include "core/calibration/problem.hpp"
 #include "core/drift/emulator.hpp"
+#include "daemon/drift/watched_days.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -43,6 +44,7 @@ struct Followed {
   std::vector<drift::LevelOutput> levels;
   calibration::HyperPrior prior;
   std::vector<drift::Direction> directions;
+  DailyWatches daily;  ///< Before the first month after the learning ones.
 };
 
 /// Each column by its range over the first `learning` months: later ones must not change what was
@@ -212,25 +214,22 @@ int began_at(const SiteDrift& drift) {
 class Inquiries {
  public:
   Inquiries(const Followed& followed, const DriftOptions& options, std::uint64_t seed,
-            SiteDrift& drift, Prequential& prequential, const Proceed& proceed)
+            SiteDrift& drift, Prequential& prequential, DailyWatches& daily, const Proceed& proceed)
       : followed_(followed),
         options_(options),
         seed_(seed),
         drift_(drift),
         prequential_(prequential),
+        daily_(daily),
         proceed_(proceed) {}
 
-  /// After a month was taken in.
+  /// After a month was taken in. Days say first when something changed.
   Result<void> look(const drift::PrequentialMonth& month) {
+    for (const drift::Alarm& alarm : daily_.look(month.month)) {
+      if (auto opened = open(alarm, month.month); !opened) return opened;
+    }
     for (const drift::Alarm& alarm : month.alarms) {
-      if (is_known(alarm)) continue;
-      auto before =
-          drift::known_before(case_of(alarm, month.month), options_.causes, seed_, proceed_);
-      if (!before && before.error().code != ErrorCode::not_enough_data) {
-        return tl::unexpected(before.error());
-      }
-      drift_.alarms.push_back({.alarm = alarm, .causes = {}, .explained_until = month.month});
-      if (before) open_.push_back({drift_.alarms.size() - 1, std::move(*before)});
+      if (auto opened = open(alarm, month.month); !opened) return opened;
     }
     for (std::size_t i = 0; i < open_.size();) {
       const auto is_over = weigh(open_[i], month.month);
@@ -253,11 +252,28 @@ class Inquiries {
     std::vector<Eigen::VectorXd> before;
   };
 
-  /// The same output's alarm is still being looked into: it is one change, not two.
+  Result<void> open(const drift::Alarm& alarm, int month) {
+    if (is_known(alarm)) return {};
+    auto before = drift::known_before(case_of(alarm, month), options_.causes, seed_, proceed_);
+    if (!before && before.error().code != ErrorCode::not_enough_data) {
+      return tl::unexpected(before.error());
+    }
+    drift_.alarms.push_back({.alarm = alarm, .causes = {}, .explained_until = month});
+    if (before) open_.push_back({drift_.alarms.size() - 1, std::move(*before)});
+    return {};
+  }
+
+  /// The same output's alarm is still being looked into, or was raised by this month's days: it is
+  /// one change, not two.
   [[nodiscard]] bool is_known(const drift::Alarm& alarm) const {
-    return std::ranges::any_of(open_, [&](const Open& one) {
-      return drift_.alarms[one.alarm].alarm.output == alarm.output;
-    });
+    const auto is_same = [&](const ExplainedAlarm& one) {
+      return one.alarm.output == alarm.output;
+    };
+    return std::ranges::any_of(
+               open_, [&](const Open& one) { return is_same(drift_.alarms[one.alarm]); }) ||
+           std::ranges::any_of(drift_.alarms, [&](const ExplainedAlarm& one) {
+             return is_same(one) && one.alarm.month == alarm.month;
+           });
   }
 
   [[nodiscard]] drift::ChangeCase case_of(const drift::Alarm& alarm, int until) const {
@@ -289,9 +305,11 @@ class Inquiries {
     Result<void> done;
     if (first.kind == drift::CauseKind::meter) {
       done = prequential_.set_aside(first.index, alarm.alarm.since, proceed_);
+      daily_.set_aside(first.index);
       alarm.consequence = ExplainedAlarm::Consequence::meter_set_aside;
     } else if (first.kind != drift::CauseKind::nothing) {
       done = prequential_.begin_at(alarm.alarm.since, proceed_);
+      daily_.begin_at(alarm.alarm.since);
       alarm.consequence = ExplainedAlarm::Consequence::began_anew;
     }
     if (!done) return tl::unexpected(done.error());
@@ -303,6 +321,7 @@ class Inquiries {
   std::uint64_t seed_;
   SiteDrift& drift_;
   Prequential& prequential_;
+  DailyWatches& daily_;
   const Proceed& proceed_;
   std::vector<Open> open_;
 };
@@ -311,9 +330,12 @@ class Inquiries {
 Result<FollowedWindow> follow_expanding(const Followed& followed, const DriftOptions& options,
                                         std::uint64_t seed, Pace& pace, SiteDrift& drift) {
   const Proceed proceed = pace.proceed();
+  DailyWatches daily = followed.daily;
+  drift::WatchOptions monthly = options.watch;
+  if (daily.is_able()) monthly.months_between_false_alarms *= 2.0;  // days have the other half
   Prequential prequential{sequence_of(followed, windows().front(), options, seed), followed.data,
-                          followed.levels, options.watch};
-  Inquiries inquiries{followed, options, seed, drift, prequential, proceed};
+                          followed.levels, monthly};
+  Inquiries inquiries{followed, options, seed, drift, prequential, daily, proceed};
   auto window = follow(
       windows().front().name, followed, drift.learning_months, prequential.calibration(), pace,
       [&](std::vector<int> first) { return prequential.learn(std::move(first), proceed); },
@@ -328,6 +350,7 @@ Result<FollowedWindow> follow_expanding(const Followed& followed, const DriftOpt
       });
   for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
     drift.outputs[k].state = prequential.watch().state(static_cast<int>(k));
+    drift.outputs[k].daily = daily.state(static_cast<int>(k));
   }
   return window;
 }
@@ -412,6 +435,28 @@ SiteDrift drift_of(const PreparedSite& prepared, const Recording& recording) {
   return drift;
 }
 
+/// Meters whose days are watched, ready to look; none and a warning where they cannot be.
+DailyWatches daily_watches(const ModelledSite& modelled, double months_between_false_alarms,
+                           SiteDrift& drift) {
+  std::vector<FollowedMeter> meters;
+  std::vector<int> outputs;
+  for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
+    const FollowedOutput& output = drift.outputs[k];
+    if (output.name != output.meter + "_daily_kWh") continue;
+    meters.push_back({output.meter, output.measured});
+    outputs.push_back(static_cast<int>(k));
+  }
+  std::vector<DailyWatches::Output> watched;
+  if (auto days = watched_days(modelled, meters, drift.months, drift.learning_months); !days) {
+    drift.warnings.push_back("Days are not watched: " + days.error().message + ".");
+  } else {
+    for (std::size_t k = 0; k < meters.size(); ++k) {
+      watched.push_back({outputs[k], std::move((*days)[k])});
+    }
+  }
+  return {std::move(watched), drift.months, drift.learning_months, months_between_false_alarms};
+}
+
 bool has_figures_after(const Followed& followed, int learning) {
   const auto has_level = [&](const drift::LevelOutput& level) {
     return std::any_of(level.measured.begin() + learning, level.measured.end(),
@@ -490,7 +535,8 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
       levels_of(*prepared),
       calibration::make_hyper_prior(calibration::HyperPriorProfile::scaled,
                                     is_calibrated ? normalisation->pooled_variance : 1.0),
-      {{.name = "electricity use", .change = prepared->electricity_use}}};
+      {{.name = "electricity use", .change = prepared->electricity_use}},
+      daily_watches(modelled, 2.0 * options.watch.months_between_false_alarms, drift)};
   drift.directions = followed.directions;
   if (!has_figures_after(followed, drift.learning_months)) {
     drift.warnings.emplace_back("No month after the learning ones has a figure to compare.");

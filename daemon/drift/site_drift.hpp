@@ -1,6 +1,7 @@
 /// A site followed from month to month: what was forecast, what came, what has moved.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/drift/shift.hpp"
 #include "daemon/calibrate/modelled_site.hpp"
 #include "daemon/calibrate/site_calibration.hpp"
+#include "daemon/drift/daily_watches.hpp"
 
 namespace recald::daemon {
 
@@ -20,6 +22,7 @@ struct DriftOptions {
   int learning_months = 12;  ///< That the model is made from; the first test is the month after.
   int design_runs = 200;     ///< That fix the normalisation, as a calibration's.
   drift::SequentialOptions sequential;
+  /// Of all meters, by months and by days together.
   drift::WatchOptions watch;
   drift::CauseOptions causes;
   /// A cause as likely as this is acted upon: the model begins anew, or the meter is set aside.
@@ -37,6 +40,7 @@ struct FollowedOutput {
   bool by_level;                 ///< No parameter moves it: forecast by its own months alone.
   std::vector<double> measured;  ///< (months) NaN: none.
   drift::WatchState state;       ///< After the last month.
+  std::optional<DailyState> daily = {};  ///< Its days', likewise; absent: not watched.
 };
 
 /// What a window believed of a parameter after each month.
