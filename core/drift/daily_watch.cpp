@@ -10,6 +10,7 @@ namespace {
 
 /// Larger steps are seen by it as well, within days; a larger one would answer to a few odd days.
 constexpr double kLargestShift = 1.0;
+constexpr double kLevelAfterAnAlarm = 0.3;
 constexpr std::size_t kDatedDays = 730;  // that a change is sought in
 constexpr std::size_t kFewestDays = 5;   // of a month, to judge it
 constexpr double kLagMax = 0.9;
@@ -98,12 +99,12 @@ double DailyWatch::month_factor() const {
   return std::sqrt((prior * options_.month_variance + squares_) / (prior + months_));
 }
 
-void DailyWatch::begin_at(metering::Day since) {
+void DailyWatch::begin_at(metering::Day since, double level_sd) {
   const auto known = measured(
       [&](const WatchedDay& day) { return day.date < since && (!begun_ || day.date >= *begun_); });
   if (!known.empty()) {
     const double share = std::min(1.0, options_.days_carried / static_cast<double>(known.size()));
-    before_ = DailyReference{known, scale_, before_}.after_a_change(share, options_.level_sd);
+    before_ = DailyReference{known, scale_, before_}.after_a_change(share, level_sd);
   }
   begun_ = since;
   detector_ = EDetector{1.0 / options_.days_between_false_alarms, kLargestShift};
@@ -169,7 +170,7 @@ std::optional<DailyAlarm> DailyWatch::look(int month) {
         {days[i].date, days[i].measured_kW, reference.expect(days[i]).mean_kW, white[i] / factor});
     if (!detector_.observe(white[i] / factor)) continue;
     const DailyAlarm alarm = alarm_of(month);
-    begin_at(alarm.since);
+    begin_at(alarm.since, kLevelAfterAnAlarm);
     return alarm;
   }
   take_month(white);

@@ -19,8 +19,7 @@ struct DailyWatchOptions {
   double month_variance = 4.0;
   double month_variance_months = 4.0;
   int days_to_learn = 120;     ///< Measured ones of the learning months; fewer: nothing is watched.
-  double days_carried = 60.0;  ///< What is known from before a change is worth after it, …
-  double level_sd = 0.3;       ///< … but for a factor of the whole, …
+  double days_carried = 60.0;  ///< What is known from before a change is worth after it …
   int days_to_learn_anew = 45;  ///< … and days without a judgement.
 };
 
@@ -51,8 +50,9 @@ class DailyWatch {
   /// @pre months ascend, the learning ones left out
   [[nodiscard]] std::optional<DailyAlarm> look(int month);
 
-  /// The building has become another one; what was known of it is worth little.
-  void begin_at(metering::Day since);
+  /// The building has become another one; what was known of it is worth little, and true but for a
+  /// factor of the whole that nobody knows better than to `level_sd`.
+  void begin_at(metering::Day since, double level_sd);
 
   /// Whether there was enough to learn from.
   [[nodiscard]] bool is_able() const { return is_able_; }

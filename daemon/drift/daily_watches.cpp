@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kDaysAMonth = 365.25 / 12.0;
 constexpr std::chrono::days kSameChange{31};
+/// Of a meter that has not noticed the change itself.
+constexpr double kLevelSd = 0.1;
 
 }  // namespace
 
@@ -68,7 +70,7 @@ void DailyWatches::begin_at(int month) {
   for (Watched& watched : watched_) {
     if (watched.begun && std::chrono::sys_days{*watched.begun} + kSameChange >= since) continue;
     watched.begun = metering::Day{since};
-    watched.watch.begin_at(*watched.begun);
+    watched.watch.begin_at(*watched.begun, kLevelSd);
   }
 }
 

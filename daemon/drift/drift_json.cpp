@@ -207,7 +207,9 @@ Json shifts_json(const SiteDrift& drift) {
 Json meter_changes_json(const SiteDrift& drift) {
   Json list = Json::array();
   for (const MeterChange& change : drift.meter_changes) {
+    const bool is_unit = change.kind == MeterChange::Kind::unit;
     list.push_back({{"meter", change.meter},
+                    {"kind", is_unit ? "unit" : "readings"},
                     {"since", change.since},
                     {"factor", number(change.factor)},
                     {"sentence", change.sentence}});

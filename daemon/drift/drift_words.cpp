@@ -112,7 +112,9 @@ std::string trust_words(const SiteDrift& drift, std::size_t output) {
 }
 
 std::string meter_change_words(const MeterChange& change) {
-  return change.sentence + ". Its months since then are not compared.";
+  return change.sentence + (change.kind == MeterChange::Kind::unit
+                                ? ". Its months since then are not compared."
+                                : ". Look at the meter and at the way to it.");
 }
 
 std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& alarm) {

@@ -13,6 +13,7 @@
 #include "core/calibration/hyper_prior.hpp"
 #include "core/calibration/problem.hpp"
 #include "core/drift/emulator.hpp"
+#include "core/metering/lost_readings.hpp"
 #include "daemon/drift/watched_days.hpp"
 
 namespace recald::daemon {
@@ -398,14 +399,33 @@ Result<void> follow_all(const Followed& followed, const DriftOptions& options,
   return {};
 }
 
-std::vector<MeterChange> meter_changes_of(const Recording& recording) {
+std::string lost_words(const std::string& meter, const metering::LostReadings& lost) {
+  return fmt::format(
+      "{} gives usable readings for {:.0f} % of the time since {}, {:.0f} % before{}; "
+      "seen after {}",
+      meter, 100.0 * lost.share_since, metering::to_string(lost.since), 100.0 * lost.share_before,
+      lost.stands_still ? ": it stands still at one value" : "", metering::to_string(lost.seen));
+}
+
+/// @param first  Month that the record begins with.
+std::vector<MeterChange> meter_changes_of(const Recording& recording, const std::string& first,
+                                          int learning_months) {
   std::vector<MeterChange> changes;
   for (const MeterRecord& record : recording.meters) {
+    const std::string& id = record.meter.id;
     for (const metering::LevelChange& change : record.level_changes) {
       if (change.kind != metering::LevelChangeKind::scale) continue;
-      changes.push_back(
-          {record.meter.id, metering::to_string(change.since), change.factor, change.words});
+      changes.push_back({MeterChange::Kind::unit, id, metering::to_string(change.since),
+                         change.factor, change.words});
     }
+    const auto begin = std::ranges::find(record.figures, first, [](const auto& figure) {
+      return metering::to_string(figure.month);
+    });
+    const auto lost = metering::find_lost_readings({begin, record.figures.end()},
+                                                   static_cast<std::size_t>(learning_months));
+    if (!lost) continue;
+    changes.push_back({MeterChange::Kind::readings, id, metering::to_string(lost->since),
+                       lost->share_since / lost->share_before, lost_words(id, *lost)});
   }
   return changes;
 }
@@ -419,7 +439,8 @@ SiteDrift drift_of(const PreparedSite& prepared, const Recording& recording) {
                   .outputs = {},
                   .record = {},
                   .alarms = {},
-                  .meter_changes = meter_changes_of(recording),
+                  .meter_changes = meter_changes_of(recording, site.month_names.front(),
+                                                    prepared.model->month_count()),
                   .directions = {},
                   .windows = {},
                   .last_year = {},

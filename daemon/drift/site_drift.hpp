@@ -65,12 +65,16 @@ struct ExplainedAlarm {
   enum class Consequence { none, began_anew, meter_set_aside } consequence = Consequence::none;
 };
 
-/// A meter that counts in another unit since: seen in its readings, without any model. The months
-/// are not the building's and have no forecast.
+/// What is seen in a meter's readings, without any model.
 struct MeterChange {
+  enum class Kind {
+    unit,  ///< It counts in another one: months that are not the building's and have no forecast.
+    readings  ///< It gives usable ones for much less of the time; the others are filled.
+  };
+  Kind kind;
   std::string meter;
   std::string since;  ///< "2018-06"
-  double factor;      ///< Of its figures.
+  double factor;      ///< Of its figures, or of the time with usable readings.
   std::string sentence;
 };
 

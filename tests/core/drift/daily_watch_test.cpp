@@ -137,7 +137,7 @@ TEST(DailyWatch, ABuildingThatBeganAnewIsLearntAnew) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     DailyWatch watch{world(seed, 0.5, kFrom), kLearning, {}};
     for (int month = kLearning; month < kMonths; ++month) {
-      if (month == 27) watch.begin_at(Day{first_day() + days{kFrom}});
+      if (month == 27) watch.begin_at(Day{first_day() + days{kFrom}}, 0.3);
       EXPECT_FALSE(watch.look(month).has_value()) << seed << ' ' << month;
     }
   }
