@@ -346,6 +346,11 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   drift->add_option("--learn", given.drift.learning_months, "Months that the model is made from")
       ->check(CLI::Range(6, 60))
       ->capture_default_str();
+  drift
+      ->add_option("--anew-every", given.drift.anew_every_months,
+                   "Months after which the posterior is sampled from the prior again")
+      ->check(CLI::Range(1, 120))
+      ->capture_default_str();
   drift->add_option("--particles", given.drift.particles, "That carry the posterior along")
       ->check(CLI::Range(64, 100'000))
       ->capture_default_str();

@@ -94,6 +94,7 @@ struct DriftArguments : SiteArguments {
   std::filesystem::path out;  ///< Folder for drift.json, or empty.
   std::string model;          ///< "epc", "hourly", or empty: as the site file says.
   int learning_months = 12;
+  int anew_every_months = 12;  ///< 1: recalibrated from scratch each month.
   int particles = 512;
   std::uint64_t seed = 1;
   unsigned threads = 0;

@@ -32,6 +32,7 @@ int run_drift(const DriftArguments& arguments, const Console& console) {
   DriftOptions options;
   options.learning_months = arguments.learning_months;
   options.sequential.particles = arguments.particles;
+  options.sequential.anew_every_months = arguments.anew_every_months;
   auto modelled = open_followed_site(arguments, options, console);
   if (!modelled) return modelled.error();
   auto version = active_version(modelled->site.config);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -91,6 +92,12 @@ TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
   EXPECT_EQ(alarm["direction"], "more");
   EXPECT_EQ(alarm["since"], year + "-06");
   EXPECT_THAT(alarm["sentence"].get<std::string>(), HasSubstr("chilled_water_daily_kWh is more"));
+  // Its days tell before the month is over.
+  ASSERT_FALSE(alarm["days"].is_null());
+  EXPECT_EQ(alarm["month"], year + "-06");
+  EXPECT_GE(alarm["days"]["since_latest"], year + "-06-01");
+  EXPECT_LE(alarm["days"]["since_earliest"], year + "-06-01");
+  EXPECT_NEAR(alarm["days"]["excess"].get<double>(), 0.4, 0.15);
   double sum = 0.0;
   for (const Json& cause : alarm["causes"]) sum += cause["probability"].get<double>();
   EXPECT_NEAR(sum, 1.0, 1e-9);
@@ -120,6 +127,44 @@ TEST_F(DriftCommand, MissingMonthsHaveNoForecastAndStopNothing) {
     EXPECT_TRUE(forecast.contains(year + "-11"));  // and goes on
   }
   EXPECT_THAT(read_text(folder_ / "out" / "drift.html"), HasSubstr("data-figure=\"forecast\""));
+}
+
+// Dawid's principle, to the last digit: what was said of a month hangs on no later one. A figure
+// that is put right a year after changes what is said from the next month on, and nothing before.
+TEST_F(DriftCommand, AMonthThatIsRevisedChangesNothingThatWasSaidBefore) {
+  const auto said = [&](const std::string& out) {
+    const auto done = run({"drift", folder_ / "site.toml", "--out", folder_ / out, "--particles",
+                           "64", "--threads", "2"});
+    EXPECT_EQ(done.exit_code, kSuccess) << done.err;
+    std::map<std::string, std::map<std::string, Json>> months;
+    for (const Json& output : result(out)["outputs"]) {
+      for (const Json& month : output["months"]) months[month["month"]][output["name"]] = month;
+    }
+    return months;
+  };
+  const std::string readings = read_text(folder_ / "readings.csv");
+  const auto before = said("before");
+  auto revised_at = before.begin();
+  std::advance(revised_at, 6);
+  const std::string revised = revised_at->first;
+  const std::string after = std::next(revised_at)->first;
+  const std::string too_much =
+      multiplied(readings, "chilled_water", revised + "-02T00:00:00Z", 1.05);
+  write_text(folder_ / "readings.csv",
+             multiplied(too_much, "chilled_water", revised + "-25T00:00:00Z", 1.0 / 1.05));
+  const auto since = said("after");
+  for (const auto& [month, outputs] : before) {
+    for (const auto& [name, forecast] : outputs) {
+      const Json& now = since.at(month).at(name);
+      if (month > revised) continue;
+      EXPECT_EQ(now["mean"], forecast["mean"]) << month << ' ' << name;
+      EXPECT_EQ(now["q05"], forecast["q05"]) << month << ' ' << name;
+      const bool is_revised = month == revised && name == "chilled_water_daily_kWh";
+      EXPECT_EQ(now["measured"] == forecast["measured"], !is_revised) << month << ' ' << name;
+    }
+  }
+  EXPECT_NE(since.at(after).at("chilled_water_daily_kWh")["mean"],
+            before.at(after).at("chilled_water_daily_kWh")["mean"]);
 }
 
 TEST_F(DriftCommand, AYoungSiteIsTold) {

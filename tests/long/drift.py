@@ -7,6 +7,7 @@ import sys
 import tempfile
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
+from datetime import date
 from pathlib import Path
 
 BUILD = Path(sys.argv[1])
@@ -133,18 +134,104 @@ def print_quiet(results):
     print_forecasts("Forecasts where nothing changes", results)
 
 
+def notices(result):
+    """Alarms, and meters that lose their readings (settled by the month after), in order of time."""
+    found = list(result["alarms"])
+    for change in result.get("meter_changes", []):
+        if change.get("kind") != "readings":
+            continue
+        seen = month_number(change["since"]) + 1
+        found.append({"month": f"{seen // 12}-{seen % 12 + 1:02}", "since_earliest": change["since"],
+                      "since_latest": change["since"], "sentence": change["sentence"], "days": None,
+                      "causes": [{"kind": "meter", "subject": change["meter"]}]})
+    return sorted(found, key=lambda notice: notice["month"])
+
+
 def first_alarm(result, change):
-    """The first alarm that the change can have raised."""
-    for alarm in result["alarms"]:
+    """The first notice that the change can have raised."""
+    for alarm in notices(result):
         if month_number(alarm["month"]) >= change:
             return alarm
     return None
 
 
+def days_after(alarm, change):
+    """From the first day of the month `change` to the day of the alarm; None: raised by a month."""
+    if not alarm["days"]:
+        return None
+    return (date.fromisoformat(alarm["days"]["raised"]) - date(change // 12, change % 12 + 1, 1)).days
+
+
+def chart_alarms(result):
+    """Months in which a plain control chart would be raised: an output's error over its mean, above
+    mean and three sd of the first twelve forecasts; the chart begins anew twelve months after."""
+    months = []
+    for output in result["outputs"]:
+        errors = [(month_number(m["month"]), abs(m["measured"] - m["mean"])) for m in output["months"]]
+        start = 0
+        while start + 12 < len(errors):
+            first = [e for _, e in errors[start:start + 12]]
+            centre = sum(first) / 12.0
+            limit = centre + 3.0 * math.sqrt(sum((e - centre) ** 2 for e in first) / 11.0)
+            over = [i for i in range(start + 12, len(errors)) if errors[i][1] > limit]
+            if not over:
+                break
+            months.append(errors[over[0]][0])
+            start = over[0]
+    return sorted(months)
+
+
+def print_chart(quiet, changed, scenarios):
+    """What a control chart on the same forecasts would have found."""
+    print("\nA control chart on each output's error, mean and three sd of its first year, beside it:")
+    if quiet:
+        years = sum(len(r["months"]) - r["learning_months"] - 12 for r in quiet) / 12.0
+        count = sum(len(chart_alarms(r)) for r in quiet)
+        print(f"nothing changes: {count} alarms in {years:.0f} years, {count / years:.3f} a year")
+    for scenario in scenarios:
+        change = change_of(scenario)
+        mine = [r for r in changed if r["scenario"] == scenario.stem]
+        first = [[m - change + 1 for m in chart_alarms(r) if m >= change] for r in mine]
+        delays = sorted(f[0] for f in first if f)
+        early = sum(m < change for r in mine for m in chart_alarms(r))
+        print(f"  {scenario.stem}: found {len(delays)} of {len(mine)}, after "
+              f"{' '.join(map(str, delays)) or '-'} months; before the change: {early}")
+
+
+def print_parameters(out, quiet):
+    """Whether intervals hold the simulator's own parameters, and shifts where nothing moved."""
+    print("\n| parameter | window | truth in 90 % | its bias, in posterior sds |")
+    print("| --- | --- | --- | --- |")
+    held, biases, shifts = {}, {}, {}
+    for result in quiet:
+        folder = out / f"{result['scenario']}-{result['seed']}"
+        truth = json.loads((folder / "truth.json").read_text())["parameters"]
+        for window in result["windows"]:
+            for parameter in window["parameters"]:
+                if parameter["name"] not in truth:
+                    continue
+                value = truth[parameter["name"]]["value"]
+                key = (parameter["name"], window["name"])
+                months = [m for m in parameter["months"] if m["q05"] is not None]
+                held.setdefault(key, []).extend(m["q05"] <= value <= m["q95"] for m in months)
+                last = months[-1]
+                biases.setdefault(key, []).append((last["mean"] - value) * 3.29
+                                                  / (last["q95"] - last["q05"]))
+        for shift in result["last_year"]:
+            if "pvalue" in shift:
+                shifts.setdefault(shift["name"], []).append(shift["pvalue"])
+    for (name, window), inside in held.items():
+        bias = biases[name, window]
+        print(f"| {name} | {window} | {sum(inside) / len(inside):.2f} | {sum(bias) / len(bias):+.1f} |")
+    for name, pvalues in shifts.items():
+        print(f"shift of {name} within the last year: p < 0.05 in {sum(p < 0.05 for p in pvalues)}, "
+              f"p < 0.2 in {sum(p < 0.2 for p in pvalues)} of {len(pvalues)}")
+
+
 def print_changes(results, scenarios):
-    print("\n| scenario | buildings | found | delay, months: median, all | month within interval "
-          "| first cause right | building or meter right | before the change |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    print("\n| scenario | buildings | found | delay, months: median, all | days, where raised by days "
+          "| month within interval | first cause right | building or meter right | before the change |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     wrong = []
     for scenario in scenarios:
         change = change_of(scenario)
@@ -153,6 +240,7 @@ def print_changes(results, scenarios):
         found = [(r, a) for r, a in found if a]
         early = sum(month_number(a["month"]) < change for r in mine for a in r["alarms"])
         delays = [month_number(a["month"]) - change + 1 for _, a in found]
+        days = sorted(d for d in (days_after(a, change) for _, a in found) if d is not None)
         dated = sum(month_number(a["since_earliest"]) <= change <= month_number(a["since_latest"])
                     for _, a in found)
         right = side = 0
@@ -166,7 +254,8 @@ def print_changes(results, scenarios):
             if not is_right(scenario.stem, cause):
                 wrong.append(f"  {scenario.stem}-{result['seed']}: {alarm['sentence']}")
         print(f"| {scenario.stem} | {len(mine)} | {len(found)} | {median(delays)}: "
-              f"{' '.join(map(str, sorted(delays)))} | {dated} | {right} | {side} | {early} |")
+              f"{' '.join(map(str, sorted(delays)))} | {' '.join(map(str, days)) or '-'} | {dated} "
+              f"| {right} | {side} | {early} |")
     print("\nFound, and called something else:")
     print("\n".join(wrong) if wrong else "  none")
 
@@ -189,9 +278,11 @@ def main():
     quiet = [r for r in results if change_of(SCENARIOS / (r["scenario"] + ".toml")) is None]
     if quiet:
         print_quiet(quiet)
+        print_parameters(out, quiet)
     changing = [s for s in scenarios if change_of(s) is not None]
     if changing:
         print_changes(results, changing)
+    print_chart(quiet, results, changing)
     print(f"\ndetails in {out}")
 
 
