@@ -198,7 +198,8 @@ LevelChangeOptions level_change_options(Utility utility) {
   const bool by_weather = utility != Utility::electricity && utility != Utility::water;
   if (by_weather) {
     options.typical_scatter = 0.15;
-    options.small_month = 0.25;  // chilled water in a mild January may well halve
+    options.small_month = 0.25;      // chilled water in a mild January may well halve
+    options.scale_factor_min = 8.0;  // a cold March after a mild winter steps by 5.5
   }
   return options;
 }

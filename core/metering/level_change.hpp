@@ -40,8 +40,8 @@ struct LevelChangeOptions {
   int months_to_return = 6;   ///< In a row within z_max / 2: the change is over.
 };
 
-/// Typical scatter 0.05 for electricity and water; where weather moves the months 0.15, and months
-/// under a quarter of the largest are not compared.
+/// Typical scatter 0.05 for electricity and water; where weather moves the months 0.15, months
+/// under a quarter of the largest are not compared, and a change of scale is a step of 8 at least.
 [[nodiscard]] LevelChangeOptions level_change_options(Utility utility);
 
 /// Compares each usable month with the same calendar months before it.

@@ -120,6 +120,19 @@ TEST(LevelChange, AUnitChangeAfterALevelChangeIsToldToo) {
   EXPECT_NEAR(found[1].factor, 1000.0, 150.0);
 }
 
+// A simulated office: after a winter at two thirds of the usual a March at nearly twice it.
+TEST(LevelChange, AColdMarchAfterAMildWinterIsNoUnit) {
+  const std::vector<double> daily_kWh{
+      1395, 586, 310, 161, 136, 137, 135,  139, 132,  221, 386,  1146, 1629, 773, 698,
+      208,  135, 136, 136, 138, 133, 196,  623, 1168, 833, 1076, 707,  269,  136, 133,
+      136,  133, 134, 200, 292, 749, 1155, 721, 330,  148, 139,  136,  134,  134, 137,
+      144,  267, 530, 802, 949, 911, 218,  132, 140,  132, 138,  138,  177,  244, 701,
+      802,  849, 557, 217, 133, 136, 131,  142, 136,  154, 600,  1029};
+  for (const LevelChange& change : changes(daily_kWh, Utility::heating)) {
+    EXPECT_NE(change.kind, LevelChangeKind::scale) << change.words;
+  }
+}
+
 TEST(LevelChange, TheFirstYearHasNothingToBeComparedWith) {
   std::vector<double> daily_kWh = seasonal(12, 0.0, 0.0, 7);
   daily_kWh[6] *= 5.0;
