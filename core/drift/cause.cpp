@@ -1,7 +1,9 @@
 #include "core/drift/cause.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
@@ -33,16 +35,28 @@ double log_normal(const Eigen::VectorXd& residual, const Eigen::LLT<Eigen::Matri
 struct LevelBlock {
   int output;
   Eigen::VectorXd differences;  ///< measured / modelled - 1
+  Eigen::VectorXd progress;     ///< Of the time from the change to the last month, 0 to 1.
   double level;                 ///< Learnt before.
   double sd;                    ///< Of a month …
   double level_sd;              ///< … and of the level.
 };
+
+/// Of a month, from the change (just above 0) to the last one that is known (1).
+double progress_at(const ChangeCase& change, int month) {
+  return static_cast<double>(month - change.since + 1) /
+         static_cast<double>(change.until - change.since + 1);
+}
+
+Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
 
 std::vector<LevelBlock> level_blocks(const ChangeCase& change) {
   std::vector<LevelBlock> blocks;
   for (const LevelOutput& output : change.levels) {
     LevelForecast learnt;
     std::vector<double> since;
+    std::vector<double> progress;
     for (int month = std::max(change.learning_months, change.first); month <= change.until;
          ++month) {
       const auto i = static_cast<std::size_t>(month);
@@ -51,18 +65,18 @@ std::vector<LevelBlock> level_blocks(const ChangeCase& change) {
         learnt.take(output.modelled[i], output.measured[i]);
       } else {
         since.push_back(output.measured[i] / output.modelled[i] - 1.0);
+        progress.push_back(progress_at(change, month));
       }
     }
     if (since.empty()) continue;
-    blocks.push_back(
-        {output.output,
-         Eigen::Map<const Eigen::VectorXd>(since.data(), static_cast<Eigen::Index>(since.size())),
-         learnt.level(), learnt.scatter(), learnt.level_sd()});
+    blocks.push_back({output.output, vector_of(since), vector_of(progress), learnt.level(),
+                      learnt.scatter(), learnt.level_sd()});
   }
   return blocks;
 }
 
-double log_likelihood(const LevelBlock& block, double moved_by, double more_sd = 0.0,
+/// @param moved_by  (months of the block)
+double log_likelihood(const LevelBlock& block, const Eigen::ArrayXd& moved_by, double more_sd = 0.0,
                       double monthly_sd = 0.0) {
   const Eigen::Index n = block.differences.size();
   const double shared = block.level_sd * block.level_sd + more_sd * more_sd;
@@ -71,6 +85,17 @@ double log_likelihood(const LevelBlock& block, double moved_by, double more_sd =
   return log_normal(block.differences.array() - block.level - moved_by,
                     Eigen::LLT<Eigen::MatrixXd>{covariance});
 }
+
+double log_likelihood(const LevelBlock& block, double moved_by, double more_sd = 0.0,
+                      double monthly_sd = 0.0) {
+  return log_likelihood(block, Eigen::ArrayXd::Constant(block.differences.size(), moved_by),
+                        more_sd, monthly_sd);
+}
+
+/// How a use changes: by one factor from then on, by a factor that is another one each month
+/// (people are away more in one than in the next), or more and more until the last month.
+enum class Course : std::uint8_t { even, uneven, growing };
+constexpr std::array kCourses{Course::even, Course::uneven, Course::growing};
 
 /// What is tried, and how it did, value by value.
 struct Contest {
@@ -150,7 +175,9 @@ class Since {
     return log_normal(residual, factor_);
   }
 
-  [[nodiscard]] double with_direction(const Direction& direction, double amplitude) const {
+  /// @param growing  Up to the amplitude in the last month.
+  [[nodiscard]] double with_direction(const ChangeCase& change, const Direction& direction,
+                                      double amplitude, bool growing) const {
     Eigen::VectorXd residual = residual_;
     const auto months = static_cast<std::size_t>(posterior_.data().month_inputs.rows());
     for (Eigen::Index i = 0; i < residual.size(); ++i) {
@@ -159,7 +186,8 @@ class Since {
       const auto at =
           static_cast<std::size_t>(point.output) * months + static_cast<std::size_t>(point.month);
       const double range = posterior_.data().scales[static_cast<std::size_t>(point.output)].range();
-      residual(i) -= amplitude * direction.change[at] / range;
+      const double share = growing ? progress_at(change, point.month) : 1.0;
+      residual(i) -= share * amplitude * direction.change[at] / range;
     }
     return log_normal(residual, factor_);
   }
@@ -254,15 +282,13 @@ class Trial {
           return std::pair{value, since_.with_parameter(contest.index, value) + of_levels(-1, 0.0)};
         });
       case CauseKind::direction:
-        return try_values(contest, rng, [&](double u) {
-          const double factor = factor_at(u);
-          const auto& direction = change_.directions[static_cast<std::size_t>(contest.index)];
-          double likelihood = since_.with_direction(direction, factor - 1.0);
-          for (const LevelBlock& block : blocks_) {
-            likelihood += log_likelihood(block, factor - 1.0);
-          }
-          return std::pair{factor, likelihood};
-        });
+        for (const Course course : kCourses) {
+          try_values(contest, rng, [&](double u) {
+            const double factor = factor_at(u);
+            return std::pair{factor, with_direction(contest.index, factor - 1.0, course)};
+          });
+        }
+        return;
       case CauseKind::meter:
         return try_values(contest, rng, [&](double u) {
           const double factor = factor_at(u);
@@ -275,6 +301,20 @@ class Trial {
  private:
   [[nodiscard]] double factor_at(double u) const {
     return std::exp(options_.factor_sd * boost::math::quantile(boost::math::normal{}, u));
+  }
+  [[nodiscard]] double with_direction(int index, double amplitude, Course course) const {
+    const bool growing = course == Course::growing;
+    const double uneven =
+        course == Course::uneven ? options_.uneven_share * std::abs(amplitude) : 0.0;
+    double sum = since_.with_direction(change_, change_.directions[static_cast<std::size_t>(index)],
+                                       amplitude, growing);
+    for (const LevelBlock& block : blocks_) {
+      const Eigen::ArrayXd moved =
+          growing ? Eigen::ArrayXd(amplitude * block.progress.array())
+                  : Eigen::ArrayXd::Constant(block.differences.size(), amplitude);
+      sum += log_likelihood(block, moved, 0.0, uneven);
+    }
+    return sum;
   }
   [[nodiscard]] double with_unknown(int only) const {
     const double sd = only < 0 ? options_.unknown_sd : options_.factor_sd;

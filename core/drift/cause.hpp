@@ -22,7 +22,7 @@ struct Direction {
 enum class CauseKind : std::uint8_t {
   nothing,    ///< A false alarm.
   parameter,  ///< A calibration parameter has another value since.
-  direction,  ///< The building moved along a known direction.
+  direction,  ///< The building moved along a known direction: evenly, unevenly or more and more.
   meter,      ///< One output's figures are multiplied by a factor: the meter, not the building.
   /// An effect that the model lacks: all outputs moved, each by a share of its own, or one alone
   /// and in no month by quite the same share, which a meter's factor is.
@@ -41,9 +41,10 @@ struct Cause {
 };
 
 struct CauseOptions {
-  int particles = 96;      ///< Of the posterior before the change.
-  int values = 32;         ///< Tried of what changed, a particle.
-  double factor_sd = 0.3;  ///< Of a meter's factor or a direction's amplitude, on the log scale.
+  int particles = 96;         ///< Of the posterior before the change.
+  int values = 32;            ///< Tried of what changed, a particle.
+  double factor_sd = 0.3;     ///< Of a meter's factor or a direction's amplitude, on the log scale.
+  double uneven_share = 0.3;  ///< sd of a month's amplitude over all months', where it is uneven.
   /// Of an unknown effect: each output moves by this share of itself.
   double unknown_sd = 0.15;
   double monthly_sd = 0.10;  ///< By which an unknown effect on one output differs between months.

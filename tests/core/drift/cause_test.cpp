@@ -46,7 +46,21 @@ struct World {
   double heat_uneven = 0.0;  ///< Added and taken off in turn.
   double cooling_factor = 1.0;
   double level_factor = 1.0;
+  /// More use, by this share of what the third meter shows, and what the two others make of it.
+  double use = 0.0;
+  double use_uneven = 0.0;  ///< Of it, added and taken off in turn.
+  bool use_grows = false;   ///< Up to the last month.
+
+  [[nodiscard]] double use_in(int month) const {
+    if (month < kChanged) return 0.0;
+    const double turn = month % 2 == 0 ? use_uneven : -use_uneven;
+    const double share = use_grows ? (month - kChanged + 1.0) / (kWatched - kChanged) : 1.0;
+    return use * (share + turn);
+  }
 };
+
+/// What the use of one more share does to heat and cooling.
+double echo(int output, int month) { return output == 0 ? -400.0 * winter(month) : 600.0; }
 
 struct Found {
   std::vector<Cause> causes;
@@ -86,7 +100,8 @@ Found causes_in(const World& world, std::uint64_t seed, bool with_level = false)
       const double uneven = output == 0 ? world.heat_uneven : 0.0;
       const double factor = mean_factor + (month % 2 == 0 ? uneven : -uneven);
       const auto at = static_cast<std::size_t>(i);
-      const double value = month < kChanged ? before[at] : factor * after[at];
+      const double value = (month < kChanged ? before[at] : factor * after[at]) +
+                           world.use_in(month) * echo(output, month);
       data.points.push_back({output, month});
       data.values(i) = scale.normalise(value) + 0.01 * rng.normal();
     }
@@ -100,14 +115,15 @@ Found causes_in(const World& world, std::uint64_t seed, bool with_level = false)
     LevelOutput level{.output = 2, .modelled = {}, .measured = {}};
     for (int month = 0; month < kWatched; ++month) {
       level.modelled.push_back(500.0);
-      const double factor = month < kChanged ? 1.0 : world.level_factor;
+      const double factor = month < kChanged ? 1.0 : world.level_factor + world.use_in(month);
       level.measured.push_back(500.0 * factor * (1.0 + 0.01 * rng.normal()));
     }
     levels.push_back(level);
     Direction use{"use", std::vector<double>(3 * kWatched)};
     for (int month = 0; month < kWatched; ++month) {
-      use.change[static_cast<std::size_t>(month)] = -400.0 * winter(month);
-      use.change[static_cast<std::size_t>(kWatched + month)] = 600.0;
+      for (int output = 0; output < 2; ++output) {
+        use.change[static_cast<std::size_t>(output * kWatched + month)] = echo(output, month);
+      }
     }
     directions.push_back(use);
   }
@@ -177,6 +193,18 @@ TEST(Causes, UseAndMeterAreToldApartByTheOtherMeters) {
     const Found meter = causes_in({.level_factor = 1.25}, seed, true);
     EXPECT_GT(meter.probability(CauseKind::meter, 2), 0.7) << seed;
     EXPECT_LT(meter.probability(CauseKind::direction, 0), 0.1) << seed;
+  }
+}
+
+TEST(Causes, AUseMayBeEvenOrUnevenOrGrow) {
+  for (const World& world : {World{.use = 0.2}, World{.use = -0.25, .use_uneven = 0.3},
+                             World{.use = 0.15, .use_grows = true}}) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const Found found = causes_in(world, seed, true);
+      EXPECT_GT(found.probability(CauseKind::direction, 0), 0.7)
+          << seed << ' ' << world.use << " is called " << static_cast<int>(found.causes[0].kind);
+      EXPECT_NEAR(found.causes.front().mean, 1.0 + world.use, 0.06) << seed << ' ' << world.use;
+    }
   }
 }
 
