@@ -47,6 +47,12 @@ double progress_at(const ChangeCase& change, int month) {
          static_cast<double>(change.until - change.since + 1);
 }
 
+/// Over all months since the change.
+double mean_progress(const ChangeCase& change) {
+  const double months = change.until - change.since + 1;
+  return (months + 1.0) / (2.0 * months);
+}
+
 Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
@@ -284,8 +290,10 @@ class Trial {
       case CauseKind::direction:
         for (const Course course : kCourses) {
           try_values(contest, rng, [&](double u) {
-            const double factor = factor_at(u);
-            return std::pair{factor, with_direction(contest.index, factor - 1.0, course)};
+            const double amplitude = factor_at(u) - 1.0;
+            const double mean = course == Course::growing ? mean_progress(change_) : 1.0;
+            return std::pair{1.0 + mean * amplitude,
+                             with_direction(contest.index, amplitude, course)};
           });
         }
         return;

@@ -34,7 +34,7 @@ struct Cause {
   int index = 0;  ///< Of the parameter, direction or output; -1: an unknown effect on all outputs.
   double probability = 0.0;
   double log_evidence = 0.0;  ///< Of the months since the change.
-  /// The value since, or the factor; 90 % interval. NaN where there is none.
+  /// The value since, or the factor, of all months since; 90 % interval. NaN where there is none.
   double mean;
   double q05;
   double q95;
