@@ -24,6 +24,7 @@ RIGHT = {
     "outdoor_air": [("parameter", "outdoor_airflow"), ("unknown", "")],
     "damper_failing": [("parameter", "outdoor_airflow"), ("unknown", "")],
     "fouling": [("parameter", "cop"), ("unknown", "")],
+    "slow_fouling": [("parameter", "cop"), ("unknown", "")],
     "plug_growth": [("use", "electricity")],
     "setpoint_raised": [("parameter", "cooling_setpoint")],
     "people_away": [("parameter", "occupancy"), ("use", "electricity")],
