@@ -21,7 +21,7 @@ echo "Building (release) …"
 log=$(mktemp)
 if ! { cmake -S "$root" --preset release -DRECALD_TESTS=OFF -DRECALD_WARNINGS_AS_ERRORS=OFF \
     -DRECALD_TOGETHER=ON -B "$root/.build/demo" &&
-  cmake --build "$root/.build/demo" --target recald recald-sim; } >"$log" 2>&1; then
+  cmake --build "$root/.build/demo" --target recald recald-sim --parallel "$(build_jobs)"; } >"$log" 2>&1; then
   tail -n 40 "$log" >&2
   echo "The build failed; the last lines are above, all of it in $log." >&2
   exit 1

@@ -43,3 +43,12 @@ install_packages() {
   fi
   rm -f "$log"
 }
+
+# build_jobs: compilers at a time, as many as there are cores and three gigabytes of free memory for
+# each: files are compiled together.
+build_jobs() {
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable:/ { print int($2 / 3000000) }' /proc/meminfo)
+  [ "$memory" -ge 1 ] || memory=1
+  if [ "$memory" -lt "$cores" ]; then echo "$memory"; else echo "$cores"; fi
+}

@@ -37,7 +37,7 @@ if [ "${1:-}" = "--long" ]; then
   if [ "$2" != fuzz ]; then  # which builds what it needs, with another compiler
     stage "build (release)"
     cmake --preset release >/dev/null
-    cmake --build --preset release --target recald recald-sim
+    cmake --build --preset release --target recald recald-sim --parallel "$(build_jobs)"
   fi
   stage "$2"
   sh "$study" "$root/.build/release"
@@ -53,7 +53,7 @@ instrumented() {
   shift
   stage "$preset"
   cmake --preset "$preset" >/dev/null
-  cmake --build --preset "$preset" --target ingestion_tests
+  cmake --build --preset "$preset" --target ingestion_tests --parallel "$(build_jobs)"
   # All 300 kills happen below; under a sanitizer each takes ten times as long.
   RECALD_KILLS=40 ctest --preset "$preset" -j 2 "$@" || failed="$failed $preset"
 }
@@ -68,7 +68,7 @@ fi
 
 stage "build (dev: optimised, assertions on, warnings are errors)"
 cmake --preset dev >/dev/null
-cmake --build --preset dev
+cmake --build --preset dev --parallel "$(build_jobs)"
 stage ""
 echo "--- tests, after $(($(date +%s) - begin)) s for all of the above"
 # Two at a time: several tests use threads of their own. Behind everything else: the daemon calibrates
