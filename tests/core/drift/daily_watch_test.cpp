@@ -56,8 +56,8 @@ std::vector<WatchedDay> world(std::uint64_t seed, double step = 0.0, int from = 
   return all;
 }
 
-std::vector<DailyAlarm> alarms_of(std::vector<WatchedDay> days, const DailyWatchOptions& options) {
-  DailyWatch watch{std::move(days), kLearning, options};
+std::vector<DailyAlarm> alarms_of(std::vector<WatchedDay> all, const DailyWatchOptions& options) {
+  DailyWatch watch{std::move(all), kLearning, options};
   EXPECT_TRUE(watch.is_able());
   std::vector<DailyAlarm> alarms;
   for (int month = kLearning; month < kMonths; ++month) {
@@ -106,27 +106,27 @@ TEST(DailyWatch, AStepIsFoundWithinSixWeeksAndDatedToDays) {
 
 TEST(DailyWatch, AFewOddDaysAreNoChange) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    auto days = world(seed);
-    for (std::size_t i = 800; i < 804; ++i) days[i].measured_kW *= 0.2;  // a storm
+    auto all = world(seed);
+    for (std::size_t i = 800; i < 804; ++i) all[i].measured_kW *= 0.2;  // a storm
     const auto without = alarms_of(world(seed), {});
-    EXPECT_EQ(alarms_of(std::move(days), {}).size(), without.size()) << seed;
+    EXPECT_EQ(alarms_of(std::move(all), {}).size(), without.size()) << seed;
   }
 }
 
 TEST(DailyWatch, DaysWithoutReadingsAreNoDays) {
-  auto days = world(3, 0.3, 800);
-  for (std::size_t i = 0; i < days.size(); i += 3) {
-    days[i].measured_kW = std::numeric_limits<double>::quiet_NaN();
+  auto all = world(3, 0.3, 800);
+  for (std::size_t i = 0; i < all.size(); i += 3) {
+    all[i].measured_kW = std::numeric_limits<double>::quiet_NaN();
   }
-  EXPECT_EQ(alarms_of(std::move(days), {}).size(), 1U);
+  EXPECT_EQ(alarms_of(std::move(all), {}).size(), 1U);
 }
 
 TEST(DailyWatch, TooLittleToLearnFromIsNotWatched) {
-  auto days = world(4);
+  auto all = world(4);
   for (std::size_t i = 100; i < 366; ++i) {
-    days[i].measured_kW = std::numeric_limits<double>::quiet_NaN();
+    all[i].measured_kW = std::numeric_limits<double>::quiet_NaN();
   }
-  DailyWatch watch{std::move(days), kLearning, {}};
+  DailyWatch watch{std::move(all), kLearning, {}};
   EXPECT_FALSE(watch.is_able());
   EXPECT_EQ(watch.look(kLearning), std::nullopt);
 }
