@@ -18,11 +18,14 @@ std::vector<double> sorted(const Eigen::VectorXd& draws) {
   return values;
 }
 
-/// How far the mean of draws scatters from sample to sample of months, for a normal posterior; as
-/// many draws have an error of their own.
+/// How far the mean of draws scatters from sample to sample of months, for a normal posterior. So
+/// many draws have an error of their own, and know what was learnt to an error only: where that is
+/// little it must not pass for nothing.
 double scatter_of_mean(double variance, double prior_variance, Eigen::Index draws) {
-  return variance * std::max(0.0, 1.0 - variance / prior_variance) +
-         variance / static_cast<double>(draws);
+  const auto count = static_cast<double>(draws);
+  const double left = variance / prior_variance;
+  const double learnt = std::max(0.0, 1.0 - left) + left * std::sqrt(2.0 / (count - 1.0));
+  return variance * learnt + variance / count;
 }
 
 /// The area between two empirical distribution functions.

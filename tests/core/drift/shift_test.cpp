@@ -48,7 +48,7 @@ TEST(Shift, OfNothingIsNothing) {
 }
 
 // A truth from the prior, two samples of months that say little or much of it, their posteriors.
-TEST(Shift, WhereNothingMovesOneInTwentyIsBelowFivePercent) {
+TEST(Shift, WhereNothingMovesOneInTwentyAtMostIsBelowFivePercent) {
   constexpr int kWorlds = 2'000;
   for (const double error_sd : {0.3, 1.0, 3.0}) {
     Rng rng{5};
@@ -66,8 +66,9 @@ TEST(Shift, WhereNothingMovesOneInTwentyIsBelowFivePercent) {
       small += shift.pvalue < 0.05;
       beyond_naive += std::abs(shift.standardised) > 1.96;
     }
-    // 100 expected, four standard errors of the binomial.
-    EXPECT_NEAR(small, 0.05 * kWorlds, 39) << error_sd;
+    // 100 expected at most, four standard errors of the binomial.
+    EXPECT_LE(small, 0.05 * kWorlds + 39) << error_sd;
+    EXPECT_GE(small, 20) << error_sd;
     EXPECT_LE(beyond_naive, small) << error_sd;  // what the sds alone would say is modest
   }
 }
