@@ -211,6 +211,7 @@ Json meter_changes_json(const SiteDrift& drift) {
     list.push_back({{"meter", change.meter},
                     {"kind", is_unit ? "unit" : "readings"},
                     {"since", change.since},
+                    {"seen", change.seen},
                     {"factor", number(change.factor)},
                     {"sentence", change.sentence}});
   }

@@ -28,6 +28,7 @@ using Proceed = std::function<bool()>;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPathDraws = 512;
 constexpr int kYear = 12;
+constexpr int kSameTime = 2;  // months between a change and readings that are lost
 
 const std::vector<drift::Window>& windows() {
   static const std::vector<drift::Window> all{{.name = "expanding"},
@@ -290,6 +291,32 @@ class Inquiries {
             .until = until};
   }
 
+  /// Whether the alarm's meter began to lose readings about then, as far as is known after `month`.
+  [[nodiscard]] bool has_lost_readings(const drift::Alarm& alarm, int month) const {
+    const auto& meter = drift_.outputs[static_cast<std::size_t>(alarm.output)].meter;
+    return std::ranges::any_of(drift_.meter_changes, [&](const MeterChange& change) {
+      if (change.kind != MeterChange::Kind::readings || change.meter != meter) return false;
+      const auto since = std::ranges::lower_bound(drift_.months, change.since);
+      const auto off = (since - drift_.months.begin()) - alarm.since;
+      return change.seen <= drift_.month_name(month) && std::abs(off) <= kSameTime;
+    });
+  }
+
+  /// A meter that loses readings explains whatever it alone shows, even or uneven.
+  static void blame_meter(ExplainedAlarm& alarm) {
+    const auto of_output = [&](drift::CauseKind kind) {
+      return std::ranges::find_if(alarm.causes, [&](const drift::Cause& cause) {
+        return cause.kind == kind && cause.index == alarm.alarm.output;
+      });
+    };
+    const auto meter = of_output(drift::CauseKind::meter);
+    const auto alone = of_output(drift::CauseKind::unknown);
+    if (meter == alarm.causes.end() || alone == alarm.causes.end()) return;
+    meter->probability += alone->probability;
+    alone->probability = 0.0;
+    std::ranges::stable_sort(alarm.causes, std::ranges::greater{}, &drift::Cause::probability);
+  }
+
   /// @return whether nothing more is to be asked.
   Result<bool> weigh(const Open& open, int month) {
     ExplainedAlarm& alarm = drift_.alarms[open.alarm];
@@ -297,6 +324,7 @@ class Inquiries {
         drift::weigh_causes(case_of(alarm.alarm, month), open.before, options_.causes, seed_);
     if (!causes) return tl::unexpected(causes.error());
     alarm.causes = std::move(*causes);
+    if (has_lost_readings(alarm.alarm, month)) blame_meter(alarm);
     alarm.explained_until = month;
     const int months = month - alarm.alarm.since + 1;
     const drift::Cause& first = alarm.causes.front();
@@ -415,8 +443,8 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
     const std::string& id = record.meter.id;
     for (const metering::LevelChange& change : record.level_changes) {
       if (change.kind != metering::LevelChangeKind::scale) continue;
-      changes.push_back({MeterChange::Kind::unit, id, metering::to_string(change.since),
-                         change.factor, change.words});
+      const std::string since = metering::to_string(change.since);
+      changes.push_back({MeterChange::Kind::unit, id, since, since, change.factor, change.words});
     }
     const auto begin = std::ranges::find(record.figures, first, [](const auto& figure) {
       return metering::to_string(figure.month);
@@ -425,7 +453,8 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
                                                    static_cast<std::size_t>(learning_months));
     if (!lost) continue;
     changes.push_back({MeterChange::Kind::readings, id, metering::to_string(lost->since),
-                       lost->share_since / lost->share_before, lost_words(id, *lost)});
+                       metering::to_string(lost->seen), lost->share_since / lost->share_before,
+                       lost_words(id, *lost)});
   }
   return changes;
 }

@@ -74,6 +74,7 @@ struct MeterChange {
   Kind kind;
   std::string meter;
   std::string since;  ///< "2018-06"
+  std::string seen;   ///< The month that settled it; with a unit its first one.
   double factor;      ///< Of its figures, or of the time with usable readings.
   std::string sentence;
 };
