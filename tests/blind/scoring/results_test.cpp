@@ -7,7 +7,7 @@
 #include "tests/blind/scoring/result_log.hpp"
 #include "tests/blind/scoring/seal.hpp"
 
-namespace recald::blind {
+namespace recald::blind::results_test {
 namespace {
 
 using nlohmann::json;
@@ -312,4 +312,4 @@ TEST(ResultLogs, APopulationWithoutCasesIsNamed) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::results_test
