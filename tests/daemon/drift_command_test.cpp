@@ -137,7 +137,8 @@ TEST_F(DriftCommand, AMonthThatIsRevisedChangesNothingThatWasSaidBefore) {
                            "64", "--threads", "2"});
     EXPECT_EQ(done.exit_code, kSuccess) << done.err;
     std::map<std::string, std::map<std::string, Json>> months;
-    for (const Json& output : result(out)["outputs"]) {
+    const Json json = result(out);
+    for (const Json& output : json["outputs"]) {
       for (const Json& month : output["months"]) months[month["month"]][output["name"]] = month;
     }
     return months;
