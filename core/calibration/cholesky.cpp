@@ -56,7 +56,8 @@ void invert_factor(const Eigen::MatrixXd& factor, Eigen::MatrixXd& scratch,
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = j; i < n; ++i) {
-      inverse(i, j) = scratch.col(i).tail(n - i).dot(scratch.col(j).tail(n - i));
+      inverse(i, j) = Eigen::VectorXd::Map(&scratch(i, i), n - i)
+                          .dot(Eigen::VectorXd::Map(&scratch(i, j), n - i));
     }
   }
 }

@@ -12,6 +12,30 @@ namespace {
 
 constexpr double log_two_pi = 1.8378770664093454836;
 
+constexpr int columns_of_strip = 8;
+
+using SparseColumn = Eigen::SparseMatrix<double>::InnerIterator;
+
+/// Calls `work(strip, first, count)` for all columns: strip (8 x n) has `count` of them, from
+/// `first` on, as rows, and zeros below. A point's values then lie beside each other, and what runs
+/// over the points keeps eight columns in registers. The last one, if alone, has a strip of its own
+/// (1 x n).
+template <class Work>
+void by_strips(const Eigen::MatrixXd& columns, const Work& work) {
+  Eigen::Index first = 0;
+  Eigen::Array<double, columns_of_strip, Eigen::Dynamic> strip;
+  for (; columns.cols() - first > 1; first += columns_of_strip) {
+    const auto count = std::min<Eigen::Index>(columns_of_strip, columns.cols() - first);
+    strip.setZero(columns_of_strip, columns.rows());
+    strip.topRows(count) = columns.middleCols(first, count).transpose();
+    work(strip, first, count);
+  }
+  if (columns.cols() - first == 1) {
+    Eigen::Array<double, 1, Eigen::Dynamic> single = columns.col(first).transpose();
+    work(single, first, Eigen::Index{1});
+  }
+}
+
 constexpr double structure_prior_share = 0.1;  // sd of the half-normal prior of s, likewise
 constexpr double correlation_min_h = 12.0;
 constexpr double correlation_max_h = 480.0;
@@ -174,82 +198,118 @@ void BlockNoise::factor_filter(const BlockDesign& design) {
   }
 }
 
+struct BlockNoise::Whitened {
+  Eigen::MatrixXd columns;      ///< W X (n x k)
+  Eigen::MatrixXd in_patterns;  ///< tau Z' W' W X (p x k)
+};
+
 void BlockNoise::factor_patterns() {
-  // A few columns at a time stay in the cache; all of them at once take twice as long.
-  constexpr Eigen::Index columns_at_once = 8;
   const Eigen::Index p = patterns_->cols();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(p, p);
-  for (Eigen::Index j = 0; j < p; j += columns_at_once) {
-    const Eigen::Index count = std::min(columns_at_once, p - j);
+  for (Eigen::Index j = 0; j < p; j += columns_of_strip) {
+    const Eigen::Index count = std::min<Eigen::Index>(columns_of_strip, p - j);
     const Eigen::MatrixXd some = patterns_->middleCols(j, count);
-    matrix.middleCols(j, count) += level_.pattern_sd * in_patterns(whiten_transposed(whiten(some)));
+    matrix.middleCols(j, count) += level_.pattern_sd * whiten_and_gather(some).in_patterns;
   }
   // I plus a positive semi-definite matrix: it has a factor whatever the data.
   pattern_factor_.compute(matrix);
   log_determinant_ += 2.0 * pattern_factor_.matrixLLT().diagonal().array().log().sum();
 }
 
+template <class Strip>
+void BlockNoise::whiten_strip(Strip& strip) const {
+  constexpr int width = Strip::RowsAtCompileTime;
+  Eigen::Array<double, width, 1> prediction = Eigen::Array<double, width, 1>::Zero();
+  for (Eigen::Index i = 0; i < strip.cols(); ++i) {
+    const Eigen::Array<double, width, 1> read = strip.col(i);
+    strip.col(i) = (read - prediction) * weight_[i];
+    prediction = keep_[i] * prediction + take_[i] * read;
+  }
+}
+
+// `whiten_strip` read backwards: `pull` is the derivative with respect to the next prediction.
+template <class Strip>
+void BlockNoise::whiten_strip_transposed(Strip& strip) const {
+  constexpr int width = Strip::RowsAtCompileTime;
+  Eigen::Array<double, width, 1> pull = Eigen::Array<double, width, 1>::Zero();
+  for (Eigen::Index i = strip.cols() - 1; i >= 0; --i) {
+    const Eigen::Array<double, width, 1> direct = strip.col(i) * weight_[i];
+    strip.col(i) = direct + take_[i] * pull;
+    pull = keep_[i] * pull - direct;
+  }
+}
+
+/// tau Z' X (p x k) of a strip that may have more than k columns.
+template <class Strip>
+void BlockNoise::gather(const Strip& strip, Eigen::Ref<Eigen::MatrixXd> products) const {
+  constexpr int width = Strip::RowsAtCompileTime;
+  for (Eigen::Index j = 0; j < patterns_->cols(); ++j) {
+    Eigen::Array<double, width, 1> sum = Eigen::Array<double, width, 1>::Zero();
+    for (SparseColumn entry(*patterns_, j); entry; ++entry) {
+      sum += entry.value() * strip.col(entry.index());
+    }
+    products.row(j) = level_.pattern_sd * sum.head(products.cols()).matrix().transpose();
+  }
+}
+
+BlockNoise::Whitened BlockNoise::whiten_and_gather(const Eigen::MatrixXd& columns) const {
+  assert(columns.rows() == points());
+  Whitened result{Eigen::MatrixXd(points(), columns.cols()),
+                  Eigen::MatrixXd(patterns_->cols(), columns.cols())};
+  by_strips(columns, [&](auto& strip, Eigen::Index first, Eigen::Index count) {
+    whiten_strip(strip);
+    result.columns.middleCols(first, count) = strip.topRows(count).matrix().transpose();
+    whiten_strip_transposed(strip);
+    gather(strip, result.in_patterns.middleCols(first, count));
+  });
+  return result;
+}
+
+Eigen::MatrixXd BlockNoise::weigh(const Eigen::MatrixXd& columns) const {
+  assert(columns.rows() == points());
+  Eigen::MatrixXd weighed(columns.rows(), columns.cols());
+  by_strips(columns, [&](auto& strip, Eigen::Index first, Eigen::Index count) {
+    whiten_strip(strip);
+    whiten_strip_transposed(strip);
+    weighed.middleCols(first, count) = strip.topRows(count).matrix().transpose();
+  });
+  return weighed;
+}
+
 Eigen::MatrixXd BlockNoise::whiten(const Eigen::MatrixXd& columns) const {
   assert(columns.rows() == points());
   Eigen::MatrixXd whitened(columns.rows(), columns.cols());
-  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    double prediction = 0.0;
-    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
-      whitened(i, j) = (columns(i, j) - prediction) * weight_[i];
-      prediction = keep_[i] * prediction + take_[i] * columns(i, j);
-    }
-  }
+  by_strips(columns, [&](auto& strip, Eigen::Index first, Eigen::Index count) {
+    whiten_strip(strip);
+    whitened.middleCols(first, count) = strip.topRows(count).matrix().transpose();
+  });
   return whitened;
 }
 
-// `whiten` read backwards: `pull` is the derivative with respect to the next prediction.
-Eigen::MatrixXd BlockNoise::whiten_transposed(const Eigen::MatrixXd& columns) const {
-  Eigen::MatrixXd product(columns.rows(), columns.cols());
-  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    double pull = 0.0;
-    for (Eigen::Index i = columns.rows() - 1; i >= 0; --i) {
-      const double direct = columns(i, j) * weight_[i];
-      product(i, j) = direct + take_[i] * pull;
-      pull = keep_[i] * pull - direct;
-    }
-  }
-  return product;
-}
-
-// By rows, so that each entry of Z meets all columns at once.
-Eigen::MatrixXd BlockNoise::in_patterns(const Eigen::MatrixXd& columns) const {
-  using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const ByRows rows = columns;
-  ByRows products = patterns_->transpose() * rows;
-  return level_.pattern_sd * products;
-}
-
 Eigen::MatrixXd BlockNoise::gram(const Eigen::MatrixXd& columns) const {
-  const Eigen::MatrixXd whitened = whiten(columns);
-  const Eigen::MatrixXd explained =
-      pattern_factor_.matrixL().solve(in_patterns(whiten_transposed(whitened)));
+  const Whitened whitened = whiten_and_gather(columns);
+  const Eigen::MatrixXd explained = pattern_factor_.matrixL().solve(whitened.in_patterns);
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  products.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose());
+  products.selfadjointView<Eigen::Lower>().rankUpdate(whitened.columns.transpose());
   products.selfadjointView<Eigen::Lower>().rankUpdate(explained.transpose(), -1.0);
   return products.selfadjointView<Eigen::Lower>();
 }
 
 Eigen::VectorXd BlockNoise::squared_norms(const Eigen::MatrixXd& columns) const {
-  const Eigen::MatrixXd whitened = whiten(columns);
-  const Eigen::MatrixXd explained =
-      pattern_factor_.matrixL().solve(in_patterns(whiten_transposed(whitened)));
-  return (whitened.colwise().squaredNorm() - explained.colwise().squaredNorm()).transpose();
+  const Whitened whitened = whiten_and_gather(columns);
+  const Eigen::MatrixXd explained = pattern_factor_.matrixL().solve(whitened.in_patterns);
+  return (whitened.columns.colwise().squaredNorm() - explained.colwise().squaredNorm()).transpose();
 }
 
 Eigen::MatrixXd BlockNoise::solve(const Eigen::MatrixXd& columns) const {
-  const Eigen::MatrixXd weighted = whiten_transposed(whiten(columns));
-  const Eigen::MatrixXd pattern = pattern_factor_.solve(in_patterns(weighted));
-  return weighted - whiten_transposed(whiten(level_.pattern_sd * (*patterns_ * pattern)));
+  const Eigen::MatrixXd weighed = weigh(columns);
+  const Eigen::MatrixXd pattern =
+      pattern_factor_.solve(level_.pattern_sd * (patterns_->transpose() * weighed));
+  return weighed - weigh(level_.pattern_sd * (*patterns_ * pattern));
 }
 
 Eigen::VectorXd BlockNoise::pattern_mean(const Eigen::VectorXd& residual) const {
-  const Eigen::VectorXd weighted = whiten_transposed(whiten(residual));
-  return level_.pattern_sd * pattern_factor_.solve(in_patterns(weighted));
+  return level_.pattern_sd * pattern_factor_.solve(whiten_and_gather(residual).in_patterns);
 }
 
 double BlockNoise::marginal_log_density(const Eigen::VectorXd& residual) const {
@@ -290,8 +350,7 @@ Eigen::VectorXd BlockNoise::inverse_diagonal() const {
     diagonal[i] = own + take_[i] * take_[i] * later;
     later = own + keep_[i] * keep_[i] * later;
   }
-  const Eigen::MatrixXd weighted =
-      level_.pattern_sd * whiten_transposed(whiten(Eigen::MatrixXd(*patterns_)));
+  const Eigen::MatrixXd weighted = level_.pattern_sd * weigh(Eigen::MatrixXd(*patterns_));
   const Eigen::MatrixXd explained =
       pattern_factor_.matrixL().solve(Eigen::MatrixXd(weighted.transpose()));
   return diagonal - explained.colwise().squaredNorm().transpose();

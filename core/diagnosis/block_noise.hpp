@@ -116,10 +116,17 @@ class BlockNoise {
  private:
   void factor_filter(const BlockDesign& design);
   void factor_patterns();
-  /// W' E (n x k).
-  [[nodiscard]] Eigen::MatrixXd whiten_transposed(const Eigen::MatrixXd& columns) const;
-  /// tau Z' X (p x k).
-  [[nodiscard]] Eigen::MatrixXd in_patterns(const Eigen::MatrixXd& columns) const;
+  struct Whitened;
+  /// W X, and what of W' W X falls into the patterns.
+  [[nodiscard]] Whitened whiten_and_gather(const Eigen::MatrixXd& columns) const;
+  /// W' W X (n x k).
+  [[nodiscard]] Eigen::MatrixXd weigh(const Eigen::MatrixXd& columns) const;
+  template <class Strip>
+  void whiten_strip(Strip& strip) const;
+  template <class Strip>
+  void whiten_strip_transposed(Strip& strip) const;
+  template <class Strip>
+  void gather(const Strip& strip, Eigen::Ref<Eigen::MatrixXd> products) const;
   /// Diagonal of Sigma^-1 (n).
   [[nodiscard]] Eigen::VectorXd inverse_diagonal() const;
 

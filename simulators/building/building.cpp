@@ -283,11 +283,11 @@ void Building::advance_zones() {
   for (std::size_t zone = 0; zone < zone_loads_.size(); ++zone) {
     Zone& room = envelope_.zones()[zone];
     const double before_J = room.stored_J();
-    heat_imbalance_J_ += before_J;
     const ZoneHeat heat = room.advance(zone_loads_[zone], step_s_);
-    heat_imbalance_J_ += heat.gains_J + heat.supply_J + heat.infiltration_J - room.stored_J();
-    zone_imbalance_J_[zone] = heat.gains_J + heat.supply_J + heat.infiltration_J + heat.exchange_J +
-                              heat.constructions_J + before_J - room.stored_J();
+    const double kept_J =
+        heat.gains_J + heat.supply_J + heat.infiltration_J + before_J - room.stored_J();
+    heat_imbalance_J_ += kept_J;
+    zone_imbalance_J_[zone] = kept_J + heat.exchange_J + heat.constructions_J;
   }
   heat_imbalance_J_ += envelope_.exposed_heat_W() * step_s_;
 }
