@@ -1,5 +1,5 @@
 #!/bin/sh
-# All twelve cases of the smoke population made, diagnosed and scored; tests/run.sh diagnoses four.
+# All twelve cases of the smoke population made, diagnosed and scored; tests/run.sh diagnoses two.
 # Some five minutes on two cores. Argument: the build folder.
 set -eu
 cmake --build "$1" --target blind_population_test
