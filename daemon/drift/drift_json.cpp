@@ -218,7 +218,7 @@ Json meter_changes_json(const SiteDrift& drift) {
   return list;
 }
 
-/// The newest month of an output, and how near its watch is to an alarm.
+/// The newest month of an output, and how near the watches of its months and days are to an alarm.
 Json newest_json(const SiteDrift& drift, std::size_t k) {
   const drift::WatchState& state = drift.outputs[k].state;
   Json json = {{"output", drift.outputs[k].name},
@@ -226,7 +226,8 @@ Json newest_json(const SiteDrift& drift, std::size_t k) {
                {"pvalue", nullptr},
                {"log_evidence", number(state.log_evidence)},
                {"log_threshold", number(state.log_threshold)},
-               {"change_within_year", number(state.change_within_year)}};
+               {"change_within_year", number(state.change_within_year)},
+               {"daily", daily_json(drift.outputs[k].daily)}};
   for (const drift::PrequentialMonth& month : drift.record) {
     if (!month.outputs[k]) continue;
     const double pit = month.outputs[k]->surprise.pit;

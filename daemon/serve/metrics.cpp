@@ -128,8 +128,36 @@ double rhat_max(const Json& result) {
   return largest;
 }
 
+/// @return log evidence as a share of the one that raises an alarm; NaN where nothing is watched.
+double evidence_ratio(const Json& watch) {
+  if (!watch.is_object()) return std::nan("");
+  const auto evidence = watch.find("log_evidence");
+  const auto threshold = watch.find("log_threshold");
+  if (evidence == watch.end() || threshold == watch.end()) return std::nan("");
+  if (!evidence->is_number() || !threshold->is_number()) return std::nan("");
+  return evidence->get<double>() / threshold->get<double>();
+}
+
+/// Climbs before an alarm does.
+void write_evidence(PrometheusText& text, const Json& result, const std::string& model) {
+  text.begin("recald_drift_evidence_ratio", "gauge",
+             "Log evidence that something has changed, by months and by days; 1 raises an alarm.");
+  for (const Json& one : result["drift"]) {
+    if (!one.is_object() || !one.contains("output") || !one["output"].is_string()) continue;
+    const auto sample = [&](const Json& watch, const char* grain) {
+      const double ratio = evidence_ratio(watch);
+      if (!std::isfinite(ratio)) return;
+      const std::string output = one["output"].get<std::string>();
+      text.sample(ratio, {{"model", model}, {"output", output}, {"grain", grain}});
+    };
+    sample(one, "month");
+    if (one.contains("daily")) sample(one["daily"], "day");
+  }
+}
+
 void write_drift(PrometheusText& text, const Json& result, const std::string& model) {
   if (!result.contains("drift") || !result["drift"].is_array()) return;
+  write_evidence(text, result, model);
   text.begin("recald_drift_pvalue", "gauge",
              "How well the newest month agrees with the calibration in use; small: it drifts.");
   for (const Json& one : result["drift"]) {

@@ -1,15 +1,12 @@
 /// A year of ten meters through the store, against inserting the same rows with SQLite and nothing
 /// else.
 ///
-///   store_bench
-///
-/// Prints processor and wall seconds (targets: 10 s on disk, 2 s in memory) and the ratio to bare
-/// inserts, turn by turn so that all meet the same machine.
-#include <time.h>
+/// `ratio_to_bare` is the quotient of processor times, taken in turns so that both meet the same
+/// machine. Targets for the time of a year: 10 s on disk, 2 s in memory.
+#include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <string>
 
@@ -23,28 +20,9 @@ using metering::Instant;
 constexpr std::uint32_t kMeters = 10;
 constexpr int kDays = 365;
 constexpr int kQuarters = 96;
-constexpr int kTurns = 3;
 const Instant kStart = std::chrono::sys_days{std::chrono::year{2024} / 1 / 1};
 
-double clock_s(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-struct Times {
-  double wall_s = 1e9;
-  double processor_s = 1e9;
-};
-
-template <class Work>
-void best_of(Times& best, Work work) {
-  const double wall = clock_s(CLOCK_MONOTONIC);
-  const double processor = clock_s(CLOCK_PROCESS_CPUTIME_ID);
-  work();
-  best.wall_s = std::min(best.wall_s, clock_s(CLOCK_MONOTONIC) - wall);
-  best.processor_s = std::min(best.processor_s, clock_s(CLOCK_PROCESS_CPUTIME_ID) - processor);
-}
+double processor_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 double load_kW(int day, int quarter, std::uint32_t meter) {
   return 20.0 + meter + 0.01 * ((day * 37 + quarter * 11) % 1000);
@@ -91,27 +69,42 @@ void year(const std::filesystem::path& file, int quarters_a_commit) {
   }
 }
 
+/// A year a turn, and as many bare inserts untimed beside it.
+template <class Year>
+void against_bare(benchmark::State& state, Year year_of_turn) {
+  double bare_s = 0.0;
+  double store_s = 0.0;
+  int turn = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    const double begin = processor_s();
+    bare_inserts();
+    bare_s += processor_s() - begin;
+    state.ResumeTiming();
+    const double before = processor_s();
+    year_of_turn(turn++);
+    store_s += processor_s() - before;
+  }
+  state.counters["ratio_to_bare"] = store_s / bare_s;
+}
+
+void in_memory_a_commit_a_quarter_hour(benchmark::State& state) {
+  against_bare(state, [](int) { year(":memory:", 1); });
+}
+BENCHMARK(in_memory_a_commit_a_quarter_hour)->Unit(benchmark::kSecond)->Iterations(3);
+
+void on_disk_a_commit_a_day(benchmark::State& state) {
+  std::string pattern = (std::filesystem::temp_directory_path() / "recald-store-XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr) {
+    state.SkipWithError("no temporary folder");
+    return;
+  }
+  const std::filesystem::path folder = pattern;
+  against_bare(state, [&](int turn) { year(folder / (std::to_string(turn) + ".db"), kQuarters); });
+  std::filesystem::remove_all(folder);
+}
+BENCHMARK(on_disk_a_commit_a_day)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(3);
+
 }  // namespace
 
-int main() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "recald-store-XXXXXX").string();
-  if (::mkdtemp(pattern.data()) == nullptr) return 1;
-  const std::filesystem::path folder = pattern;
-  Times bare;
-  Times memory;
-  Times disk;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    best_of(bare, bare_inserts);
-    best_of(memory, [] { year(":memory:", 1); });
-    best_of(disk, [&] { year(folder / (std::to_string(turn) + ".db"), kQuarters); });
-  }
-  std::filesystem::remove_all(folder);
-  const auto line = [&](const char* what, const Times& times) {
-    std::printf("%-34s %6.2f s, %6.2f s of processor, ratio %.2f\n", what, times.wall_s,
-                times.processor_s, times.processor_s / bare.processor_s);
-  };
-  line("bare inserts", bare);
-  line("in memory, a commit a quarter hour", memory);
-  line("on disk, a commit a day", disk);
-  return 0;
-}
+BENCHMARK_MAIN();

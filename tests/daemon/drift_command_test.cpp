@@ -107,6 +107,27 @@ TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
   EXPECT_EQ(result("again"), json);
 }
 
+// The new meter's kilowatt-hours are megawatt-hours: nothing that a building could do.
+TEST_F(DriftCommand, AMeterThatIsReplacedByOneOfAnotherUnitIsNamed) {
+  const std::string readings = read_text(folder_ / "readings.csv");
+  const std::string first = readings.substr(readings.find('\n') + 1, 4);
+  const std::string year = std::to_string(std::stoi(first) + 2);
+  write_text(folder_ / "readings.csv",
+             multiplied(readings, "chilled_water", year + "-03-10T04:00:00Z", 0.001));
+  const auto done = run({"drift", folder_ / "site.toml", "--out", folder_ / "out", "--particles",
+                         "64", "--threads", "2"});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  const Json json = result("out");
+  ASSERT_EQ(json["meter_changes"].size(), 1U) << done.out;
+  const Json& change = json["meter_changes"][0];
+  EXPECT_EQ(change["meter"], "chilled_water");
+  EXPECT_EQ(change["kind"], "unit");
+  EXPECT_THAT(done.out, HasSubstr(change["sentence"].get<std::string>()));
+  for (const Json& alarm : json["alarms"]) {
+    EXPECT_NE(alarm["causes"][0]["kind"], "parameter") << alarm["sentence"];
+  }
+}
+
 TEST_F(DriftCommand, MissingMonthsHaveNoForecastAndStopNothing) {
   const std::string readings = read_text(folder_ / "readings.csv");
   const std::string first = readings.substr(readings.find('\n') + 1, 4);

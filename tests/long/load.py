@@ -1,5 +1,6 @@
 """Load of many meters on one daemon: see load.sh. Prints figures; judges nothing."""
 import http.client
+import json
 import os
 import re
 import signal
@@ -16,7 +17,9 @@ TCP_ENDPOINTS = int(os.environ.get("ENDPOINTS", 250))
 LINES = int(os.environ.get("LINES", 8))
 UNITS = int(os.environ.get("UNITS", 4))
 REQUESTS_PER_S = float(os.environ.get("REQUESTS", 0))
-INTERVAL_S = 60  # a boundary a minute, so that ten minutes have ten of them
+CALIBRATES = os.environ.get("CALIBRATE") == "1"
+# A boundary a minute, so that ten minutes have ten of them; but years of minutes are many.
+INTERVAL_S = 300 if CALIBRATES else 60
 TICK = os.sysconf("SC_CLK_TCK")
 
 PLAN = f"""
@@ -60,12 +63,9 @@ register.current_3 = { at = 0x5B10, type = "u32" }
 """
 
 
-def site(addresses):
-    """The site file: a bus for each address, UNITS meters on each."""
-    text = f"""[site]
-id = "load"
-timezone = "UTC"
-interval = "{INTERVAL_S // 60}m"
+def site(addresses, head, rest):
+    """The site file: a bus for each address, UNITS meters on each, and what else it has."""
+    text = head + """
 [http]
 listen = "127.0.0.1:0"
 """
@@ -79,7 +79,47 @@ listen = "127.0.0.1:0"
             meters += (f'[[meter]]\nid = "b{number}-u{unit}"\nsource = "modbus"\n'
                        f'utility = "electricity"\nbus = "b{number}"\nunit = {unit}\n'
                        f'map = "eight-fields.toml"\nrated_kW = 400\npoll = "10s"\n')
-    return text + meters
+    return text + meters + rest
+
+
+def building(folder, build):
+    """A building to calibrate, told in a site file of its own: its head and the rest of it.
+
+    The office of the simulators, metered until now and then no more.
+    """
+    year = time.gmtime().tm_year
+    subprocess.run([f"{build}/simulators/recald-sim", "building", "--out", folder / "building",
+                    "--seed", "1", "--start", str(year - 2), "--years", "3"],
+                   check=True, stdout=subprocess.DEVNULL)
+    now = time.strftime("%Y-%m-%dT%H:%M", time.gmtime())
+    rows = (folder / "building" / "readings.csv").read_text().splitlines(keepends=True)
+    (folder / "readings.csv").write_text("".join(rows[:1] + [row for row in rows[1:] if row < now]))
+    (folder / "building" / "weather.csv").rename(folder / "weather.csv")
+    text = (folder / "building" / "site.toml").read_text()
+    text = re.sub(r'file = "readings.csv"\nstamps = "start"', 'source = "http"', text)
+    head, rest = re.split(r"\n(?=\[weather\])", text, maxsplit=1)
+    return re.sub(r'interval = "\w+"', f'interval = "{INTERVAL_S // 60}m"', head), rest
+
+
+def calibrations(port):
+    return json.loads(fetch(f"http://127.0.0.1:{port}/api/v1/calibrations"))["calibrations"]
+
+
+class Recalibrating(threading.Thread):
+    """Asks for a calibration whenever none is under way."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.port = port
+        self.goes_on = True
+
+    def run(self):
+        while self.goes_on:
+            if not any(job["state"] in ("waiting", "running") for job in calibrations(self.port)):
+                urllib.request.urlopen(urllib.request.Request(
+                    f"http://127.0.0.1:{self.port}/api/v1/calibrations", data=b"{}",
+                    headers={"Content-Type": "application/json"}), timeout=30).read()
+            time.sleep(1)
 
 
 def wait_for(path, pattern, process, seconds=60):
@@ -193,7 +233,14 @@ def main(build, minutes):
         if not wait_for(said_by_sim, "ready: ", sim):
             sys.exit(f"the simulated devices did not start: {said_by_sim.read_text()}")
         addresses = re.findall(r"listening on (\S+): ", said_by_sim.read_text())
-        (folder / "site.toml").write_text(site(addresses))
+        head = f'[site]\nid = "load"\ntimezone = "UTC"\ninterval = "{INTERVAL_S // 60}m"\n'
+        rest = ""
+        if CALIBRATES:
+            head, rest = building(folder, build)
+        (folder / "site.toml").write_text(site(addresses, head, rest))
+        if CALIBRATES:
+            subprocess.run([f"{build}/daemon/recald", "import", folder / "site.toml",
+                            folder / "readings.csv", "--reason", "load"], check=True)
         with open(said_by_daemon, "w") as out:
             daemon = subprocess.Popen([f"{build}/daemon/recald", "run", folder / "site.toml"],
                                       stdout=out, stderr=subprocess.STDOUT)
@@ -210,6 +257,9 @@ def main(build, minutes):
         asking = Asking(int(listening.group(1))) if listening and REQUESTS_PER_S else None
         if asking:
             asking.start()
+        recalibrating = Recalibrating(listening.group(1)) if listening and CALIBRATES else None
+        if recalibrating:
+            recalibrating.start()
         while time.time() < begin + 60 * minutes:
             time.sleep(5)
             if daemon.poll() is not None:
@@ -220,6 +270,11 @@ def main(build, minutes):
             asking.goes_on = False
             asking.join()
             asking.print_figures(elapsed_s)
+        if recalibrating:
+            recalibrating.goes_on = False
+            recalibrating.join()
+            states = [job["state"] for job in calibrations(listening.group(1))]
+            print("calibrations:", {state: states.count(state) for state in set(states)})
         last = int(time.time() // INTERVAL_S) * INTERVAL_S
         print(f"daemon: {100 * (cpu_s(daemon.pid) - begin_s) / elapsed_s:.1f} % of a core, "
               f"resident {resident[-1]:.1f} MiB at the end, "

@@ -98,6 +98,23 @@ TEST_F(TlsTest, AnotherCertificateIsNot) {
   EXPECT_FALSE(get(url_of(server.port(), true)).has_value());  // nor does the system know it
 }
 
+// Certificates end and are renewed by others; nobody restarts a gateway for it.
+TEST_F(TlsTest, WhoComesAfterARenewalGetsTheNewCertificate) {
+  RunningServer server{say_path, {.tls = files_}};
+  const auto renewed = write_self_signed(folder_.path(), "renewed");
+  const auto answers = [&](const http::TlsFiles& trusted) {
+    return get(url_of(server.port(), true), {.trusted_certificate = trusted.certificate})
+        .has_value();
+  };
+  EXPECT_TRUE(answers(files_));
+  EXPECT_FALSE(answers(renewed));
+  auto tls = read_tls(renewed);
+  ASSERT_TRUE(tls.has_value()) << tls.error().message;
+  server.on_loop([&](Server& running) { running.set_tls(std::move(*tls)); });
+  EXPECT_TRUE(answers(renewed));
+  EXPECT_FALSE(answers(files_));
+}
+
 TEST_F(TlsTest, RefusalsArriveToo) {
   RunningServer server{say_path, {.token = "0123456789abcdef", .tls = files_}};
   const auto response =

@@ -58,6 +58,21 @@ TEST_F(ServerTest, RequestsMayComeTogether) {
   EXPECT_THAT(client.answer(), EndsWith("\r\n\r\n/2|"));
 }
 
+TEST_F(ServerTest, EachMethodArrivesAsItself) {
+  RunningServer server{[](const Request& request) -> Response {
+    return {.content_type = "text/plain", .body = std::to_string(static_cast<int>(request.method))};
+  }};
+  const auto arrived_as = [&](const std::string& method) {
+    RawClient client{server.port()};
+    client.send(method + " /jobs/7 HTTP/1.1\r\nHost: a\r\n\r\n");
+    const std::string answer = client.answer();
+    return std::stoi(answer.substr(answer.rfind('\n') + 1));
+  };
+  EXPECT_EQ(arrived_as("GET"), static_cast<int>(Method::get));
+  EXPECT_EQ(arrived_as("DELETE"), static_cast<int>(Method::remove));
+  EXPECT_EQ(arrived_as("PUT"), static_cast<int>(Method::other));
+}
+
 TEST_F(ServerTest, AHeadIsAnswerWithoutBody) {
   RunningServer server{echo()};
   RawClient client{server.port()};

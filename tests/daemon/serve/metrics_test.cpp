@@ -108,11 +108,18 @@ TEST_F(Metrics, TheCalibrationInUse) {
                              .accepted = true,
                              .result = R"({"parameters":[{"rhat":1.01},{"rhat":null}],
                                  "hyperparameters":[{"rhat":1.02}],
-                                 "drift":[{"output":"main_daily_kWh","pvalue":0.25}]})"}));
+                                 "drift":[{"output":"main_daily_kWh","pvalue":0.25,
+                                 "log_evidence":1.5,"log_threshold":6.0,
+                                 "daily":{"log_evidence":-1.0,"log_threshold":8.0}},
+                                 {"output":"old","pvalue":0.5,"daily":null}]})"}));
   const Exposition seen = scrape();
   EXPECT_EQ(seen.sample("recald_calibration_age_seconds{model=\"\"}"), 3600);
   EXPECT_EQ(seen.sample("recald_calibration_rhat_max{model=\"\"}"), 1.02);
   EXPECT_EQ(seen.sample("recald_drift_pvalue{model=\"\",output=\"main_daily_kWh\"}"), 0.25);
+  const std::string ratio = "recald_drift_evidence_ratio{model=\"\",output=\"";
+  EXPECT_EQ(seen.sample(ratio + "main_daily_kWh\",grain=\"month\"}"), 0.25);
+  EXPECT_EQ(seen.sample(ratio + "main_daily_kWh\",grain=\"day\"}"), -0.125);
+  EXPECT_EQ(seen.count_with("output=\"old\""), 1);  // a p-value alone
 }
 
 TEST_F(Metrics, GoOnWithoutTheStore) {
