@@ -28,7 +28,8 @@ using Proceed = std::function<bool()>;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPathDraws = 512;
 constexpr int kYear = 12;
-constexpr int kSameTime = 2;  // months between a change and readings that are lost
+constexpr int kSameTime = 2;  // months between a change and what is seen of a meter
+constexpr int kMonthsToKnowAUnit = 6;
 
 const std::vector<drift::Window>& windows() {
   static const std::vector<drift::Window> all{{.name = "expanding"},
@@ -212,6 +213,15 @@ int began_at(const SiteDrift& drift) {
   return month;
 }
 
+/// Days that are so far off what was expected may be in another unit, which takes months to tell
+/// from a plant that stands still.
+bool could_be_a_unit(const drift::Alarm& alarm) {
+  constexpr double least_factor = 8.0;
+  if (!alarm.days) return false;
+  const double ratio = 1.0 + alarm.days->excess;
+  return ratio >= least_factor || ratio <= 1.0 / least_factor;
+}
+
 /// Alarms of a record, from the month that raises one until it is known what it comes from.
 class Inquiries {
  public:
@@ -291,19 +301,21 @@ class Inquiries {
             .until = until};
   }
 
-  /// Whether the alarm's meter began to lose readings about then, as far as is known after `month`.
-  [[nodiscard]] bool has_lost_readings(const drift::Alarm& alarm, int month) const {
+  /// That the alarm's meter began to lose readings or changed its unit about then, as far as is
+  /// known after `month`; null: nothing is known.
+  [[nodiscard]] const MeterChange* change_of_meter(const drift::Alarm& alarm, int month) const {
     const auto& meter = drift_.outputs[static_cast<std::size_t>(alarm.output)].meter;
-    return std::ranges::any_of(drift_.meter_changes, [&](const MeterChange& change) {
-      if (change.kind != MeterChange::Kind::readings || change.meter != meter) return false;
+    const auto found = std::ranges::find_if(drift_.meter_changes, [&](const MeterChange& change) {
+      if (change.meter != meter) return false;
       const auto since = std::ranges::lower_bound(drift_.months, change.since);
       const auto off = (since - drift_.months.begin()) - alarm.since;
       return change.seen <= drift_.month_name(month) && std::abs(off) <= kSameTime;
     });
+    return found == drift_.meter_changes.end() ? nullptr : &*found;
   }
 
-  /// A meter that loses readings explains whatever it alone shows, even or uneven.
-  static void blame_meter(ExplainedAlarm& alarm) {
+  /// A meter that is known to have changed explains whatever it alone shows, even or uneven.
+  static void blame_meter(ExplainedAlarm& alarm, const MeterChange& change) {
     const auto of_output = [&](drift::CauseKind kind) {
       return std::ranges::find_if(alarm.causes, [&](const drift::Cause& cause) {
         return cause.kind == kind && cause.index == alarm.alarm.output;
@@ -314,6 +326,10 @@ class Inquiries {
     if (meter == alarm.causes.end() || alone == alarm.causes.end()) return;
     meter->probability += alone->probability;
     alone->probability = 0.0;
+    // The refit seeks no factor as far off as a unit's.
+    if (change.kind == MeterChange::Kind::unit) {
+      meter->mean = meter->q05 = meter->q95 = change.factor;
+    }
     std::ranges::stable_sort(alarm.causes, std::ranges::greater{}, &drift::Cause::probability);
   }
 
@@ -324,11 +340,15 @@ class Inquiries {
         drift::weigh_causes(case_of(alarm.alarm, month), open.before, options_.causes, seed_);
     if (!causes) return tl::unexpected(causes.error());
     alarm.causes = std::move(*causes);
-    if (has_lost_readings(alarm.alarm, month)) blame_meter(alarm);
+    const MeterChange* change = change_of_meter(alarm.alarm, month);
+    if (change) blame_meter(alarm, *change);
     alarm.explained_until = month;
     const int months = month - alarm.alarm.since + 1;
+    const int months_to_act = could_be_a_unit(alarm.alarm) && !change
+                                  ? std::max(options_.months_to_act, kMonthsToKnowAUnit)
+                                  : options_.months_to_act;
     const drift::Cause& first = alarm.causes.front();
-    if (months < options_.months_to_act || first.probability < options_.act_at) {
+    if (months < months_to_act || first.probability < options_.act_at) {
       return months >= kYear;
     }
     Result<void> done;

@@ -123,9 +123,13 @@ TEST_F(DriftCommand, AMeterThatIsReplacedByOneOfAnotherUnitIsNamed) {
   EXPECT_EQ(change["meter"], "chilled_water");
   EXPECT_EQ(change["kind"], "unit");
   EXPECT_THAT(done.out, HasSubstr(change["sentence"].get<std::string>()));
-  for (const Json& alarm : json["alarms"]) {
-    EXPECT_NE(alarm["causes"][0]["kind"], "parameter") << alarm["sentence"];
-  }
+  // Its days have noticed at once; nothing is concluded from them about the building.
+  ASSERT_EQ(json["alarms"].size(), 1U) << done.out;
+  const Json& alarm = json["alarms"][0];
+  EXPECT_EQ(alarm["days"]["since"], year + "-03-10");
+  EXPECT_EQ(alarm["causes"][0]["kind"], "meter") << alarm["sentence"];
+  EXPECT_NEAR(std::log10(alarm["causes"][0]["mean"].get<double>()), -3.0, 0.2);
+  EXPECT_EQ(alarm["consequence"], "meter_set_aside");
 }
 
 TEST_F(DriftCommand, MissingMonthsHaveNoForecastAndStopNothing) {
