@@ -73,10 +73,10 @@ cmake --preset dev -DRECALD_PART=$part >/dev/null
 cmake --build --preset dev --parallel "$(build_jobs)"
 stage ""
 echo "--- tests, after $(($(date +%s) - begin)) s for all of the above"
-# Three at a time on two cores: some tests wait, for kills and for clocks. Behind everything else: the daemon calibrates
+# Two at a time: several tests use threads of their own. Behind everything else: the daemon calibrates
 # at the lowest priority and would wait for every other test to end. ctest's own summary is the last
 # word, unless something failed before.
-nice -n 19 ctest --preset dev -j 3 || failed="$failed tests"
+nice -n 19 ctest --preset dev -j 2 || failed="$failed tests"
 [ -z "$failed" ] || {
   echo "Failed:$failed" >&2
   exit 1
