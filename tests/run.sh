@@ -63,7 +63,7 @@ if [ "${1:-}" != "--plain" ]; then
   stage "fuzz (10 s each)"
   sh "$root/tests/fuzz/run.sh" 10 || failed="$failed fuzz"
   instrumented asan
-  # What differs from the other scenarios by its dates or by what arrives late has the same threads.
+  # What differs from the other scenarios by its dates, or by what comes late or not at all, has the same threads.
   instrumented tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy"
   part=rest  # what a sanitizer has watched need not run again
 fi

@@ -85,7 +85,7 @@ listen = "127.0.0.1:0"
 def building(folder, build):
     """A building to calibrate, told in a site file of its own: its head and the rest of it.
 
-    The office of the simulators, metered until now and then no more.
+    The laboratory of the simulators, metered until now and then no more.
     """
     year = time.gmtime().tm_year
     subprocess.run([f"{build}/simulators/recald-sim", "building", "--out", folder / "building",
