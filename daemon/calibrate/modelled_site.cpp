@@ -6,9 +6,25 @@
 #include <memory>
 #include <utility>
 
+#include "daemon/calibrate/site_parts.hpp"
 #include "daemon/replay/stored_readings.hpp"
 
 namespace recald::daemon {
+namespace {
+
+/// A gateway may read a thousand meters for a model of three: only those are loaded from its store,
+/// and another one that has just been added, or that says nonsense, is none of the model's
+/// business.
+void leave_out_unmodelled_live_meters(SiteConfig& site) {
+  const auto electricity = profile_meter(site);
+  const std::string profiled = electricity ? site.meters[*electricity].meter.id : "";
+  std::erase_if(site.meters, [&](const MeterConfig& config) {
+    return config.is_stored() && !site.model->has_output(config.meter.id) &&
+           config.meter.id != profiled;
+  });
+}
+
+}  // namespace
 
 using metering::MonthRange;
 
@@ -46,6 +62,7 @@ Result<SiteRecording> record_site(const OpenSite& site, const ReplayOptions& opt
 
 Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
                                         const ChoosePeriod& choose) {
+  leave_out_unmodelled_live_meters(site.config);
   VirtualClock clock{metering::Instant{}};
   auto recorded = record_site(site, {}, clock, {});
   if (!recorded) return tl::unexpected(recorded.error());

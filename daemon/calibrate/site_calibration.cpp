@@ -241,7 +241,7 @@ Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
                                                      const Recording& recording,
                                                      const model::epc::Place& place,
                                                      const std::vector<Month>& months) {
-  const auto meter = electricity_meter(recording);
+  const auto meter = electricity_meter(site, recording);
   if (!meter) return tl::unexpected(meter.error());
   const std::vector<profile::HourlyLoad> loads = loads_of(**meter, months);
   if (is_hourly(site)) {

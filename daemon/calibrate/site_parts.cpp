@@ -53,11 +53,19 @@ SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
   return months;
 }
 
-Result<const MeterRecord*> electricity_meter(const Recording& recording) {
-  const auto found = std::ranges::find_if(recording.meters, [](const MeterRecord& record) {
-    return record.meter.utility == metering::Utility::electricity;
-  });
-  if (found != recording.meters.end()) return &*found;
+std::optional<std::size_t> profile_meter(const SiteConfig& site) {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    const metering::Meter& meter = site.meters[i].meter;
+    if (meter.utility != metering::Utility::electricity) continue;
+    if (site.model->has_output(meter.id)) return i;
+    if (!first) first = i;
+  }
+  return first;
+}
+
+Result<const MeterRecord*> electricity_meter(const SiteConfig& site, const Recording& recording) {
+  if (const auto meter = profile_meter(site)) return &recording.meters[*meter];
   return failure(ErrorCode::not_enough_data,
                  "the model takes lights and plugs from an electricity meter, and the site has "
                  "none; add a [[meter]] with utility = \"electricity\"");

@@ -29,9 +29,14 @@ struct SiteMonths {
 [[nodiscard]] SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
                                        std::vector<std::string>& warnings);
 
-/// Main electricity meter: the first one of that utility.
+/// The meter that tells lights and plugs: the first modelled one of electricity, or, where none is
+/// modelled, the site's first one. An index of the site's meters. @pre the site has a model
+[[nodiscard]] std::optional<std::size_t> profile_meter(const SiteConfig& site);
+
+/// What that meter has recorded.
 /// @return not_enough_data where the site has none.
-[[nodiscard]] Result<const MeterRecord*> electricity_meter(const Recording& recording);
+[[nodiscard]] Result<const MeterRecord*> electricity_meter(const SiteConfig& site,
+                                                           const Recording& recording);
 
 /// The recorded hours of these months, in their order.
 [[nodiscard]] std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,

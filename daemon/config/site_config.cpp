@@ -374,6 +374,10 @@ std::string_view name_of(MeterSource source) {
   return "csv";
 }
 
+bool ModelConfig::has_output(const std::string& meter_id) const {
+  return std::ranges::find(outputs, meter_id) != outputs.end();
+}
+
 std::optional<std::size_t> SiteConfig::meter_index(const std::string& meter_id) const {
   for (std::size_t i = 0; i < meters.size(); ++i) {
     if (meters[i].meter.id == meter_id) return i;

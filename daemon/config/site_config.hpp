@@ -71,6 +71,8 @@ struct ModelConfig {
   std::vector<std::string> outputs;       ///< Ids of meters.
   std::map<std::string, double> weights;  ///< By meter; absent: 1.
   std::vector<ParameterConfig> parameters;
+
+  [[nodiscard]] bool has_output(const std::string& meter_id) const;
 };
 
 struct SiteConfig {

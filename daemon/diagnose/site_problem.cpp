@@ -245,7 +245,7 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                "has {}; widen [period] or give more weather",
                                kLeastMonths, site.id, months.size()));
   }
-  const auto electricity = electricity_meter(recording);
+  const auto electricity = electricity_meter(site, recording);
   if (!electricity) return tl::unexpected(electricity.error());
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
   const diagnosis::SplitOptions split;

@@ -176,11 +176,12 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
     const auto count =
         live->for_each(config, [&](const metering::Reading& reading) { take(i, reading); });
     if (!count) return tl::unexpected(count.error());
-    if (*count == 0) {
-      return failure(ErrorCode::not_enough_data,
-                     fmt::format("the store has no reading of meter '{}' yet", config.meter.id));
-    }
     recording.readings += *count;
+  }
+  // One that was added today says nothing yet; that must not stop what the others tell.
+  if (has_stored_meters(site) && recording.readings == 0) {
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("the store has no reading of any meter of {} yet", site.id));
   }
   closer.finish();
   recorder.describe(closer, calendar);

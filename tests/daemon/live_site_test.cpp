@@ -64,6 +64,14 @@ TEST_F(LiveSite, BeforeItsFirstReadingItIsToldThatThereIsNone) {
   }
 }
 
+TEST_F(LiveSite, AStoreWithoutAnyReadingIsToldApartFromNone) {
+  write_text(folder_ / "nothing.csv", "timestamp,meter,value,unit\n");
+  run({"import", path("live.toml"), path("nothing.csv"), "--reason", "made by it"});
+  const Outcome outcome = run({"calibrate", path("live.toml")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("the store has no reading of any meter"));
+}
+
 TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {
   import_history();
   const auto calibrated = [&](const char* site) {
@@ -191,6 +199,41 @@ TEST_F(LiveSite, AJobThatIsToldToStopStops) {
   ASSERT_FALSE(outcome.has_value());
   EXPECT_EQ(outcome.error().code, ErrorCode::cancelled);
   EXPECT_LT(asked, 20);
+}
+
+// It stands before the main meter, is of electricity too, and has never been read.
+TEST_F(LiveSite, AMeterThatTheModelHasNoUseForStopsNothing) {
+  import_history();
+  const auto calibrated = [&] {
+    const Outcome outcome =
+        run({"calibrate", path("live.toml"), "--json", "--draws", "300", "--burn-in", "100"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  const json before = calibrated();
+  std::string text = read_text(folder_ / "live.toml");
+  const auto first = text.find("[[meter]]");
+  text.insert(first,
+              "[[meter]]\nid = \"tenant\"\nutility = \"electricity\"\nsource = \"modbus\"\n"
+              "bus = \"plant\"\nunit = 3\nmap = \"abb-b23\"\nrated_kW = 50\n"
+              "interval = \"1h\"\n\n");
+  write_text(folder_ / "live.toml", text);
+  const json beside = calibrated();
+  EXPECT_EQ(beside["parameters"], before["parameters"]);
+
+  const Outcome replayed = run({"replay", path("live.toml"), "--json"});
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
+  const json meters = json::parse(replayed.out)["meters"];
+  ASSERT_EQ(meters.size(), 3U);
+  EXPECT_EQ(meters[0]["meter"], "tenant");
+  EXPECT_EQ(meters[0]["months"], 0);
+  EXPECT_EQ(meters[1]["months"], 12);
+
+  write_text(folder_ / "tenant.csv",
+             "timestamp,meter,value,unit\n2021-05-05T10:00:00Z,tenant,21.5,kW\n");
+  ASSERT_EQ(
+      run({"import", path("live.toml"), path("tenant.csv"), "--reason", "read off"}).exit_code, 0);
+  EXPECT_EQ(calibrated()["data_revision"], beside["data_revision"]);
 }
 
 TEST_F(LiveSite, AJobBeforeAnyMonthHasClosedSaysSo) {

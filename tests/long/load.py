@@ -205,12 +205,12 @@ class Asking(threading.Thread):
               f"{1e3 * waits[int(0.99 * (len(waits) - 1))]:.1f} ms (99 %)")
 
 
-def print_intervals(store, first, last):
+def print_intervals(store, meters, first, last):
     """Of the slots between two boundaries, how many are stored and how many of them `ok` (0)."""
     db = sqlite3.connect(f"file:{store}?mode=ro", uri=True)
-    meters = db.execute("SELECT count(*) FROM meter").fetchone()[0]
     slots = (last - first) // INTERVAL_S
     latest = ("SELECT meter, t_start, max(revision), validity FROM interval "
+              "JOIN meter ON number = meter AND id GLOB 'b*-u*' "
               "WHERE t_start >= ? AND t_start < ? GROUP BY meter, t_start")
     counts = dict(db.execute(f"SELECT validity, count(*) FROM ({latest}) GROUP BY validity",
                              (first, last)))
@@ -286,7 +286,7 @@ def main(build, minutes):
         time.sleep(15)  # the last boundary's reads and its commit
         daemon.send_signal(signal.SIGTERM)
         print(f"daemon ended with {daemon.wait()}")
-        print_intervals(folder / "site.db", first, last)
+        print_intervals(folder / "site.db", len(addresses) * UNITS, first, last)
     finally:
         for process in (daemon, sim):
             if process and process.poll() is None:
