@@ -1,4 +1,5 @@
-/// The depot's 2021 on disk: a plain year's temperatures, heat that follows them, lights by day.
+/// The depot's 2021 on disk, or some months more: a plain year's temperatures, heat that follows
+/// them, lights by day.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +12,17 @@
 
 namespace recald::testing {
 
+inline constexpr int kDepotYear_h = 8760;
+
 /// Writes readings.csv, weather.csv and site.toml.
 inline void write_depot_year(const std::filesystem::path& folder,
-                             const std::string& site = sample_site()) {
+                             const std::string& site = sample_site(), int hours = kDepotYear_h) {
   std::string readings = "timestamp,meter,value,unit\n";
   std::string weather =
       "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2\n";
   const metering::Instant begin =
       std::chrono::sys_days{std::chrono::year{2020} / 12 / 31} + std::chrono::hours{23};
-  for (int h = 0; h < 8760; ++h) {
+  for (int h = 0; h < hours; ++h) {
     const std::string stamp = metering::to_string(begin + std::chrono::hours{h});
     const double day = h / 24.0;
     const double sun =

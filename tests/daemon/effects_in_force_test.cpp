@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "adapters/models/model_store.hpp"
 #include "command_line.hpp"
+#include "depot_versions.hpp"
 #include "depot_year.hpp"
 
 namespace recald::daemon {
@@ -16,6 +16,7 @@ using Json = nlohmann::json;
 using diagnosis::AddedEffect;
 using metering::Month;
 using recald::testing::edited;
+using recald::testing::half_missing_setback;
 using recald::testing::read_text;
 using recald::testing::sample_site;
 using recald::testing::write_text;
@@ -26,32 +27,6 @@ using testing::Outcome;
 using testing::run;
 
 constexpr const char* kShare = "night_setback_missing_missing_share";
-
-/// Known from these months to lie between 0.6 and 0.8.
-AddedEffect half_missing_setback(std::vector<Month> months_used) {
-  diagnosis::EffectParameterRecord share{.name = "missing_share",
-                                         .unit = "share of the set-back",
-                                         .prior = UniformPrior{0.0, 1.0},
-                                         .mean = 0.7,
-                                         .sd = 0.06,
-                                         .q05 = 0.61,
-                                         .q50 = 0.7,
-                                         .q95 = 0.79,
-                                         .draws = {}};
-  for (int i = 0; i < 60; ++i) share.draws.push_back(0.6 + 0.2 * ((i * 37) % 60 + 0.5) / 60.0);
-  return {.effect = "night_setback_missing",
-          .title = "Night set-back missing",
-          .meter = "",
-          .from = {},
-          .to = {},
-          .physics = "",
-          .parameters = {share},
-          .log_evidence_gain = 20.0,
-          .probability = 0.97,
-          .rivals = {},
-          .impacts = {},
-          .months_used = std::move(months_used)};
-}
 
 std::vector<Month> months(int first, int last) {
   std::vector<Month> all;
@@ -66,17 +41,7 @@ class EffectsInForce : public ::testing::Test {
   EffectsInForce() { recald::testing::write_depot_year(folder_.path()); }
 
   std::string put_in_force(const AddedEffect& effect) {
-    const models::ModelStore store{folder_ / "site.toml", "depot"};
-    const auto saved = store.save({.version = "",
-                                   .parent = "drawings",
-                                   .site_id = "depot",
-                                   .created_at = "2022-01-03T05:00:00Z",
-                                   .data_revision = "0123456789abcdef",
-                                   .catalogue_version = "0.1.0",
-                                   .effects = {effect}});
-    EXPECT_TRUE(saved.has_value()) << saved.error().message;
-    EXPECT_TRUE(store.activate(saved->version, "2022-01-04T00:00:00Z").has_value());
-    return saved->version;
+    return recald::testing::put_in_force(effect, folder_ / "site.toml");
   }
 
   [[nodiscard]] std::string path(std::string_view name) const { return (folder_ / name).string(); }

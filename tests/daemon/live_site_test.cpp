@@ -2,11 +2,16 @@
 /// reads them there, and makes of them what it would have made of a file.
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/run/site_jobs.hpp"
 #include "tests/daemon/command_line.hpp"
+#include "tests/daemon/depot_versions.hpp"
 #include "tests/daemon/depot_year.hpp"
 
 namespace recald::daemon {
@@ -29,8 +34,8 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 
 class LiveSite : public ::testing::Test {
  protected:
-  LiveSite() {
-    recald::testing::write_depot_year(folder_.path());
+  explicit LiveSite(int hours = recald::testing::kDepotYear_h) {
+    recald::testing::write_depot_year(folder_.path(), recald::testing::sample_site(), hours);
     std::string live = recald::testing::sample_site();
     replace(live, "file = \"readings.csv\"\nrated_kW = 400",
             "source = \"modbus\"\nbus = \"plant\"\nunit = 1\nmap = \"abb-b23\"\nrated_kW = 400\n"
@@ -234,6 +239,55 @@ TEST_F(LiveSite, AMeterThatTheModelHasNoUseForStopsNothing) {
   ASSERT_EQ(
       run({"import", path("live.toml"), path("tenant.csv"), "--reason", "read off"}).exit_code, 0);
   EXPECT_EQ(calibrated()["data_revision"], beside["data_revision"]);
+}
+
+/// Fifteen months: twelve to learn from and three to forecast.
+class FollowedSite : public LiveSite {
+ protected:
+  FollowedSite() : LiveSite(recald::testing::kDepotYear_h + 90 * 24) { import_history(); }
+
+  /// All that the record holds after a job on that day.
+  std::vector<StoredForecast> after_a_job(std::chrono::year_month_day day) {
+    auto config = load_site(folder_ / "live.toml").value();
+    config.recalibration.months = 8;
+    const DoJob work =
+        make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+    const auto outcome = work({}, std::chrono::sys_days{day}, [] { return true; });
+    EXPECT_TRUE(outcome.has_value()) << outcome.error().message;
+    EXPECT_TRUE(store_.add_forecasts(outcome->forecasts).has_value());
+    return store_.forecasts().value();
+  }
+
+  sqlite::SqliteStore store_ = sqlite::SqliteStore::open(folder_ / "record.db").value();
+};
+
+std::vector<std::string> told(const std::vector<StoredForecast>& forecasts) {
+  std::vector<std::string> lines;
+  for (const StoredForecast& one : forecasts) {
+    lines.push_back(fmt::format("{} {} r{} {} {:.17g} {:.17g}", one.output,
+                                metering::to_string(one.month), one.revision, one.model_version,
+                                one.mean, one.standardised));
+  }
+  return lines;
+}
+
+TEST_F(FollowedSite, NeitherAClockThatWentBackNorAnotherModelRewritesWhatWasSaid) {
+  using std::chrono::year;
+  const auto first = told(after_a_job(year{2022} / 3 / 20));
+  ASSERT_EQ(first.size(), 4U);  // two outputs of January and February
+  EXPECT_THAT(first.back(), HasSubstr("2022-02 r0 epc-"));
+
+  // In the first days of February only January has closed: nothing new, nothing lost.
+  EXPECT_EQ(told(after_a_job(year{2022} / 2 / 10)), first);
+
+  const std::string version =
+      recald::testing::put_in_force(recald::testing::half_missing_setback({}), path("live.toml"));
+  const auto both = told(after_a_job(year{2022} / 3 / 20));
+  ASSERT_EQ(both.size(), 8U);
+  for (const std::string& said : first) EXPECT_THAT(both, ::testing::Contains(said));
+  EXPECT_EQ(std::ranges::count_if(
+                both, [&](const auto& said) { return said.find("r1 " + version) < said.size(); }),
+            4);
 }
 
 TEST_F(LiveSite, AJobBeforeAnyMonthHasClosedSaysSo) {

@@ -96,7 +96,7 @@ def building(folder, build):
     (folder / "readings.csv").write_text("".join(rows[:1] + [row for row in rows[1:] if row < now]))
     (folder / "building" / "weather.csv").rename(folder / "weather.csv")
     text = (folder / "building" / "site.toml").read_text()
-    text = re.sub(r'file = "readings.csv"\nstamps = "start"', 'source = "http"', text)
+    text = re.sub(r'file = "readings.csv"\nstamps = "start"', 'source = "http"\ninterval = "15m"', text)
     head, rest = re.split(r"\n(?=\[weather\])", text, maxsplit=1)
     return re.sub(r'interval = "\w+"', f'interval = "{INTERVAL_S // 60}m"', head), rest
 
