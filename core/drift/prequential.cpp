@@ -48,7 +48,7 @@ Result<void> Prequential::look_at_points(PrequentialMonth& record) {
     const calibration::OutputScale& scale = all_.scales[output];
     const double measured = scale.min + scale.range() * all_.values(static_cast<Eigen::Index>(i));
     const Forecast forecast = in_units((*forecasts)[next++], scale);
-    const double level = scale.normalise(forecast.mean());
+    const double level = forecast.mean() / scale.max;
     record.outputs[output] = record_of(spreads_[output].adapt(forecast, level), measured);
     spreads_[output].take(level, standardised_surprise(forecast, measured));
   }

@@ -8,47 +8,61 @@
 namespace recald::drift {
 
 /// The data model has one error for all months of an output (eq. 5 of the seed), and it is not so:
-/// a model of whole months misses more where a building is between heating and cooling than in the
-/// depth of a season. Standardised surprises z of an output therefore are not standard normal, but
+/// a model of whole months misses little of a use that is off and most where a building is between
+/// heating and cooling. Standardised surprises z of an output therefore are not standard normal,
+/// but
 ///
-///     z_t ~ N(0, s^2(level_t)),   s^2 ~ inverse gamma
+///     z_t ~ sqrt(g(level_t)) s(level_t) e_t,   g(l) = least_share + l
 ///
-/// with s learnt from the surprises at levels near this one, which stand in for a month of the same
-/// kind, and drawn towards that of all months while there are few. A forecast is widened or
-/// narrowed by s about its mean; that s is not known makes its tails Student's.
+/// where g is what an error in proportion to the number of things that run would be, s^2 is learnt
+/// from the surprises at levels near this one, which stand in for a month of the same kind, and
+/// drawn towards that of all months while there are few, and e is normal or has heavier tails: how
+/// likely either is, is learnt too. A forecast is widened or narrowed about its mean; that s is not
+/// known makes its tails Student's.
 class Spread {
  public:
   struct Prior {
-    /// What the forecast's own spread is worth for all months, and theirs for those at one level.
-    double months = 6.0;
-    double level_width = 0.15;  ///< Of what is near, in the output's range.
-    double surprise_max = 3.0;  ///< A change must not pass for scatter: larger ones count as this.
+    double months = 6.0;           ///< What the forecast's own spread is worth for all months …
+    double months_at_level = 4.0;  ///< … and theirs for those at one level.
+    double level_width = 0.1;      ///< Of what is near, as a share of the output's largest month.
+    double least_share = 0.01;     ///< Of the variance at full use, where nothing is used.
+    double tail_freedom = 4.0;  ///< Degrees of freedom of the heavier tails, > 2; as likely as not.
+    double surprise_max = 3.0;  ///< A change must not pass for scatter: sds that count at most.
   };
 
   Spread() : Spread(Prior{}) {}
   explicit Spread(const Prior& prior) : prior_(prior) {}
 
-  /// @param level  Where in the output's range the month is expected, 0 to 1 and beyond.
+  /// @param level  What the month is expected to use, as a share of the output's largest month.
   [[nodiscard]] Forecast adapt(const Forecast& forecast, double level) const;
 
   /// @param standardised  Surprise of the forecast before it was adapted.
   void take(double level, double standardised);
 
-  /// E s^2 at a level, and what it is worth in months.
+  /// E z^2 at a level, and what it is worth in months.
   struct Variance {
     double mean;
     double months;
   };
   [[nodiscard]] Variance variance_at(double level) const;
 
+  /// That e has the heavier tails.
+  [[nodiscard]] double heavy_probability() const;
+
  private:
   struct Seen {
     double level;
-    double square;
+    double square;  ///< Of z / sqrt(g).
   };
+
+  [[nodiscard]] double shape(double level) const;
+  /// What the variance is worth where e has the heavier tails: a scatter of its own, added to
+  /// that of not knowing s.
+  [[nodiscard]] Variance heavy(const Variance& variance) const;
 
   Prior prior_;
   std::vector<Seen> seen_;
+  double log_odds_ = 0.0;  ///< Heavier tails against normal ones.
 };
 
 }  // namespace recald::drift

@@ -18,6 +18,7 @@ PARTICLES = os.environ.get("PARTICLES", "256")
 JOBS = int(os.environ.get("JOBS", 2))
 YEARS = os.environ.get("YEARS", "6")
 FIRST_SEED = int(os.environ.get("FIRST_SEED", 1))
+SCRATCH = int(os.environ.get("SCRATCH", 1))
 
 # What an answer has to be to count as right: (kind, words of the subject), any of them.
 RIGHT = {
@@ -40,10 +41,20 @@ def month_number(name):
     return 12 * int(name[:4]) + int(name[5:7]) - 1
 
 
+def follow(folder, out, options):
+    """recald drift. @return the last line of what went wrong, if it did."""
+    done = subprocess.run([BUILD / "daemon/recald", "drift", folder / "site.toml", "--out", out,
+                           "--particles", PARTICLES, "--threads", "1"] + options,
+                          capture_output=True, text=True)
+    return done.stderr.strip().splitlines()[-1] if done.returncode != 0 else None
+
+
 def run(scenario, seed, out):
-    """drift.json of one building, made or kept from before."""
+    """drift.json of one building, made or kept from before; for the first SCRATCH buildings of a
+    scenario that of a calibration from scratch each month as well."""
     folder = out / f"{scenario.stem}-{seed}"
     result = folder / "drift.json"
+    scratch = folder / "from-scratch" / "drift.json"
     if not result.exists():
         folder.mkdir(parents=True, exist_ok=True)
         years = ["--years", YEARS] if change_of(scenario) is None else []
@@ -52,14 +63,15 @@ def run(scenario, seed, out):
         # The monthly model has no chiller of its own.
         own_chiller = tomllib.loads(scenario.read_text()).get("plant", {}).get("cooling") == "chiller"
         model = ["--model", "hourly"] if own_chiller else []
-        done = subprocess.run([BUILD / "daemon/recald", "drift", folder / "site.toml", "--out", folder,
-                               "--particles", PARTICLES, "--threads", "1"] + model,
-                              capture_output=True, text=True)
-        if done.returncode != 0:
-            return {"scenario": scenario.stem, "seed": seed, "error": done.stderr.strip().splitlines()[-1]}
+        wrong = follow(folder, folder, model)
+        if not wrong and seed < FIRST_SEED + SCRATCH:
+            wrong = follow(folder, scratch.parent, model + ["--anew-every", "1"])
+        if wrong:
+            return {"scenario": scenario.stem, "seed": seed, "error": wrong}
         for name in ("readings.csv", "weather.csv"):
             (folder / name).unlink()
-    return {**json.loads(result.read_text()), "scenario": scenario.stem, "seed": seed}
+    return {**json.loads(result.read_text()), "scenario": scenario.stem, "seed": seed,
+            "scratch": json.loads(scratch.read_text()) if scratch.exists() else None}
 
 
 def change_of(scenario):
@@ -199,6 +211,36 @@ def print_chart(quiet, changed, scenarios):
               f"{' '.join(map(str, delays)) or '-'} months; before the change: {early}")
 
 
+def print_scratch(results):
+    """Calibrating from scratch each month, beside posteriors that are carried along."""
+    pairs = [(r, r["scratch"]) for r in results if r["scratch"]]
+    if not pairs:
+        return
+    ratio = median([scratch["wall_s"] / carried["wall_s"] for carried, scratch in pairs])
+    print(f"\nRecalibrated from scratch each month beside it: {len(pairs)} buildings, {ratio:.1f} times "
+          "as long (median)\n")
+    print("| output | months | log score a month, carried | from scratch | rms difference of z |")
+    print("| --- | --- | --- | --- | --- |")
+    outputs = {}
+    for carried, scratch in pairs:
+        for mine, other in zip(carried["outputs"], scratch["outputs"]):
+            others = {m["month"]: m for m in other["months"]}
+            both = [(m, others[m["month"]]) for m in mine["months"] if m["month"] in others]
+            outputs.setdefault(mine["name"], []).extend(both)
+    for name, months in sorted(outputs.items()):
+        n = len(months)
+        rms = math.sqrt(sum((a["standardised"] - b["standardised"]) ** 2 for a, b in months) / n)
+        print(f"| {name} | {n} | {sum(a['log_score'] for a, _ in months) / n:.3f} "
+              f"| {sum(b['log_score'] for _, b in months) / n:.3f} | {rms:.2f} |")
+
+    def told(result):
+        return " ".join(f"{a['month']} {a['causes'][0]['kind'] if a['causes'] else 'open'}"
+                        for a in notices(result)) or "none"
+    print("\nalarms, carried and from scratch:")
+    for carried, scratch in pairs:
+        print(f"  {carried['scenario']}-{carried['seed']}: {told(carried)} | {told(scratch)}")
+
+
 def print_parameters(out, quiet):
     """Whether intervals hold the simulator's own parameters, and shifts where nothing moved."""
     print("\n| parameter | window | truth in 90 % | its bias, in posterior sds |")
@@ -284,6 +326,7 @@ def main():
     if changing:
         print_changes(results, changing)
     print_chart(quiet, results, changing)
+    print_scratch(results)
     print(f"\ndetails in {out}")
 
 
