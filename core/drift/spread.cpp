@@ -55,22 +55,25 @@ Forecast Spread::adapt(const Forecast& forecast, double level) const {
   const double centre = forecast.mean();
   const Eigen::Index n = forecast.means.size();
   const double least = 0.5 / static_cast<double>(n);
-  const auto scale_at = [&](double share) {
+  Forecast adapted = forecast;
+  // One of n spreads for each component, in an order that has nothing to do with theirs: steps of
+  // the golden section. They are denser where they are large, and weigh less there: a mixture has
+  // no heavier tail than its widest component.
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double step = 0.6180339887498949 * static_cast<double>(i);
+    const double share = step - std::floor(step);
     const bool is_plain = share < normal_share;
     const double within =
         is_plain ? share / normal_share : (share - normal_share) / (1.0 - normal_share);
-    return std::sqrt(
-        boost::math::quantile(is_plain ? plain : heavier, std::clamp(within, least, 1.0 - least)));
-  };
-  Forecast adapted = forecast;
-  // One of n equally likely spreads for each component, in an order that has nothing to do with
-  // theirs: steps of the golden section.
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double step = 0.6180339887498949 * static_cast<double>(i);
-    const double scale = scale_at(step - std::floor(step));
+    const double above = 1.0 - std::clamp(within, least, 1.0 - least);
+    const double scale = std::sqrt(
+        boost::math::quantile(boost::math::complement(is_plain ? plain : heavier, above * above)));
     adapted.means(i) = centre + scale * (forecast.means(i) - centre);
     adapted.sds(i) = scale * forecast.sds(i);
+    adapted.weights(i) *= 2.0 * above;
   }
+  adapted.weights /= adapted.weights.sum();
+  adapted.means.array() += centre - adapted.mean();
   return adapted;
 }
 

@@ -25,7 +25,7 @@ class Spread {
     double months = 6.0;           ///< What the forecast's own spread is worth for all months …
     double months_at_level = 4.0;  ///< … and theirs for those at one level.
     double level_width = 0.1;      ///< Of what is near, as a share of the output's largest month.
-    double least_share = 0.01;     ///< Of the variance at full use, where nothing is used.
+    double least_share = 0.05;     ///< Of the variance at full use, where nothing is used.
     double tail_freedom = 4.0;  ///< Degrees of freedom of the heavier tails, > 2; as likely as not.
     double surprise_max = 3.0;  ///< A change must not pass for scatter: sds that count at most.
   };
