@@ -181,21 +181,25 @@ class Since {
     return log_normal(residual, factor_);
   }
 
-  /// @param growing  Up to the amplitude in the last month.
+  /// @param growing     Up to the amplitude in the last month.
+  /// @param monthly_sd  By which the amplitude differs between months.
   [[nodiscard]] double with_direction(const ChangeCase& change, const Direction& direction,
-                                      double amplitude, bool growing) const {
+                                      double amplitude, bool growing, double monthly_sd) const {
+    const Eigen::VectorXd along = changes_along(direction);
     Eigen::VectorXd residual = residual_;
-    const auto months = static_cast<std::size_t>(posterior_.data().month_inputs.rows());
     for (Eigen::Index i = 0; i < residual.size(); ++i) {
-      const auto& point =
-          posterior_.data().points[static_cast<std::size_t>(ahead_[static_cast<std::size_t>(i)])];
-      const auto at =
-          static_cast<std::size_t>(point.output) * months + static_cast<std::size_t>(point.month);
-      const double range = posterior_.data().scales[static_cast<std::size_t>(point.output)].range();
-      const double share = growing ? progress_at(change, point.month) : 1.0;
-      residual(i) -= share * amplitude * direction.change[at] / range;
+      const double share = growing ? progress_at(change, point(i).month) : 1.0;
+      residual(i) -= share * amplitude * along(i);
     }
-    return log_normal(residual, factor_);
+    if (monthly_sd == 0.0) return log_normal(residual, factor_);
+    Eigen::MatrixXd covariance = covariance_;
+    for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+      for (Eigen::Index j = 0; j < covariance.cols(); ++j) {
+        if (point(i).month != point(j).month) continue;
+        covariance(i, j) += monthly_sd * monthly_sd * along(i) * along(j);
+      }
+    }
+    return log_normal(residual, Eigen::LLT<Eigen::MatrixXd>{covariance});
   }
 
   /// Each output, or one, moved by a share of itself that is not quite the same in all months.
@@ -223,9 +227,21 @@ class Since {
   [[nodiscard]] const Eigen::VectorXd& all_residuals(const Eigen::VectorXd& theta) {
     return posterior_.residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
   }
-  [[nodiscard]] int output_of(Eigen::Index i) const {
+  [[nodiscard]] const calibration::PointIndex& point(Eigen::Index i) const {
     const auto row = static_cast<std::size_t>(ahead_[static_cast<std::size_t>(i)]);
-    return posterior_.data().points[row].output;
+    return posterior_.data().points[row];
+  }
+  [[nodiscard]] int output_of(Eigen::Index i) const { return point(i).output; }
+  /// (months ahead's points) on the normalised scale, for an amplitude of 1.
+  [[nodiscard]] Eigen::VectorXd changes_along(const Direction& direction) const {
+    const auto months = static_cast<std::size_t>(posterior_.data().month_inputs.rows());
+    Eigen::VectorXd along(std::ssize(ahead_));
+    for (Eigen::Index i = 0; i < along.size(); ++i) {
+      const auto output = static_cast<std::size_t>(output_of(i));
+      const auto at = output * months + static_cast<std::size_t>(point(i).month);
+      along(i) = direction.change[at] / posterior_.data().scales[output].range();
+    }
+    return along;
   }
   /// What was modelled, in the output's unit over its range.
   [[nodiscard]] double in_own_range(Eigen::Index i) const {
@@ -315,7 +331,7 @@ class Trial {
     const double uneven =
         course == Course::uneven ? options_.uneven_share * std::abs(amplitude) : 0.0;
     double sum = since_.with_direction(change_, change_.directions[static_cast<std::size_t>(index)],
-                                       amplitude, growing);
+                                       amplitude, growing, uneven);
     for (const LevelBlock& block : blocks_) {
       const Eigen::ArrayXd moved =
           growing ? Eigen::ArrayXd(amplitude * block.progress.array())

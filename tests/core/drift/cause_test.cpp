@@ -73,7 +73,9 @@ struct Found {
 };
 
 /// Noise of 1 % of the range; six months since the change.
-Found causes_in(const World& world, std::uint64_t seed, bool with_level = false) {
+/// @param with_level  A third meter that shows the use itself.
+/// @param with_use    The use is one of the causes that are known.
+Found causes_in(const World& world, std::uint64_t seed, bool with_level, bool with_use) {
   TwoMeters model{with_level ? 3 : 2};
   const std::vector<Parameter> parameters{{"air", "-", {0.0, 0.5, 1.0}},
                                           {"leakage", "-", {0.0, 0.5, 1.0}},
@@ -119,6 +121,8 @@ Found causes_in(const World& world, std::uint64_t seed, bool with_level = false)
       level.measured.push_back(500.0 * factor * (1.0 + 0.01 * rng.normal()));
     }
     levels.push_back(level);
+  }
+  if (with_use) {
     Direction use{"use", std::vector<double>(3 * kWatched)};
     for (int month = 0; month < kWatched; ++month) {
       for (int output = 0; output < 2; ++output) {
@@ -142,6 +146,10 @@ Found causes_in(const World& world, std::uint64_t seed, bool with_level = false)
   auto causes = weigh_causes(change, *known, {}, seed);
   EXPECT_TRUE(causes.has_value()) << causes.error().message;
   return {causes.value_or(std::vector<Cause>{})};
+}
+
+Found causes_in(const World& world, std::uint64_t seed, bool with_level = false) {
+  return causes_in(world, seed, with_level, with_level);
 }
 
 TEST(Causes, AnAirFlowThatRoseIsNoMeter) {
@@ -208,6 +216,15 @@ TEST(Causes, AUseMayBeEvenOrUnevenOrGrow) {
       mean /= kWatched - kChanged;
       EXPECT_NEAR(found.causes.front().mean, 1.0 + mean, 0.06) << seed << ' ' << world.use;
     }
+  }
+}
+
+// Seen by its echo in two modelled meters alone: in July more people were away than in August.
+TEST(Causes, AnUnevenUseIsSeenInModelledMetersToo) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Found found = causes_in({.use = -0.25, .use_uneven = 0.5}, seed, false, true);
+    EXPECT_GT(found.probability(CauseKind::direction, 0), 0.7)
+        << seed << " is called " << static_cast<int>(found.causes[0].kind);
   }
 }
 
