@@ -151,8 +151,9 @@ class WeatherReader {
       return failure(ErrorCode::not_enough_data,
                      in_quotes(name_) + " has fewer than two usable rows of weather");
     }
-    std::stable_sort(records_.begin(), records_.end(),
-                     [](const auto& a, const auto& b) { return a.start < b.start; });
+    if (!std::ranges::is_sorted(records_, {}, &WeatherRecord::start)) {
+      std::ranges::stable_sort(records_, {}, &WeatherRecord::start);
+    }
     std::map<seconds, int> steps;
     for (std::size_t i = 1; i < records_.size(); ++i) {
       if (records_[i].start > records_[i - 1].start) {

@@ -214,13 +214,18 @@ const WeatherHour* WeatherSeries::find(Instant t) const {
 Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds step) {
   if (records.empty()) return failure(ErrorCode::not_enough_data, "no weather records");
   assert(step > seconds{0});
-  const std::vector<WeatherRecord> sorted = in_order_without_repeats(records);
+  std::vector<WeatherRecord> sorted;  // years of records are large: copied only where they must be
+  const auto is_late = [](const auto& a, const auto& b) { return b.start <= a.start; };
+  if (std::ranges::adjacent_find(records, is_late) != records.end()) {
+    sorted = in_order_without_repeats(records);
+    records = sorted;
+  }
   const seconds length = std::min<seconds>(step, hours{1});
   WeatherSeries series;
-  series.begin = full_hour_before(sorted.front().start);
-  const Instant last = full_hour_before(sorted.back().start + length - seconds{1});
+  series.begin = full_hour_before(records.front().start);
+  const Instant last = full_hour_before(records.back().start + length - seconds{1});
   std::vector<HourMeans> means(static_cast<std::size_t>((last - series.begin) / hours{1}) + 1);
-  for (const WeatherRecord& record : sorted) {
+  for (const WeatherRecord& record : records) {
     const Instant end = record.start + length;
     for (Instant hour = full_hour_before(record.start); hour < end; hour += hours{1}) {
       const seconds overlap =
