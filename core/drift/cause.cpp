@@ -182,7 +182,8 @@ class Since {
   }
 
   /// @param growing     Up to the amplitude in the last month.
-  /// @param monthly_sd  By which the amplitude differs between months.
+  /// @param monthly_sd  By which the amplitude differs between months; the same for all points of a
+  ///                    month, and of its own for what is followed by its level.
   [[nodiscard]] double with_direction(const ChangeCase& change, const Direction& direction,
                                       double amplitude, bool growing, double monthly_sd) const {
     const Eigen::VectorXd along = changes_along(direction);
@@ -232,7 +233,7 @@ class Since {
     return posterior_.data().points[row];
   }
   [[nodiscard]] int output_of(Eigen::Index i) const { return point(i).output; }
-  /// (months ahead's points) on the normalised scale, for an amplitude of 1.
+  /// One value for each point since the change, on the normalised scale, for an amplitude of 1.
   [[nodiscard]] Eigen::VectorXd changes_along(const Direction& direction) const {
     const auto months = static_cast<std::size_t>(posterior_.data().month_inputs.rows());
     Eigen::VectorXd along(std::ssize(ahead_));

@@ -17,7 +17,7 @@ namespace recald::drift {
 /// One output of one month, in the output's unit.
 struct ForecastRecord {
   double mean;
-  double sd;
+  double sd;  ///< Of the mixture; where tails are heavy, quantiles say more.
   double q05;
   double q50;
   double q95;

@@ -21,7 +21,9 @@ boost::math::inverse_gamma_distribution<> distribution_of(const Spread::Variance
 
 }  // namespace
 
-double Spread::shape(double level) const { return prior_.least_share + std::max(level, 0.0); }
+double Spread::shape(double level) const {
+  return prior_.least_share + std::clamp(level, 0.0, 2.0);
+}
 
 Spread::Variance Spread::variance_at(double level) const {
   double all = 0.0;

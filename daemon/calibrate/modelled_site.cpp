@@ -24,6 +24,17 @@ void leave_out_unmodelled_live_meters(SiteConfig& site) {
   });
 }
 
+/// @pre what the model has no use for is left out
+Result<void> require_live_readings(const SiteConfig& site, const Recording& recording) {
+  for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    if (!site.meters[i].is_stored() || !recording.meters[i].figures.empty()) continue;
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("the store has no reading of meter '{}' yet, which the model needs",
+                               site.meters[i].meter.id));
+  }
+  return {};
+}
+
 }  // namespace
 
 using metering::MonthRange;
@@ -66,6 +77,9 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
   VirtualClock clock{metering::Instant{}};
   auto recorded = record_site(site, {}, clock, {});
   if (!recorded) return tl::unexpected(recorded.error());
+  if (auto read = require_live_readings(site.config, recorded->recording); !read) {
+    return tl::unexpected(read.error());
+  }
   if (choose) {
     const auto period = choose(site, recorded->recording, now);
     if (!period) return tl::unexpected(period.error());

@@ -43,8 +43,9 @@ struct SiteRecording {
 using ChoosePeriod = std::function<Result<PeriodConfig>(
     const OpenSite& site, const Recording& recording, metering::Instant now)>;
 
-/// Reads everything that the model needs. Live meters that it has no use for are no part of the site
-/// that is returned.
+/// Reads everything that the model needs. Live meters that it has no use for are no part of the
+/// site that is returned, so they neither mark months as different nor stand in reports; meters in
+/// files do, since they are read anyway.
 /// @param now     A site without a [period] is modelled on the latest months that are closed then.
 /// @param choose  In the place of both; absent: as the site file says.
 /// @return or what is missing. @pre the site has a model

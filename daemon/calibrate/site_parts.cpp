@@ -54,14 +54,17 @@ SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
 }
 
 std::optional<std::size_t> profile_meter(const SiteConfig& site) {
-  std::optional<std::size_t> first;
-  for (std::size_t i = 0; i < site.meters.size(); ++i) {
-    const metering::Meter& meter = site.meters[i].meter;
-    if (meter.utility != metering::Utility::electricity) continue;
-    if (site.model->has_output(meter.id)) return i;
-    if (!first) first = i;
-  }
-  return first;
+  const auto rank = [&](const MeterConfig& config) {
+    if (config.meter.utility != metering::Utility::electricity) return 0;
+    const auto counts = [&](model::EndUse use) {
+      return !config.end_uses || (*config.end_uses)[use] > 0.0;
+    };
+    if (!counts(model::EndUse::lighting) && !counts(model::EndUse::plugs)) return 1;
+    return site.model->has_output(config.meter.id) ? 3 : 2;
+  };
+  const auto best = std::ranges::max_element(site.meters, {}, rank);  // the first one of the best
+  if (best == site.meters.end() || rank(*best) == 0) return std::nullopt;
+  return static_cast<std::size_t>(best - site.meters.begin());
 }
 
 Result<const MeterRecord*> electricity_meter(const SiteConfig& site, const Recording& recording) {

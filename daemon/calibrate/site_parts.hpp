@@ -1,6 +1,7 @@
 /// What every model of a site is made from: months, electricity, calibration parameters, meters.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct SiteMonths {
 [[nodiscard]] SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
                                        std::vector<std::string>& warnings);
 
-/// The meter that tells lights and plugs: the first modelled one of electricity, or, where none is
-/// modelled, the site's first one. An index of the site's meters. @pre the site has a model
+/// The meter that tells lights and plugs: the first one of electricity that is modelled and counts
+/// them, or else the first one that counts them, or else the first one. An index of the site's
+/// meters. @pre the site has a model
 [[nodiscard]] std::optional<std::size_t> profile_meter(const SiteConfig& site);
 
 /// What that meter has recorded.

@@ -37,7 +37,7 @@ struct FileIssues {
 };
 
 struct Recording {
-  std::vector<MeterRecord> meters;  ///< In order of the site file.
+  std::vector<MeterRecord> meters;  ///< One for each of the site's meters.
   std::vector<FileIssues> files;
   std::uint64_t readings = 0;
 };
@@ -74,7 +74,7 @@ class LiveReadings {
 ///
 /// @param live  Where live meters' readings are; null for a site that has no live meter.
 /// @return not_found / io_failed / malformed with the file's name; not_enough_data when a file has
-///         no row of a meter that the site declares, or nothing was read of a live one.
+///         no row of a meter that the site declares, or of live meters none was ever read.
 [[nodiscard]] Result<Recording> replay_meters(const SiteConfig& site,
                                               const metering::LocalCalendar& calendar,
                                               const ReplayOptions& options, VirtualClock& clock,

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/sqlite/sqlite_store.hpp"
+#include "daemon/calibrate/site_parts.hpp"
 #include "daemon/run/site_jobs.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/depot_versions.hpp"
@@ -75,6 +76,40 @@ TEST_F(LiveSite, AStoreWithoutAnyReadingIsToldApartFromNone) {
   const Outcome outcome = run({"calibrate", path("live.toml")});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("the store has no reading of any meter"));
+}
+
+TEST_F(LiveSite, AModelledMeterThatWasNeverReadIsNamed) {
+  std::string history = read_text(folder_ / "history.csv");
+  replace(history, ",district_heat,", ",somewhere_else,");
+  write_text(folder_ / "history.csv", history);
+  run({"import", path("live.toml"), path("history.csv"), "--reason", "half of it"});
+  const Outcome outcome = run({"calibrate", path("live.toml")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("no reading of meter 'district_heat' yet"));
+}
+
+TEST(ProfileMeter, IsTheModelledOneThatCountsLightsAndPlugs) {
+  SiteConfig site;
+  const auto add = [&](const char* id, std::optional<model::EndUse> only) {
+    MeterConfig config;
+    config.meter.id = id;
+    config.meter.utility = metering::Utility::electricity;
+    if (only) {
+      config.end_uses.emplace();
+      (*config.end_uses)[*only] = 1.0;
+    }
+    site.meters.push_back(config);
+  };
+  site.model.emplace();
+  EXPECT_FALSE(profile_meter(site).has_value());
+  add("chillers", model::EndUse::chiller);
+  site.model->outputs = {"chillers"};
+  EXPECT_EQ(profile_meter(site), 0U);
+  add("tenant", {});
+  add("main", {});
+  EXPECT_EQ(profile_meter(site), 1U);
+  site.model->outputs = {"chillers", "main"};
+  EXPECT_EQ(profile_meter(site), 2U);
 }
 
 TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {

@@ -55,7 +55,8 @@ def run(scenario, seed, out):
     folder = out / f"{scenario.stem}-{seed}"
     result = folder / "drift.json"
     scratch = folder / "from-scratch" / "drift.json"
-    if not result.exists():
+    has_scratch = seed < FIRST_SEED + SCRATCH
+    if not result.exists() or (has_scratch and not scratch.exists()):
         folder.mkdir(parents=True, exist_ok=True)
         years = ["--years", YEARS] if change_of(scenario) is None else []
         subprocess.run([BUILD / "simulators/recald-sim", "building", "--scenario", scenario, "--seed",
@@ -64,7 +65,7 @@ def run(scenario, seed, out):
         own_chiller = tomllib.loads(scenario.read_text()).get("plant", {}).get("cooling") == "chiller"
         model = ["--model", "hourly"] if own_chiller else []
         wrong = follow(folder, folder, model)
-        if not wrong and seed < FIRST_SEED + SCRATCH:
+        if not wrong and has_scratch:
             wrong = follow(folder, scratch.parent, model + ["--anew-every", "1"])
         if wrong:
             return {"scenario": scenario.stem, "seed": seed, "error": wrong}
