@@ -276,7 +276,7 @@ TEST_F(LiveSite, AMeterThatTheModelHasNoUseForStopsNothing) {
   EXPECT_EQ(calibrated()["data_revision"], beside["data_revision"]);
 }
 
-/// Fifteen months: twelve to learn from and three to forecast.
+/// Fifteen months: twelve to learn from, the rest to forecast as they close.
 class FollowedSite : public LiveSite {
  protected:
   FollowedSite() : LiveSite(recald::testing::kDepotYear_h + 90 * 24) { import_history(); }
