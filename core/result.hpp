@@ -11,12 +11,12 @@ namespace recald {
 
 /// What kind of thing went wrong. The message carries what, where, which value and what to do.
 enum class ErrorCode {
-  invalid_value,          ///< A value from outside makes no sense (prior with min > mode, unknown unit).
-  malformed,              ///< Text that cannot be parsed (wrong header, bad number, bad time stamp).
-  not_found,              ///< A file, meter, key or zone that does not exist.
-  io_failed,              ///< The operating system refused a read or a write.
-  not_enough_data,        ///< Too few readings, months or draws for the answer asked for.
-  not_finite,             ///< NaN or infinity where a number is needed.
+  invalid_value,    ///< A value from outside makes no sense (prior with min > mode, unknown unit).
+  malformed,        ///< Text that cannot be parsed (wrong header, bad number, bad time stamp).
+  not_found,        ///< A file, meter, key or zone that does not exist.
+  io_failed,        ///< The operating system refused a read or a write.
+  not_enough_data,  ///< Too few readings, months or draws for the answer asked for.
+  not_finite,       ///< NaN or infinity where a number is needed.
   not_positive_definite,  ///< A covariance that has no Cholesky factor.
   out_of_range,           ///< A value outside what the component supports (an instant after 2037).
   unsupported,            ///< Understood, but this version does not do it.

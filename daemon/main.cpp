@@ -3,7 +3,7 @@
 #include <exception>
 #include <iostream>
 
-#include "daemon/cli.hpp"
+#include "daemon/commands/cli.hpp"
 
 int main(int argc, char** argv) {
   const recald::daemon::Console console{std::cout, std::cerr, ::isatty(STDERR_FILENO) == 1};

@@ -4,12 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <map>
 #include <unordered_map>
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/line_reader.hpp"
+#include "core/absent.hpp"
 #include "core/metering/interval_book.hpp"
 
 namespace recald::csv {
@@ -317,7 +317,7 @@ class ReadingsReader {
   bool read_value(Row& row) {
     const std::string_view text = trimmed(fields_[2]);
     if (text.empty()) {
-      row.value = std::numeric_limits<double>::quiet_NaN();
+      row.value = kAbsent;
       return true;
     }
     const auto value = parse_number(text);

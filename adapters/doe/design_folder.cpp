@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <span>
 
 #include "adapters/doe/priors_file.hpp"
 #include "adapters/doe/table_reader.hpp"
+#include "core/absent.hpp"
 
 namespace recald::doe {
 namespace {
@@ -321,7 +321,7 @@ Result<MonthlyTable> read_months(TableReader& table, const ValueColumns& columns
       const auto value = table.number_or_blank(column);
       if (!value) return tl::unexpected(value.error());
       if (!*value && !blanks) return tl::unexpected(table.number(column).error());
-      place->second.push_back(value->value_or(std::numeric_limits<double>::quiet_NaN()));
+      place->second.push_back(value->value_or(kAbsent));
     }
     return {};
   };
@@ -425,9 +425,8 @@ ValueColumns measured_columns(const TableReader& table, const DesignFolder& desi
 
 /// The measured columns in their places among all outputs; the others NaN.
 Eigen::MatrixXd among_all(const MonthlyTable& measured, const std::vector<std::string>& outputs) {
-  Eigen::MatrixXd all =
-      Eigen::MatrixXd::Constant(measured.values.rows(), static_cast<Eigen::Index>(outputs.size()),
-                                std::numeric_limits<double>::quiet_NaN());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(
+      measured.values.rows(), static_cast<Eigen::Index>(outputs.size()), kAbsent);
   for (std::size_t j = 0; j < measured.names.size(); ++j) {
     const auto place = std::ranges::find(outputs, measured.names[j]) - outputs.begin();
     all.col(place) = measured.values.col(static_cast<Eigen::Index>(j));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "adapters/doe/priors_file.hpp"
 #include "adapters/doe/table_reader.hpp"
 #include "adapters/system/write_file.hpp"
+#include "core/absent.hpp"
 
 namespace recald::doe {
 namespace {
@@ -156,8 +156,7 @@ Result<DesignRunsSoFar> open_design(const fs::path& folder, const DesignPlan& pl
   if (auto written = write_plan(folder, plan); !written) return tl::unexpected(written.error());
   const auto runs = static_cast<std::size_t>(plan.theta.rows());
   const auto values = static_cast<Eigen::Index>(plan.output_names.size() * plan.months.size());
-  DesignRunsSoFar so_far{Eigen::MatrixXd::Constant(plan.theta.rows(), values,
-                                                   std::numeric_limits<double>::quiet_NaN()),
+  DesignRunsSoFar so_far{Eigen::MatrixXd::Constant(plan.theta.rows(), values, kAbsent),
                          std::vector<bool>(runs, false)};
   const fs::path outputs = folder / "doe_outputs.csv";
   if (!fs::exists(outputs)) return so_far;

@@ -50,25 +50,6 @@ tl::unexpected<ReadFailure> mismatch(std::string what) {
   return tl::unexpected(ReadFailure{ReadFault::mismatch, 0, std::move(what)});
 }
 
-std::string_view to_string(ReadFault fault) {
-  switch (fault) {
-    case ReadFault::timeout:
-      return "timeout";
-    case ReadFault::refused:
-      return "refused";
-    case ReadFault::closed:
-      return "closed";
-    case ReadFault::exception:
-      return "exception";
-    case ReadFault::mismatch:
-      return "mismatch";
-    case ReadFault::crc:
-      return "crc";
-  }
-  assert(false && "every fault has a name");
-  return "";
-}
-
 std::array<std::uint8_t, 6> encode_request(const ReadRequest& request) {
   assert(request.count >= 1 && request.count <= kRegistersMax);
   assert(request.address + request.count <= 0x10000);

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <functional>
 
-#include "adapters/modbus/frame.hpp"
+#include "adapters/ports/register_read.hpp"
 
 namespace recald {
 

@@ -4,11 +4,11 @@
 #include <sqlite3.h>
 
 #include <cassert>
-#include <limits>
 #include <utility>
 
 #include "adapters/sqlite/backup.hpp"
 #include "adapters/sqlite/handles.hpp"
+#include "core/absent.hpp"
 
 namespace recald::sqlite {
 namespace {
@@ -108,8 +108,7 @@ std::int64_t Statement::integer(int column) const {
 }
 
 double Statement::real(int column) const {
-  return is_null(column) ? std::numeric_limits<double>::quiet_NaN()
-                         : sqlite3_column_double(impl_->handle.get(), column);
+  return is_null(column) ? kAbsent : sqlite3_column_double(impl_->handle.get(), column);
 }
 
 std::string Statement::text(int column) const {

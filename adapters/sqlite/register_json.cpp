@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/absent.hpp"
+
 namespace recald::sqlite {
 namespace {
 
@@ -37,7 +39,7 @@ CounterBooking piece_of(const Json& json) {
   if (!validity) throw std::invalid_argument(validity.error().message);
   if (!reasons) throw std::invalid_argument(reasons.error().message);
   return {{instant_of(json.at("begin")), instant_of(json.at("end"))},
-          number_or(json.at("kWh"), std::numeric_limits<double>::quiet_NaN()),
+          number_or(json.at("kWh"), kAbsent),
           *validity,
           *reasons};
 }
@@ -148,7 +150,7 @@ class Writer {
   Writer& power(const metering::PowerBook& power) {
     raw("{\"covered_s\":").whole(power.covered.count());
     raw(",\"hole_longest_s\":").whole(power.hole_longest.count());
-    raw(",\"kW\":").number(power.power_kW.value_or(std::nan("")));
+    raw(",\"kW\":").number(power.power_kW.value_or(kAbsent));
     raw(",\"kWh\":").number(power.energy_kWh);
     raw(",\"next\":").time_or_null(power.next);
     raw(",\"reasons\":").word(to_string(power.reasons));

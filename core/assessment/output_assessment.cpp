@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/statistics/quantile.hpp"
 
 namespace recald::assessment {
 namespace {
-
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
 /// The measured months of one role; the others become absent.
 std::vector<double> of_role(std::span<const double> measured, std::span<const MonthRole> roles,

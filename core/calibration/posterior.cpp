@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/absent.hpp"
 #include "core/design/model_runs.hpp"
 
 namespace recald::calibration {
@@ -98,7 +99,7 @@ Posterior::Posterior(const MonthlyModel& prototype, std::vector<Parameter> param
   assert(data_.common_errors.rows() == m || data_.common_errors.cols() == 0);
   covariance_ = make_covariance(data_, prior_);
   prior_constant_ = prior_constant(prior_, q, kernel_dimension_);
-  hyper_point_.setConstant(2 + kernel_dimension_, std::numeric_limits<double>::quiet_NaN());
+  hyper_point_.setConstant(2 + kernel_dimension_, kAbsent);
   theta_.setZero(q);
   theta_slope_.setZero(q);
   theta_gradient_.setZero(q);
@@ -131,7 +132,7 @@ Result<Posterior> Posterior::make(const MonthlyModel& prototype, std::vector<Par
 }
 
 bool Posterior::set_hyperparameters(const Hyperparameters& hyper) {
-  hyper_point_(0) = std::numeric_limits<double>::quiet_NaN();  // equal to no point
+  hyper_point_(0) = kAbsent;  // equal to no point
   const auto factorise = [&](double jitter) {
     has_factor_ = covariance_->factorise(hyper, jitter);
     if (!has_factor_) return;

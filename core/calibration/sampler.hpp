@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string_view>
 
+#include "core/absent.hpp"
 #include "core/random/rng.hpp"
 #include "core/result.hpp"
 
@@ -59,14 +59,14 @@ struct SamplerOptions {
 
 /// What a chain did, besides its draws. Absent figures are NaN.
 struct ChainStatistics {
-  double acceptance_rate = std::numeric_limits<double>::quiet_NaN();  ///< Of the kept iterations.
-  long divergences = 0;       ///< Kept trajectories whose energy error passed all bounds.
-  long depth_limit_hits = 0;  ///< Kept trajectories cut at the largest tree depth.
-  double e_bfmi = std::numeric_limits<double>::quiet_NaN();  ///< Betancourt (2016); below 0.3 bad.
-  long density_evaluations = 0;                              ///< Burn-in included.
-  long gradient_evaluations = 0;                             ///< Burn-in included.
+  double acceptance_rate = kAbsent;  ///< Of the kept iterations.
+  long divergences = 0;              ///< Kept trajectories whose energy error passed all bounds.
+  long depth_limit_hits = 0;         ///< Kept trajectories cut at the largest tree depth.
+  double e_bfmi = kAbsent;           ///< Betancourt (2016); below 0.3 bad.
+  long density_evaluations = 0;      ///< Burn-in included.
+  long gradient_evaluations = 0;     ///< Burn-in included.
   /// log of the integral of density over prior times prior; `smc` alone knows it.
-  double log_evidence = std::numeric_limits<double>::quiet_NaN();
+  double log_evidence = kAbsent;
 };
 
 /// Draws of one chain after burn-in, in the target's coordinates.

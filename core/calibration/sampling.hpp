@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/absent.hpp"
 #include "core/calibration/draws.hpp"
 #include "core/calibration/findings.hpp"
 #include "core/calibration/posterior.hpp"
@@ -66,8 +66,8 @@ struct SamplingReport {
   long gradient_evaluations = 0;
   /// Natural log of p(y), mean over populations, and its standard error; NaN unless populations
   /// gave the draws (those of a pilot are too few and too quick to know it).
-  double log_evidence = std::numeric_limits<double>::quiet_NaN();
-  double log_evidence_se = std::numeric_limits<double>::quiet_NaN();
+  double log_evidence = kAbsent;
+  double log_evidence_se = kAbsent;
 };
 
 struct SampledPosterior {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "core/absent.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -119,7 +120,7 @@ Eigen::ArrayXXd measured_parts(const DayParts& day_parts,
         ++measured;
       }
       const bool enough = measured >= kLeastMeasuredShare * part.hours;
-      means(i, g) = enough ? sum / measured : std::numeric_limits<double>::quiet_NaN();
+      means(i, g) = enough ? sum / measured : kAbsent;
     }
   }
   return means;

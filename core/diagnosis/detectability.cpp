@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/ground.hpp"
 #include "core/diagnosis/null_scale.hpp"
 
@@ -162,8 +162,7 @@ Result<Detectability> FootprintGauge::measure(
   assert(footprint_kW.cols() == twin_->measured_kW.cols());
   // Averaging is linear, so parts of (twin + s) minus parts of the twin are those of s, under the
   // twin's mask.
-  const Eigen::ArrayXXd counted =
-      twin_->measured_kW.isFinite().select(footprint_kW, std::numeric_limits<double>::quiet_NaN());
+  const Eigen::ArrayXXd counted = twin_->measured_kW.isFinite().select(footprint_kW, kAbsent);
   const Eigen::ArrayXXd parts_kW = measured_parts(twin_->day_parts, counted);
   const Eigen::VectorXd footprint =
       observations_.stack(twin_->measured_parts_kW + parts_kW) - observations_.measured;

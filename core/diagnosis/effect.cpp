@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "core/diagnosis/effects/support/elapsed_days.hpp"
+#include "core/diagnosis/elapsed_days.hpp"
 
 namespace recald::diagnosis {
 namespace {

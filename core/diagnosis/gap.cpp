@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+
+#include "core/absent.hpp"
 
 namespace recald::diagnosis {
 namespace {
 
 // Of what other meters gain.
 constexpr double kMostHarm = 0.25;
-
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Root mean square error over groups of parts (days, months), of the mean of the groups.
 double cvrmse_by(const SiteProblem& site, const MeterRows& rows, Eigen::Index g,
@@ -30,7 +29,7 @@ double cvrmse_by(const SiteProblem& site, const MeterRows& rows, Eigen::Index g,
     total += pair.first;
   }
   const auto n = static_cast<double>(sums.size());
-  return n > 1.0 && total > 0.0 ? std::sqrt(squares / (n - 1.0)) / (total / n) : kNothing;
+  return n > 1.0 && total > 0.0 ? std::sqrt(squares / (n - 1.0)) / (total / n) : kAbsent;
 }
 
 }  // namespace
@@ -65,13 +64,13 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
     const ResidualShares shares = node.meters[g].residual_shares(
         fit.residual.segment(fitted.offset, n), fit.jacobian.middleRows(fitted.offset, n),
         fit.posterior.covariance);
-    gaps.push_back({.nmbe_sim_minus_meas = measured > 0.0 ? difference / measured : kNothing,
+    gaps.push_back({.nmbe_sim_minus_meas = measured > 0.0 ? difference / measured : kAbsent,
                     .cvrmse_daily = cvrmse_by(site, rows, column, ground.none.parts_kW,
                                               [](const DayPart& p) { return p.day_index; }),
                     .cvrmse_monthly = cvrmse_by(site, rows, column, ground.none.parts_kW,
                                                 [](const DayPart& p) { return p.month; }),
                     .log_score = scores[g].empty()
-                                     ? kNothing
+                                     ? kAbsent
                                      : log_score / static_cast<double>(scores[g].size()),
                     .discrepancy_share = shares.structural / (shares.structural + shares.white)});
   }

@@ -4,12 +4,12 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "core/absent.hpp"
 
 namespace recald::diagnosis {
 namespace {
 
-constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 constexpr int kTemperatureBinsMax = 14;
 constexpr std::array<double, 5> kBinWidths_K = {1.0, 2.0, 3.0, 5.0, 10.0};
 
@@ -24,7 +24,7 @@ class CellMeans {
     weights_(row, column) += weight;
   }
   [[nodiscard]] Eigen::ArrayXXd means() const {
-    return (weights_ > 0.0).select(sums_ / weights_.max(1e-12), kNotMeasured);
+    return (weights_ > 0.0).select(sums_ / weights_.max(1e-12), kAbsent);
   }
 
  private:
@@ -54,7 +54,7 @@ double measured_mean_kW(const SiteProblem& site, Eigen::Index meter) {
     sum += weight * kW;
     hours += weight;
   }
-  return hours > 0.0 ? sum / hours : kNotMeasured;
+  return hours > 0.0 ? sum / hours : kAbsent;
 }
 
 Eigen::ArrayXXd residual_shares(const SiteProblem& site, const Eigen::ArrayXXd& modelled_kW) {
@@ -69,9 +69,9 @@ Eigen::ArrayXXd change_shares(const SiteProblem& site, const Eigen::ArrayXXd& ch
     const double mean_kW = measured_mean_kW(site, g);
     const auto measured = site.measured_parts_kW.col(g).isFinite();
     if (mean_kW > 0.0) {
-      shares.col(g) = measured.select(change_kW.col(g) / mean_kW, kNotMeasured);
+      shares.col(g) = measured.select(change_kW.col(g) / mean_kW, kAbsent);
     } else {
-      shares.col(g).setConstant(kNotMeasured);
+      shares.col(g).setConstant(kAbsent);
     }
   }
   return shares;

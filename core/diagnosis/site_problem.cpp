@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/absent.hpp"
+
 namespace recald::diagnosis {
 namespace {
 
@@ -48,8 +50,7 @@ std::string lacking(const Effect& effect, const SiteProblem& site) {
 }
 
 EffectParameter day_parameter(const char* name, double first_day, double last_day) {
-  EffectParameter day{name, "day", UniformPrior{first_day, last_day},
-                      std::numeric_limits<double>::quiet_NaN()};
+  EffectParameter day{name, "day", UniformPrior{first_day, last_day}, kAbsent};
   for (double d = first_day + 0.5 * kDaysBetweenLooks; d < last_day; d += kDaysBetweenLooks) {
     day.scan.push_back(d);
   }

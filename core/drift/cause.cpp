@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/absent.hpp"
 #include "core/calibration/log_sum.hpp"
 #include "core/random/rng.hpp"
 
@@ -21,7 +22,6 @@ namespace {
 using calibration::Posterior;
 using calibration::PosteriorData;
 
-constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kStream = std::uint64_t{1} << 40;
 
 double log_normal(const Eigen::VectorXd& residual, const Eigen::LLT<Eigen::MatrixXd>& factor) {
@@ -115,9 +115,9 @@ struct Contest {
 Cause cause_of(const Contest& contest) {
   Cause cause{.kind = contest.kind,
               .index = contest.index,
-              .mean = kUnknownValue,
-              .q05 = kUnknownValue,
-              .q95 = kUnknownValue};
+              .mean = kAbsent,
+              .q05 = kAbsent,
+              .q95 = kAbsent};
   const Eigen::VectorXd logs = Eigen::Map<const Eigen::VectorXd>(
       contest.log_likelihoods.data(), static_cast<Eigen::Index>(contest.log_likelihoods.size()));
   const double total = calibration::log_sum(logs);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/absent.hpp"
 #include "core/calibration/particles.hpp"
 #include "core/calibration/posterior.hpp"
 #include "core/drift/forecast.hpp"
@@ -46,8 +47,8 @@ struct MonthTaken {
   double log_score = 0.0;        ///< log p(y_t | y of the window before): of all outputs together.
   double effective_share = 1.0;  ///< Of the population after weighting, before moves.
   bool moved = false;
-  bool anew = false;  ///< Sampled from the prior, not carried over.
-  double acceptance_rate = std::numeric_limits<double>::quiet_NaN();  ///< Of the last move.
+  bool anew = false;                 ///< Sampled from the prior, not carried over.
+  double acceptance_rate = kAbsent;  ///< Of the last move.
 };
 
 /// Particles {theta, phi} carried from month to month (IBIS):

@@ -27,7 +27,8 @@ inline constexpr std::chrono::seconds kDay{86'400};  ///< Of 24 hours, as most a
   return static_cast<double>(span.count()) / 3600.0;
 }
 
-/// Of the intervals that begin at whole multiples since 1970 the one that holds t. @pre t from then on
+/// Of the intervals that begin at whole multiples since 1970 the one that holds t. @pre t from then
+/// on
 [[nodiscard]] inline Instant interval_start(Instant t, std::chrono::seconds interval) {
   return t - t.time_since_epoch() % interval;
 }

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/absent.hpp"
+
 namespace recald::metering {
 namespace {
 
@@ -35,7 +37,7 @@ CounterBooking measured(const RegisterSample& from, const RegisterSample& to, do
 }
 
 CounterBooking unbooked(Instant from, Instant to, Reason reason) {
-  return {{from, to}, std::numeric_limits<double>::quiet_NaN(), Validity::missing, reason};
+  return {{from, to}, kAbsent, Validity::missing, reason};
 }
 
 /// One call of `advance`; each branch of the state table is a function that says whether it held.

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "core/absent.hpp"
 
 namespace recald::metering {
 namespace {
@@ -57,8 +58,7 @@ std::vector<CounterBooking> cut(const CounterBooking& booking, const BookingRule
 
 Reading reading_of(std::span<const CounterBooking> pieces, std::uint32_t meter,
                    const TimeSpan& interval) {
-  Reading reading{meter, interval.begin, std::numeric_limits<double>::quiet_NaN(),
-                  Validity::missing};
+  Reading reading{meter, interval.begin, kAbsent, Validity::missing};
   seconds covered{0};
   double energy_kWh = 0.0;
   bool is_missing = false;

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/absent.hpp"
+
 namespace recald::metering {
 namespace {
 
@@ -20,7 +22,7 @@ struct Received {
 Received received(const Reading& reading) {
   const bool usable = std::isfinite(reading.mean_kW) && reading.validity != Validity::missing &&
                       reading.validity != Validity::filled;
-  if (!usable) return {std::numeric_limits<double>::quiet_NaN(), Validity::missing};
+  if (!usable) return {kAbsent, Validity::missing};
   return {reading.mean_kW, reading.validity};
 }
 

@@ -2,7 +2,8 @@
 
 #include <array>
 #include <cassert>
-#include <limits>
+
+#include "core/absent.hpp"
 
 namespace recald::metering {
 namespace {
@@ -57,7 +58,7 @@ std::string_view to_string(FillMethod method) {
 
 MonthSlots::MonthSlots(std::shared_ptr<const MonthGrid> month_grid) : grid{std::move(month_grid)} {
   const auto n = static_cast<std::size_t>(grid->slots());
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double nan = kAbsent;
   measured_kW.assign(n, nan);
   used_kW.assign(n, nan);
   validity.assign(n, Validity::missing);

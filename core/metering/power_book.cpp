@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "core/absent.hpp"
 
 namespace recald::metering {
 namespace {
@@ -36,8 +37,7 @@ void account(PowerBook& book, const Stretch& stretch, Instant begin, Instant end
 }
 
 Reading close_interval(PowerBook& book, std::uint32_t meter, const PowerRules& rules) {
-  Reading reading{meter, *book.next, std::numeric_limits<double>::quiet_NaN(), Validity::missing,
-                  book.reasons};
+  Reading reading{meter, *book.next, kAbsent, Validity::missing, book.reasons};
   const double coverage = in_hours(book.covered) / in_hours(rules.interval);
   if (coverage >= rules.coverage_min && book.hole_longest <= rules.hole_max) {
     reading.mean_kW = book.energy_kWh / in_hours(book.covered);

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
+
+#include "core/absent.hpp"
 
 namespace recald::metering {
 namespace {
 
 using std::chrono::seconds;
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNormalMad = 1.4826;      // MAD of a normal distribution to its sd
 constexpr double kSpikeScaleFloor = 0.01;  // of the month's median
 constexpr std::size_t kSpikeDaysMin = 5;   // fewer days tell nothing about a time of day
@@ -24,7 +24,7 @@ void condemn(MonthSlots& month, std::size_t slot, Reason reason) {
 /// What the meter said, believed or not; NaN where it said nothing or a counter only knew a sum.
 double reported_kW(const MonthSlots& month, std::size_t slot) {
   const Validity v = month.validity[slot];
-  return v == Validity::ok || v == Validity::suspect ? month.measured_kW[slot] : kNoValue;
+  return v == Validity::ok || v == Validity::suspect ? month.measured_kW[slot] : kAbsent;
 }
 
 double median_of(std::vector<double>& values) {
@@ -251,7 +251,7 @@ class RunCheck {
   }
 
   void run() {
-    Run run{0, 0, kNoValue, 0};
+    Run run{0, 0, kAbsent, 0};
     for (std::size_t i = 0; i < month_.measured_kW.size(); ++i) {
       const double value_kW = reported_kW(month_, i);
       if (std::isnan(value_kW)) continue;

@@ -1,9 +1,9 @@
 /// What every building model looks like to a calibration.
 #pragma once
 
-#include <cassert>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace recald {
 
@@ -38,11 +38,7 @@ class MonthlyModel {
                                       std::span<double> jacobian);
 };
 
-inline void MonthlyModel::evaluate_with_jacobian(std::span<const double> theta,
-                                                 std::span<double> outputs,
-                                                 std::span<double> /*jacobian*/) {
-  assert(false && "this model has no Jacobian");
-  evaluate(theta, outputs);
-}
+/// One run of the model, outside inner loops. @return (output_count * month_count)
+[[nodiscard]] std::vector<double> evaluate(MonthlyModel& model, std::span<const double> theta);
 
 }  // namespace recald

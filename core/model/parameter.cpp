@@ -19,4 +19,16 @@ std::string describe(std::span<const Parameter> parameters, std::span<const doub
   return text.str();
 }
 
+std::vector<double> prior_modes(std::span<const Parameter> parameters) {
+  std::vector<double> theta;
+  for (const Parameter& parameter : parameters) theta.push_back(parameter.prior.mode());
+  return theta;
+}
+
+std::vector<double> prior_means(std::span<const Parameter> parameters) {
+  std::vector<double> theta;
+  for (const Parameter& parameter : parameters) theta.push_back(parameter.prior.mean());
+  return theta;
+}
+
 }  // namespace recald

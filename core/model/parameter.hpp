@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/model/prior.hpp"
 
@@ -19,5 +20,9 @@ struct Parameter {
 /// @pre equal lengths
 [[nodiscard]] std::string describe(std::span<const Parameter> parameters,
                                    std::span<const double> values);
+
+/// The parameters at their prior modes or means.
+[[nodiscard]] std::vector<double> prior_modes(std::span<const Parameter> parameters);
+[[nodiscard]] std::vector<double> prior_means(std::span<const Parameter> parameters);
 
 }  // namespace recald

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <map>
 #include <numeric>
+
+#include "core/absent.hpp"
 
 namespace recald::profile {
 namespace {
@@ -19,7 +20,6 @@ constexpr double kConstantCvrmse = 0.05;
 constexpr double kLeastOkShare = 0.5;  // of an hour's slots
 constexpr int kStandbyFromHour = 2;
 constexpr int kStandbyToHour = 5;
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
 using Cells = std::array<std::array<std::vector<double>, 24>, model::kDayTypes>;
 

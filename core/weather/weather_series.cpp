@@ -6,6 +6,8 @@
 #include <numbers>
 #include <string>
 
+#include "core/absent.hpp"
+
 namespace recald::weather {
 namespace {
 

@@ -3,19 +3,17 @@
 
 #include <array>
 #include <chrono>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/absent.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/result.hpp"
 
 namespace recald::weather {
 
 using metering::Instant;
-
-inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
 /// Means over one hour; NaN where absent.
 struct WeatherHour {

@@ -2,14 +2,15 @@
 
 #include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
-#include "daemon/calibrate/finished_calibration.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/results/calibration_files.hpp"
-#include "daemon/results/result_table.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
+#include "daemon/site/results/calibration_files.hpp"
+#include "daemon/site/results/calibration_folder.hpp"
+#include "daemon/site/results/result_table.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -3,16 +3,16 @@
 #include <chrono>
 
 #include "adapters/system/parallel_for.hpp"
-#include "daemon/calibrate/design_calibration.hpp"
-#include "daemon/calibrate/design_site.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
 #include "daemon/commands/interrupt.hpp"
-#include "daemon/results/calibration_files.hpp"
-#include "daemon/results/design_files.hpp"
-#include "daemon/results/result_folder.hpp"
-#include "daemon/results/result_table.hpp"
+#include "daemon/site/calibrate/design_calibration.hpp"
+#include "daemon/site/calibrate/design_site.hpp"
+#include "daemon/site/results/calibration_files.hpp"
+#include "daemon/site/results/design_files.hpp"
+#include "daemon/site/results/result_folder.hpp"
+#include "daemon/site/results/result_table.hpp"
 
 namespace recald::daemon {
 namespace {

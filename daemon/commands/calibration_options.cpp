@@ -1,8 +1,8 @@
 #include "daemon/commands/calibration_options.hpp"
 
 #include "core/calibration/samplers.hpp"
-#include "daemon/config/hyper_prior_file.hpp"
-#include "daemon/results/result_folder.hpp"
+#include "daemon/site/config/hyper_prior_file.hpp"
+#include "daemon/site/results/result_folder.hpp"
 
 namespace recald::daemon {
 

@@ -8,7 +8,7 @@
 #include "adapters/modbus/frame_explanation.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/field_words.hpp"
-#include "daemon/config/register_map_file.hpp"
+#include "daemon/site/config/register_map_file.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "adapters/doe/design_folder.hpp"
-#include "daemon/calibrate/design_metamodel.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/site/calibrate/design_metamodel.hpp"
 
 namespace recald::daemon {
 

@@ -8,8 +8,8 @@
 #include "core/diagnosis/null_scale.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/diagnose/footprint.hpp"
-#include "daemon/diagnose/site_problem.hpp"
+#include "daemon/site/diagnose/footprint.hpp"
+#include "daemon/site/model/site_problem.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -4,13 +4,15 @@
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
+#include "core/diagnosis/next_version.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/diagnose/diagnosis_files.hpp"
-#include "daemon/diagnose/diagnosis_words.hpp"
-#include "daemon/diagnose/site_diagnosis.hpp"
+#include "daemon/site/diagnose/site_diagnosis.hpp"
+#include "daemon/site/results/diagnosis_files.hpp"
+#include "daemon/site/results/diagnosis_folder.hpp"
+#include "daemon/site/results/diagnosis_words.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -21,7 +23,11 @@ Result<std::string> store_version(const models::ModelStore& store, const Modelle
                                   const diagnosis::SiteProblem& site, const std::string& at) {
   const auto parent = store.active();
   if (!parent) return tl::unexpected(parent.error());
-  auto saved = store.save(next_version(diagnosis, site, *parent, modelled.facts, at));
+  auto saved =
+      store.save(diagnosis::next_version(diagnosis, site, *parent,
+                                         {.data_revision = modelled.facts.data_revision,
+                                          .catalogue_version = modelled.facts.recald_version,
+                                          .created_at = at}));
   if (!saved) return tl::unexpected(saved.error());
   return std::move(saved->version);
 }

@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/parallel_for.hpp"
-#include "daemon/calibrate/active_effects.hpp"
-#include "daemon/calibrate/design_site.hpp"
-#include "daemon/calibrate/site_design.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/calibrate/design_site.hpp"
+#include "daemon/site/calibrate/site_design.hpp"
+#include "daemon/site/model/active_effects.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -1,15 +1,15 @@
 #include <chrono>
 
 #include "adapters/system/parallel_for.hpp"
-#include "daemon/calibrate/active_effects.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/drift/drift_json.hpp"
-#include "daemon/drift/drift_report.hpp"
-#include "daemon/drift/drift_words.hpp"
+#include "daemon/site/model/active_effects.hpp"
+#include "daemon/site/results/drift_json.hpp"
+#include "daemon/site/results/drift_report.hpp"
+#include "daemon/site/results/drift_words.hpp"
 
 namespace recald::daemon {
 namespace {

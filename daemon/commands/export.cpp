@@ -5,8 +5,8 @@
 #include "adapters/system/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/upkeep/export_csv.hpp"
-#include "daemon/upkeep/stored_site.hpp"
+#include "daemon/gateway/upkeep/export_csv.hpp"
+#include "daemon/gateway/upkeep/stored_site.hpp"
 
 namespace recald::daemon {
 namespace {

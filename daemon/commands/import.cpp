@@ -7,12 +7,12 @@
 #include "adapters/system/file_lock.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/upkeep/import_csv.hpp"
+#include "daemon/gateway/upkeep/import_csv.hpp"
 
 namespace recald::daemon {
 namespace {
 
-constexpr std::size_t kLinesShown = 10;
+constexpr std::size_t kRefusedShown = 10;
 
 std::string author() {
   const char* user = std::getenv("USER");
@@ -22,11 +22,11 @@ std::string author() {
 void print_issues(const ImportArguments& arguments, const csv::LineIssues& issues,
                   const Console& console) {
   const std::string name = arguments.file.filename().string();
-  for (std::size_t i = 0; i < std::min(kLinesShown, issues.listed.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kRefusedShown, issues.listed.size()); ++i) {
     console.err << fmt::format("{}:{}: {}\n", name, issues.listed[i].line, issues.listed[i].reason);
   }
-  if (issues.total > kLinesShown) {
-    console.err << fmt::format("… and {} more\n", issues.total - kLinesShown);
+  if (issues.total > kRefusedShown) {
+    console.err << fmt::format("… and {} more\n", issues.total - kRefusedShown);
   }
 }
 

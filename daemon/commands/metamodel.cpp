@@ -1,10 +1,10 @@
 #include <chrono>
 
-#include "daemon/calibrate/design_calibration.hpp"
-#include "daemon/calibrate/design_site.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
-#include "daemon/results/design_files.hpp"
+#include "daemon/site/calibrate/design_calibration.hpp"
+#include "daemon/site/calibrate/design_site.hpp"
+#include "daemon/site/results/design_files.hpp"
 
 namespace recald::daemon {
 namespace {

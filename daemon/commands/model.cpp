@@ -8,7 +8,7 @@
 #include "adapters/models/version_file.hpp"
 #include "adapters/report/format.hpp"
 #include "daemon/commands/commands.hpp"
-#include "daemon/config/site_config.hpp"
+#include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -1,8 +1,8 @@
 /// The first steps that commands share: read the site file, replay the recording, load the weather.
 #pragma once
 
-#include "daemon/calibrate/modelled_site.hpp"
 #include "daemon/commands/console.hpp"
+#include "daemon/site/model/modelled_site.hpp"
 
 namespace recald::daemon {
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include "adapters/system/write_file.hpp"
-#include "daemon/calibrate/site_calibration.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/results/calibration_files.hpp"
+#include "daemon/site/calibrate/site_calibration.hpp"
+#include "daemon/site/results/calibration_files.hpp"
 
 namespace recald::daemon {
 namespace {

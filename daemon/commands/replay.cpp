@@ -7,7 +7,7 @@
 #include "adapters/system/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/results/calibration_files.hpp"
+#include "daemon/site/results/calibration_files.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/run/service.hpp"
+#include "daemon/gateway/run/service.hpp"
 
 namespace recald::daemon {
 

@@ -3,7 +3,7 @@
 #include "core/screening/screen.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
-#include "daemon/results/design_files.hpp"
+#include "daemon/site/results/design_files.hpp"
 
 namespace recald::daemon {
 

@@ -5,7 +5,7 @@
 #include "adapters/http/client.hpp"
 #include "adapters/http/credentials.hpp"
 #include "daemon/commands/commands.hpp"
-#include "daemon/config/site_config.hpp"
+#include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
 namespace {

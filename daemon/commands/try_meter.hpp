@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/commands/field_words.hpp"
-#include "daemon/config/site_config.hpp"
+#include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
 

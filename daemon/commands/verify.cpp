@@ -1,4 +1,4 @@
-#include "daemon/upkeep/verify.hpp"
+#include "daemon/gateway/upkeep/verify.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/upkeep/stored_site.hpp"
+#include "daemon/gateway/upkeep/stored_site.hpp"
 
 namespace recald::daemon {
 

@@ -3,8 +3,8 @@
 // `MonthlyUpdate` forecasts and takes in each month of the third year; `s_a_month` is the mean,
 // `s_worst` the dearest of the twelve (the yearly run from the prior is among them), and
 // `calibrations_a_month` the mean in units of one full calibration by default on the same points,
-// timed in the same run. The model is a polynomial: `daemon/drift` follows every site with one, be
-// its model the EPC or a meta-model.
+// timed in the same run. The model is a polynomial: `daemon/site/drift` follows every site with
+// one, be its model the EPC or a meta-model.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

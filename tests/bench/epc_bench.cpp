@@ -34,9 +34,7 @@ void evaluate(benchmark::State& state, int classes_per_state) {
 }
 
 void BM_EpcHourlySums(benchmark::State& state) { evaluate(state, 0); }
-void BM_EpcClasses(benchmark::State& state) {
-  evaluate(state, model::epc::kClassesPerState);
-}
+void BM_EpcClasses(benchmark::State& state) { evaluate(state, model::epc::kClassesPerState); }
 BENCHMARK(BM_EpcHourlySums)->Unit(benchmark::kMicrosecond);
 BENCHMARK(BM_EpcClasses)->Unit(benchmark::kMicrosecond);
 

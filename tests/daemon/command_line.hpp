@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/cli.hpp"
+#include "daemon/commands/cli.hpp"
 
 namespace recald::daemon::testing {
 

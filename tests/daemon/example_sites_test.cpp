@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/commands/open_site.hpp"
-#include "daemon/replay/recording.hpp"
+#include "daemon/site/replay/recording.hpp"
 #include "tests/daemon/command_line.hpp"
 
 namespace recald::daemon {

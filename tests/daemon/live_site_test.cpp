@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/sqlite/sqlite_store.hpp"
-#include "daemon/calibrate/site_parts.hpp"
-#include "daemon/run/site_jobs.hpp"
+#include "daemon/gateway/run/site_jobs.hpp"
+#include "daemon/site/model/site_parts.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/depot_versions.hpp"
 #include "tests/daemon/depot_year.hpp"

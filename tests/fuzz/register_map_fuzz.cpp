@@ -2,7 +2,7 @@
 // each field decoded. One that is refused is told where and why.
 #include <cmath>
 
-#include "daemon/config/register_map_file.hpp"
+#include "daemon/site/config/register_map_file.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace recald::fuzz {

@@ -1,7 +1,7 @@
 // A site file that is accepted is consistent; one that is refused is told where and why.
 #include <cmath>
 
-#include "daemon/config/site_config.hpp"
+#include "daemon/site/config/site_config.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace recald::fuzz {

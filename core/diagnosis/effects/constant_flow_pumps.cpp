@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/half_normal.hpp"
 
@@ -81,7 +82,7 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
           {.name = "season",
            .unit = "1: all year, 2: warm months, 3: cold months",
            .prior = UniformPrior{0.5, 3.5},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {1.0, 2.0, 3.0},
            .choice = true}};
 }

@@ -1,9 +1,9 @@
 /// Loads shed on the hottest afternoons.
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {
@@ -80,7 +80,7 @@ double quantile_C(const std::vector<double>& sorted_C, double share) {
 }
 
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
+  const double none = kAbsent;
   std::vector<double> days_C = warmest_afternoons_C(facts.drivers);
   std::erase_if(days_C, [](double day_C) { return day_C < -200.0; });
   if (days_C.empty()) days_C = {25.0};

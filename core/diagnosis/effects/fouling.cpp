@@ -1,9 +1,9 @@
 /// Cooling costs more from month to month, until somebody cleans.
 #include <algorithm>
-#include <limits>
 
-#include "core/diagnosis/effects/support/elapsed_days.hpp"
+#include "core/absent.hpp"
 #include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/elapsed_days.hpp"
 
 namespace recald::diagnosis::effects {
 
@@ -37,7 +37,7 @@ class Fouling final : public model::hourly::Alteration {
 
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
   const double days = spanned_days(facts.drivers);
-  const double none = std::numeric_limits<double>::quiet_NaN();
+  const double none = kAbsent;
   return {{.name = "growth", .unit = "1/a", .prior = half_normal_below(0.08, 1.0), .neutral = 0.0},
           {.name = "from_day",
            .unit = "d",

@@ -2,9 +2,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effects/support/meter_priors.hpp"
 
 namespace recald::diagnosis::effects {
@@ -118,7 +118,7 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
           {.name = "ground_lag",
            .unit = "d",
            .prior = TruncatedNormalPrior{.location = 40.0, .sd = 20.0, .min = 0.0, .max = 120.0},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {20.0, 40.0, 70.0}}};
 }
 

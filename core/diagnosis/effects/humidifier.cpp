@@ -1,7 +1,7 @@
 /// Steam moistens dry outdoor air.
 #include <algorithm>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {
@@ -34,7 +34,7 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
       {.name = "held_humidity_ratio",
        .unit = "kg/kg",
        .prior = TruncatedNormalPrior{.location = 0.0055, .sd = 0.0015, .min = 0.002, .max = 0.010},
-       .neutral = std::numeric_limits<double>::quiet_NaN(),
+       .neutral = kAbsent,
        .scan = {0.004, 0.005, 0.006, 0.007}}};
 }
 

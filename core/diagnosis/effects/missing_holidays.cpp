@@ -2,9 +2,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/date_table.hpp"
 
@@ -101,7 +101,7 @@ const DateTable& holidays_of(double calendar) {
 class Sundays {
  public:
   struct Loads {
-    double people_share = std::numeric_limits<double>::quiet_NaN();
+    double people_share = kAbsent;
     double lights_W = 0.0;
     double plugs_W = 0.0;
   };
@@ -169,7 +169,7 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
           {.name = "calendar",
            .unit = "1: North America, 2: Europe, 3: Britain",
            .prior = UniformPrior{0.5, 3.5},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {1.0, 2.0, 3.0},
            .choice = true}};
 }

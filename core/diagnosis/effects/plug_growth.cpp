@@ -1,5 +1,5 @@
 /// People bring more devices every year, or fewer.
-#include "core/diagnosis/effects/support/elapsed_days.hpp"
+#include "core/diagnosis/elapsed_days.hpp"
 
 namespace recald::diagnosis::effects {
 

@@ -1,7 +1,7 @@
 /// Fewer people in term breaks.
 #include <chrono>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/date_table.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
@@ -87,7 +87,7 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
           {.name = "calendar",
            .unit = "1: school, 2: college, 3: university",
            .prior = UniformPrior{0.5, 3.5},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {1.0, 2.0, 3.0},
            .choice = true}};
 }

@@ -1,7 +1,7 @@
 /// Computers that run and are cooled day and night.
 #include <algorithm>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effects/support/meter_priors.hpp"
 
 namespace recald::diagnosis::effects {
@@ -40,7 +40,7 @@ class ServerRoom final : public model::hourly::Alteration {
 
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
   const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.20);
-  const double none = std::numeric_limits<double>::quiet_NaN();
+  const double none = kAbsent;
   const UniformPrior any_share{.min = 0.0, .max = 1.0};
   return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
           {.name = "cooled_share",

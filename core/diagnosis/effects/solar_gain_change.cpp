@@ -1,7 +1,7 @@
 /// More or less sun comes in than windows, blinds and neighbours on the drawings let.
 #include <algorithm>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {
@@ -39,7 +39,7 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
           {.name = "solar_threshold",
            .unit = "W/m2",
            .prior = UniformPrior{.min = 0.0, .max = 600.0},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {0.0, 250.0, 500.0}}};
 }
 

@@ -1,6 +1,6 @@
 /// A meter that repeats itself.
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {
@@ -35,7 +35,7 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
           {.name = "level_share",
            .unit = "-",
            .prior = any_share,
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {0.0, 1.0}}};
 }
 

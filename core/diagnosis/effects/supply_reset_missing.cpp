@@ -1,7 +1,7 @@
 /// Supply air is colder in mild weather than it need be.
 #include <algorithm>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/half_normal.hpp"
 
@@ -34,7 +34,7 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
           {.name = "balance_temperature",
            .unit = "degC",
            .prior = TruncatedNormalPrior{.location = 18.0, .sd = 3.0, .min = 8.0, .max = 28.0},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {14.0, 18.0, 22.0}}};
 }
 

@@ -1,7 +1,7 @@
 /// Wind presses air through the envelope, more than the drawings' leakage area lets in.
 #include <cmath>
-#include <limits>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effects/support/meter_priors.hpp"
 
 namespace recald::diagnosis::effects {
@@ -30,7 +30,7 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
           {.name = "wind_exponent",
            .unit = "-",
            .prior = UniformPrior{.min = 0.8, .max = 1.6},
-           .neutral = std::numeric_limits<double>::quiet_NaN(),
+           .neutral = kAbsent,
            .scan = {1.0, 1.33}}};
 }
 

@@ -115,9 +115,8 @@ int make(const Arguments& given) {
   }
   if (const auto same = claim(given); !same) return failed(same.error().message);
   Maker maker(folders, given.out / "scratch", range->size());
-  system::parallel_for(given.threads)(range->size(), [&](std::size_t i) {
-    maker.make(plans[range->first - 1 + i]);
-  });
+  system::parallel_for(given.threads)(
+      range->size(), [&](std::size_t i) { maker.make(plans[range->first - 1 + i]); });
   std::cerr << '\n';
   if (!maker.error().empty()) return failed(maker.error());
   if (range->size() < plans.size()) {

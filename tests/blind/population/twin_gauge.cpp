@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "daemon/commands/open_site.hpp"
-#include "daemon/diagnose/footprint.hpp"
-#include "daemon/diagnose/site_problem.hpp"
+#include "daemon/site/diagnose/footprint.hpp"
+#include "daemon/site/model/site_problem.hpp"
 
 namespace recald::blind {
 

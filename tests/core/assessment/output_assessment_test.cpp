@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "core/absent.hpp"
 
 namespace recald::assessment::output_assessment_test {
 namespace {
 
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 constexpr auto kFit = MonthRole::calibration;
 constexpr auto kCheck = MonthRole::validation;
 

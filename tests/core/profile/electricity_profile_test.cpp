@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
+
+#include "core/absent.hpp"
 
 namespace recald::profile {
 namespace {
@@ -19,8 +20,6 @@ using model::DayType;
 using std::chrono::days;
 using std::chrono::sys_days;
 using std::chrono::year;
-
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
 MonthSlots quarter_hours(const char* zone, Month month) {
   const auto calendar = *metering::LocalCalendar::open(zone);

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/models/model_store.hpp"
-#include "daemon/calibrate/active_effects.hpp"
+#include "daemon/site/model/active_effects.hpp"
 #include "tests/adapters/models/sample_version.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/support/sample_site.hpp"

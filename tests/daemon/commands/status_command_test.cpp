@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/serve/served.hpp"
+#include "daemon/gateway/serve/served.hpp"
 #include "tests/adapters/http/raw_client.hpp"
 #include "tests/daemon/command_line.hpp"
-#include "tests/daemon/serve/served_site.hpp"
+#include "tests/daemon/gateway/serve/served_site.hpp"
 
 namespace recald::daemon {
 namespace {

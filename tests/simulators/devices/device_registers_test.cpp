@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "daemon/config/register_map_file.hpp"
+#include "daemon/site/config/register_map_file.hpp"
 
 namespace recald::simulators::device_registers_test {
 namespace {

@@ -1,8 +1,7 @@
 /// Priors of positive amounts: below a physical limit, or as a share of a meter's mean.
 #pragma once
 
-#include <limits>
-
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/half_normal.hpp"
 
@@ -26,7 +25,7 @@ namespace recald::diagnosis::effects {
   return {.name = name,
           .unit = "-",
           .prior = UniformPrior{.min = 0.0, .max = 1.0},
-          .neutral = std::numeric_limits<double>::quiet_NaN(),
+          .neutral = kAbsent,
           .scan = {0.0, 1.0}};
 }
 

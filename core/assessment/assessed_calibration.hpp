@@ -1,0 +1,81 @@
+/// A calibration held against the meters, whichever way its model came: from a site or from a
+/// design of experiments. What tables and files are made from.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/absent.hpp"
+#include "core/assessment/output_assessment.hpp"
+#include "core/calibration/calibration.hpp"
+#include "core/calibration/sensitivity.hpp"
+#include "core/model/monthly_model.hpp"
+#include "core/model/parameter.hpp"
+#include "core/result.hpp"
+
+namespace recald::assessment {
+
+/// One modelled output over all months of calibration and validation.
+struct OutputCalibration {
+  std::string name;       ///< As files write it: "steam_daily_kWh".
+  std::string label;      ///< As tables write it: "steam".
+  std::string unit;       ///< "kWh/day"
+  std::size_t meter = 0;  ///< Of a site: index into the recording.
+  double weight = 1.0;
+  bool calibrated = true;               ///< False: shown, not fitted; a warning says why.
+  std::vector<double> measured;         ///< (months) NaN where there is no usable figure.
+  std::vector<double> extra_variances;  ///< (months) unit squared, known: estimated slots.
+  /// (months) unit squared: what the model itself does not know of this output, besides the
+  /// discrepancy: the error of a meta-model, the parameters that it holds fixed. Empty: nothing.
+  std::vector<double> model_variances;
+  OutputAssessment assessment;
+};
+
+/// What stood in for the simulation of a design of experiments.
+struct MetamodelFacts {
+  std::string form;              ///< "seed", "monthly" or "given".
+  std::string why;               ///< Why this form, in words.
+  double r2_left_out = kAbsent;  ///< Of the form that was calibrated; NaN for a given one.
+  std::vector<double> sigma_r;   ///< (outputs) in their units; empty for a given one.
+};
+
+struct AssessedCalibration {
+  std::string model;                     ///< "epc", "metamodel"
+  std::vector<std::string> month_names;  ///< "2016-03", or a number for a design without years.
+  std::vector<MonthRole> roles;          ///< (months) calibration months come first.
+  std::vector<Parameter> parameters;
+  std::vector<Parameter> fixed_parameters;  ///< In the model at their prior means, not calibrated.
+  std::optional<MetamodelFacts> metamodel;
+  calibration::Calibration calibration;
+  std::vector<OutputCalibration> outputs;
+  std::optional<calibration::PriorSensitivity> sensitivity;
+  std::vector<std::string> warnings;  ///< In words, in order of discovery.
+};
+
+/// The problem of `result`'s outputs over its first `calibration_months` months, without
+/// parameters' errors; inputs are to be filled in.
+[[nodiscard]] calibration::CalibrationProblem problem_of(const AssessedCalibration& result,
+                                                         std::size_t calibration_months);
+
+/// Outputs that the parameters hardly move are taken out of the fit, in words. Electricity fixed by
+/// its own profile is one: normalised by a range of two per cent, its harmless misfit would set the
+/// size of the discrepancy for all outputs.
+void set_aside_unresponsive(const calibration::DesignRuns& design, AssessedCalibration& result,
+                            calibration::CalibrationProblem& problem);
+
+/// Calibrates on the design, repeats it for other beliefs where asked, and puts what was found into
+/// `result.warnings`.
+[[nodiscard]] Result<void> calibrate_into(const MonthlyModel& model,
+                                          const calibration::CalibrationProblem& problem,
+                                          const calibration::CalibrationOptions& options,
+                                          bool prior_sensitivity, calibration::DesignRuns design,
+                                          const calibration::RunContext& context,
+                                          AssessedCalibration& result);
+
+/// Fills the outputs' assessments. @param whole_model covers all months of `result`.
+[[nodiscard]] Result<void> assess(MonthlyModel& whole_model, const calibration::RunContext& context,
+                                  AssessedCalibration& result);
+
+}  // namespace recald::assessment

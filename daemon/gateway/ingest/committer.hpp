@@ -1,0 +1,70 @@
+/// Everything on its way to the store: gathered for a second, committed together, kept if that
+/// fails.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "daemon/gateway/poll/latency_histogram.hpp"
+
+namespace recald::daemon {
+
+struct CommitRules {
+  std::chrono::milliseconds gather{1'000};  ///< Intervals do not wait: they are committed at once.
+  std::chrono::milliseconds retry{10'000};  ///< After a failure.
+  /// What is kept while the store refuses: 24 hours of a hundred meters. Beyond it raw samples
+  /// are given up first, then the oldest intervals.
+  std::size_t intervals_max = 10'000;
+  std::size_t samples_max = 50'000;
+};
+
+/// How the store is doing.
+struct CommitHealth {
+  bool is_degraded = false;  ///< The last commit failed.
+  std::string why;           ///< Then, what the store said.
+  std::uint64_t commits = 0;
+  std::uint64_t failures = 0;
+  std::uint64_t lost_intervals = 0;  ///< Given up, because the store refused for too long.
+  std::uint64_t lost_samples = 0;
+  std::uint64_t conflicts = 0;
+  std::chrono::milliseconds last_duration{0};
+  LatencyHistogram durations;  ///< Of all commits, those refused as well.
+};
+
+class Committer {
+ public:
+  /// Told what was committed: from then on it is acknowledged.
+  using OnCommitted = std::function<void(const StoreBatch&, const CommitCounts&)>;
+
+  Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed);
+
+  void add(StoreBatch batch);
+
+  /// Commits what there is, now. @return the store's refusal; what was refused is kept.
+  Result<void> flush();
+
+  [[nodiscard]] const CommitHealth& health() const { return health_; }
+  [[nodiscard]] std::size_t waiting_intervals() const { return waiting_.intervals.size(); }
+
+ private:
+  void schedule(std::chrono::milliseconds wait);
+  void put_state(const StoreBatch::Register& entry);
+  void give_up_what_is_too_much();
+
+  Loop& loop_;
+  Store& store_;
+  CommitRules rules_;
+  OnCommitted on_committed_;
+  StoreBatch waiting_;
+  CommitHealth health_;
+  /// When the next flush is due by the monotonic clock; later calls find out whether they are it.
+  std::optional<std::chrono::milliseconds> due_;
+  std::shared_ptr<Committer*> self_;
+};
+
+}  // namespace recald::daemon

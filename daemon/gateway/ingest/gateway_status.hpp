@@ -1,0 +1,53 @@
+/// The gateway as people see it: meters, buses, what waits for the store.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/metering/reading.hpp"
+#include "daemon/gateway/ingest/committer.hpp"
+#include "daemon/gateway/ingest/meter_progress.hpp"
+#include "daemon/gateway/ingest/meter_track.hpp"
+#include "daemon/gateway/poll/bus_counters.hpp"
+#include "daemon/gateway/poll/latency_histogram.hpp"
+#include "daemon/gateway/poll/unit_health.hpp"
+
+namespace recald::daemon {
+
+/// Of a meter that is polled.
+struct PollStatus {
+  std::string bus;
+  UnitState state = UnitState::up;
+  std::uint64_t skipped = 0;
+  RequestCounts requests{};
+};
+
+/// One meter whose readings the store keeps, as people see it.
+struct MeterStatus {
+  std::string id;
+  std::optional<PollStatus> poll;  ///< Absent: others send its readings.
+  LiveValues live;                 ///< Of a meter that is not polled, only when it was heard of.
+  std::optional<metering::Reading> last_interval;  ///< Committed.
+  MeterCounters counters;
+  double open_month_coverage = 0.0;  ///< 0…1; NaN before the month's first interval has ended.
+};
+
+struct BusStatus {
+  std::string name;
+  LatencyHistogram duration;
+  LatencyHistogram lateness;
+};
+
+struct GatewayStatus {
+  bool clock_ok = false;
+  CommitHealth store;
+  std::size_t waiting_intervals = 0;      ///< For the store.
+  std::array<std::uint64_t, 3> events{};  ///< Committed, by Severity.
+  std::vector<BusStatus> buses;           ///< That have meters.
+  std::vector<MeterStatus> meters;
+};
+
+}  // namespace recald::daemon

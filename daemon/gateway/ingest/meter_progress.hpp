@@ -1,0 +1,46 @@
+/// How far a meter has come that the store keeps the readings of, whoever brings them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "adapters/ports/store.hpp"
+#include "daemon/gateway/ingest/month_keeper.hpp"
+#include "daemon/gateway/ingest/open_month.hpp"
+
+namespace recald::daemon {
+
+/// What became of a meter since the process began.
+struct MeterCounters {
+  std::array<std::uint64_t, 5> intervals{};     ///< Committed, by Validity.
+  std::uint64_t late = 0;                       ///< Of them, of months that were closed.
+  std::map<std::string, std::uint64_t> events;  ///< By kind.
+};
+
+struct MeterProgress {
+  StoredMeter stored;
+  OpenMonth open_month;
+  MeterCounters counters{};
+  std::optional<metering::Reading> last_interval;             ///< Committed.
+  metering::Instant closed_until = metering::Instant::min();  ///< End of the last closed month.
+
+  /// Registers the meter with the store and looks up what a restart would otherwise forget: its
+  /// last interval and its closed months.
+  /// @param remember  Is shown the intervals of the last 31 days; may be empty.
+  /// @return or the store's failure.
+  [[nodiscard]] static Result<MeterProgress> open(
+      const metering::Meter& meter, const metering::LocalCalendar& calendar, Store& store,
+      const std::function<void(const metering::Reading&)>& remember = {});
+
+  /// An interval was committed.
+  void note(const metering::Reading& reading);
+
+  /// Marks what belongs to a closed month as late; months that depend on it are to be closed again.
+  void mark_late(StoreBatch& batch, const metering::LocalCalendar& calendar) const;
+};
+
+}  // namespace recald::daemon

@@ -1,0 +1,351 @@
+#include "daemon/gateway/ingest/meter_track.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "core/metering/units.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::CounterEvent;
+using metering::Instant;
+using metering::Reason;
+using metering::RegisterSample;
+using modbus::RegisterField;
+using PollTime = std::chrono::sys_time<std::chrono::milliseconds>;
+
+/// Two samples around each interval boundary are kept as read; so are all that the counter doubts.
+constexpr std::chrono::seconds kNearBoundary{60};
+/// The open interval of a power-only meter is stored this often: a restart costs no more of it.
+constexpr std::chrono::seconds kKeepPowerEvery{60};
+/// A clock that is kept right steps back no further.
+constexpr std::chrono::seconds kClockSlew{2};
+
+Reason reason_of(const modbus::ReadFailure& failure) {
+  switch (failure.fault) {
+    case modbus::ReadFault::timeout:
+    case modbus::ReadFault::refused:
+    case modbus::ReadFault::closed:
+      return Reason::timeout;
+    case modbus::ReadFault::exception:
+      return Reason::exception;
+    case modbus::ReadFault::mismatch:
+      return Reason::mismatch;
+    case modbus::ReadFault::crc:
+      return Reason::crc;
+  }
+  assert(false && "every fault has a reason");
+  return Reason::none;
+}
+
+/// kW or kWh per unit of the field; maps are checked to have such units where they are used.
+double unit_factor(const RegisterField& field) {
+  const auto unit = metering::find_unit(field.unit, metering::Utility::electricity, {});
+  assert(unit && "a checked map has known units");
+  return unit->factor;
+}
+
+Severity severity_of(CounterEvent event) {
+  switch (event) {
+    case CounterEvent::none:
+    case CounterEvent::bounce:
+    case CounterEvent::restored:
+      return Severity::info;
+    case CounterEvent::reset:
+    case CounterEvent::jump:
+    case CounterEvent::swapped:
+    case CounterEvent::erratic:
+      return Severity::warning;
+  }
+  assert(false && "every event has a severity");
+  return Severity::info;
+}
+
+metering::PowerRules power_rules(const metering::BookingRules& booking) {
+  return {.interval = booking.interval, .sample_gap_max = booking.sample_gap_max};
+}
+
+std::string_view kind_of(CounterEvent event) {
+  switch (event) {
+    case CounterEvent::none:
+      break;
+    case CounterEvent::bounce:
+      return "counter_bounce";
+    case CounterEvent::reset:
+      return "counter_reset";
+    case CounterEvent::restored:
+      return "counter_restored";
+    case CounterEvent::jump:
+      return "counter_jump";
+    case CounterEvent::erratic:
+      return "counter_erratic";
+    case CounterEvent::swapped:
+      return "meter_swapped";
+  }
+  return "";
+}
+
+}  // namespace
+
+MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
+                       const std::optional<RegisterState>& restored)
+    : meter_(std::move(meter)),
+      fields_(metered_fields(meter_.map)),
+      usual_(std::move(calendar), meter_.booking.interval) {
+  if (restored) state_ = *restored;
+  state_.field = meter_.map.energy.empty() ? "power" : "energy";
+  // What the site file says now holds; the state was reached under what it said then.
+  state_.settings = meter_.counter;
+  if (!meter_.map.energy.empty() && meter_.map.power) {
+    watch_.emplace(meter_.number, meter_.id, power_rules(meter_.booking));
+  }
+}
+
+void MeterTrack::clock_was_set() {
+  clock_was_set_ = true;
+  latest_.clear();
+  metering::forget_power(state_.power);
+  if (watch_) watch_->clock_was_set();
+}
+
+void MeterTrack::note_failure(const modbus::ReadFailure& failure) {
+  since_sample_ |= reason_of(failure);
+}
+
+void MeterTrack::note_fault(const RegisterField& field, modbus::ValueFault fault) {
+  const bool counts = std::ranges::find(meter_.map.energy, field.name) != meter_.map.energy.end();
+  const bool is_averaged = meter_.map.energy.empty() && meter_.map.power == field.name;
+  if (!counts && !is_averaged) return;
+  since_sample_ |= fault == modbus::ValueFault::absent ? Reason::sentinel : Reason::nan;
+}
+
+StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
+                            PollTime poll, Instant at) {
+  StoreBatch batch;
+  if (!result) {
+    note_failure(result.error());
+    // What was not read is not what it was.
+    for (const std::size_t i : read.fields) latest_.erase(fields_[i].name);
+    update_power();
+    return batch;
+  }
+  live_.read_at = at;
+  for (const modbus::FieldValue& found : decode_read(fields_, read, *result)) {
+    const RegisterField& field = fields_[found.field];
+    if (found.value) {
+      latest_[field.name] = {found.value->value, found.value->resolution, found.power_of_ten, poll};
+    } else {
+      latest_.erase(field.name);
+      note_fault(field, found.value.error());
+    }
+  }
+  take_identity(batch, poll, at);
+  update_power();
+  const auto power_kW = new_power_kW(read);
+  if (meter_.map.energy.empty()) {
+    if (power_kW) take_power(batch, *power_kW, at);
+  } else {
+    if (power_kW && watch_) watch_->take_power({at, *power_kW});
+    take_energy(batch, poll, at);
+    if (watch_) watch_->judge(batch, state_.settings, at);
+  }
+  // What is committed stands with the state that explains it.
+  if (!batch.empty() && batch.registers.empty()) batch.registers.push_back({meter_.number, state_});
+  return batch;
+}
+
+void MeterTrack::update_power() {
+  live_.power_kW.reset();
+  if (!meter_.map.power) return;
+  const auto found = latest_.find(*meter_.map.power);
+  if (found == latest_.end()) return;
+  const RegisterField* field = meter_.map.find(*meter_.map.power);
+  live_.power_kW = found->second.value * unit_factor(*field) * meter_.multiplier;
+}
+
+/// Another serial number twice in a row is another device; once is a bit that flipped.
+void MeterTrack::take_identity(StoreBatch& batch, PollTime poll, Instant at) {
+  std::string identity;
+  for (const std::string& name : meter_.map.identity) {
+    const auto found = latest_.find(name);
+    if (found == latest_.end() || found->second.poll != poll) return;
+    identity += fmt::format("{}{:.0f}", identity.empty() ? "" : "/", found->second.value);
+  }
+  if (identity.empty() || identity == state_.identity) {
+    other_identity_.reset();
+    return;
+  }
+  if (state_.identity.empty()) {
+    state_.identity = identity;
+    return;
+  }
+  if (other_identity_ != identity) {
+    other_identity_ = identity;
+    return;
+  }
+  batch.events.push_back(
+      {at, Severity::warning, std::string{kind_of(CounterEvent::swapped)}, meter_.id,
+       fmt::format("meter '{}' has another identity: {} instead of {}; its counter starts anew",
+                   meter_.id, identity, state_.identity)});
+  state_.identity = identity;
+  other_identity_.reset();
+  state_.counter = metering::swap_meter(std::move(state_.counter)).state;
+}
+
+void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
+  double energy_kWh = 0.0;
+  double resolution_kWh = 0.0;
+  for (const std::string& name : meter_.map.energy) {
+    const auto found = latest_.find(name);
+    if (found == latest_.end() || found->second.poll != poll) return;  // not all of this poll yet
+    const RegisterField* field = meter_.map.find(name);
+    const double factor = unit_factor(*field) * meter_.multiplier;
+    energy_kWh += found->second.value * factor;
+    resolution_kWh += found->second.resolution * factor;
+    if (field->modulus && meter_.map.energy.size() == 1) {
+      state_.settings.modulus_kWh = std::min(meter_.counter.modulus_kWh,
+                                             *field->modulus * found->second.power_of_ten * factor);
+    }
+  }
+  state_.settings.resolution_kWh = std::max(meter_.counter.resolution_kWh, resolution_kWh);
+  for (const std::string& name : meter_.map.energy) latest_.erase(name);
+  live_.register_kWh = energy_kWh;
+  take_sample(batch, {at, energy_kWh});
+}
+
+std::optional<double> MeterTrack::new_power_kW(const modbus::PlannedRead& read) const {
+  const bool is_new = std::ranges::any_of(
+      read.fields, [&](std::size_t i) { return meter_.map.power == fields_[i].name; });
+  return is_new ? live_.power_kW : std::nullopt;
+}
+
+void MeterTrack::take_power(StoreBatch& batch, double power_kW, Instant at) {
+  const bool went_back = state_.power.next && at < state_.power.until - kClockSlew;
+  if (std::exchange(clock_was_set_, false) || went_back) {
+    since_sample_ |= Reason::clock;
+    if (relive_from(at, state_.power.next)) state_.power = {};
+  }
+  for (const metering::Reading& reading : book_power(state_.power, meter_.number, {at, power_kW},
+                                                     since_sample_, power_rules(meter_.booking))) {
+    batch.intervals.push_back({reading, is_relived(reading)});
+    usual_.observe(reading);
+  }
+  since_sample_ = Reason::none;
+  if (batch.empty() && at - power_kept_ < kKeepPowerEvery) return;
+  batch.registers.push_back({meter_.number, state_});
+  power_kept_ = at;
+}
+
+bool MeterTrack::is_worth_keeping(const RegisterSample& sample) const {
+  if (state_.counter.phase != metering::CounterPhase::run) return true;
+  const auto past = sample.time.time_since_epoch() % meter_.booking.interval;
+  return past < kNearBoundary || meter_.booking.interval - past <= kNearBoundary;
+}
+
+/// Times of two clocks cannot be subtracted: the counter starts anew, and the time between is
+/// missing. What is stamped later than now was stamped wrongly, and gives way to what comes.
+void MeterTrack::begin_anew(Instant now) {
+  state_.counter = {};
+  since_sample_ |= Reason::clock;
+  metering::IntervalBook& book = state_.book;
+  if (!book.next || now >= *book.next + meter_.booking.interval) return;
+  std::erase_if(book.pieces, [&](const auto& piece) { return piece.span.end > now; });
+  if (relive_from(now, book.next)) book = {};
+}
+
+/// Intervals before `next` have been handed out. @return whether some of them lie ahead of now.
+bool MeterTrack::relive_from(Instant now, std::optional<Instant> next) {
+  if (!next || now >= *next) return false;
+  relived_until_ = std::max(relived_until_, *next);
+  return true;
+}
+
+/// A doubtful reading, which has no value, takes no other's place.
+bool MeterTrack::is_relived(const metering::Reading& reading) const {
+  return reading.start < relived_until_ && std::isfinite(reading.mean_kW);
+}
+
+void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
+  using metering::CounterPhase;
+  const bool stands = state_.counter.phase != CounterPhase::empty;
+  const Instant last =
+      state_.counter.pending ? state_.counter.pending->last.time : state_.counter.baseline.time;
+  if (stands && sample.time <= last && !clock_was_set_) {
+    // Twice within a second. Further back, the clock was set while nobody ran.
+    if (last - sample.time <= kClockSlew) return;
+    clock_was_set_ = true;
+  }
+  if (std::exchange(clock_was_set_, false)) begin_anew(sample.time);
+
+  const metering::CounterState before = state_.counter;
+  metering::CounterStep step =
+      metering::advance(std::move(state_.counter), sample, state_.settings);
+  for (metering::CounterBooking& booking : step.bookings) {
+    const bool is_hole = booking.span.length() > meter_.booking.sample_gap_max;
+    if (is_hole || booking.validity != metering::Validity::ok) booking.reasons |= since_sample_;
+  }
+  const auto booked =
+      book_intervals(state_.book, meter_.number, step, meter_.booking, usual_.shape());
+  state_.counter = std::move(step.state);
+  for (const metering::BookedInterval& interval : booked) {
+    batch.intervals.push_back(
+        {interval.reading, interval.supersedes || is_relived(interval.reading)});
+    usual_.observe(interval.reading);
+    if (watch_) watch_->take_interval(interval.reading);
+  }
+  if (!step.bookings.empty()) since_sample_ = Reason::none;
+  if (step.event != CounterEvent::none) {
+    batch.events.push_back(event_of(step.event, sample, before));
+  }
+  if (step.event != CounterEvent::none || is_worth_keeping(sample)) {
+    batch.samples.push_back({meter_.number, state_.field, sample.time, sample.value_kWh});
+  }
+}
+
+StoreEvent MeterTrack::event_of(CounterEvent event, const RegisterSample& sample,
+                                const metering::CounterState& before) const {
+  const double from_kWh = before.baseline.value_kWh;
+  const auto sentence = [&]() -> std::string {
+    switch (event) {
+      case CounterEvent::none:
+      case CounterEvent::swapped:
+        break;
+      case CounterEvent::bounce:
+        return fmt::format(
+            "the register showed {:.1f} kWh for a moment and is back at {:.1f}; "
+            "nothing was lost",
+            before.pending->last.value_kWh, sample.value_kWh);
+      case CounterEvent::reset:
+        return fmt::format(
+            "the register fell from {:.1f} to {:.1f} kWh and stays there: it was "
+            "reset; the energy between is not known",
+            from_kWh, before.pending->first.value_kWh);
+      case CounterEvent::jump:
+        return fmt::format(
+            "the register rose from {:.1f} to {:.1f} kWh, more than {:.0f} kW can "
+            "draw, and stays there; the rise was not booked",
+            from_kWh, before.pending->first.value_kWh, state_.settings.rated_kW);
+      case CounterEvent::restored:
+        return fmt::format(
+            "the register is back on its old line at {:.1f} kWh; what was booked "
+            "since was put right",
+            sample.value_kWh);
+      case CounterEvent::erratic:
+        return fmt::format(
+            "the register contradicted itself ten times within an hour, last at "
+            "{:.1f} kWh; check the wiring, the register map, or whether rated_kW = "
+            "{:.0f} is too low",
+            sample.value_kWh, state_.settings.rated_kW);
+    }
+    return "";
+  };
+  return {sample.time, severity_of(event), std::string{kind_of(event)}, meter_.id,
+          fmt::format("meter '{}': {}", meter_.id, sentence())};
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,100 @@
+/// One live meter: from what its registers said to what is stored.
+///
+/// Knows no bus and no store. It is given the outcome of each read and answers with what must be
+/// committed together: intervals, the state that explains them, samples worth keeping, events.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/modbus/register_map.hpp"
+#include "adapters/ports/store.hpp"
+#include "core/metering/usual_day.hpp"
+#include "daemon/gateway/ingest/power_watch.hpp"
+
+namespace recald::daemon {
+
+struct TrackedMeter {
+  std::uint32_t number = 0;  ///< In the store.
+  std::string id;
+  /// Its `energy`, `power` and `identity` are what is read. Without `energy`, intervals are means
+  /// of the power.
+  modbus::RegisterMap map;
+  double multiplier = 1.0;            ///< Of a current transformer that the meter does not know.
+  metering::CounterSettings counter;  ///< Resolution and modulus 0 and infinite: as the map says.
+  metering::BookingRules booking;
+};
+
+/// What the meter shows now.
+struct LiveValues {
+  std::optional<double> power_kW;
+  std::optional<double> register_kWh;
+  std::optional<metering::Instant> read_at;  ///< Of the last good read.
+};
+
+class MeterTrack {
+ public:
+  /// @param restored  As it was stored; nothing for a meter never seen.
+  MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
+             const std::optional<RegisterState>& restored);
+
+  /// Teaches the usual day, as after a restart from stored intervals.
+  void remember(const metering::Reading& reading) { usual_.observe(reading); }
+
+  /// The outcome of one read, planned over `modbus::metered_fields`.
+  /// @param poll  Tells the polls apart: its due time. Registers that are summed must be of one.
+  [[nodiscard]] StoreBatch take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
+                                std::chrono::sys_time<std::chrono::milliseconds> poll,
+                                metering::Instant at);
+
+  /// Somebody set the clock: what the register did meanwhile belongs to no interval.
+  void clock_was_set();
+
+  [[nodiscard]] const TrackedMeter& meter() const { return meter_; }
+  [[nodiscard]] const LiveValues& live() const { return live_; }
+  [[nodiscard]] const RegisterState& state() const { return state_; }
+
+ private:
+  struct FieldReading {
+    double value;  ///< In the field's unit, scaled.
+    double resolution;
+    double power_of_ten;  ///< Of its scale factor; 1 without one.
+    std::chrono::sys_time<std::chrono::milliseconds> poll;
+  };
+
+  void note_failure(const modbus::ReadFailure& failure);
+  void note_fault(const modbus::RegisterField& field, modbus::ValueFault fault);
+  void update_power();
+  void take_identity(StoreBatch& batch, std::chrono::sys_time<std::chrono::milliseconds> poll,
+                     metering::Instant at);
+  void take_energy(StoreBatch& batch, std::chrono::sys_time<std::chrono::milliseconds> poll,
+                   metering::Instant at);
+  void begin_anew(metering::Instant now);
+  bool relive_from(metering::Instant now, std::optional<metering::Instant> next);
+  [[nodiscard]] bool is_relived(const metering::Reading& reading) const;
+  void take_sample(StoreBatch& batch, const metering::RegisterSample& sample);
+  /// The power that this very read brought.
+  [[nodiscard]] std::optional<double> new_power_kW(const modbus::PlannedRead& read) const;
+  void take_power(StoreBatch& batch, double power_kW, metering::Instant at);
+  [[nodiscard]] StoreEvent event_of(metering::CounterEvent event,
+                                    const metering::RegisterSample& sample,
+                                    const metering::CounterState& before) const;
+  [[nodiscard]] bool is_worth_keeping(const metering::RegisterSample& sample) const;
+
+  TrackedMeter meter_;
+  std::vector<modbus::RegisterField> fields_;
+  metering::UsualDay usual_;
+  RegisterState state_;
+  LiveValues live_;
+  std::map<std::string, FieldReading> latest_;
+  std::optional<PowerWatch> watch_;  ///< Where the meter has both a counter and a power.
+  metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads failed since.
+  bool clock_was_set_ = false;
+  metering::Instant relived_until_ = metering::Instant::min();  ///< Stamps before a clock set back.
+  metering::Instant power_kept_{};  ///< When the open interval of a power was last handed out.
+  std::optional<std::string> other_identity_;  ///< Read once, not yet confirmed.
+};
+
+}  // namespace recald::daemon

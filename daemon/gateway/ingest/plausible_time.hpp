@@ -1,0 +1,19 @@
+/// Whether a clock can be believed at all.
+#pragma once
+
+#include <chrono>
+
+#include "core/metering/civil_time.hpp"
+
+namespace recald::daemon {
+
+/// A gateway without a clock battery wakes up in 1970 until somebody tells it the time.
+inline constexpr metering::Instant kEarliestTime =
+    std::chrono::sys_days{std::chrono::year{2024} / std::chrono::January / 1};
+
+/// Whether a clock can be right; one that shows less or more than that has not been set.
+[[nodiscard]] inline bool is_plausible_time(metering::Instant now) {
+  return kEarliestTime <= now && now < metering::kLatestInstant - std::chrono::days{62};
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,272 @@
+#include "daemon/gateway/poll/bus_poller.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace recald::daemon {
+namespace {
+
+using modbus::ReadFault;
+using std::chrono::milliseconds;
+
+/// The clock was set if both clocks disagree by more than this since the last look.
+constexpr milliseconds kClockSet{500};
+/// When no silent unit had its turn for so long, one has it whoever falls due.
+constexpr milliseconds kPatience{60'000};
+/// Probes may take this long before their share of the bus's time is counted.
+constexpr milliseconds kProbeCredit{5'000};
+
+WallTime next_multiple(WallTime t, milliseconds step) {
+  const milliseconds past = t.time_since_epoch() % step;
+  return t - past + step;
+}
+
+bool is_busy(std::uint8_t exception) { return exception == 0x05 || exception == 0x06; }
+bool is_from_gateway(std::uint8_t exception) { return exception == 0x0A || exception == 0x0B; }
+
+}  // namespace
+
+BusPoller::BusPoller(std::vector<PolledUnit> units, const BusRules& rules, Rng rng)
+    : units_(std::move(units)), rules_(rules), rng_(rng) {
+  for (const PolledUnit& unit : units_) {
+    assert(!unit.reads.empty() && unit.period > milliseconds{0});
+    states_.push_back({.health = UnitHealth{rules_.health},
+                       .timeout = LearnedTimeout{unit.timeout},
+                       .off = std::vector<bool>(unit.reads.size())});
+  }
+}
+
+WallTime BusPoller::due_after(std::size_t unit, WallTime t) const {
+  return std::min(next_multiple(t, units_[unit].period), next_multiple(t, units_[unit].interval));
+}
+
+/// At the first call, and when the wall clock was set, all polls are scheduled anew.
+void BusPoller::notice_clock(const Moment& now) {
+  const milliseconds offset = now.wall.time_since_epoch() - now.monotonic;
+  const bool is_first = !wall_minus_monotonic_.has_value();
+  if (is_first) begun_ = now.monotonic;
+  const bool was_set = !is_first && (offset - *wall_minus_monotonic_ > kClockSet ||
+                                     *wall_minus_monotonic_ - offset > kClockSet);
+  wall_minus_monotonic_ = offset;
+  if (!is_first && !was_set) return;
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    states_[i].to_read.clear();
+    states_[i].is_asked = false;
+    // What runs already shows its values at once; the schedule follows.
+    states_[i].due = is_first ? now.wall : due_after(i, now.wall);
+  }
+}
+
+void BusPoller::begin_due_polls(const Moment& now) {
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    UnitPolling& polling = states_[i];
+    // A poll of which something was read keeps its due time: it says which reads belong together.
+    if (polling.due > now.wall || polling.is_asked) continue;
+    const bool is_waiting = !polling.to_read.empty();
+    if (!is_waiting) polling.since = polling.due;
+    for (WallTime later = due_after(i, polling.due); later <= now.wall;
+         later = due_after(i, polling.due)) {
+      polling.due = later;
+      ++polling.skipped;
+    }
+    if (is_waiting) continue;
+    for (std::size_t read = units_[i].reads.size(); read-- > 0;) {
+      if (!polling.off[read]) polling.to_read.push_back(read);
+    }
+    if (polling.to_read.empty()) end_poll(i);
+  }
+}
+
+bool BusPoller::is_reliable(const UnitPolling& polling) {
+  return polling.has_answered && polling.health.state() == UnitState::up;
+}
+
+/// Whether a read that may last `timeout` ends before an answering unit falls due.
+bool BusPoller::fits_before_reliable(milliseconds timeout, const Moment& now) const {
+  return std::ranges::none_of(states_, [&](const UnitPolling& polling) {
+    return is_reliable(polling) && polling.due < now.wall + timeout;
+  });
+}
+
+bool BusPoller::was_patient(const Moment& now) const {
+  return now.monotonic - silent_asked_ >= kPatience;
+}
+
+std::optional<std::size_t> BusPoller::choose(const Moment& now) const {
+  const auto goes_first = [&](const UnitPolling& polling) {
+    return is_reliable(polling) || (was_patient(now) && now.wall - polling.since >= kPatience);
+  };
+  std::optional<std::size_t> chosen;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const UnitPolling& polling = states_[i];
+    if (polling.to_read.empty() || polling.not_before > now.monotonic) continue;
+    if (polling.health.state() == UnitState::down) continue;
+    const bool first = goes_first(polling);
+    if (!first && !fits_before_reliable(polling.timeout.timeout(), now)) continue;
+    if (!chosen) {
+      chosen = i;
+      continue;
+    }
+    const UnitPolling& best = states_[*chosen];
+    if (first != goes_first(best) ? first : polling.since < best.since) chosen = i;
+  }
+  return chosen;
+}
+
+BusOrder BusPoller::order_for(std::size_t unit, bool is_probe, const Moment& now) {
+  const PolledUnit& polled = units_[unit];
+  UnitPolling& polling = states_[unit];
+  const bool begins_poll = !is_probe && !polling.is_asked;
+  if (!is_probe) polling.is_asked = true;
+  const std::size_t read = is_probe ? 0 : polling.to_read.back();
+  const modbus::PlannedRead& planned = polled.reads[read];
+  under_way_ = true;
+  if (!is_reliable(polling)) silent_asked_ = now.monotonic;
+  return {.unit = unit,
+          .read = read,
+          .request = {polled.unit, planned.function, planned.address, planned.count},
+          .timeout = is_probe ? polling.timeout.probe_timeout() : polling.timeout.timeout(),
+          .due = polling.due,
+          .is_probe = is_probe,
+          .begins_poll = begins_poll};
+}
+
+std::optional<BusOrder> BusPoller::probe(const Moment& now) {
+  const auto allowed =
+      kProbeCredit +
+      milliseconds{static_cast<std::int64_t>(
+          rules_.probe_share * static_cast<double>((now.monotonic - begun_).count()))};
+  if (probing_ > allowed) return {};
+  std::optional<std::size_t> chosen;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const UnitHealth& health = states_[i].health;
+    if (health.state() != UnitState::down || health.next_probe() > now.monotonic) continue;
+    if (!chosen || health.next_probe() < states_[*chosen].health.next_probe()) chosen = i;
+  }
+  if (!chosen) return {};
+  const UnitPolling& polling = states_[*chosen];
+  const bool is_overdue =
+      was_patient(now) && now.monotonic - polling.health.next_probe() >= kPatience;
+  if (!is_overdue && !fits_before_reliable(polling.timeout.probe_timeout(), now)) return {};
+  return order_for(*chosen, true, now);
+}
+
+std::optional<BusOrder> BusPoller::next(const Moment& now) {
+  notice_clock(now);
+  if (under_way_ || now.monotonic < std::max(gap_until_, rest_until_)) return {};
+  begin_due_polls(now);
+  if (const auto unit = choose(now)) return order_for(*unit, false, now);
+  return probe(now);
+}
+
+milliseconds BusPoller::wait(const Moment& now) const {
+  assert(!under_way_);
+  milliseconds shortest = kLongestWait;
+  const auto no_later = [&](milliseconds from_now) {
+    shortest = std::clamp(from_now, milliseconds{1}, shortest);
+  };
+  const milliseconds closed = std::max(gap_until_, rest_until_);
+  if (closed > now.monotonic) {
+    no_later(closed - now.monotonic);
+    return shortest;
+  }
+  for (const UnitPolling& polling : states_) {
+    if (polling.health.state() == UnitState::down) {
+      // A probe that is due already waits for the answering units, which are in this list.
+      const milliseconds probe = polling.health.next_probe() - now.monotonic;
+      if (probe > milliseconds{0}) no_later(probe);
+    } else if (polling.to_read.empty()) {
+      no_later(polling.due - now.wall);
+    } else if (polling.not_before > now.monotonic) {
+      no_later(polling.not_before - now.monotonic);
+    } else {
+      no_later(std::max(polling.since + kPatience - now.wall,
+                        silent_asked_ + kPatience - now.monotonic));
+    }
+  }
+  return shortest;
+}
+
+void BusPoller::end_poll(std::size_t unit) {
+  UnitPolling& polling = states_[unit];
+  polling.to_read.clear();
+  polling.is_asked = false;
+  polling.busy = 0;
+  polling.not_before = milliseconds{0};
+  polling.due = due_after(unit, polling.due);
+}
+
+void BusPoller::take_exception(const BusOrder& order, std::uint8_t code, const Moment& now) {
+  UnitPolling& polling = states_[order.unit];
+  if (is_busy(code) && polling.busy < rules_.busy_retries) {
+    ++polling.busy;
+    polling.not_before = now.monotonic + rules_.busy_wait;
+    return;
+  }
+  if (code == 0x02) polling.off[order.read] = true;
+  polling.busy = 0;
+  if (!order.is_probe) polling.to_read.pop_back();
+}
+
+void BusPoller::take_silence(const BusOrder& order, const Moment& now) {
+  UnitPolling& polling = states_[order.unit];
+  polling.health.missed(now.monotonic, rng_);
+  polling.timeout.missed();
+  if (!order.is_probe) end_poll(order.unit);
+}
+
+void BusPoller::rest(const Moment& now) {
+  rest_length_ = rest_length_ == milliseconds{0} ? rules_.reconnect_min
+                                                 : std::min(2 * rest_length_, rules_.reconnect_max);
+  rest_until_ =
+      now.monotonic + milliseconds{static_cast<std::int64_t>(
+                          static_cast<double>(rest_length_.count()) * rng_.uniform(0.8, 1.2))};
+}
+
+void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result,
+                         milliseconds duration, const Moment& now) {
+  assert(under_way_);
+  under_way_ = false;
+  gap_until_ = now.monotonic + rules_.request_gap;
+  if (order.is_probe) probing_ += duration;
+  UnitPolling& polling = states_[order.unit];
+  // The clock was set while the order was under way: its poll is off the schedule already.
+  const bool is_stale = !order.is_probe && polling.to_read.empty();
+
+  const bool is_lost = !result && (result.error().fault == ReadFault::refused ||
+                                   result.error().fault == ReadFault::closed);
+  lost_connections_ = is_lost ? lost_connections_ + 1 : 0;
+  // A device that closes on one unit's request may serve the others: only the second time counts.
+  if (is_lost && (result.error().fault == ReadFault::refused || lost_connections_ > 1)) rest(now);
+
+  const bool lives = result || (result.error().fault == ReadFault::exception &&
+                                !is_from_gateway(result.error().exception_code));
+  if (!lives) {
+    if (is_stale) {
+      polling.health.missed(now.monotonic, rng_);
+    } else {
+      take_silence(order, now);
+    }
+    return;
+  }
+  rest_length_ = milliseconds{0};
+  polling.has_answered = true;
+  polling.health.answered();
+  polling.timeout.answered(duration);
+  if (order.is_probe) {
+    polling.due = now.wall;  // back again: the whole poll at once
+    polling.to_read.clear();
+    polling.is_asked = false;
+    return;
+  }
+  if (is_stale) return;
+  if (!result) {
+    take_exception(order, result.error().exception_code, now);
+  } else {
+    polling.busy = 0;
+    polling.to_read.pop_back();
+  }
+  if (polling.to_read.empty()) end_poll(order.unit);
+}
+
+}  // namespace recald::daemon

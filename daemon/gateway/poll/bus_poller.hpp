@@ -1,0 +1,139 @@
+/// What to ask which device next: the schedule of one bus, with everything that devices do wrong.
+///
+/// No sockets, no threads, no clock: it is told the time and the answers, and says what to do. The
+/// live daemon, a replay and a test on a virtual clock use it alike.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/modbus/register_map.hpp"
+#include "adapters/ports/clock.hpp"
+#include "core/random/rng.hpp"
+#include "daemon/gateway/poll/learned_timeout.hpp"
+#include "daemon/gateway/poll/unit_health.hpp"
+
+namespace recald::daemon {
+
+using WallTime = std::chrono::sys_time<std::chrono::milliseconds>;
+
+/// A meter on the bus.
+struct PolledUnit {
+  std::string meter;  ///< Its id.
+  std::uint8_t unit = 1;
+  std::vector<modbus::PlannedRead> reads;  ///< All of them at each poll. @pre not empty
+  /// Polls are due at multiples of it since 1970, and at every interval boundary as well.
+  std::chrono::milliseconds period{60'000};
+  std::chrono::seconds interval{900};
+  std::chrono::milliseconds timeout{0};  ///< Zero: learned.
+};
+
+struct BusRules {
+  HealthRules health;
+  std::chrono::milliseconds request_gap{0};  ///< Pause after each answer (gateways that need one).
+  double probe_share = 0.05;                 ///< Of the bus's time, at most.
+  std::chrono::milliseconds busy_wait{100};
+  int busy_retries = 3;
+  std::chrono::milliseconds reconnect_min{1'000};  ///< Doubles, jittered.
+  std::chrono::milliseconds reconnect_max{60'000};
+};
+
+/// One read to make.
+struct BusOrder {
+  std::size_t unit;  ///< Index into the units.
+  std::size_t read;  ///< Index into the unit's reads.
+  modbus::ReadRequest request;
+  std::chrono::milliseconds timeout;
+  WallTime due;
+  bool is_probe;
+  bool begins_poll = false;  ///< The first read of a poll: how late it is, the poll is.
+};
+
+/// A wait of several minutes is shortened to this: the wall clock may have been set meanwhile.
+inline constexpr std::chrono::milliseconds kLongestWait{1'000};
+
+class BusPoller {
+ public:
+  BusPoller(std::vector<PolledUnit> units, const BusRules& rules, Rng rng);
+
+  /// What to ask now. None: an order is under way, or nothing is due.
+  ///
+  /// Due units that answer come first, in order of their due times. Units that were silent wait
+  /// until no answering one falls due within their time-out, so that 31 dead of 32 cost the living
+  /// one nothing. A poll that is late by more than a period is made once, for its latest due time;
+  /// who has waited longest comes first, so an overloaded bus starves nobody.
+  [[nodiscard]] std::optional<BusOrder> next(const Moment& now);
+
+  /// How long until `next` may have something, at most kLongestWait. @pre no order is under way
+  [[nodiscard]] std::chrono::milliseconds wait(const Moment& now) const;
+
+  /// The order's outcome.
+  ///
+  /// - An answer, even an exception, shows that the unit lives. Gateway exceptions 10 and 11 do
+  /// not.
+  /// - Busy (5, 6): the same read again after 100 ms, three times.
+  /// - Illegal address (2): that read is off until the configuration is loaded anew.
+  /// - A silent unit loses the rest of its poll: one time-out a poll is enough.
+  /// - No connection: the whole bus rests, 1 s to 60 s.
+  void answered(const BusOrder& order, const modbus::ReadResult& result,
+                std::chrono::milliseconds duration, const Moment& now);
+
+  [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }
+  [[nodiscard]] UnitState state(std::size_t unit) const { return states_[unit].health.state(); }
+  [[nodiscard]] bool is_off(std::size_t unit, std::size_t read) const {
+    return states_[unit].off[read];
+  }
+  /// Polls that were not made because the bus was busy with others.
+  [[nodiscard]] std::uint64_t skipped(std::size_t unit) const { return states_[unit].skipped; }
+  [[nodiscard]] bool is_resting(const Moment& now) const { return now.monotonic < rest_until_; }
+
+ private:
+  struct UnitPolling {
+    UnitHealth health;
+    LearnedTimeout timeout;
+    std::vector<bool> off;
+    WallTime due{};                    ///< Of the poll under way, else of the next one.
+    WallTime since{};                  ///< First due time that was not served.
+    std::vector<std::size_t> to_read;  ///< What the poll under way has left, last first.
+    bool is_asked = false;             ///< The poll under way has made its first read.
+    std::chrono::milliseconds not_before{0};
+    int busy = 0;               ///< Busy answers to this read.
+    bool has_answered = false;  ///< Ever.
+    std::uint64_t skipped = 0;
+  };
+
+  [[nodiscard]] WallTime due_after(std::size_t unit, WallTime t) const;
+  void notice_clock(const Moment& now);
+  void begin_due_polls(const Moment& now);
+  [[nodiscard]] static bool is_reliable(const UnitPolling& polling);
+  [[nodiscard]] bool fits_before_reliable(std::chrono::milliseconds timeout,
+                                          const Moment& now) const;
+  [[nodiscard]] bool was_patient(const Moment& now) const;
+  [[nodiscard]] std::optional<std::size_t> choose(const Moment& now) const;
+  [[nodiscard]] BusOrder order_for(std::size_t unit, bool is_probe, const Moment& now);
+  [[nodiscard]] std::optional<BusOrder> probe(const Moment& now);
+  void end_poll(std::size_t unit);
+  void take_exception(const BusOrder& order, std::uint8_t code, const Moment& now);
+  void take_silence(const BusOrder& order, const Moment& now);
+  void rest(const Moment& now);
+
+  std::vector<PolledUnit> units_;
+  std::vector<UnitPolling> states_;
+  BusRules rules_;
+  Rng rng_;
+  bool under_way_ = false;
+  std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
+  std::chrono::milliseconds begun_{0};    ///< Monotonic, of the first call.
+  std::chrono::milliseconds probing_{0};  ///< Bus time given to probes.
+  std::chrono::milliseconds silent_asked_{
+      0};  ///< Monotonic: when one that was silent had its turn.
+  std::chrono::milliseconds gap_until_{0};
+  std::chrono::milliseconds rest_until_{0};
+  std::chrono::milliseconds rest_length_{0};
+  int lost_connections_ = 0;  ///< In a row.
+};
+
+}  // namespace recald::daemon

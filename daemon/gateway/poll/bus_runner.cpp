@@ -1,0 +1,53 @@
+#include "daemon/gateway/poll/bus_runner.hpp"
+
+#include <utility>
+
+namespace recald::daemon {
+
+using std::chrono::milliseconds;
+
+BusRunner::BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnRead on_read)
+    : loop_(loop),
+      bus_(std::move(bus)),
+      poller_(std::move(poller)),
+      on_read_(std::move(on_read)),
+      self_(std::make_shared<BusRunner*>(this)) {
+  counters_.requests.resize(poller_.units().size());
+}
+
+void BusRunner::start() { step(); }
+
+void BusRunner::count(const PolledRead& read) {
+  ++counters_.requests[read.order.unit][static_cast<std::size_t>(result_of(read.result))];
+  counters_.duration.observe(read.duration);
+  if (read.order.begins_poll) counters_.lateness.observe(read.lateness);
+}
+
+void BusRunner::step() {
+  const Moment now = loop_.now();
+  const std::weak_ptr<BusRunner*> weak = self_;
+  const auto order = poller_.next(now);
+  if (!order) {
+    loop_.after(poller_.wait(now), [weak] {
+      if (const auto self = weak.lock()) (*self)->step();
+    });
+    return;
+  }
+  const milliseconds lateness = now.wall - order->due;
+  bus_->read(order->request, order->timeout,
+             [weak, order = *order, lateness](modbus::ReadResult result, milliseconds duration) {
+               const auto self = weak.lock();
+               if (!self) return;
+               BusRunner& runner = **self;
+               const Moment at = runner.loop_.now();
+               runner.poller_.answered(order, result, duration, at);
+               const PolledRead read{order, std::move(result), lateness, duration, at};
+               runner.count(read);
+               // Whoever is told may end this bus, and with it what it was told by.
+               const OnRead tell = runner.on_read_;
+               tell(read);
+               if (self.use_count() > 1) runner.step();
+             });
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,134 @@
+/// The daemon's heart: buses are polled, registers become intervals, intervals are committed,
+/// months close.
+///
+/// Everything that happens here happens on the loop's thread. What it needs of the outside comes as
+/// ports, so that the whole of it runs on a virtual clock with scripted buses.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/ports/bus.hpp"
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "daemon/gateway/ingest/committer.hpp"
+#include "daemon/gateway/ingest/gateway_status.hpp"
+#include "daemon/gateway/ingest/month_keeper.hpp"
+#include "daemon/gateway/run/live_bus.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+/// What the gateway needs of the outside. All of it outlives the gateway.
+struct GatewayPorts {
+  Loop& loop;
+  Store& store;
+  std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
+  std::string time_zone_release;
+  std::uint64_t seed = 1;
+  /// The clock is about to be set; not asked any more once it has said no. Absent: never.
+  std::function<bool()> is_clock_settling = {};
+};
+
+/// A month has closed, or closed again.
+using OnMonth = std::function<void(const metering::Meter&, const metering::MonthlyFigure&)>;
+
+class Gateway {
+ public:
+  /// Registers the meters with the store and takes up their counters where they stopped.
+  /// @return or the store's failure; unsupported where a meter's reads cannot be planned.
+  [[nodiscard]] static Result<std::unique_ptr<Gateway>> open(
+      const SiteConfig& site, const metering::LocalCalendar& calendar, const GatewayPorts& ports,
+      OnMonth on_month);
+  ~Gateway();
+  Gateway(const Gateway&) = delete;
+  Gateway& operator=(const Gateway&) = delete;
+
+  /// Polls begin, and months that fell due while nobody ran are closed.
+  void start();
+
+  /// Goes on by another site file. Buses of which it says what the old one said, with all their
+  /// meters, stay as they are: connected, with their counters and what is known of silent devices.
+  /// The others are opened anew, from where the store has their counters.
+  /// @return or why not, as `open`; then everything is as it was.
+  /// @pre the site's time zone is the same
+  Result<void> reload(const SiteConfig& site);
+
+  /// Readings that others send, of a meter with source = "http". What it answers is stored.
+  /// @param readings  Their `meter` is not looked at.
+  /// @return not_found for a meter that takes none, or the store's failure; then nothing is stored.
+  [[nodiscard]] Result<CommitCounts> take_pushed(const std::string& meter,
+                                                 std::vector<metering::Reading> readings);
+
+  /// For people to find it among the events.
+  void note(StoreEvent event) { committer_.add({.events = {std::move(event)}}); }
+
+  /// Commits what is still on its way. Call it before the end.
+  Result<void> flush() { return committer_.flush(); }
+
+  [[nodiscard]] GatewayStatus status() const;
+
+  /// Of one meter, without looking at all. @return nothing for one that the store keeps nothing of.
+  [[nodiscard]] std::optional<MeterStatus> meter_status(std::string_view id) const;
+
+ private:
+  /// A meter with source = "http".
+  struct PushedMeter {
+    MeterProgress progress;
+    std::optional<metering::Instant> heard_at;  ///< Since the process began.
+  };
+
+  /// A read from before the clock was right.
+  struct HeldRead {
+    std::uint32_t meter;  ///< Its number: a reload may replace the meter meanwhile.
+    PolledRead read;
+  };
+
+  Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site,
+          const GatewayPorts& ports, OnMonth on_month);
+
+  /// Opens the buses of `site`, but those that are among `kept`.
+  [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
+      const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
+  void start(LiveBus& bus);
+  /// Opens the meters of `site` that others send readings of; what is known of them stays.
+  Result<void> open_pushed(const SiteConfig& site);
+  [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
+  [[nodiscard]] std::vector<MeterProgress*> all_progress();
+  [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
+  void take(LiveMeter& meter, const PolledRead& read);
+  void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
+  void watch_clock(const Moment& now);
+  void release_held(const Moment& now);
+  void note_committed(const StoreBatch& batch, const CommitCounts& counts);
+  [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
+                                      const BusRunner& runner) const;
+  [[nodiscard]] MeterStatus status_of(const PushedMeter& meter) const;
+  [[nodiscard]] double coverage_of(const MeterProgress& progress) const;
+  void close_months();
+  void close_months_of(std::vector<std::uint32_t> meters);
+  void close_months_of(const MeterProgress& meter);
+  void close_months_every_hour();
+
+  metering::LocalCalendar calendar_;
+  GatewayPorts ports_;
+  OnMonth on_month_;
+  Committer committer_;
+  MonthKeeper keeper_;
+  std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
+  std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
+  std::vector<PushedMeter> pushed_;
+  bool clock_ok_ = false;
+  std::array<std::uint64_t, 3> events_{};  ///< Committed, by Severity.
+  std::deque<HeldRead> held_;
+  std::shared_ptr<Gateway*> self_;
+};
+
+}  // namespace recald::daemon

@@ -1,0 +1,67 @@
+/// A bus with its meters, as the site file describes them: what a reload keeps or replaces as one.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adapters/ports/bus.hpp"
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "daemon/gateway/ingest/meter_progress.hpp"
+#include "daemon/gateway/ingest/meter_track.hpp"
+#include "daemon/gateway/poll/bus_runner.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+struct LiveMeter {
+  MeterProgress progress;
+  LiveMeterConfig config;
+  std::string text;  ///< As MeterConfig's.
+  MeterTrack track;
+  std::vector<modbus::PlannedRead> reads;
+};
+
+class LiveBus {
+ public:
+  struct Ports {
+    Loop& loop;
+    std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
+    std::uint64_t seed;  ///< Of the jitter of probes.
+  };
+  using OnRead = std::function<void(LiveMeter&, const PolledRead&)>;
+
+  /// Registers the bus's meters with the store and takes up their counters where they stopped.
+  /// @return or the store's failure; unsupported where a meter's reads cannot be planned.
+  [[nodiscard]] static Result<std::unique_ptr<LiveBus>> open(
+      const SiteConfig& site, const BusConfig& bus, const metering::LocalCalendar& calendar,
+      Store& store);
+
+  /// The device behind it is opened and polls begin; nothing happens for a bus without meters.
+  void start(const Ports& ports, OnRead on_read);
+
+  /// Whether the site file says of this bus and its meters what it said when it was opened.
+  [[nodiscard]] bool is_described_by(const SiteConfig& site) const;
+
+  [[nodiscard]] const BusConfig& config() const { return config_; }
+  [[nodiscard]] std::vector<LiveMeter>& meters() { return meters_; }
+  [[nodiscard]] const std::vector<LiveMeter>& meters() const { return meters_; }
+  /// Null before the start, and for a bus without meters.
+  [[nodiscard]] const BusRunner* runner() const { return runner_.get(); }
+
+ private:
+  explicit LiveBus(BusConfig config) : config_(std::move(config)) {}
+  [[nodiscard]] Result<void> add_meter(const MeterConfig& meter,
+                                       const metering::LocalCalendar& calendar, Store& store);
+  [[nodiscard]] std::unique_ptr<Bus> make_bus(const Ports& ports) const;
+  [[nodiscard]] std::vector<PolledUnit> polled_units() const;
+
+  BusConfig config_;
+  std::vector<LiveMeter> meters_;  ///< By unit of the poller.
+  std::unique_ptr<BusRunner> runner_;
+};
+
+}  // namespace recald::daemon

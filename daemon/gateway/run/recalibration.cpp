@@ -1,0 +1,86 @@
+#include "daemon/gateway/run/recalibration.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace recald::daemon {
+namespace {
+
+/// Waiting goes by the monotonic clock and schedules by the wall clock, which may be set meanwhile.
+constexpr std::chrono::milliseconds kLookAgain{60'000};
+/// Months of many meters close one after the other.
+constexpr std::chrono::milliseconds kTogether{60'000};
+
+/// The last month that all of them have closed. @return nothing where one of them has none.
+Result<std::optional<metering::Month>> last_common_month(Store& store, const SiteConfig& site,
+                                                         std::span<const std::string> meters) {
+  std::optional<metering::Month> common;
+  for (const MeterConfig& config : site.meters) {
+    if (std::ranges::find(meters, config.meter.id) == meters.end()) continue;
+    if (!config.is_stored()) return std::nullopt;
+    const auto number = store.meter_number(config.meter.id, config.meter.interval);
+    if (!number) return tl::unexpected(number.error());
+    const auto months = store.months(*number);
+    if (!months) return tl::unexpected(months.error());
+    if (months->empty()) return std::nullopt;
+    const metering::Month last = months->back().month;
+    common = common ? std::min(*common, last) : last;
+  }
+  return common;
+}
+
+}  // namespace
+
+Recalibration::Recalibration(Loop& loop, const SiteConfig& site, metering::LocalCalendar calendar,
+                             std::function<void(const std::string&)> ask)
+    : loop_(loop),
+      schedule_(site.model ? site.recalibration.schedule : Schedule{}),
+      modelled_meters_(site.model ? site.model->outputs : std::vector<std::string>{}),
+      calendar_(std::move(calendar)),
+      ask_(std::move(ask)),
+      self_(std::make_shared<Recalibration*>(this)) {}
+
+void Recalibration::start() {
+  if (!schedule_.times) return;
+  if (const auto next = schedule_.times->next(loop_.now().instant(), calendar_)) wait_for(*next);
+}
+
+Result<void> Recalibration::catch_up(Store& store, const SiteConfig& site) {
+  if (!schedule_.when_a_month_closes) return {};
+  const auto month = last_common_month(store, site, modelled_meters_);
+  if (!month) return tl::unexpected(month.error());
+  if (!*month) return {};
+  const auto jobs = store.jobs(JobKind::calibration, 1);
+  if (!jobs) return tl::unexpected(jobs.error());
+  const auto closed = calendar_.month_span(**month).end + site.closing.watermark;
+  if (jobs->empty() || jobs->front().asked < closed) ask_("month");
+  return {};
+}
+
+void Recalibration::wait_for(metering::Instant next) {
+  const auto left = next - loop_.now().wall;
+  if (left.count() <= 0) {
+    ask_("schedule");
+    return start();
+  }
+  loop_.after(std::min(std::chrono::ceil<std::chrono::milliseconds>(left), kLookAgain),
+              [weak = std::weak_ptr{self_}, next] {
+                if (const auto self = weak.lock()) (*self)->wait_for(next);
+              });
+}
+
+void Recalibration::month_closed(const std::string& meter) {
+  if (!schedule_.when_a_month_closes || is_asking_) return;
+  if (std::ranges::find(modelled_meters_, meter) == modelled_meters_.end()) return;
+  is_asking_ = true;
+  loop_.after(kTogether, [weak = std::weak_ptr{self_}] {
+    const auto self = weak.lock();
+    if (!self) return;
+    (*self)->is_asking_ = false;
+    (*self)->ask_("month");
+  });
+}
+
+}  // namespace recald::daemon

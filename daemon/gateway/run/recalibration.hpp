@@ -1,0 +1,47 @@
+/// When the site's model is calibrated again by itself.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+class Recalibration {
+ public:
+  /// @param ask  Asks for a calibration, with who asks: "month" or "schedule".
+  Recalibration(Loop& loop, const SiteConfig& site, metering::LocalCalendar calendar,
+                std::function<void(const std::string& asked_by)> ask);
+  ~Recalibration() = default;
+  Recalibration(const Recalibration&) = delete;
+  Recalibration& operator=(const Recalibration&) = delete;
+
+  /// Waits for the times of the schedule, if it has any. A time at which nobody ran is over.
+  void start();
+
+  /// Asks where the last month of all modelled meters has closed and nobody has asked since: the
+  /// process may have been killed in between, or the months were imported.
+  /// @return or the store's failure.
+  Result<void> catch_up(Store& store, const SiteConfig& site);
+
+  /// A month of this meter has closed, or closed again. Months of several meters that close
+  /// within a minute are one reason, not several.
+  void month_closed(const std::string& meter);
+
+ private:
+  void wait_for(metering::Instant next);
+
+  Loop& loop_;
+  Schedule schedule_;
+  std::vector<std::string> modelled_meters_;
+  metering::LocalCalendar calendar_;
+  std::function<void(const std::string&)> ask_;
+  bool is_asking_ = false;
+  std::shared_ptr<Recalibration*> self_;
+};
+
+}  // namespace recald::daemon

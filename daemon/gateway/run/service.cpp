@@ -1,0 +1,305 @@
+#include "daemon/gateway/run/service.hpp"
+
+#include <utility>  // Boost 1.74's Asio uses std::exchange without it
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <csignal>
+#include <random>
+
+#include "adapters/asio/asio_loop.hpp"
+#include "adapters/http/credentials.hpp"
+#include "adapters/http/server.hpp"
+#include "adapters/modbus/bus_thread.hpp"
+#include "adapters/system/clock_setting.hpp"
+#include "adapters/system/file_lock.hpp"
+#include "adapters/system/time_zone_release.hpp"
+#include "adapters/system/worker_thread.hpp"
+#include "daemon/gateway/run/gateway.hpp"
+#include "daemon/gateway/run/job_runner.hpp"
+#include "daemon/gateway/run/recalibration.hpp"
+#include "daemon/gateway/run/site_jobs.hpp"
+#include "daemon/gateway/run/watchdog.hpp"
+#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/upkeep/open_store.hpp"
+#include "daemon/gateway/upkeep/upkeep.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// Signals that would end a process that does not listen to them yet wait until it does.
+class HeldSignals {
+ public:
+  HeldSignals() {
+    sigset_t held;
+    sigemptyset(&held);
+    sigaddset(&held, SIGHUP);
+    sigaddset(&held, SIGUSR1);
+    pthread_sigmask(SIG_BLOCK, &held, &before_);
+  }
+  ~HeldSignals() { release(); }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+
+  void release() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
+/// What a process cannot change under way. @return or a sentence that names it.
+Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
+  const auto needs_restart = [](const char* what) {
+    return failure(
+        ErrorCode::unsupported,
+        fmt::format("another {} needs a restart; put the old one back, or restart recald", what));
+  };
+  if (now.id != then.id) return needs_restart("id");
+  if (now.timezone != then.timezone) return needs_restart("timezone");
+  if (now.closing.watermark != then.closing.watermark) return needs_restart("watermark");
+  if (now.store.file != then.store.file) return needs_restart("[store] file");
+  if (now.http.has_value() != then.http.has_value()) return needs_restart("[http]");
+  if (now.http && now.http->certificate_file.empty() != then.http->certificate_file.empty()) {
+    return needs_restart("choice of TLS");
+  }
+  if (now.http && (now.http->address != then.http->address || now.http->port != then.http->port)) {
+    return needs_restart("[http] listen");
+  }
+  return {};
+}
+
+/// All parts of the process. Members end in the reverse of their order: whoever calls another one
+/// ends before it.
+class Service {
+ public:
+  Service(OpenSite site, const ServiceOptions& options, sqlite::SqliteStore store)
+      : site_(std::move(site)),
+        store_(std::move(store)),
+        loop_(context_, options.trial),
+        worker_(loop_),
+        options_(options),
+        jobs_({loop_, store_, worker_}, make_site_work(site_),
+              [](const StoredJob& job) { log_job(job); }),
+        upkeep_(store_, site_.config.store, site_.calendar),
+        watchdog_(loop_, [this] { return store_.events(1).has_value(); }) {}
+
+  Result<void> open() {
+    signals_.add(SIGUSR1);
+    auto gateway =
+        Gateway::open(site_.config, site_.calendar,
+                      {.loop = loop_,
+                       .store = store_,
+                       .make_bus =
+                           [this](const BusConfig& bus) {
+                             return std::make_unique<modbus::BusThread>(bus.endpoint, loop_);
+                           },
+                       .time_zone_release = system::time_zone_release(),
+                       .seed = std::random_device{}(),  // for jitter only: no result has it
+                       .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling},
+                      [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
+                        log_month(meter, figure);
+                        recalibration_->month_closed(meter.id);
+                      });
+    if (!gateway) return tl::unexpected(gateway.error());
+    gateway_ = std::move(*gateway);
+    return listen();
+  }
+
+  Result<void> run() {
+    boost::asio::co_spawn(context_, heed_signals(), boost::asio::detached);
+    spdlog::info("event=started site={} store={}", site_.config.id,
+                 site_.config.store.file.string());
+    if (auto resumed = jobs_.resume(); !resumed) return resumed;
+    schedule();
+    if (auto asked = recalibration_->catch_up(store_, site_.config); !asked) return asked;
+    gateway_->start();
+    keep_up();
+    loop_.post([this] { watchdog_.ready(); });
+    context_.run();
+    watchdog_.ending();
+    server_.reset();
+    jobs_.interrupt();
+    const auto flushed = gateway_->flush();
+    spdlog::info("event=ended");
+    return flushed;
+  }
+
+ private:
+  Result<void> listen() {
+    const auto& http = site_.config.http;
+    if (!http) return {};
+    http::ServerOptions options{.address = http->address, .port = http->port};
+    options.open_paths = {"/healthz", "/readyz"};
+    if (!http->token_file.empty()) {
+      auto token = http::read_token_file(http->token_file);
+      if (!token) return tl::unexpected(token.error());
+      options.token = std::move(*token);
+    }
+    if (!http->certificate_file.empty()) {
+      options.tls = http::TlsFiles{http->certificate_file, http->key_file};
+    }
+    const Served served{
+        .site = site_.config,
+        .calendar = site_.calendar,
+        .store = store_,
+        .status = [this] { return gateway_->status(); },
+        .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
+        .now = [this] { return loop_.now().instant(); },
+        .started = loop_.now().instant(),
+        .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
+        .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
+        .take_readings =
+            [this](const std::string& meter, auto readings) {
+              return gateway_->take_pushed(meter, std::move(readings));
+            }};
+    auto server = http::Server::listen(context_, options, [served](const http::Request& request) {
+      return answer(served, request);
+    });
+    if (!server) return tl::unexpected(server.error());
+    server_ = std::move(*server);
+    spdlog::info("event=listening address={} port={}", http->address, server_->port());
+    return {};
+  }
+
+  boost::asio::awaitable<void> heed_signals() {
+    for (;;) {
+      const int signal = co_await signals_.async_wait(boost::asio::use_awaitable);
+      if (signal == SIGHUP) {
+        reload();
+      } else if (signal == SIGUSR1) {
+        calibrate("signal");
+      } else {
+        spdlog::info("event=ending signal={}", signal);
+        break;
+      }
+    }
+    context_.stop();
+  }
+
+  void keep_up() {
+    loop_.after(upkeep_.maintain(loop_.now().instant()), [this] { keep_up(); });
+  }
+
+  void schedule() {
+    recalibration_ = std::make_unique<Recalibration>(
+        loop_, site_.config, site_.calendar,
+        [this](const std::string& asked_by) { calibrate(asked_by); });
+    recalibration_->start();
+  }
+
+  /// The site file again. One that is wrong changes nothing.
+  void reload() {
+    const auto changed = reload_from(site_.config.file);
+    if (changed) {
+      spdlog::info("event=reloaded file={}", site_.config.file.string());
+      return;
+    }
+    spdlog::error("event=not_reloaded why=\"{}\"", changed.error().message);
+    gateway_->note({loop_.now().instant(), Severity::error, "not_reloaded", "",
+                    "the site file was not taken: " + changed.error().message});
+  }
+
+  Result<void> reload_from(const std::filesystem::path& file) {
+    auto config = load_site(file);
+    if (!config)
+      return failure(ErrorCode::malformed, fmt::format("{}", fmt::join(config.error(), "; ")));
+    if (auto possible = can_reload(site_.config, *config); !possible) return possible;
+    std::string token;
+    if (config->http && !config->http->token_file.empty()) {
+      auto read = http::read_token_file(config->http->token_file);
+      if (!read) return tl::unexpected(read.error());
+      token = std::move(*read);
+    }
+    Result<http::Tls> tls;
+    if (server_ && !config->http->certificate_file.empty()) {
+      tls = http::read_tls({config->http->certificate_file, config->http->key_file});
+      if (!tls) return tl::unexpected(tls.error());
+    }
+    if (auto reloaded = gateway_->reload(*config); !reloaded) return reloaded;
+    if (server_) server_->set_token(std::move(token));
+    if (*tls) server_->set_tls(std::move(*tls));
+    upkeep_.set_config(config->store);
+    site_.config = std::move(*config);
+    jobs_.set_work(make_site_work(site_));
+    schedule();
+    // A month that closed within the last minute was to be asked for by the old schedule.
+    if (const auto asked = recalibration_->catch_up(store_, site_.config); !asked) {
+      spdlog::warn("event=not_caught_up why=\"{}\"", asked.error().message);
+    }
+    return {};
+  }
+
+  Result<std::int64_t> ask(JobKind kind, const std::string& asked_by) {
+    if (auto modelled = require_model(site_.config); !modelled) {
+      return tl::unexpected(modelled.error());
+    }
+    return jobs_.ask(kind, asked_by);
+  }
+
+  void calibrate(const std::string& asked_by) {
+    if (const auto asked = ask(JobKind::calibration, asked_by); !asked) {
+      spdlog::warn("event=calibration_not_begun asked_by={} why=\"{}\"", asked_by,
+                   asked.error().message);
+    }
+  }
+
+  static void log_month(const metering::Meter& meter, const metering::MonthlyFigure& figure) {
+    spdlog::info(
+        "event=month_closed meter={} month={} revision={} kWh_per_day={:.1f} coverage={:.3f}",
+        meter.id, metering::to_string(figure.month), figure.revision, figure.daily_average_kWh,
+        figure.coverage);
+  }
+
+  static void log_job(const StoredJob& job) {
+    const auto level = job.state == JobState::failed ? spdlog::level::warn : spdlog::level::info;
+    spdlog::log(
+        level, "event=job number={} kind={} state={} asked_by={} accepted={} message=\"{}\"",
+        job.number, name_of(job.kind), name_of(job.state), job.asked_by, job.accepted, job.message);
+  }
+
+  OpenSite site_;
+  sqlite::SqliteStore store_;
+  boost::asio::io_context context_{1};
+  boost::asio::signal_set signals_{context_, SIGINT, SIGTERM, SIGHUP};
+  asio::AsioLoop loop_;
+  system::WorkerThread worker_;
+  ServiceOptions options_;
+  JobRunner jobs_;  ///< Tells the worker's work to stop before the worker waits for it.
+  std::unique_ptr<Recalibration> recalibration_;
+  Upkeep upkeep_;
+  Watchdog watchdog_;
+  std::unique_ptr<Gateway> gateway_;
+  std::unique_ptr<http::Server> server_;
+};
+
+}  // namespace
+
+Result<void> run_service(OpenSite site, const ServiceOptions& options) {
+  spdlog::set_default_logger(spdlog::stderr_logger_st("recald"));
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
+  HeldSignals held;
+  const auto lock = system::FileLock::take(site.config.store.file.string() + ".lock");
+  if (!lock) return tl::unexpected(lock.error());
+  auto opened_store =
+      open_store(site.config.store,
+                 std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
+  if (!opened_store) return tl::unexpected(opened_store.error());
+  if (const auto& recovery = opened_store->recovery) {
+    spdlog::error("event=store_recovered what=\"{}\"", recovery->sentence());
+  }
+  Service service{std::move(site), options, std::move(opened_store->store)};
+  if (auto opened = service.open(); !opened) return opened;
+  held.release();
+  return service.run();
+}
+
+}  // namespace recald::daemon

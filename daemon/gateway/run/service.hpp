@@ -1,0 +1,21 @@
+/// The daemon as a process: real clocks, real buses, a store on disk, signals, HTTP.
+#pragma once
+
+#include <optional>
+
+#include "core/metering/trial_clock.hpp"
+#include "core/result.hpp"
+#include "daemon/site/model/modelled_site.hpp"
+
+namespace recald::daemon {
+
+struct ServiceOptions {
+  std::optional<metering::TrialClock> trial;  ///< Absent: the world's time.
+};
+
+/// Runs until it is told to end (SIGTERM or SIGINT), then commits what is on its way. SIGHUP reads
+/// the site file again, SIGUSR1 asks for a calibration.
+/// @return nothing, or why it could not begin or not commit at its end.
+[[nodiscard]] Result<void> run_service(OpenSite site, const ServiceOptions& options);
+
+}  // namespace recald::daemon

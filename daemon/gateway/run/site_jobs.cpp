@@ -1,0 +1,183 @@
+#include "daemon/gateway/run/site_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "adapters/system/write_file.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
+#include "daemon/site/calibrate/site_on_design.hpp"
+#include "daemon/site/diagnose/site_diagnosis.hpp"
+#include "daemon/site/drift/site_drift.hpp"
+#include "daemon/site/model/active_effects.hpp"
+#include "daemon/site/results/calibration_files.hpp"
+#include "daemon/site/results/calibration_folder.hpp"
+#include "daemon/site/results/diagnosis_files.hpp"
+#include "daemon/site/results/diagnosis_folder.hpp"
+#include "daemon/site/results/drift_json.hpp"
+#include "daemon/site/results/drift_report.hpp"
+
+namespace recald::daemon {
+namespace {
+
+constexpr int kDriftParticles = 256;
+constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
+
+std::filesystem::path folder_of(const SiteConfig& site, const StoredJob& job) {
+  return results_folder(site) / fmt::format("{}-{}", name_of(job.kind), job.number);
+}
+
+JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const RunFacts& facts,
+                      const std::filesystem::path& folder) {
+  JobOutcome outcome{.accepted = calibration.calibration.converged,
+                     .folder = folder.string(),
+                     .result = calibration_json(calibration, facts)};
+  if (!outcome.accepted) {
+    outcome.message = "the chains have not converged, so the result before stays in use";
+  }
+  return outcome;
+}
+
+Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
+                                       const std::filesystem::path& design,
+                                       const std::filesystem::path& folder,
+                                       const calibration::RunContext& context) {
+  const auto done = calibrate_on_design(modelled, design, context);
+  if (!done) return tl::unexpected(done.error());
+  JobOutcome outcome = outcome_of(done->calibration, done->facts, folder);
+  if (auto written = write_calibration(*done, outcome.result, folder); !written) {
+    return tl::unexpected(written.error());
+  }
+  return outcome;
+}
+
+/// For the record: what was said of each month before it was looked at.
+std::vector<StoredForecast> forecasts_of(const SiteDrift& drift, const RunFacts& facts,
+                                         metering::Instant now) {
+  std::vector<StoredForecast> forecasts;
+  for (const drift::PrequentialMonth& month : drift.record) {
+    for (std::size_t k = 0; k < month.outputs.size(); ++k) {
+      const auto& one = month.outputs[k];
+      if (!one) continue;
+      forecasts.push_back({.output = drift.outputs[k].name,
+                           .month = metering::parse_month(drift.month_name(month.month)).value(),
+                           .model_version = facts.model_version,
+                           .data_revision = facts.data_revision,
+                           .made = now,
+                           .mean = one->mean,
+                           .sd = one->sd,
+                           .q05 = one->q05,
+                           .q50 = one->q50,
+                           .q95 = one->q95,
+                           .measured = one->measured,
+                           .pit = one->surprise.pit,
+                           .standardised = one->surprise.standardised,
+                           .log_score = one->surprise.log_score,
+                           .crps = one->surprise.crps});
+    }
+  }
+  return forecasts;
+}
+
+/// The newest month has settled an alarm on something that the model lacks: it wants a name.
+bool asks_for_a_name(const SiteDrift& drift) {
+  return std::ranges::any_of(drift.alarms, [&](const ExplainedAlarm& alarm) {
+    return alarm.consequence == ExplainedAlarm::Consequence::began_anew &&
+           alarm.causes.front().kind == drift::CauseKind::unknown &&
+           alarm.explained_until == drift.record.back().month;
+  });
+}
+
+/// What all months say, beside a calibration that stands by itself.
+/// @return or why there is nothing to say: too few months, a model that cannot be followed.
+Result<void> follow(OpenSite site, metering::Instant now, const calibration::RunContext& context,
+                    const std::filesystem::path& folder, JobOutcome& outcome) {
+  const DriftOptions options{.sequential = {.particles = kDriftParticles}};
+  auto modelled = load_modelled_site(
+      std::move(site), now,
+      [&](const OpenSite& open, const Recording& recording, metering::Instant until) {
+        return followed_period(open, recording, until, options.learning_months);
+      });
+  if (!modelled) return tl::unexpected(modelled.error());
+  auto version = active_version(modelled->site.config);
+  if (!version) return tl::unexpected(version.error());
+  modelled->facts.model_version = version_name(*version, modelled->facts.model_version);
+  modelled->facts.seed = context.seed;
+  auto drift = follow_site(*modelled, options, std::move(version->effects), context);
+  if (!drift) return tl::unexpected(drift.error());
+  auto written = write_drift(modelled->site.config, *drift, modelled->facts,
+                             metering::to_string(now), drift_json(*drift, modelled->facts), folder);
+  if (!written) return written;
+  outcome.result = with_drift(outcome.result, *drift);
+  outcome.forecasts = forecasts_of(*drift, modelled->facts, now);
+  if (asks_for_a_name(*drift)) outcome.next = JobKind::diagnosis;
+  return {};
+}
+
+Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
+                             const GoesOn& goes_on) {
+  const auto folder = folder_of(site.config, job);
+  const OpenSite whole = site;
+  auto modelled = load_modelled_site(std::move(site), now);
+  if (!modelled) return tl::unexpected(modelled.error());
+  const calibration::RunContext context{
+      .seed = kSeed, .observer = [&](const calibration::Progress&) { return goes_on(); }};
+  if (const auto& design = modelled->site.config.recalibration.design; !design.empty()) {
+    return calibrate_metamodel(*modelled, design, folder, context);
+  }
+  const auto done = finish_calibration(std::move(*modelled), {}, context);
+  if (!done) return tl::unexpected(done.error());
+  JobOutcome outcome = outcome_of(done->calibration, done->modelled.facts, folder);
+  const auto written = write_calibration(*done, outcome.result, metering::to_string(now), folder);
+  if (!written) return tl::unexpected(written.error());
+  const auto followed = follow(whole, now, context, folder, outcome);
+  if (followed) return outcome;
+  if (followed.error().code == ErrorCode::cancelled) return tl::unexpected(followed.error());
+  outcome.result = without_drift(outcome.result, followed.error().message);
+  return outcome;
+}
+
+Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
+                            const GoesOn& goes_on) {
+  const auto folder = folder_of(site.config, job);
+  site.config.model->kind = "hourly";
+  auto modelled = load_modelled_site(std::move(site), now);
+  if (!modelled) return tl::unexpected(modelled.error());
+  const auto problem = prepare_diagnosis(*modelled);
+  if (!problem) return tl::unexpected(problem.error());
+  const auto done = diagnose_site(*modelled, *problem, {.rules = {}, .seed = kSeed},
+                                  [&](const char*, double) { return goes_on(); });
+  if (!done) return tl::unexpected(done.error());
+  modelled->facts.seed = kSeed;
+  JobOutcome outcome{
+      .accepted = true,
+      .folder = folder.string(),
+      .result = diagnosis_json(done->diagnosis, *problem, modelled->facts, done->others)};
+  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  const auto written =
+      write_diagnosis(*done, *modelled, *problem, outcome.result, metering::to_string(now), folder);
+  if (!written) return tl::unexpected(written.error());
+  return outcome;
+}
+
+}  // namespace
+
+std::filesystem::path results_folder(const SiteConfig& site) {
+  return site.store.file.parent_path() / (site.store.file.stem().string() + "-results");
+}
+
+DoJob make_site_work(OpenSite site) {
+  return [site = std::move(site)](const StoredJob& job, metering::Instant now,
+                                  const GoesOn& goes_on) -> Result<JobOutcome> {
+    if (auto modelled = require_model(site.config); !modelled) {
+      return tl::unexpected(modelled.error());
+    }
+    OpenSite latest = site;
+    latest.config.period.reset();
+    return job.kind == JobKind::calibration ? calibrate(std::move(latest), job, now, goes_on)
+                                            : diagnose(std::move(latest), job, now, goes_on);
+  };
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,33 @@
+#include "daemon/gateway/run/watchdog.hpp"
+
+#include <systemd/sd-daemon.h>
+
+#include <cstdint>
+#include <utility>
+
+namespace recald::daemon {
+
+Watchdog::Watchdog(Loop& loop, std::function<bool()> is_well)
+    : loop_(loop), is_well_(std::move(is_well)), self_(std::make_shared<Watchdog*>(this)) {
+  std::uint64_t microseconds = 0;
+  if (sd_watchdog_enabled(0, &microseconds) > 0) {
+    // Half of it, as sd_watchdog_enabled(3) recommends.
+    period_ = std::chrono::milliseconds{microseconds / 2'000};
+  }
+}
+
+void Watchdog::ready() {
+  sd_notify(0, "READY=1");
+  if (period_.count() > 0) feed();
+}
+
+void Watchdog::ending() { sd_notify(0, "STOPPING=1"); }
+
+void Watchdog::feed() {
+  if (is_well_()) sd_notify(0, "WATCHDOG=1");
+  loop_.after(period_, [weak = std::weak_ptr{self_}] {
+    if (const auto self = weak.lock()) (*self)->feed();
+  });
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "adapters/csv/fields.hpp"
+#include "daemon/gateway/serve/api.hpp"
+#include "daemon/gateway/serve/json_answer.hpp"
+#include "daemon/gateway/serve/parameters.hpp"
+#include "daemon/gateway/serve/shapes.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view plural(JobKind kind) {
+  return kind == JobKind::calibration ? "calibrations" : "diagnoses";
+}
+
+std::string location(const StoredJob& job) {
+  return fmt::format("/api/v1/{}/{}", plural(job.kind), job.number);
+}
+
+Json linked(const StoredJob& job) {
+  Json json = job_json(job);
+  json["location"] = location(job);
+  return json;
+}
+
+std::optional<std::int64_t> number_in(const std::string& id) {
+  std::int64_t number = 0;
+  const char* end = id.data() + id.size();
+  const auto [stop, error] = std::from_chars(id.data(), end, number);
+  return error == std::errc{} && stop == end ? std::optional{number} : std::nullopt;
+}
+
+/// A body is not needed; one that says something is an error, since nothing would come of it.
+bool asks_for_nothing_more(const std::string& body) {
+  if (body.empty()) return true;
+  const Json json = Json::parse(body, nullptr, false);
+  return json.is_object() && json.empty();
+}
+
+http::Response refused_job(const Error& error) {
+  if (error.code == ErrorCode::io_failed) {
+    return http::error_response(503, "store_unavailable", error.message);
+  }
+  return http::error_response(409, "not_possible", error.message);
+}
+
+/// The job of that kind that an id stands for, or the answer that there is none.
+tl::expected<StoredJob, http::Response> find_job(JobKind kind, const Served& served,
+                                                 const std::string& id) {
+  const auto number = number_in(id);
+  auto job = number ? served.store.job(*number) : Result<std::optional<StoredJob>>{};
+  if (!job) return tl::unexpected(refusal(job.error()).value());
+  if (!*job || (*job)->kind != kind) {
+    return tl::unexpected(
+        http::error_response(404, "not_found",
+                             fmt::format("there is no {} {}; GET /api/v1/{} lists them",
+                                         name_of(kind), csv::in_quotes(id), plural(kind)),
+                             "id"));
+  }
+  return std::move(**job);
+}
+
+}  // namespace
+
+http::Response get_jobs_of(JobKind kind, const Served& served, const http::Request& request) {
+  if (const auto checked = has_only(request, {"limit", "cursor"}); !checked) {
+    return checked.error();
+  }
+  const auto limit = limit_of(request);
+  if (!limit) return limit.error();
+  const auto cursor = whole_number_of(request, "cursor", "a cursor that was given out");
+  if (!cursor) return cursor.error();
+  const auto jobs = served.store.jobs(kind, kLimitMax);
+  if (!jobs) return refusal(jobs.error()).value();
+  Json list = Json::array();
+  Json next;
+  for (const StoredJob& job : *jobs) {
+    if (*cursor && job.number > **cursor) continue;
+    if (std::ssize(list) == *limit) {
+      next = std::to_string(job.number);
+      break;
+    }
+    list.push_back(linked(job));
+  }
+  return json_answer({{plural(kind), list}, {"next", next}});
+}
+
+http::Response get_job_of(JobKind kind, const Served& served, const std::string& id) {
+  const auto job = find_job(kind, served, id);
+  if (!job) return job.error();
+  Json json = linked(*job);
+  const Json result = Json::parse(job->result, nullptr, false);
+  json["result"] = result.is_discarded() ? Json() : result;
+  return json_answer(json);
+}
+
+http::Response cancel_job_of(JobKind kind, const Served& served, const std::string& id) {
+  const auto job = find_job(kind, served, id);
+  if (!job) return job.error();
+  if (!served.cancel_job) {
+    return http::error_response(409, "not_possible",
+                                fmt::format("this daemon makes no {}", plural(kind)));
+  }
+  if (const auto cancelled = served.cancel_job(job->number); !cancelled) {
+    return refused_job(cancelled.error());
+  }
+  // One that runs ends in a moment, and is cancelled then.
+  const auto now = find_job(kind, served, id);
+  return now ? json_answer(linked(*now), 202) : now.error();
+}
+
+http::Response post_job_of(JobKind kind, const Served& served, const http::Request& request) {
+  if (const auto checked = has_only(request, {}); !checked) return checked.error();
+  if (!asks_for_nothing_more(request.body)) {
+    return http::error_response(
+        400, "invalid_value",
+        fmt::format("a {} is asked for with an empty body or {{}}; what it does stands in the "
+                    "site file",
+                    name_of(kind)),
+        "body");
+  }
+  if (!served.ask_job) {
+    return http::error_response(409, "not_possible",
+                                fmt::format("this daemon makes no {}", plural(kind)));
+  }
+  const auto number = served.ask_job(kind);
+  if (!number) return refused_job(number.error());
+  const auto job = served.store.job(*number);
+  if (!job) return refusal(job.error()).value();
+  const StoredJob known = job->value_or(StoredJob{.number = *number, .kind = kind});
+  http::Response response = json_answer(linked(known), 202);
+  response.headers.emplace_back("Location", location(known));
+  return response;
+}
+
+http::Response get_drift(const Served& served, const http::Request& request) {
+  if (const auto checked = has_only(request, {}); !checked) return checked.error();
+  const auto job = served.store.last_accepted(JobKind::calibration);
+  if (!job) return refusal(job.error()).value();
+  Json drift;
+  Json alarms;
+  Json calibration;
+  if (*job) {
+    calibration = location(**job);
+    const Json result = Json::parse((*job)->result, nullptr, false);
+    if (result.is_object() && result.contains("drift")) drift = result["drift"];
+    if (result.is_object() && result.contains("alarms")) alarms = result["alarms"];
+  }
+  return json_answer({{"calibration", calibration}, {"drift", drift}, {"alarms", alarms}});
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,220 @@
+#include "daemon/gateway/serve/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "core/absent.hpp"
+#include "daemon/gateway/serve/prometheus_text.hpp"
+#include "daemon/gateway/serve/shapes.hpp"
+#include "daemon/version.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds_of(metering::Instant t) { return static_cast<double>(t.time_since_epoch().count()); }
+
+void write_process(PrometheusText& text, const Served& served, const GatewayStatus& status) {
+  text.begin("recald_build_info", "gauge", "1, with the version of the program.");
+  text.sample(1.0, {{"version", kVersion}});
+  text.begin("process_start_time_seconds", "gauge", "When the process began, since 1970.");
+  text.sample(seconds_of(served.started));
+  text.begin("recald_clock_ok", "gauge",
+             "1 while readings can be stamped; 0 until the system clock has been set.");
+  text.sample(status.clock_ok ? 1.0 : 0.0);
+  text.begin("recald_events_total", "counter", "Events stored, by severity.");
+  for (std::size_t i = 0; i < status.events.size(); ++i) {
+    text.sample(static_cast<double>(status.events[i]),
+                {{"severity", name_of(static_cast<Severity>(i))}});
+  }
+}
+
+void write_buses(PrometheusText& text, const GatewayStatus& status) {
+  text.begin("recald_poll_requests_total", "counter",
+             "Requests to a meter, by how they ended; timeout includes no connection.");
+  for (const MeterStatus& meter : status.meters) {
+    if (!meter.poll) continue;
+    for (std::size_t i = 0; i < kRequestResults.size(); ++i) {
+      const bool is_usual = static_cast<RequestResult>(i) == RequestResult::ok;
+      if (meter.poll->requests[i] == 0 && !is_usual) continue;
+      text.sample(static_cast<double>(meter.poll->requests[i]),
+                  {{"bus", meter.poll->bus}, {"meter", meter.id}, {"result", kRequestResults[i]}});
+    }
+  }
+  text.begin("recald_poll_duration_seconds", "histogram", "From a request to its outcome.");
+  for (const BusStatus& bus : status.buses) text.histogram(bus.duration, {{"bus", bus.name}});
+  text.begin("recald_poll_lateness_seconds", "histogram",
+             "A poll's first request behind its due time.");
+  for (const BusStatus& bus : status.buses) text.histogram(bus.lateness, {{"bus", bus.name}});
+}
+
+void write_meters(PrometheusText& text, const GatewayStatus& status) {
+  text.begin("recald_unit_state", "gauge", "Of a meter's device: 0 down, 1 degraded, 2 up.");
+  for (const MeterStatus& meter : status.meters) {
+    if (meter.poll) text.sample(static_cast<double>(meter.poll->state), {{"meter", meter.id}});
+  }
+  text.begin("recald_last_reading_timestamp_seconds", "gauge",
+             "When a meter last answered or was sent readings of, since 1970.");
+  for (const MeterStatus& meter : status.meters) {
+    if (meter.live.read_at) text.sample(seconds_of(*meter.live.read_at), {{"meter", meter.id}});
+  }
+  text.begin("recald_month_coverage_ratio", "gauge",
+             "Share of the open month's intervals so far that are measured and valid.");
+  for (const MeterStatus& meter : status.meters) {
+    if (std::isfinite(meter.open_month_coverage)) {
+      text.sample(meter.open_month_coverage, {{"meter", meter.id}});
+    }
+  }
+}
+
+void write_intervals(PrometheusText& text, const GatewayStatus& status) {
+  text.begin("recald_intervals_total", "counter", "Intervals committed, by validity.");
+  for (const MeterStatus& meter : status.meters) {
+    for (std::size_t i = 0; i < meter.counters.intervals.size(); ++i) {
+      const auto validity = static_cast<metering::Validity>(i);
+      if (meter.counters.intervals[i] == 0 && validity != metering::Validity::ok) continue;
+      text.sample(static_cast<double>(meter.counters.intervals[i]),
+                  {{"meter", meter.id}, {"validity", metering::to_string(validity)}});
+    }
+  }
+  text.begin("recald_late_intervals_total", "counter",
+             "Intervals committed after their month had closed.");
+  for (const MeterStatus& meter : status.meters) {
+    text.sample(static_cast<double>(meter.counters.late), {{"meter", meter.id}});
+  }
+  text.begin("recald_counter_events_total", "counter",
+             "What a meter's counter did beside counting: resets, jumps, bounces.");
+  for (const MeterStatus& meter : status.meters) {
+    for (const auto& [event, count] : meter.counters.events) {
+      text.sample(static_cast<double>(count), {{"meter", meter.id}, {"event", event}});
+    }
+  }
+}
+
+/// The database and its write-ahead log.
+double store_bytes(const std::filesystem::path& file) {
+  double bytes = 0.0;
+  for (const char* ending : {"", "-wal"}) {
+    std::error_code missing;
+    const auto size = std::filesystem::file_size(file.string() + ending, missing);
+    if (!missing) bytes += static_cast<double>(size);
+  }
+  return bytes;
+}
+
+void write_store(PrometheusText& text, const Served& served, const GatewayStatus& status) {
+  text.begin("recald_store_commit_seconds", "histogram", "How long the store took for a commit.");
+  text.histogram(status.store.durations);
+  text.begin("recald_store_bytes", "gauge", "Size of the store with its write-ahead log.");
+  text.sample(store_bytes(served.site.store.file));
+  text.begin("recald_outbox_batches", "gauge",
+             "Batches that wait to be sent on; nothing is sent on yet.");
+  text.sample(0.0);
+}
+
+/// The largest R-hat of a calibration's parameters and hyperparameters; NaN where none has one.
+double rhat_max(const Json& result) {
+  double largest = kAbsent;
+  for (const char* group : {"parameters", "hyperparameters"}) {
+    if (!result.contains(group) || !result[group].is_array()) continue;
+    for (const Json& one : result[group]) {
+      if (!one.is_object() || !one.contains("rhat") || !one["rhat"].is_number()) continue;
+      largest = std::fmax(largest, one["rhat"].get<double>());
+    }
+  }
+  return largest;
+}
+
+/// @return log evidence as a share of the one that raises an alarm; NaN where nothing is watched.
+double evidence_ratio(const Json& watch) {
+  if (!watch.is_object()) return kAbsent;
+  const auto evidence = watch.find("log_evidence");
+  const auto threshold = watch.find("log_threshold");
+  if (evidence == watch.end() || threshold == watch.end()) return kAbsent;
+  if (!evidence->is_number() || !threshold->is_number()) return kAbsent;
+  return evidence->get<double>() / threshold->get<double>();
+}
+
+/// Climbs before an alarm does.
+void write_evidence(PrometheusText& text, const Json& result, const std::string& model) {
+  text.begin("recald_drift_evidence_ratio", "gauge",
+             "Log evidence that something has changed, by months and by days; 1 raises an alarm.");
+  for (const Json& one : result["drift"]) {
+    if (!one.is_object() || !one.contains("output") || !one["output"].is_string()) continue;
+    const auto sample = [&](const Json& watch, const char* grain) {
+      const double ratio = evidence_ratio(watch);
+      if (!std::isfinite(ratio)) return;
+      const std::string output = one["output"].get<std::string>();
+      text.sample(ratio, {{"model", model}, {"output", output}, {"grain", grain}});
+    };
+    sample(one, "month");
+    if (one.contains("daily")) sample(one["daily"], "day");
+  }
+}
+
+void write_drift(PrometheusText& text, const Json& result, const std::string& model) {
+  if (!result.contains("drift") || !result["drift"].is_array()) return;
+  write_evidence(text, result, model);
+  text.begin("recald_drift_pvalue", "gauge",
+             "How well the newest month agrees with the calibration in use; small: it drifts.");
+  for (const Json& one : result["drift"]) {
+    if (!one.is_object() || !one.contains("output") || !one.contains("pvalue")) continue;
+    if (!one["output"].is_string() || !one["pvalue"].is_number()) continue;
+    text.sample(one["pvalue"].get<double>(),
+                {{"model", model}, {"output", one["output"].get<std::string>()}});
+  }
+}
+
+/// Who wants to be woken up watches this.
+void write_alarms(PrometheusText& text, const Json& result, const std::string& model) {
+  if (!result.contains("alarms") || !result["alarms"].is_array()) return;
+  std::map<std::string, int> alarms;
+  for (const Json& one : result["alarms"]) {
+    if (one.is_object() && one.contains("output") && one["output"].is_string()) {
+      ++alarms[one["output"].get<std::string>()];
+    }
+  }
+  text.begin("recald_drift_alarms", "gauge",
+             "Alarms among the months that were followed: the building or a meter has changed.");
+  for (const auto& [output, count] : alarms) {
+    text.sample(count, {{"model", model}, {"output", output}});
+  }
+}
+
+/// The calibration in use. Without one, or while the store cannot be read, nothing is said of it.
+void write_calibration(PrometheusText& text, const Served& served) {
+  const auto job = served.store.last_accepted(JobKind::calibration);
+  if (!job || !*job || !(*job)->ended) return;
+  const Json result = Json::parse((*job)->result, nullptr, false);
+  if (!result.is_object()) return;
+  const std::string model = served.site.model ? served.site.model->kind : "";
+  text.begin("recald_calibration_age_seconds", "gauge", "Since the calibration in use was made.");
+  text.sample(static_cast<double>((served.now() - *(*job)->ended).count()), {{"model", model}});
+  if (const double rhat = rhat_max(result); std::isfinite(rhat)) {
+    text.begin("recald_calibration_rhat_max", "gauge",
+               "The largest R-hat of the calibration in use; near 1: its chains agree.");
+    text.sample(rhat, {{"model", model}});
+  }
+  write_drift(text, result, model);
+  write_alarms(text, result, model);
+}
+
+}  // namespace
+
+http::Response metrics(const Served& served) {
+  const GatewayStatus status = served.status();
+  PrometheusText text;
+  write_process(text, served, status);
+  write_buses(text, status);
+  write_meters(text, status);
+  write_intervals(text, status);
+  write_store(text, served, status);
+  write_calibration(text, served);
+  return {.content_type = "text/plain; version=0.0.4; charset=utf-8", .body = text.str()};
+}
+
+}  // namespace recald::daemon

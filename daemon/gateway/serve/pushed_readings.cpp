@@ -1,0 +1,174 @@
+#include "daemon/gateway/serve/pushed_readings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "adapters/csv/fields.hpp"
+#include "core/absent.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using metering::Reading;
+using std::chrono::seconds;
+
+constexpr std::string_view kExample =
+    R"({"meter":"chw","unit":"kWh","readings":[{"time":"2026-03-01T00:00:00Z","value":1.5}]})";
+constexpr double kValueMax = 1e18;  // so that no unit and no multiplier makes it infinite
+constexpr seconds kClocksDiffer{300};
+/// A sender whose clock was reset must not give a site months of the year 2000.
+constexpr std::chrono::days kOldest{400};
+
+tl::unexpected<http::Response> malformed(std::string_view what, std::string_view field) {
+  return refusal(400, "malformed", fmt::format("{}; the body is JSON such as {}", what, kExample),
+                 field);
+}
+
+/// The text of a key, or nothing where it is absent or none.
+std::optional<std::string> text_in(const nlohmann::json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string()) return {};
+  return found->get<std::string>();
+}
+
+Checked<const MeterConfig*> pushed_meter(const nlohmann::json& body, const SiteConfig& site) {
+  const auto id = text_in(body, "meter");
+  if (!id) return malformed("'meter' is needed", "meter");
+  const auto meter = meter_of(site, *id);
+  if (!meter || (*meter)->source == MeterSource::http) return meter;
+  return refusal(409, "not_possible",
+                 fmt::format("meter '{}' has source = \"{}\": its readings come from there and are "
+                             "not taken from others",
+                             *id, name_of((*meter)->source)),
+                 "meter");
+}
+
+Checked<metering::UnitConversion> unit_of(const nlohmann::json& body, const MeterConfig& meter) {
+  const auto unit = text_in(body, "unit");
+  if (!unit) return malformed("'unit' is needed, such as kWh", "unit");
+  const auto conversion = metering::find_unit(*unit, meter.meter.utility, meter.units);
+  if (!conversion) return refusal(400, "invalid_value", conversion.error().message, "unit");
+  return *conversion;
+}
+
+/// Reads one element of `readings` after the other.
+class Elements {
+ public:
+  Elements(const MeterConfig& meter, metering::UnitConversion unit, bool is_end_stamped,
+           Instant now)
+      : meter_(meter), unit_(unit), is_end_stamped_(is_end_stamped), now_(now) {}
+
+  [[nodiscard]] Checked<Reading> read(const nlohmann::json& element, std::size_t index) const {
+    const std::string place = fmt::format("readings[{}]", index);
+    if (!element.is_object()) return malformed(place + " is no object", place);
+    for (const auto& [key, value] : element.items()) {
+      if (key != "time" && key != "value") {
+        return malformed(fmt::format("{} has {}, which is not known", place, csv::in_quotes(key)),
+                         place);
+      }
+    }
+    const auto start = start_of(element, place + ".time");
+    if (!start) return tl::unexpected(start.error());
+    const auto mean_kW = mean_of(element, place + ".value");
+    if (!mean_kW) return tl::unexpected(mean_kW.error());
+    Reading reading{.meter = 0, .start = *start, .mean_kW = *mean_kW};
+    if (std::isnan(*mean_kW)) reading.validity = metering::Validity::missing;
+    return reading;
+  }
+
+ private:
+  [[nodiscard]] Checked<Instant> start_of(const nlohmann::json& element,
+                                          const std::string& place) const {
+    const auto text = text_in(element, "time");
+    const auto stamp = text ? csv::parse_timestamp(*text) : Result<Instant>{};
+    if (!text || !stamp) {
+      return refusal(400, "invalid_value",
+                     fmt::format("{} is {}; write a time such as 2026-03-01T00:00:00Z", place,
+                                 text ? csv::in_quotes(*text) : "no text"),
+                     place);
+    }
+    const seconds interval = meter_.meter.interval;
+    const Instant start = is_end_stamped_ ? *stamp - interval : *stamp;
+    if ((start.time_since_epoch() - meter_.meter.phase) % interval != seconds{0}) {
+      return refusal(400, "invalid_value",
+                     fmt::format("{} is {}, which is no border of the meter's intervals of {} s",
+                                 place, csv::in_quotes(*text), interval.count()),
+                     place);
+    }
+    if (start + interval > now_ + kClocksDiffer) {
+      return refusal(400, "invalid_value",
+                     fmt::format("{} is {}: that interval ends after now, {}", place,
+                                 csv::in_quotes(*text), metering::to_string(now_)),
+                     place);
+    }
+    if (start < now_ - kOldest) {
+      return refusal(400, "invalid_value",
+                     fmt::format("{} is {}, more than {} days ago; readings from before are "
+                                 "imported: recald import",
+                                 place, csv::in_quotes(*text), kOldest.count()),
+                     place);
+    }
+    return start;
+  }
+
+  [[nodiscard]] Checked<double> mean_of(const nlohmann::json& element,
+                                        const std::string& place) const {
+    const auto value = element.find("value");
+    if (value != element.end() && value->is_null()) {
+      return kAbsent;
+    }
+    if (value == element.end() || !value->is_number()) {
+      return refusal(400, "invalid_value",
+                     place + " is no number; write null for an interval without one", place);
+    }
+    const double number = value->get<double>();
+    if (!(std::abs(number) <= kValueMax)) {
+      return refusal(400, "invalid_value", place + " is more than any meter counts", place);
+    }
+    return unit_.mean_kW(number, meter_.meter.interval) * meter_.multiplier;
+  }
+
+  const MeterConfig& meter_;
+  metering::UnitConversion unit_;
+  bool is_end_stamped_;
+  Instant now_;
+};
+
+}  // namespace
+
+Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& site, Instant now) {
+  const auto json = nlohmann::json::parse(body, nullptr, false);
+  if (!json.is_object()) return malformed("the body is no JSON object", "body");
+  for (const auto& [key, value] : json.items()) {
+    if (key != "meter" && key != "unit" && key != "stamps" && key != "readings") {
+      return malformed(fmt::format("{} is not known here", csv::in_quotes(key)), key);
+    }
+  }
+  const auto meter = pushed_meter(json, site);
+  if (!meter) return tl::unexpected(meter.error());
+  const auto unit = unit_of(json, **meter);
+  if (!unit) return tl::unexpected(unit.error());
+  const std::string stamps =
+      json.contains("stamps") ? text_in(json, "stamps").value_or("") : "start";
+  if (stamps != "start" && stamps != "end") {
+    return refusal(400, "invalid_value", R"('stamps' is neither "start" nor "end")", "stamps");
+  }
+  const auto list = json.find("readings");
+  if (list == json.end() || !list->is_array() || list->empty()) {
+    return malformed("'readings' is needed, with at least one", "readings");
+  }
+  const Elements elements{**meter, *unit, stamps == "end", now};
+  PushedReadings pushed{.meter = *meter, .readings = {}};
+  pushed.readings.reserve(list->size());
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    auto reading = elements.read((*list)[i], i);
+    if (!reading) return tl::unexpected(reading.error());
+    pushed.readings.push_back(*reading);
+  }
+  return pushed;
+}
+
+}  // namespace recald::daemon

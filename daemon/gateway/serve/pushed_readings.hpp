@@ -1,0 +1,27 @@
+/// The body of POST /api/v1/readings, checked.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "core/metering/reading.hpp"
+#include "daemon/gateway/serve/parameters.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+struct PushedReadings {
+  const MeterConfig* meter;
+  std::vector<metering::Reading> readings;  ///< `meter` is 0; at least one.
+};
+
+/// @param body
+/// {"meter":"chw","unit":"kWh","stamps":"start","readings":[{"time":"…Z","value":1.5}]};
+///              `stamps` may be absent and is "start" then, a null value is a missing interval.
+/// @param now   What ends after it has not happened yet.
+/// @return or the answer that refuses all of it: 400, 404 for another meter, 409 for one whose
+///         readings come from elsewhere.
+[[nodiscard]] Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& site,
+                                                   metering::Instant now);
+
+}  // namespace recald::daemon

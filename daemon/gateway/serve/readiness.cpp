@@ -1,0 +1,37 @@
+#include "daemon/gateway/serve/readiness.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace recald::daemon {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> reasons_not_ready(const GatewayStatus& status) {
+  std::vector<std::string> reasons;
+  if (!status.clock_ok) {
+    reasons.emplace_back(
+        "the system clock is not set yet; readings are held until it is, since they cannot be "
+        "stamped");
+  }
+  if (status.store.is_degraded) {
+    reasons.push_back(
+        fmt::format("the store refuses: {}; {} intervals wait for it and {} were given up",
+                    status.store.why, status.waiting_intervals, status.store.lost_intervals));
+  }
+  return reasons;
+}
+
+http::Response health() { return http::json_response("{\"status\":\"alive\"}\n"); }
+
+http::Response readiness(const Served& served) {
+  const auto reasons = reasons_not_ready(served.status());
+  const Json json = {{"status", reasons.empty() ? "ready" : "not ready"},
+                     {"site", served.site.id},  // its configuration is loaded, or nobody answered
+                     {"reasons", reasons}};
+  return http::json_response(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
+                             reasons.empty() ? 200 : 503);
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,21 @@
+/// Whether the daemon does what it is for: readings can be stamped and stored.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/gateway/serve/served.hpp"
+
+namespace recald::daemon {
+
+/// Why not, in sentences; empty when ready. A meter that is silent is no reason: the others are
+/// served, and restarting the daemon would not wake it.
+[[nodiscard]] std::vector<std::string> reasons_not_ready(const GatewayStatus& status);
+
+/// /healthz: 200 as long as the loop turns.
+[[nodiscard]] http::Response health();
+
+/// /readyz: 200, or 503 with the reasons.
+[[nodiscard]] http::Response readiness(const Served& served);
+
+}  // namespace recald::daemon

@@ -1,0 +1,29 @@
+#include "daemon/gateway/serve/site_server.hpp"
+
+#include <utility>
+
+#include "adapters/http/credentials.hpp"
+
+namespace recald::daemon {
+
+Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
+                                                 const HttpConfig& config, Served served) {
+  http::ServerOptions options{
+      .address = config.address == "localhost" ? "127.0.0.1" : config.address,
+      .port = config.port,
+      .open_paths = {"/healthz", "/readyz"}};
+  if (!config.token_file.empty()) {
+    auto token = http::read_token_file(config.token_file);
+    if (!token) return tl::unexpected(token.error());
+    options.token = std::move(*token);
+  }
+  if (!config.certificate_file.empty()) {
+    options.tls = http::TlsFiles{config.certificate_file, config.key_file};
+  }
+  return http::Server::listen(context, options,
+                              [served = std::move(served)](const http::Request& request) {
+                                return answer(served, request);
+                              });
+}
+
+}  // namespace recald::daemon

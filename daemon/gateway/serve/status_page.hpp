@@ -1,0 +1,20 @@
+/// The page at /: is it alive, are the data good, what happened lately. Plain HTML, no script.
+#pragma once
+
+#include <string>
+
+#include "daemon/gateway/serve/served.hpp"
+
+namespace recald::daemon {
+
+[[nodiscard]] http::Response status_page(const Served& served);
+[[nodiscard]] http::Response status_style(const Served& served);  ///< /style.css
+
+/// "2026-03-29 03:15 +02:00", as the clocks at the site show it.
+[[nodiscard]] std::string site_time_text(const metering::LocalCalendar& calendar,
+                                         metering::Instant t);
+
+/// "40 s", "3 min", "5 h", "2 days"; "in the future" below zero.
+[[nodiscard]] std::string age_text(std::chrono::seconds age);
+
+}  // namespace recald::daemon

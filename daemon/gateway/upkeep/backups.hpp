@@ -1,0 +1,24 @@
+/// The daily copies of a store: what they are called, which are kept.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/metering/civil_time.hpp"
+#include "daemon/site/config/store_config.hpp"
+
+namespace recald::daemon {
+
+inline constexpr std::size_t kBackupsKept = 7;
+
+/// "site-2024-03-01.db" in the backup folder: one a local day.
+[[nodiscard]] std::filesystem::path backup_file(const StoreConfig& store, metering::Day day);
+
+/// Whole backups of this store, the newest first; other files of the folder are none of ours.
+[[nodiscard]] std::vector<std::filesystem::path> backups_of(const StoreConfig& store);
+
+/// Deletes all but the newest. @return what could not be deleted.
+std::vector<std::filesystem::path> prune_backups(const StoreConfig& store);
+
+}  // namespace recald::daemon

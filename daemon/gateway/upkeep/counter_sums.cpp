@@ -1,0 +1,118 @@
+#include "daemon/gateway/upkeep/counter_sums.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "adapters/sqlite/sample_table.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using metering::Reason;
+using metering::RegisterSample;
+using metering::Validity;
+
+constexpr std::chrono::seconds kSamplesApartMax{300};
+constexpr double kShareOff = 0.001;
+/// The register does not stand on one line through such an interval.
+constexpr Reason kBroken =
+    Reason::rollover | Reason::wrap | Reason::reset | Reason::jump | Reason::bounce | Reason::clock;
+
+/// The register at each UTC midnight that lies between two samples.
+Result<std::map<Instant, double>> midnights(sqlite::SqliteStore& store, std::uint32_t meter) {
+  std::map<Instant, double> register_kWh;
+  std::optional<RegisterSample> before;
+  const auto read =
+      sqlite::for_each_sample(store.database(), meter, "energy", [&](const RegisterSample& sample) {
+        const Instant midnight = std::chrono::floor<std::chrono::days>(sample.time);
+        if (sample.time == midnight) {
+          register_kWh[midnight] = sample.value_kWh;
+        } else if (before && before->time < midnight &&
+                   sample.time - before->time <= kSamplesApartMax) {
+          const double share =
+              std::chrono::duration<double>(midnight - before->time) / (sample.time - before->time);
+          register_kWh[midnight] =
+              before->value_kWh + share * (sample.value_kWh - before->value_kWh);
+        }
+        before = sample;
+      });
+  if (!read) return tl::unexpected(read.error());
+  return register_kWh;
+}
+
+/// Days with intervals that a person put in.
+Result<std::map<Instant, bool>> edited_days(sqlite::SqliteStore& store, std::uint32_t meter) {
+  auto query = store.database().prepare(
+      "SELECT DISTINCT t_start / 86400 FROM interval WHERE meter = ? AND edit IS NOT NULL");
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, std::int64_t{meter});
+  std::map<Instant, bool> days;
+  for (;;) {
+    const auto row = query->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return days;
+    days[Instant{std::chrono::days{query->integer(0)}}] = true;
+  }
+}
+
+struct DaySum {
+  double energy_kWh = 0.0;
+  std::chrono::seconds length{0};
+};
+
+/// Sums of the days whose intervals all came from one line of the register.
+Result<std::map<Instant, DaySum>> day_sums(sqlite::SqliteStore& store, const StoredMeter& meter) {
+  std::map<Instant, DaySum> sums;
+  const auto read = store.for_each_interval(
+      meter.number, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
+        const metering::Reading& reading = interval.reading;
+        const bool counts =
+            reading.validity == Validity::ok || reading.validity == Validity::scaled;
+        if (!counts || has(reading.reasons, kBroken)) return;
+        DaySum& sum = sums[std::chrono::floor<std::chrono::days>(reading.start)];
+        sum.energy_kWh +=
+            reading.mean_kW * static_cast<double>(meter.meter.interval.count()) / 3600.0;
+        sum.length += meter.meter.interval;
+      });
+  if (!read) return tl::unexpected(read.error());
+  std::erase_if(sums, [](const auto& day) { return day.second.length < std::chrono::days{1}; });
+  return sums;
+}
+
+}  // namespace
+
+Result<CounterComparison> compare_with_counter(sqlite::SqliteStore& store,
+                                               const StoredMeter& meter) {
+  CounterComparison comparison;
+  const auto states = store.registers(meter.number);
+  if (!states) return tl::unexpected(states.error());
+  if (states->empty()) return comparison;
+  const double resolution_kWh = states->front().settings.resolution_kWh;
+  const auto register_kWh = midnights(store, meter.number);
+  if (!register_kWh) return tl::unexpected(register_kWh.error());
+  const auto edited = edited_days(store, meter.number);
+  if (!edited) return tl::unexpected(edited.error());
+  const auto sums = day_sums(store, meter);
+  if (!sums) return tl::unexpected(sums.error());
+  for (const auto& [day, sum] : *sums) {
+    const auto begin = register_kWh->find(day);
+    const auto end = register_kWh->find(day + std::chrono::days{1});
+    if (begin == register_kWh->end() || end == register_kWh->end() || edited->contains(day)) {
+      continue;
+    }
+    ++comparison.days;
+    const double counted_kWh = end->second - begin->second;
+    const double tolerance_kWh = 2.0 * resolution_kWh + kShareOff * std::abs(counted_kWh) + 1e-6;
+    if (std::abs(sum.energy_kWh - counted_kWh) <= tolerance_kWh) continue;
+    comparison.problems.push_back(fmt::format(
+        "meter '{}', {} UTC: its intervals sum to {:.2f} kWh, its counter rose by {:.2f} kWh",
+        meter.meter.id, metering::to_string(day).substr(0, 10), sum.energy_kWh, counted_kWh));
+  }
+  return comparison;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,61 @@
+#include "daemon/gateway/upkeep/export_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "adapters/sqlite/month_table.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// The shortest text that reads back as the same number; nothing for none.
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+std::string reading_line(const std::string& meter, const metering::Reading& reading) {
+  return fmt::format("{},{},{},kW,{},{},{}\n", metering::to_string(reading.start), meter,
+                     number(reading.mean_kW), metering::to_string(reading.validity),
+                     reading.late ? 1 : 0, metering::to_string(reading.reasons));
+}
+
+std::string month_line(const std::string& meter, const sqlite::StoredMonth& month) {
+  const metering::MonthlyFigure& figure = month.figure;
+  return fmt::format("{},{},{},kWh/day,{},{},{},{},block-{}s,{},{}\n",
+                     metering::to_string(figure.month), meter, number(figure.daily_average_kWh),
+                     number(figure.coverage), number(figure.filled_share),
+                     figure.peak ? number(figure.peak->kW) : "",
+                     figure.peak ? metering::to_string(figure.peak->start) : "",
+                     figure.peak_window.count(), figure.revision, month.time_zone_release);
+}
+
+}  // namespace
+
+Result<void> export_readings(sqlite::SqliteStore& store, std::span<const StoredMeter> meters,
+                             const metering::TimeSpan& span, std::ostream& out) {
+  out << "timestamp,meter,value,unit,validity,late,reasons\n";
+  for (const StoredMeter& meter : meters) {
+    const auto read =
+        store.for_each_interval(meter.number, span, [&](const StoredInterval& interval) {
+          out << reading_line(meter.meter.id, interval.reading);
+        });
+    if (!read) return read;
+  }
+  return {};
+}
+
+Result<void> export_months(sqlite::SqliteStore& store, const metering::LocalCalendar& calendar,
+                           std::span<const StoredMeter> meters, const metering::TimeSpan& span,
+                           std::ostream& out) {
+  out << "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,revision,tzdata\n";
+  for (const StoredMeter& meter : meters) {
+    const auto months = sqlite::stored_months(store.database(), meter.number);
+    if (!months) return tl::unexpected(months.error());
+    for (const sqlite::StoredMonth& month : *months) {
+      if (!span.contains(calendar.month_span(month.figure.month).begin)) continue;
+      out << month_line(meter.meter.id, month);
+    }
+  }
+  return {};
+}
+
+}  // namespace recald::daemon

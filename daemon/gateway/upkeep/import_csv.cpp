@@ -1,0 +1,184 @@
+#include "daemon/gateway/upkeep/import_csv.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "adapters/sqlite/edit_table.hpp"
+#include "adapters/sqlite/month_table.hpp"
+#include "adapters/system/sha256.hpp"
+#include "adapters/system/time_zone_release.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Month;
+using metering::Reading;
+
+constexpr std::size_t kBatchMax = 1000;
+
+/// One import, within a transaction.
+class Import {
+ public:
+  Import(sqlite::SqliteStore& store, const SiteConfig& site,
+         const metering::LocalCalendar& calendar, const ImportOptions& options)
+      : store_(store), site_(site), calendar_(calendar), options_(options) {}
+
+  [[nodiscard]] Result<ImportOutcome> run(const std::filesystem::path& file,
+                                          metering::Instant now) {
+    if (auto begun = begin(file, now); !begun) return tl::unexpected(begun.error());
+    auto report = csv::read_readings(
+        file, file_options(), {.on_meter = {}, .on_reading = [&](const Reading& r) { take(r); }});
+    if (!report) return tl::unexpected(report.error());
+    for (std::size_t i = 0; i < meters_.size(); ++i) commit(i);
+    if (!failed_) return tl::unexpected(failed_.error());
+    outcome_.file = std::move(*report);
+    if (outcome_.taken == 0) {
+      if (auto gone = forget_edit(); !gone) return tl::unexpected(gone.error());
+    }
+    MonthKeeper keeper{store_, calendar_, site_.closing, system::time_zone_release()};
+    std::vector<StoredMeter> stored;
+    for (const MeterImport& meter : meters_) stored.push_back(meter.stored);
+    const auto until = known_until(stored);
+    if (!until) return tl::unexpected(until.error());
+    auto closed = keeper.close_due(stored, std::min(now, *until));
+    if (!closed) return tl::unexpected(closed.error());
+    outcome_.closed = std::move(*closed);
+    return std::move(outcome_);
+  }
+
+ private:
+  struct MeterImport {
+    StoredMeter stored;
+    std::set<Month> closed;
+    StoreBatch batch;  ///< Of one month.
+    Month month{};
+  };
+
+  Result<void> begin(const std::filesystem::path& file, metering::Instant now) {
+    system::Sha256 hash;
+    if (auto added = hash.add_file(file); !added) return added;
+    const auto edit = sqlite::insert_edit(store_.database(), {.time = now,
+                                                              .author = options_.author,
+                                                              .reason = options_.reason,
+                                                              .file = file.filename().string(),
+                                                              .sha256 = hash.hex()});
+    if (!edit) return tl::unexpected(edit.error());
+    edit_ = *edit;
+    for (const MeterConfig& config : site_.meters) {
+      const auto number = store_.meter_number(config.meter.id, config.meter.interval);
+      if (!number) return tl::unexpected(number.error());
+      const auto months = store_.months(*number);
+      if (!months) return tl::unexpected(months.error());
+      MeterImport meter{.stored = {*number, config.meter}};
+      for (const metering::MonthlyFigure& figure : *months) meter.closed.insert(figure.month);
+      meters_.push_back(std::move(meter));
+    }
+    return {};
+  }
+
+  /// When the months of the store's readings are due. A file says nothing of the time after it:
+  /// what has not been read yet is not missing.
+  [[nodiscard]] Result<metering::Instant> known_until(std::span<const StoredMeter> meters) const {
+    metering::Instant last{};
+    for (const StoredMeter& meter : meters) {
+      const auto extent = store_.interval_extent(meter.number);
+      if (!extent) return tl::unexpected(extent.error());
+      if (*extent) last = std::max(last, (*extent)->end + meter.meter.interval);
+    }
+    return last + site_.closing.watermark;
+  }
+
+  [[nodiscard]] csv::ReadingsOptions file_options() const {
+    csv::ReadingsOptions options;
+    for (const MeterConfig& config : site_.meters) {
+      options.meters.push_back({.name = config.meter.id,
+                                .utility = config.meter.utility,
+                                .stamps = options_.stamps,
+                                .interval = config.meter.interval,
+                                .units = config.units});
+    }
+    return options;
+  }
+
+  void take(Reading reading) {
+    MeterImport& meter = meters_[reading.meter];
+    const Month month = calendar_.month_of(reading.start);
+    if (month != meter.month || meter.batch.intervals.size() >= kBatchMax) commit(reading.meter);
+    meter.month = month;
+    reading.meter = meter.stored.number;
+    if (std::isnan(reading.mean_kW)) reading.validity = metering::Validity::missing;
+    reading.late |= meter.closed.contains(month);
+    meter.batch.intervals.push_back({reading, options_.supersedes});
+  }
+
+  /// The first failure ends it; what comes after is not tried.
+  void commit(std::size_t index) {
+    MeterImport& meter = meters_[index];
+    StoreBatch batch = std::exchange(meter.batch, {});
+    if (batch.intervals.empty() || !failed_) return;
+    batch.edit = edit_;
+    const auto counts = store_.commit(batch);
+    if (!counts) {
+      failed_ = tl::unexpected(counts.error());
+      return;
+    }
+    outcome_.taken += static_cast<std::uint64_t>(counts->taken);
+    outcome_.duplicates += static_cast<std::uint64_t>(counts->duplicates);
+    outcome_.weaker += static_cast<std::uint64_t>(counts->weaker);
+    outcome_.conflicts += counts->conflicts.size();
+    if (counts->taken > 0) reopen(meter, batch);
+  }
+
+  void reopen(const MeterImport& meter, const StoreBatch& batch) {
+    StoreBatch changes;
+    const auto earliest = std::ranges::min(batch.intervals, {}, [](const auto& interval) {
+                            return interval.reading.start;
+                          }).reading.start;
+    for (const Month month : months_that_depend_on(earliest, calendar_)) {
+      if (!meter.closed.contains(month)) continue;
+      const MeterMonth changed{meter.stored.number, month};
+      if (std::ranges::find(outcome_.reopened, changed) != outcome_.reopened.end()) continue;
+      outcome_.reopened.push_back(changed);
+      changes.reopened.push_back(changed);
+    }
+    if (changes.empty()) return;
+    if (const auto put = store_.commit(changes); !put) failed_ = tl::unexpected(put.error());
+  }
+
+  Result<void> forget_edit() {
+    auto remove = store_.database().prepare("DELETE FROM edit WHERE number = ?");
+    if (!remove) return tl::unexpected(remove.error());
+    return remove->bind(0, edit_).run();
+  }
+
+  sqlite::SqliteStore& store_;
+  const SiteConfig& site_;
+  const metering::LocalCalendar& calendar_;
+  const ImportOptions& options_;
+  std::int64_t edit_ = 0;
+  std::vector<MeterImport> meters_;  ///< By meter of the site.
+  Result<void> failed_;
+  ImportOutcome outcome_;
+};
+
+}  // namespace
+
+Result<ImportOutcome> import_readings(sqlite::SqliteStore& store, const SiteConfig& site,
+                                      const metering::LocalCalendar& calendar,
+                                      const std::filesystem::path& file,
+                                      const ImportOptions& options, metering::Instant now) {
+  std::optional<ImportOutcome> rehearsed;
+  auto outcome = store.database().transaction([&]() -> Result<ImportOutcome> {
+    auto done = Import{store, site, calendar, options}.run(file, now);
+    if (!done || !options.dry_run) return done;
+    rehearsed = std::move(*done);
+    return failure(ErrorCode::cancelled, "a rehearsal is undone");
+  });
+  if (rehearsed) return std::move(*rehearsed);
+  return outcome;
+}
+
+}  // namespace recald::daemon

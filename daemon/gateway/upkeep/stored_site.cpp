@@ -1,0 +1,33 @@
+#include "daemon/gateway/upkeep/stored_site.hpp"
+
+#include <fmt/format.h>
+
+namespace recald::daemon {
+
+Result<std::vector<StoredMeter>> stored_meters(sqlite::SqliteStore& store, const SiteConfig& site) {
+  std::vector<StoredMeter> meters;
+  for (const MeterConfig& config : site.meters) {
+    const auto number = store.find_meter(config.meter.id);
+    if (!number) return tl::unexpected(number.error());
+    if (*number) meters.push_back({**number, config.meter});
+  }
+  if (meters.empty()) {
+    return failure(ErrorCode::not_found,
+                   fmt::format("the store '{}' knows no meter of the site; recald run or recald "
+                               "import fill it",
+                               site.store.file.string()));
+  }
+  return meters;
+}
+
+Result<sqlite::SqliteStore> open_to_read(const SiteConfig& site) {
+  if (!std::filesystem::exists(site.store.file)) {
+    return failure(ErrorCode::not_found,
+                   fmt::format("there is no store '{}' yet; recald run or recald import make one",
+                               site.store.file.string()));
+  }
+  return sqlite::SqliteStore::open(site.store.file,
+                                   {.access = sqlite::Database::Access::read_only});
+}
+
+}  // namespace recald::daemon

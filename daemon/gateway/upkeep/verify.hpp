@@ -1,0 +1,32 @@
+/// Whether a store says what it should: its file, its keys, its counters, its months.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "adapters/sqlite/sqlite_store.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+struct Verification {
+  std::vector<std::string> problems;  ///< A sentence each; none: the store is sound.
+  std::uint64_t intervals = 0;        ///< Rows, all revisions.
+  std::uint64_t days_compared = 0;    ///< Days of a meter whose sum was held against its counter.
+  std::uint64_t months_compared = 0;  ///< Closed again and held against what is stored.
+};
+
+/// Reads the whole store and changes nothing.
+///
+/// - `quick_check`, rows that refer to nothing, intervals off their meter's grid;
+/// - revisions of intervals and months without gaps;
+/// - states of registers that can be read;
+/// - the sum of a UTC day's intervals against the register's difference, within 2 r + 0.1 %, where
+///   samples lie around both ends and nothing in between was reset, edited or wrapped;
+/// - closed months against what closing them again gives, with the same release of the time zones.
+/// @return or the store's failure to be read at all.
+[[nodiscard]] Result<Verification> verify_store(sqlite::SqliteStore& store, const SiteConfig& site,
+                                                const metering::LocalCalendar& calendar);
+
+}  // namespace recald::daemon

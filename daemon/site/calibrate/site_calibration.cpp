@@ -1,0 +1,362 @@
+#include "daemon/site/calibrate/site_calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+
+#include "core/absent.hpp"
+#include "core/model/epc/prepare.hpp"
+#include "core/model/hourly/prepare.hpp"
+#include "core/model/model_adaptors.hpp"
+#include "core/weather/monthly_inputs.hpp"
+#include "daemon/site/calibrate/effects_calibration.hpp"
+#include "daemon/site/model/site_model.hpp"
+#include "daemon/site/model/site_parts.hpp"
+#include "daemon/site/model/site_problem.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using assessment::MonthRole;
+using metering::Month;
+
+// One standard deviation of the share of lights and plugs that heats the zone, relative.
+constexpr double kHeatShareSd = 0.15;
+// The same of a meter's peaks: schedules are means over many days, and a month's highest quarter
+// hour is not on a mean day. Their own scatter lifts measured peaks by about 8 %.
+constexpr double kPeakSd = 0.08;
+// Of lights and plugs, for how everything else follows them.
+constexpr double kMoreUse = 0.1;
+
+/// A model needs at least one month with weather; without, later steps would blame the meters.
+Result<void> require_months(const SiteMonths& months, const PeriodConfig& period,
+                            const SiteWeather& weather) {
+  if (!months.calibration.empty()) return {};
+  const Month first = period.calibration.first;
+  return failure(
+      ErrorCode::not_enough_data,
+      fmt::format("the weather covers no calibration month from {} to {} (of {} it has {:.0f} %); "
+                  "give weather of these months, or change [period]",
+                  metering::to_string(first), metering::to_string(period.calibration.last),
+                  metering::to_string(first), 100.0 * weather_coverage(weather.filled, first)));
+}
+
+const metering::MonthlyFigure* find_figure(const MeterRecord& record, Month month) {
+  const auto found = std::ranges::find(record.figures, month, &metering::MonthlyFigure::month);
+  return found == record.figures.end() ? nullptr : &*found;
+}
+
+/// Whether the meter counts in another unit since: its figures are not the building's.
+bool is_rescaled(const MeterRecord& record, Month month) {
+  return std::ranges::any_of(record.level_changes, [&](const metering::LevelChange& change) {
+    return change.kind == metering::LevelChangeKind::scale && month >= change.since &&
+           (!change.back_since || month < *change.back_since);
+  });
+}
+
+/// nullptr where the month's figure is missing or must not be calibrated against.
+const metering::MonthlyFigure* usable_figure(const MeterRecord& record, Month month) {
+  const metering::MonthlyFigure* figure = find_figure(record, month);
+  return figure != nullptr && figure->usable && !is_rescaled(record, month) ? figure : nullptr;
+}
+
+assessment::OutputCalibration daily_output(const std::string& id, std::size_t meter,
+                                           const MeterRecord& record,
+                                           const std::vector<Month>& months) {
+  assessment::OutputCalibration output{
+      .name = id + "_daily_kWh", .label = id, .unit = "kWh/day", .meter = meter};
+  for (const Month month : months) {
+    const metering::MonthlyFigure* figure = usable_figure(record, month);
+    output.measured.push_back(figure ? figure->daily_average_kWh : kAbsent);
+    output.extra_variances.push_back(figure ? figure->daily_average_variance_kWh2 : 0.0);
+  }
+  return output;
+}
+
+assessment::OutputCalibration peak_output(const std::string& id, std::size_t meter,
+                                          const MeterRecord& record,
+                                          const std::vector<Month>& months) {
+  assessment::OutputCalibration output{
+      .name = id + "_peak_kW", .label = id + " peak", .unit = "kW", .meter = meter};
+  for (const Month month : months) {
+    const metering::MonthlyFigure* figure = usable_figure(record, month);
+    output.measured.push_back(figure && figure->peak ? figure->peak->kW : kAbsent);
+    output.extra_variances.push_back(0.0);
+  }
+  return output;
+}
+
+/// How all months move together when more or less of the lights and plugs heats the zone: the
+/// profile fixes their power, not where it ends up.
+Eigen::VectorXd heat_share_error(const model::Building& building, const ModelFactory& make,
+                                 std::span<const double> theta) {
+  model::Building less_heat = building;
+  less_heat.use.zone_heat_share *= 1.0 - kHeatShareSd;
+  const std::vector<double> base = evaluate(*make(building), theta);
+  const std::vector<double> moved = evaluate(*make(less_heat), theta);
+  return Eigen::Map<const Eigen::VectorXd>(base.data(), static_cast<Eigen::Index>(base.size())) -
+         Eigen::Map<const Eigen::VectorXd>(moved.data(), static_cast<Eigen::Index>(moved.size()));
+}
+
+/// How all peaks of one meter move together, one error a meter that has them.
+/// @param outputs  In the order of the model's.
+std::vector<Eigen::VectorXd> peak_errors(const std::vector<assessment::OutputCalibration>& outputs,
+                                         MonthlyModel& model, std::span<const double> theta) {
+  const std::vector<double> base = evaluate(model, theta);
+  const auto months = static_cast<Eigen::Index>(model.month_count());
+  std::vector<Eigen::VectorXd> errors;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    if (outputs[k].unit != "kW") continue;
+    Eigen::VectorXd error = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.size()));
+    const auto first = static_cast<Eigen::Index>(k) * months;
+    error.segment(first, months) =
+        kPeakSd * Eigen::Map<const Eigen::VectorXd>(base.data() + first, months);
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+/// The columns whose names are among `names`.
+weather::MonthlyInputs also_in(const weather::MonthlyInputs& inputs,
+                               const std::vector<std::string>& names) {
+  std::vector<Eigen::Index> columns;
+  weather::MonthlyInputs kept;
+  for (std::size_t j = 0; j < inputs.names.size(); ++j) {
+    if (std::ranges::find(names, inputs.names[j]) == names.end()) continue;
+    columns.push_back(static_cast<Eigen::Index>(j));
+    kept.names.push_back(inputs.names[j]);
+  }
+  kept.values = inputs.values(Eigen::all, columns);
+  return kept;
+}
+
+void warn_about_level_changes(const Recording& recording, SiteCalibration& result) {
+  std::string months;
+  for (const Month month : result.months) {
+    if (!is_site_different(recording, month)) continue;
+    months += (months.empty() ? "" : ", ") + metering::to_string(month);
+  }
+  if (months.empty()) return;
+  result.warnings.push_back(fmt::format(
+      "In {} a meter reads differently than in the same months before: these months may "
+      "not show the building that the others show.",
+      months));
+}
+
+void add_words(const Recording& recording, const SiteWeather& weather, SiteCalibration& result) {
+  warn_about_level_changes(recording, result);
+  if (!result.profile.check.constant) result.warnings.push_back(result.profile.check.words);
+  result.warnings.insert(result.warnings.end(), weather.notes.begin(), weather.notes.end());
+}
+
+/// Makes the effects ready and counts their parameters among the site's.
+Result<void> take_effects(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                          const Recording& recording, const SiteWeather& weather,
+                          std::vector<diagnosis::AddedEffect> added, SiteCalibration& result) {
+  if (added.empty()) return {};
+  auto problem = make_site_problem(site, calendar, recording, weather);
+  if (!problem) return tl::unexpected(problem.error());
+  auto effects = make_model_effects(
+      std::move(added), std::make_shared<const diagnosis::SiteProblem>(std::move(*problem)));
+  if (!effects) return tl::unexpected(effects.error());
+  for (std::size_t j = 0; j < effects->parameters.size(); ++j) {
+    result.definitions.push_back(&effects->labels[j]->definition);
+    result.parameters.push_back(effects->parameters[j]);
+  }
+  result.effects = std::make_shared<const ModelEffects>(std::move(*effects));
+  // Factors of calendar months hold what an effect changes from month to month: it would count
+  // twice. The diagnosis went without them too.
+  result.profile.loads.month_factor.fill(1.0);
+  return {};
+}
+
+/// Makes the model of all months. Effects are told dates, so an hourly one of theirs runs in order
+/// of time.
+Result<ModelFactory> whole_model_of(const SiteConfig& site, const SiteModelParts& parts,
+                                    const SiteMonths& months, const model::epc::Place& place) {
+  if (!parts.effects || !is_hourly(site) || std::ranges::is_sorted(months.all)) {
+    return model_of(site, parts, months.all, place);
+  }
+  auto first = model_of(site, parts, months.calibration, place);
+  if (!first) return first;
+  auto second = model_of(
+      site, parts, {months.all.begin() + std::ssize(months.calibration), months.all.end()}, place);
+  if (!second) return second;
+  return [first = std::move(*first), second = std::move(*second)](const model::Building& building) {
+    return std::make_unique<JoinedMonthsModel>(first(building), second(building));
+  };
+}
+
+/// By how much everything moves when lights and plugs take more.
+Result<std::vector<double>> electricity_use_of(const SiteConfig& site, SiteModelParts parts,
+                                               const SiteMonths& months,
+                                               const model::epc::Place& place, MonthlyModel& whole,
+                                               std::span<const Parameter> parameters) {
+  for (double& factor : parts.loads.month_factor) factor *= 1.0 + kMoreUse;
+  const auto make = whole_model_of(site, parts, months, place);
+  if (!make) return tl::unexpected(make.error());
+  const std::vector<double> modes = prior_modes(parameters);
+  const std::vector<double> base = evaluate(whole, modes);
+  std::vector<double> use = evaluate(*(*make)(*site.building), modes);
+  for (std::size_t i = 0; i < use.size(); ++i) use[i] = (use[i] - base[i]) / kMoreUse;
+  return use;
+}
+
+void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weather,
+                const SiteMonths& months, PreparedSite& prepared) {
+  const weather::WeatherSeries& series = weather.filled.series;
+  const auto inputs = weather::monthly_inputs(series, calendar, months.calibration);
+  prepared.problem.inputs = {inputs.names, inputs.values};
+  prepared.inputs = also_in(weather::monthly_inputs(series, calendar, months.all), inputs.names);
+}
+
+std::vector<Eigen::VectorXd> common_errors_of(const model::Building& building,
+                                              const ModelFactory& make, const SiteCalibration& site,
+                                              MonthlyModel& model) {
+  const std::vector<double> modes = prior_modes(site.parameters);
+  std::vector<Eigen::VectorXd> errors{heat_share_error(building, make, modes)};
+  std::ranges::move(peak_errors(site.outputs, model, modes), std::back_inserter(errors));
+  return errors;
+}
+
+}  // namespace
+
+std::vector<assessment::OutputCalibration> collect_outputs(const SiteConfig& site,
+                                                           const Recording& recording,
+                                                           const std::vector<Month>& months) {
+  std::vector<assessment::OutputCalibration> outputs;
+  for (const std::string& id : site.model->outputs) {
+    const std::size_t meter = *site.meter_index(id);
+    const MeterRecord& record = recording.meters[meter];
+    const auto weight = site.model->weights.find(id);
+    const auto add = [&](assessment::OutputCalibration output) {
+      if (weight != site.model->weights.end()) output.weight = weight->second;
+      outputs.push_back(std::move(output));
+    };
+    add(daily_output(id, meter, record, months));
+    if (is_hourly(site)) add(peak_output(id, meter, record, months));
+  }
+  return outputs;
+}
+
+Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
+                                                     const Recording& recording,
+                                                     const model::epc::Place& place,
+                                                     const std::vector<Month>& months) {
+  const auto meter = electricity_meter(site, recording);
+  if (!meter) return tl::unexpected(meter.error());
+  const std::vector<profile::HourlyLoad> loads = loads_of(**meter, months);
+  if (is_hourly(site)) {
+    return model::hourly::fit_profile_without_plant(loads, *site.building, place, months);
+  }
+  if (site.building->chiller_cop) {
+    return failure(
+        ErrorCode::unsupported,
+        "[building.cooling] chiller_cop: the monthly model's electricity profile cannot tell an "
+        "own chiller from lights and plugs, and would count it twice; take kind = \"hourly\" "
+        "(or --model hourly), or leave it out and do not model the cooling");
+  }
+  return model::epc::fit_profile_with_fans(loads, *site.building, place, months);
+}
+
+Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
+                                                 const metering::LocalCalendar& calendar,
+                                                 const Recording& recording,
+                                                 const SiteWeather& weather) {
+  std::vector<std::string> warnings;
+  const SiteMonths months = choose_months(*site.period, weather, warnings);
+  if (auto enough = require_months(months, *site.period, weather); !enough) {
+    return tl::unexpected(enough.error());
+  }
+  const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
+  return fit_site_profile(site, recording, place, months.calibration);
+}
+
+Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                                  const Recording& recording, const SiteWeather& weather,
+                                  std::vector<diagnosis::AddedEffect> added) {
+  PreparedSite prepared;
+  SiteCalibration& result = prepared.so_far;
+  const SiteMonths months = choose_months(*site.period, weather, result.warnings);
+  if (auto enough = require_months(months, *site.period, weather); !enough) {
+    return tl::unexpected(enough.error());
+  }
+  result.model = site.model->kind;
+  result.months = months.all;
+  for (const Month month : months.all) result.month_names.push_back(metering::to_string(month));
+  result.roles = months.roles;
+  auto chosen = site_parameters(site);
+  if (!chosen) return tl::unexpected(chosen.error());
+  result.definitions = std::move(chosen->definitions);
+  result.parameters = std::move(chosen->parameters);
+  auto maps = meter_maps(site);
+  if (!maps) return tl::unexpected(maps.error());
+
+  const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
+  auto profile = fit_site_profile(site, recording, place, months.calibration);
+  if (!profile) return tl::unexpected(profile.error());
+  result.profile = std::move(*profile);
+  result.outputs = collect_outputs(site, recording, months.all);
+  SiteModelParts parts{result.definitions, std::move(*maps), {}, {}, {}};
+  if (auto with = take_effects(site, calendar, recording, weather, std::move(added), result);
+      !with) {
+    return tl::unexpected(with.error());
+  }
+  parts.loads = result.profile.loads;
+  parts.effects = result.effects;
+  if (parts.effects && !is_hourly(site)) {
+    const std::span<const Parameter> theta{result.parameters};
+    parts.monthly = parts.effects->monthly(theta.first(parts.definitions.size()));
+  }
+
+  const auto make = model_of(site, parts, months.calibration, place);
+  if (!make) return tl::unexpected(make.error());
+  prepared.model = (*make)(*site.building);
+  auto whole = whole_model_of(site, parts, months, place);
+  if (!whole) return tl::unexpected(whole.error());
+  prepared.whole_model = (*whole)(*site.building);
+
+  auto use =
+      electricity_use_of(site, parts, months, place, *prepared.whole_model, result.parameters);
+  if (!use) return tl::unexpected(use.error());
+  prepared.electricity_use = std::move(*use);
+
+  prepared.problem = assessment::problem_of(result, months.calibration.size());
+  add_inputs(calendar, weather, months, prepared);
+  prepared.problem.common_errors = common_errors_of(*site.building, *make, result, *prepared.model);
+  prepared.common_errors = common_errors_of(*site.building, *whole, result, *prepared.whole_model);
+  return prepared;
+}
+
+Result<void> calibrate_all(PreparedSite& prepared, const CalibrateOptions& options,
+                           const calibration::RunContext& context, SiteCalibration& result) {
+  auto design = calibration::run_design(*prepared.model, prepared.problem,
+                                        options.calibration.design_runs, context);
+  if (!design) return tl::unexpected(design.error());
+  assessment::set_aside_unresponsive(*design, result, prepared.problem);
+  return assessment::calibrate_into(*prepared.model, prepared.problem, options.calibration,
+                                    options.prior_sensitivity, std::move(*design), context, result);
+}
+
+Result<SiteCalibration> calibrate_site(const SiteConfig& site,
+                                       const metering::LocalCalendar& calendar,
+                                       const Recording& recording, const SiteWeather& weather,
+                                       const CalibrateOptions& options,
+                                       const calibration::RunContext& context,
+                                       std::vector<diagnosis::AddedEffect> added) {
+  auto prepared = prepare_site(site, calendar, recording, weather, std::move(added));
+  if (!prepared) return tl::unexpected(prepared.error());
+  SiteCalibration result = std::move(prepared->so_far);
+  auto done = result.effects ? calibrate_with_effects(*prepared, options, context, result)
+                             : calibrate_all(*prepared, options, context, result);
+  if (!done) return tl::unexpected(done.error());
+  if (auto assessed = assessment::assess(*prepared->whole_model, context, result); !assessed) {
+    return tl::unexpected(assessed.error());
+  }
+  add_words(recording, weather, result);
+  return result;
+}
+
+}  // namespace recald::daemon

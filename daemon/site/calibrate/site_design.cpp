@@ -1,0 +1,101 @@
+#include "daemon/site/calibrate/site_design.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/design/latin_hypercube.hpp"
+#include "core/design/model_runs.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// The hypercube's stream, beyond those of any number of chains.
+constexpr std::uint64_t kHypercubeStream = std::uint64_t{1} << 32;
+/// Runs between two writes: what an interruption may cost.
+constexpr Eigen::Index kRunsPerWrite = 20;
+
+std::vector<doe::DesignMonth> design_months(std::span<const std::string> names) {
+  std::vector<doe::DesignMonth> months;
+  for (const std::string& name : names) months.push_back(*doe::DesignMonth::parse(name));
+  return months;
+}
+
+/// A table's months ascend; a site's come calibration first, and validation may lie before.
+doe::MonthlyTable in_order_of_time(doe::MonthlyTable table) {
+  std::vector<Eigen::Index> order(table.months.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
+  const auto month = [&](Eigen::Index row) { return table.months[static_cast<std::size_t>(row)]; };
+  std::ranges::sort(order, {}, month);
+  doe::MonthlyTable sorted{{}, table.names, table.values(order, Eigen::all)};
+  for (const Eigen::Index row : order) sorted.months.push_back(month(row));
+  return sorted;
+}
+
+}  // namespace
+
+doe::MonthlyTable measured_table(const PreparedSite& site) {
+  const SiteCalibration& so_far = site.so_far;
+  doe::MonthlyTable table;
+  table.months = design_months(so_far.month_names);
+  table.values.resize(static_cast<Eigen::Index>(table.months.size()),
+                      static_cast<Eigen::Index>(so_far.outputs.size()));
+  for (std::size_t k = 0; k < so_far.outputs.size(); ++k) {
+    table.names.push_back(so_far.outputs[k].name);
+    table.values.col(static_cast<Eigen::Index>(k)) =
+        Eigen::Map<const Eigen::VectorXd>(so_far.outputs[k].measured.data(), table.values.rows());
+  }
+  return in_order_of_time(std::move(table));
+}
+
+doe::DesignPlan plan_design(const PreparedSite& site, const SiteDesignOptions& options) {
+  const SiteCalibration& so_far = site.so_far;
+  doe::DesignPlan plan;
+  plan.parameters = so_far.parameters;
+  Rng rng{options.seed, kHypercubeStream};
+  plan.theta = design::latin_hypercube(plan.parameters, options.runs, rng);
+  for (const assessment::OutputCalibration& output : so_far.outputs)
+    plan.output_names.push_back(output.name);
+  const std::vector<doe::DesignMonth> months = design_months(so_far.month_names);
+  plan.months = design_months(site.problem.month_names);
+  plan.inputs = in_order_of_time({months, site.inputs.names, site.inputs.values});
+  plan.measurements = measured_table(site);
+  plan.seed = options.seed;
+  plan.fingerprint = options.fingerprint;
+  return plan;
+}
+
+Result<int> run_into_folder(const PreparedSite& site, const doe::DesignPlan& plan,
+                            const std::filesystem::path& folder, const ForEachIndex& executor,
+                            const DesignObserver& observer) {
+  auto runs = doe::open_design(folder, plan);
+  if (!runs) return tl::unexpected(runs.error());
+  const int before = runs->done_count();
+  std::vector<Eigen::Index> missing;
+  for (std::size_t r = 0; r < runs->done.size(); ++r) {
+    if (!runs->done[r]) missing.push_back(static_cast<Eigen::Index>(r));
+  }
+  const auto total = static_cast<int>(runs->done.size());
+  for (auto next = missing.begin(); next != missing.end();) {
+    if (!observer(runs->done_count(), total)) {
+      return failure(ErrorCode::cancelled, "stopped after " + std::to_string(runs->done_count()) +
+                                               " of " + std::to_string(total) +
+                                               " runs; the same command goes on with the others");
+    }
+    const auto end = next + std::min<std::ptrdiff_t>(kRunsPerWrite, missing.end() - next);
+    const std::vector<Eigen::Index> rows{next, end};
+    const auto outputs =
+        design::run_model(*site.model, plan.parameters, plan.theta(rows, Eigen::all), executor);
+    if (!outputs) return tl::unexpected(outputs.error());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      runs->outputs.row(rows[i]) = outputs->row(static_cast<Eigen::Index>(i));
+      runs->done[static_cast<std::size_t>(rows[i])] = true;
+    }
+    if (auto written = doe::write_outputs(folder, plan, *runs); !written) {
+      return tl::unexpected(written.error());
+    }
+    next = end;
+  }
+  return before;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,107 @@
+#include "daemon/site/calibrate/site_on_design.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "adapters/system/sha256.hpp"
+#include "core/absent.hpp"
+#include "daemon/site/calibrate/design_site.hpp"
+#include "daemon/site/calibrate/site_design.hpp"
+#include "daemon/site/model/active_effects.hpp"
+
+namespace recald::daemon {
+
+Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
+                                           const PreparedSite& site) {
+  const doe::MonthlyTable all = measured_table(site);
+  doe::Measurements measured;
+  measured.table.names = design.output_names;
+  std::vector<Eigen::Index> rows;
+  std::string beyond;
+  for (std::size_t m = 0; m < all.months.size(); ++m) {
+    if (design.inputs.row_of(all.months[m]) >= 0) {
+      rows.push_back(static_cast<Eigen::Index>(m));
+      measured.table.months.push_back(all.months[m]);
+    } else {
+      beyond += (beyond.empty() ? "" : ", ") + all.months[m].text();
+    }
+  }
+  const bool covers_any = std::ranges::any_of(measured.table.months, [&](doe::DesignMonth month) {
+    return std::ranges::find(design.months, month) != design.months.end();
+  });
+  if (!covers_any) {
+    return failure(
+        ErrorCode::not_enough_data,
+        fmt::format("the design in {} covers none of the site's months; run `recald doe` "
+                    "again",
+                    design.folder.string()));
+  }
+  measured.table.values.setConstant(static_cast<Eigen::Index>(rows.size()),
+                                    static_cast<Eigen::Index>(design.output_names.size()), kAbsent);
+  bool has_any = false;
+  for (std::size_t k = 0; k < design.output_names.size(); ++k) {
+    const auto column = std::ranges::find(all.names, design.output_names[k]);
+    if (column == all.names.end()) continue;
+    has_any = true;
+    measured.table.values.col(static_cast<Eigen::Index>(k)) =
+        all.values(rows, column - all.names.begin());
+  }
+  if (!has_any) {
+    return failure(ErrorCode::unsupported,
+                   fmt::format("the site measures none of the outputs of the design in {} ({})",
+                               design.folder.string(), fmt::join(design.output_names, ", ")));
+  }
+  if (!beyond.empty()) {
+    measured.notes.push_back("the design has no model inputs for " + beyond +
+                             "; run `recald doe` again to use them");
+  }
+  return measured;
+}
+
+Result<SiteOnDesign> calibrate_on_design(const ModelledSite& modelled,
+                                         const std::filesystem::path& folder,
+                                         const calibration::RunContext& context) {
+  const auto design = doe::read_design_folder(folder);
+  if (!design) return tl::unexpected(design.error());
+  auto design_site = check_design_site(*design);
+  if (!design_site) return tl::unexpected(design_site.error());
+  const SiteConfig& site = modelled.site.config;
+  std::error_code ignored;
+  const bool is_others = !design_site->site_file.empty() &&
+                         !std::filesystem::equivalent(design_site->site_file, site.file, ignored);
+  if (is_others) {
+    return failure(ErrorCode::unsupported,
+                   fmt::format("the design in {} was run for {} and not for this site; run `recald "
+                               "doe` for it",
+                               folder.string(), design_site->site_file.string()));
+  }
+  auto version = active_version(site);
+  if (!version) return tl::unexpected(version.error());
+  SiteOnDesign done{.calibration = {}, .facts = modelled.facts};
+  const auto prepared = prepare_site(site, modelled.site.calendar, modelled.recording,
+                                     modelled.weather, std::move(version->effects));
+  if (!prepared) return tl::unexpected(prepared.error());
+  const auto measured = measurements_for(*design, *prepared);
+  if (!measured) return tl::unexpected(measured.error());
+
+  DesignCalibrationOptions options;
+  options.held = std::move(design_site->held);
+  auto calibrated = calibrate_design(*design, *measured, options, context);
+  if (!calibrated) return tl::unexpected(calibrated.error());
+  done.calibration = std::move(*calibrated);
+  std::vector<std::string>& warnings = done.calibration.warnings;
+  warnings.insert(warnings.end(), design_site->notes.begin(), design_site->notes.end());
+  warnings.insert(warnings.end(), measured->notes.begin(), measured->notes.end());
+  const auto design_facts = facts_of_files(design->files, "metamodel");
+  if (!design_facts) return tl::unexpected(design_facts.error());
+  system::Sha256 both;
+  both.add(modelled.facts.data_revision);
+  both.add(design_facts->data_revision);
+  done.facts.data_revision = both.hex();
+  done.facts.model_version = design_facts->model_version;
+  done.facts = with_sampling(std::move(done.facts), context.seed, done.calibration.calibration);
+  return done;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,12 @@
+/// The [building] table of a site file.
+#pragma once
+
+#include "core/model/building.hpp"
+#include "daemon/site/config/toml_reader.hpp"
+
+namespace recald::daemon {
+
+/// Problems go to the reader; what could be read comes back.
+[[nodiscard]] model::Building read_building(TomlReader table);
+
+}  // namespace recald::daemon

@@ -1,0 +1,46 @@
+/// Register maps as TOML: one file a kind of meter, shipped with recald or written by a user.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/modbus/register_map.hpp"
+#include "core/result.hpp"
+#include "daemon/site/config/toml_reader.hpp"
+
+namespace recald::daemon {
+
+/// A reply that the map must decode as stated: the proof that belongs to each shipped map.
+struct GoldenReply {
+  std::uint16_t address;  ///< As `RegisterField::address`.
+  modbus::Words words;
+  std::map<std::string, double> values;  ///< Field -> value in its unit.
+};
+
+struct RegisterMapFile {
+  modbus::RegisterMap map;
+  std::vector<GoldenReply> golden;
+};
+
+/// Reads and checks a map's text. Every key is documented in adapters/modbus/maps/README.md.
+/// @param name  "abb-b23": of the map, and in messages as "abb-b23.toml".
+/// @return the map, or every problem found, with its line.
+[[nodiscard]] tl::expected<RegisterMapFile, Problems> parse_register_map(std::string_view text,
+                                                                         const std::string& name);
+
+/// Names of the maps that come with recald, ascending.
+[[nodiscard]] std::vector<std::string_view> shipped_register_maps();
+
+/// A shipped map's text; not_found lists the names there are, the nearest one first.
+[[nodiscard]] Result<std::string_view> shipped_register_map(std::string_view name);
+
+/// The map that a site file names: a file beside it if the name ends in ".toml", else a shipped
+/// one.
+/// @return the map, or every problem; a file that cannot be read is one.
+[[nodiscard]] tl::expected<modbus::RegisterMap, Problems> find_register_map(
+    const std::string& name, const std::filesystem::path& folder);
+
+}  // namespace recald::daemon

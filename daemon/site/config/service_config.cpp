@@ -1,0 +1,91 @@
+#include "daemon/site/config/service_config.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+
+#include "daemon/site/config/site_path.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// "127.0.0.1:8080", "[::1]:8080"; the port may be 0.
+struct Endpoint {
+  std::string address;
+  std::uint16_t port;
+};
+
+std::optional<Endpoint> parse_endpoint(std::string_view text) {
+  const auto colon = text.rfind(':');
+  if (colon == std::string_view::npos || colon == 0) return {};
+  std::string_view address = text.substr(0, colon);
+  const std::string_view digits = text.substr(colon + 1);
+  std::uint16_t port = 0;
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+  if (read.ec != std::errc{} || read.ptr != digits.data() + digits.size()) return {};
+  if (address.starts_with('[') && address.ends_with(']')) {
+    address = address.substr(1, address.size() - 2);
+  } else if (address.find(':') != std::string_view::npos) {
+    return {};  // an IPv6 address without brackets: where does the port begin?
+  }
+  return Endpoint{std::string{address}, port};
+}
+
+bool is_loopback(std::string_view address) {
+  return address == "::1" || address.starts_with("127.");
+}
+
+}  // namespace
+
+HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) {
+  HttpConfig config;
+  if (const auto listen = table.text("listen")) {
+    if (const auto endpoint = parse_endpoint(*listen)) {
+      config.address = endpoint->address == "localhost" ? "127.0.0.1" : endpoint->address;
+      config.port = endpoint->port;
+    } else {
+      table.problem_at("listen", fmt::format("'listen' is \"{}\"; write an address and a port such "
+                                             "as \"127.0.0.1:8080\" or \"[::1]:8080\"",
+                                             *listen));
+    }
+  }
+  const auto path = [&](std::string_view key) -> std::filesystem::path {
+    const auto text = table.text(key);
+    return text ? resolve(site_file, *text, key, table) : std::filesystem::path{};
+  };
+  config.token_file = path("token_file");
+  config.certificate_file = path("certificate_file");
+  config.key_file = path("key_file");
+  if (table.has("certificate_file") != table.has("key_file")) {
+    table.problem("'certificate_file' and 'key_file' belong together: TLS needs both");
+  }
+  if (!is_loopback(config.address) &&
+      (!table.has("token_file") || !table.has("certificate_file"))) {
+    table.problem_at("listen",
+                     fmt::format("'listen' opens {} to other machines; that needs 'token_file', "
+                                 "'certificate_file' and 'key_file', or listen on 127.0.0.1",
+                                 config.address));
+  }
+  table.finish();
+  return config;
+}
+
+RecalibrationConfig read_recalibration(TomlReader& table, const std::filesystem::path& site_file) {
+  RecalibrationConfig config;
+  if (const auto text = table.text("schedule")) {
+    if (const auto schedule = parse_schedule(*text)) {
+      config.schedule = *schedule;
+    } else {
+      table.problem_at("schedule", "'schedule': " + schedule.error().message);
+    }
+  }
+  config.months = table.whole_number_or("months", config.months, {6, 120});
+  if (const auto text = table.text("design")) {
+    config.design = resolve(site_file, *text, "design", table);
+  }
+  table.finish();
+  return config;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,415 @@
+#include "daemon/site/config/site_config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "core/model/parameter_library.hpp"
+#include "daemon/site/config/building_config.hpp"
+#include "daemon/site/config/site_path.hpp"
+#include "daemon/site/config/toml_reader.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using std::chrono::seconds;
+
+/// What turns a reading into kWh: a ratio of transformers, a heating value.
+constexpr NumberRange kFactor{1e-6, 1e6};
+
+bool is_identifier(std::string_view text) {
+  return !text.empty() && text.size() <= 40 && std::ranges::all_of(text, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  });
+}
+
+csv::Stamps read_stamps(TomlReader& table) {
+  return table.word("stamps", {"start", "end"}) == "end" ? csv::Stamps::end : csv::Stamps::start;
+}
+
+std::optional<seconds> read_interval(TomlReader& table, std::string_view key) {
+  const auto interval = table.duration(key);
+  if (!interval) return {};
+  for (const int minutes : {1, 5, 10, 15, 30, 60}) {
+    if (*interval == std::chrono::minutes{minutes}) return interval;
+  }
+  table.problem_at(key, fmt::format("'{}' must be 1m, 5m, 10m, 15m, 30m or 60m (\"1h\")", key));
+  return {};
+}
+
+void read_site(TomlReader table, SiteConfig& config) {
+  config.id = table.required_text("id");
+  if (!config.id.empty() && !is_identifier(config.id)) {
+    table.problem_at("id",
+                     fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", config.id));
+  }
+  config.name = table.text_or("name", config.id);
+  config.timezone = table.required_text("timezone");
+  if (!config.timezone.empty()) {
+    if (const auto calendar = metering::LocalCalendar::open(config.timezone); !calendar) {
+      table.problem_at("timezone", calendar.error().message);
+    }
+  }
+  const auto latitude = table.number("latitude_deg", {-90.0, 90.0});
+  const auto longitude = table.number("longitude_deg", {-180.0, 180.0});
+  const double altitude_m = table.number_or("altitude_m", 0.0, {-430.0, 6000.0});
+  if (latitude && longitude) config.location = {*latitude, *longitude, altitude_m};
+  config.interval = read_interval(table, "interval").value_or(config.interval);
+
+  auto& fill = config.closing.closing.fill;
+  if (table.word("fill", {"same_time", "linear_short"}) == "linear_short") {
+    fill.rule = metering::FillRule::linear_short;
+  }
+  fill.daytype = table.boolean("daytype").value_or(false);
+  config.closing.closing.coverage_min = table.number_or("coverage_min", 0.6, kShare);
+  config.closing.watermark = table.duration("watermark").value_or(config.closing.watermark);
+  for (const std::string& text : table.texts("holidays").value_or(std::vector<std::string>{})) {
+    const auto day = metering::parse_day(text);
+    if (!day) {
+      table.problem_at("holidays", "'holidays': " + day.error().message);
+      continue;
+    }
+    config.holidays.insert(*day);
+    fill.holidays.push_back(*day);
+  }
+  table.finish();
+}
+
+WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_file) {
+  WeatherConfig weather;
+  weather.file = resolve(site_file, table.required_text("file"), "file", table);
+  weather.format =
+      table.word("format", {"csv", "epw"}) == "epw" ? WeatherFormat::epw : WeatherFormat::csv;
+  weather.stamps = read_stamps(table);
+  table.finish();
+  return weather;
+}
+
+void read_peak(TomlReader table, metering::PeakRule& rule) {
+  (void)table.word("method", {"block"});
+  rule.window = read_interval(table, "window").value_or(rule.window);
+  table.finish();
+}
+
+std::optional<metering::CounterSettings> read_counter(TomlReader table,
+                                                      const std::optional<double>& rated_kW) {
+  if (!rated_kW) {
+    table.problem("a cumulative counter needs the meter's 'rated_kW': it tells a jump from a load");
+  }
+  const double modulus =
+      table.number_or("modulus", std::numeric_limits<double>::infinity(), kPositive);
+  const double resolution = table.number_or("resolution", 0.0, kNotNegative);
+  const std::string unit = table.text_or("unit", "kWh");
+  const auto conversion = metering::find_unit(unit, metering::Utility::electricity, {});
+  if (!conversion || conversion->is_rate) {
+    table.problem_at("unit", fmt::format("'unit' is \"{}\"; a counter counts an energy such as kWh "
+                                         "or MWh",
+                                         unit));
+    return {};
+  }
+  table.finish();
+  return metering::CounterSettings{.rated_kW = rated_kW.value_or(0.0),
+                                   .resolution_kWh = resolution * conversion->factor,
+                                   .modulus_kWh = modulus * conversion->factor};
+}
+
+std::optional<model::MeterMap> read_end_uses(TomlReader& table) {
+  const auto names = table.texts("end_uses");
+  if (!names) return {};
+  model::MeterMap map;
+  for (const std::string& name : *names) {
+    const auto use = model::parse_end_use(name);
+    if (use) {
+      map[*use] = 1.0;
+    } else {
+      table.problem_at("end_uses", "'end_uses': " + use.error().message);
+    }
+  }
+  return map;
+}
+
+MeterSource read_source(TomlReader& table) {
+  const auto word = table.word("source", {"csv", "modbus", "http"});
+  if (word == "modbus") return MeterSource::modbus;
+  return word == "http" ? MeterSource::http : MeterSource::csv;
+}
+
+MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
+  MeterConfig config;
+  metering::Meter& meter = config.meter;
+  meter.id = table.required_text("id");
+  if (!meter.id.empty() && !is_identifier(meter.id)) {
+    table.problem_at("id",
+                     fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", meter.id));
+  }
+  config.source = read_source(table);
+  const bool is_live = config.source == MeterSource::modbus;
+  const std::string utility_name = table.required_text("utility");
+  if (const auto utility = metering::parse_utility(utility_name)) {
+    meter.utility = *utility;
+  } else if (!utility_name.empty()) {
+    table.problem_at("utility", utility.error().message);
+  }
+  if (is_live) {
+    config.live = read_live_meter(table, site.file.parent_path());
+  } else if (config.source == MeterSource::csv) {
+    config.file = resolve(site.file, table.required_text("file"), "file", table);
+    config.name_in_file = table.text_or("name_in_file", meter.id);
+    config.stamps = read_stamps(table);
+  }
+  config.interval = read_interval(table, "interval");
+  meter.interval = config.interval.value_or(site.interval);
+  meter.rated_kW = table.number("rated_kW", kPositive);
+  const bool only_knows_power =
+      is_live && config.live->map.energy.empty() && config.live->map.power.has_value();
+  if (is_live && !only_knows_power && !table.has("rated_kW")) {
+    table.problem("a live counter needs 'rated_kW': it tells a jump from a load");
+  }
+  meter.zero_run_max = table.duration("zero_run_max");
+  // Two hours without a single watt is a dead transformer, not a building; other utilities rest.
+  if (!meter.zero_run_max && meter.utility == metering::Utility::electricity) {
+    meter.zero_run_max = std::chrono::hours{2};
+  }
+  meter.stuck_max = table.duration("stuck_max");
+  meter.negative_is_valid = table.boolean("negative_is_valid").value_or(false);
+  config.multiplier = table.number_or("multiplier", 1.0, kFactor);
+  config.units.steam_kWh_per_kg =
+      table.number_or("steam_kWh_per_kg", config.units.steam_kWh_per_kg, kFactor);
+  config.units.gas_kWh_per_m3 = table.number("gas_kWh_per_m3", kFactor);
+  if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
+  if (auto counter = table.table("counter")) {
+    if (config.source == MeterSource::http) {
+      table.problem_at("counter",
+                       "what is sent are means of intervals; leave out 'counter', or send what the "
+                       "counter rose by");
+    }
+    config.counter = read_counter(*counter, meter.rated_kW);
+  }
+  config.end_uses = read_end_uses(table);
+  config.text = table.toml();
+  table.finish();
+  return config;
+}
+
+/// A live meter's bus is described, and no other meter answers to its address there.
+void require_bus(TomlReader& table, const SiteConfig& site) {
+  const MeterConfig& meter = site.meters.back();
+  if (!meter.live || meter.live->bus.empty()) return;
+  const auto known = std::ranges::find(site.buses, meter.live->bus, &BusConfig::name);
+  if (known == site.buses.end()) {
+    table.problem_at("bus",
+                     fmt::format("'bus' names '{0}', but there is no [bus.{0}]", meter.live->bus));
+  }
+  for (const MeterConfig& other : site.meters) {
+    const bool is_same_unit = &other != &meter && other.live &&
+                              other.live->bus == meter.live->bus &&
+                              other.live->unit == meter.live->unit;
+    if (!is_same_unit) continue;
+    if (other.live->map.sunspec_models != meter.live->map.sunspec_models) {
+      table.problem_at(
+          "map", fmt::format("meters '{}' and '{}' are unit {} on bus '{}' with SunSpec models of "
+                             "their own; give both maps the same 'sunspec_models'",
+                             other.meter.id, meter.meter.id, meter.live->unit, meter.live->bus));
+    }
+    const bool is_same =
+        other.live->map.energy == meter.live->map.energy &&
+        (!meter.live->map.energy.empty() || other.live->map.power == meter.live->map.power);
+    if (!is_same) continue;
+    table.problem_at(
+        "unit", fmt::format("meters '{}' and '{}' are the same registers of unit {} "
+                            "on bus '{}'",
+                            other.meter.id, meter.meter.id, meter.live->unit, meter.live->bus));
+  }
+}
+
+std::optional<metering::MonthRange> read_range(TomlReader table) {
+  const auto from = table.month("from");
+  const auto to = table.month("to");
+  table.finish();
+  if (!table.has("from") || !table.has("to")) {
+    table.problem("needs 'from' and 'to', each a month such as \"2021-01\"");
+    return {};
+  }
+  if (!from || !to) return {};
+  if (*to < *from) {
+    table.problem(fmt::format("'to' ({}) is before 'from' ({})", metering::to_string(*to),
+                              metering::to_string(*from)));
+    return {};
+  }
+  return metering::MonthRange{*from, *to};
+}
+
+std::optional<PeriodConfig> read_period(TomlReader table) {
+  std::optional<metering::MonthRange> calibration;
+  std::optional<metering::MonthRange> validation;
+  if (auto range = table.table("calibration")) {
+    calibration = read_range(*range);
+  } else {
+    table.problem("'calibration' is missing: { from = \"2021-01\", to = \"2022-12\" }");
+  }
+  if (auto range = table.table("validation")) validation = read_range(*range);
+  if (calibration && validation && validation->first <= calibration->last &&
+      calibration->first <= validation->last) {
+    table.problem("calibration and validation overlap: a month that is fitted cannot validate");
+  }
+  table.finish();
+  if (!calibration) return {};
+  return PeriodConfig{*calibration, validation};
+}
+
+ParameterConfig read_parameter(TomlReader& table) {
+  ParameterConfig config{table.required_text("name"), {}};
+  if (const auto found = model::find_parameter(config.name); !config.name.empty() && !found) {
+    table.problem_at("name", found.error().message);
+  }
+  const auto distribution = table.text("distribution");
+  const PriorNumbers numbers{table.number("min"), table.number("mode"), table.number("max"),
+                             table.number("sd")};
+  if (distribution || numbers.min || numbers.mode || numbers.max || numbers.sd) {
+    if (const auto prior = Prior::named(distribution.value_or("triangular"), numbers)) {
+      config.prior = *prior;
+    } else {
+      table.problem(config.name + ": " + prior.error().message +
+                    ", or nothing at all for the library's range");
+    }
+  }
+  table.finish();
+  return config;
+}
+
+ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
+  ModelConfig config;
+  config.kind = table.word("kind", {"epc", "hourly"}).value_or("epc");
+  const auto outputs = table.texts("outputs");
+  config.outputs = outputs.value_or(std::vector<std::string>{});
+  if (!table.has("outputs")) {
+    table.problem("'outputs' is missing: the ids of the meters to model");
+  } else if (outputs && outputs->empty()) {
+    table.problem_at("outputs", "'outputs' is empty; list the ids of the meters to model");
+  }
+  const auto require_meter = [&](std::string_view key, const std::string& id) {
+    if (site.meter_index(id)) return;
+    table.problem_at(key,
+                     fmt::format("'{}' names '{}', which is not the id of a [[meter]]", key, id));
+  };
+  for (const std::string& id : config.outputs) require_meter("outputs", id);
+  if (auto weights = table.table("weights")) {
+    for (const std::string& id : weights->keys()) {
+      require_meter("weights", id);
+      config.weights[id] = weights->number(id, {1e-9, 1.0}).value_or(1.0);
+    }
+  }
+  for (TomlReader& parameter : table.tables("parameter")) {
+    config.parameters.push_back(read_parameter(parameter));
+  }
+  if (config.parameters.empty()) {
+    for (const std::string_view name : model::kSeedParameters) {
+      config.parameters.push_back({std::string{name}, {}});
+    }
+  }
+  table.finish();
+  return config;
+}
+
+void read_root(TomlReader root, SiteConfig& config) {
+  const auto site = root.table("site");
+  if (site) {
+    read_site(*site, config);
+  } else {
+    root.problem("[site] is missing");
+  }
+  if (auto weather = root.table("weather")) config.weather = read_weather(*weather, config.file);
+  config.store = default_store(config.file);
+  if (auto store = root.table("store")) config.store = read_store(*store, config.file);
+  if (auto http = root.table("http")) config.http = read_http(*http, config.file);
+  if (auto table = root.table("recalibration")) {
+    config.recalibration = read_recalibration(*table, config.file);
+  }
+  if (auto buses = root.table("bus")) {
+    for (const std::string& name : buses->keys()) {
+      if (auto bus = buses->table(name)) config.buses.push_back(read_bus(*bus, name));
+    }
+  }
+  std::set<std::string> ids;
+  for (TomlReader& meter : root.tables("meter")) {
+    config.meters.push_back(read_meter(meter, config));
+    require_bus(meter, config);
+    const std::string& id = config.meters.back().meter.id;
+    if (!id.empty() && !ids.insert(id).second)
+      meter.problem(fmt::format("a second meter has the id '{}'", id));
+  }
+  if (config.meters.empty()) root.problem("no [[meter]] is described");
+  if (auto period = root.table("period")) config.period = read_period(*period);
+  if (auto building = root.table("building")) config.building = read_building(*building);
+  std::vector<TomlReader> models = root.tables("model");
+  if (models.size() > 1) models[1].problem("only one [[model]] a site is supported");
+  if (!models.empty()) {
+    config.model = read_model(models.front(), config);
+    // What is there but wrong has been reported already.
+    TomlReader& model = models.front();
+    if (!root.has("building")) model.problem("needs a [building]");
+    const bool has_store = std::ranges::any_of(config.meters, &MeterConfig::is_stored);
+    // A store has its latest months.
+    if (!root.has("period") && !has_store) model.problem("needs a [period]");
+    if (!root.has("weather")) model.problem("needs [weather]");
+    const bool located = site && site->has("latitude_deg") && site->has("longitude_deg");
+    if (!located) model.problem("needs latitude_deg and longitude_deg in [site]");
+  }
+  root.finish();
+}
+
+}  // namespace
+
+std::string_view name_of(MeterSource source) {
+  switch (source) {
+    case MeterSource::modbus:
+      return "modbus";
+    case MeterSource::http:
+      return "http";
+    case MeterSource::csv:
+      break;
+  }
+  return "csv";
+}
+
+bool ModelConfig::has_output(const std::string& meter_id) const {
+  return std::ranges::find(outputs, meter_id) != outputs.end();
+}
+
+std::optional<std::size_t> SiteConfig::meter_index(const std::string& meter_id) const {
+  for (std::size_t i = 0; i < meters.size(); ++i) {
+    if (meters[i].meter.id == meter_id) return i;
+  }
+  return {};
+}
+
+tl::expected<SiteConfig, std::vector<std::string>> parse_site(std::string_view text,
+                                                              const std::filesystem::path& file) {
+  Problems problems;
+  const std::string name = file.filename().string();
+  SiteConfig config;
+  config.file = file;
+  try {
+    const toml::table root = toml::parse(text, name);
+    read_root(TomlReader{root, name, "", problems}, config);
+  } catch (const toml::parse_error& error) {
+    problems.push_back(syntax_problem(name, error));
+  }
+  if (!problems.empty()) return tl::unexpected(problems);
+  return config;
+}
+
+tl::expected<SiteConfig, std::vector<std::string>> load_site(const std::filesystem::path& file) {
+  const auto refused = [&](std::string_view why) {
+    return tl::unexpected(Problems{fmt::format("site file '{}' {}", file.string(), why)});
+  };
+  if (!std::filesystem::exists(file)) return refused("does not exist");
+  if (std::filesystem::is_directory(file)) return refused("is a folder; name the TOML file in it");
+  std::ifstream in{file, std::ios::binary};
+  if (!in) return refused("cannot be read; give recald the right to read it");
+  return parse_site(std::string{std::istreambuf_iterator<char>{in}, {}}, file);
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,111 @@
+/// One site as its TOML file describes it. Every key is documented in the example sites.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/csv/line_issues.hpp"
+#include "core/metering/close_month.hpp"
+#include "core/metering/counter.hpp"
+#include "core/metering/month_closer.hpp"
+#include "core/metering/units.hpp"
+#include "core/model/building.hpp"
+#include "core/model/end_use.hpp"
+#include "core/model/parameter.hpp"
+#include "core/result.hpp"
+#include "core/weather/sun.hpp"
+#include "daemon/site/config/bus_config.hpp"
+#include "daemon/site/config/service_config.hpp"
+#include "daemon/site/config/store_config.hpp"
+
+namespace recald::daemon {
+
+/// Where a meter's readings come from: a file, registers that are read, or whoever sends them.
+enum class MeterSource : std::uint8_t { csv, modbus, http };
+
+/// "csv", "modbus", "http"
+[[nodiscard]] std::string_view name_of(MeterSource source);
+
+struct MeterConfig {
+  metering::Meter meter;
+  MeterSource source = MeterSource::csv;
+  std::filesystem::path file;  ///< source = "csv"; else empty.
+  std::string name_in_file;    ///< In the file's `meter` column.
+  csv::Stamps stamps = csv::Stamps::start;
+  std::optional<std::chrono::seconds> interval;  ///< Declared; absent: as the file shows.
+  double multiplier = 1.0;
+  metering::UnitFactors units;
+  std::optional<metering::CounterSettings> counter;
+  std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
+  std::optional<LiveMeterConfig> live;      ///< source = "modbus".
+  std::string text;  ///< The table as TOML: whether a file that is read again says something else.
+
+  /// Its readings are in the site's store, and not in a file.
+  [[nodiscard]] bool is_stored() const { return source != MeterSource::csv; }
+};
+
+enum class WeatherFormat { csv, epw };
+
+struct WeatherConfig {
+  std::filesystem::path file;
+  WeatherFormat format = WeatherFormat::csv;
+  csv::Stamps stamps = csv::Stamps::start;
+};
+
+struct PeriodConfig {
+  metering::MonthRange calibration;
+  std::optional<metering::MonthRange> validation;
+};
+
+struct ParameterConfig {
+  std::string name;
+  std::optional<Prior> prior;  ///< Absent: from the library.
+};
+
+struct ModelConfig {
+  std::string kind;                       ///< "epc" or "hourly"
+  std::vector<std::string> outputs;       ///< Ids of meters.
+  std::map<std::string, double> weights;  ///< By meter; absent: 1.
+  std::vector<ParameterConfig> parameters;
+
+  [[nodiscard]] bool has_output(const std::string& meter_id) const;
+};
+
+struct SiteConfig {
+  std::filesystem::path file;
+  std::string id;
+  std::string name;
+  std::string timezone;
+  std::chrono::seconds interval{900};
+  std::optional<weather::Location> location;
+  model::Holidays holidays;
+  metering::CloserOptions closing;
+  StoreConfig store;
+  std::optional<HttpConfig> http;  ///< Absent: nothing is served.
+  RecalibrationConfig recalibration;
+  std::vector<BusConfig> buses;
+  std::vector<MeterConfig> meters;
+  std::optional<WeatherConfig> weather;
+  std::optional<PeriodConfig> period;
+  std::optional<ModelConfig> model;
+  std::optional<model::Building> building;
+
+  /// Index of a meter by its id.
+  [[nodiscard]] std::optional<std::size_t> meter_index(const std::string& meter_id) const;
+};
+
+/// Reads and checks a site file. Data files are not opened; paths are relative to the site file,
+/// and `$NAME` at the start of a path is taken from the environment.
+/// @return every problem found, or one when the file is missing or no TOML.
+[[nodiscard]] tl::expected<SiteConfig, std::vector<std::string>> load_site(
+    const std::filesystem::path& file);
+
+/// The same of a text; `file` is where paths in it start from and what messages name.
+[[nodiscard]] tl::expected<SiteConfig, std::vector<std::string>> parse_site(
+    std::string_view text, const std::filesystem::path& file);
+
+}  // namespace recald::daemon

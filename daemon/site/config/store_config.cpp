@@ -1,0 +1,61 @@
+#include "daemon/site/config/store_config.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "daemon/site/config/site_path.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// "03:15"
+std::optional<std::chrono::minutes> parse_time_of_day(std::string_view text) {
+  if (text.size() != 5 || text[2] != ':') return {};
+  const auto number = [&](std::size_t at) {
+    int value = -1;
+    const auto read = std::from_chars(text.data() + at, text.data() + at + 2, value);
+    return read.ptr == text.data() + at + 2 ? value : -1;
+  };
+  const int hour = number(0);
+  const int minute = number(3);
+  if (hour < 0 || hour > 23 || minute < 0 || minute > 59) return {};
+  return std::chrono::hours{hour} + std::chrono::minutes{minute};
+}
+
+std::filesystem::path folder_beside(const std::filesystem::path& store) {
+  return store.parent_path() / "backups";
+}
+
+}  // namespace
+
+StoreConfig default_store(const std::filesystem::path& site_file) {
+  StoreConfig config;
+  config.file = std::filesystem::path{site_file}.replace_extension(".db");
+  config.backup_folder = folder_beside(config.file);
+  return config;
+}
+
+StoreConfig read_store(TomlReader& table, const std::filesystem::path& site_file) {
+  StoreConfig config = default_store(site_file);
+  if (const auto file = table.text("file")) {
+    config.file = resolve(site_file, *file, "file", table);
+    config.backup_folder = folder_beside(config.file);
+  }
+  if (const auto folder = table.text("backup_folder")) {
+    config.backup_folder = resolve(site_file, *folder, "backup_folder", table);
+  }
+  if (const auto backup = table.text("backup")) {
+    config.backup_at = parse_time_of_day(*backup);
+    if (!config.backup_at && *backup != "never") {
+      table.problem_at("backup", fmt::format("'backup' is \"{}\"; write a local time of day such "
+                                             "as \"03:15\", or \"never\"",
+                                             *backup));
+    }
+  }
+  config.raw_kept = std::chrono::days{table.whole_number_or("raw_days", 400, {1, 36'500})};
+  table.finish();
+  return config;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,78 @@
+#include "daemon/site/diagnose/site_diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+#include "daemon/site/model/active_effects.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// A diagnosis starts from the drawings.
+Result<void> require_drawings(const SiteConfig& site) {
+  const auto present = active_version(site);
+  if (!present) return tl::unexpected(present.error());
+  if (present->effects.empty()) return {};
+  std::vector<std::string> titles;
+  for (const auto& effect : present->effects) titles.push_back("'" + effect.title + "'");
+  return failure(
+      ErrorCode::unsupported,
+      fmt::format("the model has {} already (version {}), and a diagnosis starts from the "
+                  "drawings; take it back first with `recald model revert {} {}`",
+                  fmt::join(titles, ", "), diagnosis::short_version(present->version),
+                  site.file.string(), diagnosis::kBaseVersion));
+}
+
+/// What the same effects do to the monthly model, which has a vote: where it tells the months kept
+/// back worse with them, they are not confirmed. Empty where there was nothing to judge.
+std::vector<diagnosis::ModelGap> ask_monthly_model(const ModelledSite& modelled,
+                                                   const diagnosis::SiteProblem& problem,
+                                                   diagnosis::Diagnosis& diagnosis) {
+  if (!diagnosis.gap) return {};
+  auto monthly = epc_gap(modelled.site.config, modelled.site.calendar, modelled.recording,
+                         modelled.weather, problem, diagnosis.added);
+  if (!monthly) {
+    diagnosis.warnings.push_back("The monthly model was not asked: " + monthly.error().message +
+                                 ".");
+    return {};
+  }
+  if (!monthly->has_vote()) {
+    diagnosis.warnings.emplace_back(
+        "The monthly model had no say: no meter has a usable monthly figure in the months kept "
+        "back.");
+  } else if (!diagnosis.not_confirmed && !monthly->agrees()) {
+    diagnosis.not_confirmed = true;
+    diagnosis.outcome = diagnosis::Outcome::unknown;
+    diagnosis.why =
+        "with what was named the monthly model tells the months that were kept back worse, so it "
+        "was taken back";
+  }
+  return {std::move(monthly->gap)};
+}
+
+}  // namespace
+
+Result<diagnosis::SiteProblem> prepare_diagnosis(const ModelledSite& modelled) {
+  const SiteConfig& config = modelled.site.config;
+  if (auto plain = require_drawings(config); !plain) return tl::unexpected(plain.error());
+  if (auto enough = require_months(config, modelled.recording, modelled.weather); !enough) {
+    return tl::unexpected(enough.error());
+  }
+  return make_site_problem(config, modelled.site.calendar, modelled.recording, modelled.weather);
+}
+
+Result<SiteDiagnosis> diagnose_site(const ModelledSite& modelled,
+                                    const diagnosis::SiteProblem& problem,
+                                    const diagnosis::DiagnoseOptions& options,
+                                    const diagnosis::Observer& observer) {
+  auto diagnosis = diagnosis::diagnose(problem, options, observer);
+  if (!diagnosis) return tl::unexpected(diagnosis.error());
+  const auto words = data_words(modelled.site.config, modelled.recording, modelled.weather);
+  diagnosis->warnings.insert(diagnosis->warnings.begin(), words.begin(), words.end());
+  auto others = ask_monthly_model(modelled, problem, *diagnosis);
+  return SiteDiagnosis{std::move(*diagnosis), std::move(others)};
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,128 @@
+#include "daemon/site/model/modelled_site.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "daemon/site/model/site_parts.hpp"
+#include "daemon/site/replay/stored_readings.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// A gateway may read a thousand meters for a model of three: only those are loaded from its store,
+/// and another one that has just been added, or that says nonsense, is none of the model's
+/// business.
+void leave_out_unmodelled_live_meters(SiteConfig& site) {
+  const auto electricity = profile_meter(site);
+  const std::string profiled = electricity ? site.meters[*electricity].meter.id : "";
+  std::erase_if(site.meters, [&](const MeterConfig& config) {
+    return config.is_stored() && !site.model->has_output(config.meter.id) &&
+           config.meter.id != profiled;
+  });
+}
+
+/// @pre what the model has no use for is left out
+Result<void> require_live_readings(const SiteConfig& site, const Recording& recording) {
+  for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    if (!site.meters[i].is_stored() || !recording.meters[i].figures.empty()) continue;
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("the store has no reading of meter '{}' yet, which the model needs",
+                               site.meters[i].meter.id));
+  }
+  return {};
+}
+
+}  // namespace
+
+using metering::MonthRange;
+
+MonthRange whole_period(const SiteConfig& site) {
+  MonthRange whole = site.period->calibration;
+  if (site.period->validation) {
+    whole.first = std::min(whole.first, site.period->validation->first);
+    whole.last = std::max(whole.last, site.period->validation->last);
+  }
+  return whole;
+}
+
+Result<void> require_model(const SiteConfig& site) {
+  if (site.model) return {};
+  return failure(
+      ErrorCode::not_enough_data,
+      fmt::format("{} describes meters but no [[model]]; add one with a [building] and a "
+                  "[period] to calibrate, or use `recald replay`",
+                  site.file.filename().string()));
+}
+
+Result<SiteRecording> record_site(const OpenSite& site, const ReplayOptions& options,
+                                  VirtualClock& clock, const OnMonthClosed& on_month_closed) {
+  std::unique_ptr<StoredReadings> live;
+  if (has_stored_meters(site.config)) {
+    auto opened = StoredReadings::open(site.config);
+    if (!opened) return tl::unexpected(opened.error());
+    live = std::move(*opened);
+  }
+  auto recording =
+      replay_meters(site.config, site.calendar, options, clock, on_month_closed, live.get());
+  if (!recording) return tl::unexpected(recording.error());
+  return SiteRecording{std::move(*recording), live ? live->digest() : ""};
+}
+
+Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
+                                        const ChoosePeriod& choose) {
+  leave_out_unmodelled_live_meters(site.config);
+  VirtualClock clock{metering::Instant{}};
+  auto recorded = record_site(site, {}, clock, {});
+  if (!recorded) return tl::unexpected(recorded.error());
+  if (auto read = require_live_readings(site.config, recorded->recording); !read) {
+    return tl::unexpected(read.error());
+  }
+  if (choose) {
+    const auto period = choose(site, recorded->recording, now);
+    if (!period) return tl::unexpected(period.error());
+    site.config.period = *period;
+  } else if (!site.config.period) {
+    const auto months = latest_months(site, recorded->recording, now);
+    if (!months) return tl::unexpected(months.error());
+    site.config.period = PeriodConfig{*months, {}};
+  }
+  auto facts = facts_of(site.config, recorded->live_digest);
+  if (!facts) return tl::unexpected(facts.error());
+  auto weather = load_weather(site.config, site.calendar, whole_period(site.config));
+  if (!weather) return tl::unexpected(weather.error());
+  return ModelledSite{std::move(site), std::move(recorded->recording), std::move(*weather),
+                      std::move(*facts)};
+}
+
+Result<MonthRange> latest_months(const OpenSite& site, const Recording& recording,
+                                 metering::Instant now) {
+  std::optional<MonthRange> common;
+  for (const std::string& id : site.config.model->outputs) {
+    const MeterRecord& record = recording.meters[*site.config.meter_index(id)];
+    const auto is_closed = [&](const metering::MonthlyFigure& figure) {
+      return figure.usable &&
+             site.calendar.month_span(figure.month).end + site.config.closing.watermark <= now;
+    };
+    const auto last = std::find_if(record.figures.rbegin(), record.figures.rend(), is_closed);
+    if (last == record.figures.rend()) {
+      return failure(ErrorCode::not_enough_data,
+                     fmt::format("meter '{}' has no usable closed month yet", id));
+    }
+    const MonthRange own{record.figures.front().month, last->month};
+    if (!common) common = own;
+    common->first = std::max(common->first, own.first);
+    common->last = std::min(common->last, own.last);
+  }
+  common->first = std::max(
+      common->first, common->last - std::chrono::months{site.config.recalibration.months - 1});
+  if (common->last < common->first) {
+    return failure(ErrorCode::not_enough_data,
+                   "the modelled meters have no closed month in common yet");
+  }
+  return *common;
+}
+
+}  // namespace recald::daemon

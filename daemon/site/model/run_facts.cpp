@@ -1,0 +1,60 @@
+#include "daemon/site/model/run_facts.hpp"
+
+#include <set>
+
+#include "adapters/system/sha256.hpp"
+#include "adapters/system/time_zone_release.hpp"
+#include "daemon/version.hpp"
+
+namespace recald::daemon {
+
+Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest) {
+  system::Sha256 site_digest;
+  system::Sha256 data_digest;
+  if (auto added = site_digest.add_file(site.file); !added) return tl::unexpected(added.error());
+  if (auto added = data_digest.add_file(site.file); !added) return tl::unexpected(added.error());
+  std::set<std::filesystem::path> files;
+  for (const MeterConfig& meter : site.meters) {
+    if (!meter.is_stored()) files.insert(meter.file);
+  }
+  if (site.weather) files.insert(site.weather->file);
+  for (const auto& file : files) {
+    if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
+  }
+  data_digest.add(live_digest);
+  RunFacts facts;
+  facts.recald_version = kVersion;
+  facts.data_revision = data_digest.hex();
+  facts.model_version =
+      (site.model ? site.model->kind : "none") + "-" + site_digest.hex().substr(0, 12);
+  facts.time_zone_data = system::time_zone_release();
+  return facts;
+}
+
+Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
+                                const std::string& model) {
+  system::Sha256 digest;
+  for (const auto& file : files) {
+    if (auto added = digest.add_file(file); !added) return tl::unexpected(added.error());
+  }
+  RunFacts facts;
+  facts.recald_version = kVersion;
+  facts.data_revision = digest.hex();
+  facts.model_version = model + "-" + facts.data_revision.substr(0, 12);
+  return facts;
+}
+
+RunFacts with_sampling(RunFacts facts, std::uint64_t seed,
+                       const calibration::Calibration& calibration) {
+  const calibration::SamplingReport& report = calibration.sampling;
+  facts.sampler = report.sampler;
+  facts.hyper_prior_profile = calibration.hyper_prior.name;
+  facts.seed = seed;
+  facts.iterations = report.burn_in + report.kept;
+  facts.burn_in = report.burn_in;
+  facts.chains = static_cast<int>(calibration.chains.size());
+  facts.design_runs = static_cast<int>(calibration.design.theta.rows());
+  return facts;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,45 @@
+/// What every result carries besides its numbers, so that it can be believed and repeated.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/calibration/calibration.hpp"
+#include "core/result.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+struct RunFacts {
+  std::string recald_version;
+  std::string data_revision;  ///< SHA-256 over the site file and all data files.
+  std::string model_version;  ///< Kind of model and SHA-256 of the site file, shortened.
+  std::string time_zone_data;
+  std::string sampler;
+  std::string hyper_prior_profile;
+  std::uint64_t seed = 1;
+  int iterations = 0;
+  int burn_in = 0;
+  int chains = 0;
+  int design_runs = 0;
+  double wall_s = 0.0;  ///< The only thing that differs between equal runs.
+};
+
+/// Hashes what the site's results depend on.
+/// @param live_digest  Of the readings that came from live meters; empty: none did.
+/// @return not_found or io_failed for a data file.
+[[nodiscard]] Result<RunFacts> facts_of(const SiteConfig& site,
+                                        const std::string& live_digest = "");
+
+/// The same for a design of experiments, over the files it was read from.
+/// @param model  Kind of model: the version is this and the digest of the files, shortened.
+[[nodiscard]] Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
+                                              const std::string& model);
+
+/// `facts` with the seed and what the sampling took.
+[[nodiscard]] RunFacts with_sampling(RunFacts facts, std::uint64_t seed,
+                                     const calibration::Calibration& calibration);
+
+}  // namespace recald::daemon

@@ -1,0 +1,125 @@
+#include "daemon/site/model/site_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace recald::daemon {
+namespace {
+
+using assessment::MonthRole;
+using metering::Month;
+
+// A month whose weather is mostly invented cannot be held against a model.
+constexpr double kLeastWeatherCoverage = 0.5;
+constexpr double kGoodWeatherCoverage = 0.9;
+
+}  // namespace
+
+std::vector<Month> SiteMonths::in_order() const {
+  std::vector<Month> months = all;
+  std::ranges::sort(months);
+  const auto repeated = std::ranges::unique(months);
+  months.erase(repeated.begin(), repeated.end());
+  return months;
+}
+
+SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
+                         std::vector<std::string>& warnings) {
+  SiteMonths months;
+  const auto take = [&](const metering::MonthRange& range, MonthRole role) {
+    for (Month month = range.first; month <= range.last; month = metering::next_month(month)) {
+      const double coverage = weather_coverage(weather.filled, month);
+      if (coverage < kLeastWeatherCoverage) {
+        warnings.push_back(
+            fmt::format("{} is left out: only {:.0f} % of its weather ({}) is known.",
+                        metering::to_string(month), 100.0 * coverage,
+                        least_known_variable(weather.filled, month)));
+        continue;
+      }
+      if (coverage < kGoodWeatherCoverage) {
+        warnings.push_back(fmt::format(
+            "{}: only {:.0f} % of the weather ({}) was measured; the rest is typical of the month.",
+            metering::to_string(month), 100.0 * coverage,
+            least_known_variable(weather.filled, month)));
+      }
+      months.all.push_back(month);
+      months.roles.push_back(role);
+      if (role == MonthRole::calibration) months.calibration.push_back(month);
+    }
+  };
+  take(period.calibration, MonthRole::calibration);
+  if (period.validation) take(*period.validation, MonthRole::validation);
+  return months;
+}
+
+std::optional<std::size_t> profile_meter(const SiteConfig& site) {
+  const auto rank = [&](const MeterConfig& config) {
+    if (config.meter.utility != metering::Utility::electricity) return 0;
+    const auto counts = [&](model::EndUse use) {
+      return !config.end_uses || (*config.end_uses)[use] > 0.0;
+    };
+    if (!counts(model::EndUse::lighting) && !counts(model::EndUse::plugs)) return 1;
+    return site.model->has_output(config.meter.id) ? 3 : 2;
+  };
+  const auto best = std::ranges::max_element(site.meters, {}, rank);  // the first one of the best
+  if (best == site.meters.end() || rank(*best) == 0) return std::nullopt;
+  return static_cast<std::size_t>(best - site.meters.begin());
+}
+
+Result<const MeterRecord*> electricity_meter(const SiteConfig& site, const Recording& recording) {
+  if (const auto meter = profile_meter(site)) return &recording.meters[*meter];
+  return failure(ErrorCode::not_enough_data,
+                 "the model takes lights and plugs from an electricity meter, and the site has "
+                 "none; add a [[meter]] with utility = \"electricity\"");
+}
+
+std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
+                                          const std::vector<Month>& months) {
+  std::vector<profile::HourlyLoad> loads;
+  for (const Month month : months) {
+    const auto found = record.hours.find(month);
+    if (found == record.hours.end()) continue;
+    loads.insert(loads.end(), found->second.begin(), found->second.end());
+  }
+  return loads;
+}
+
+Result<void> ChosenParameters::add(std::string_view name, const model::Building& nominal,
+                                   const std::optional<Prior>& prior) {
+  const auto definition = model::find_parameter(name);
+  if (!definition) return tl::unexpected(definition.error());
+  auto parameter = model::make_parameter(**definition, nominal, prior);
+  if (!parameter) return tl::unexpected(parameter.error());
+  definitions.push_back(*definition);
+  parameters.push_back(std::move(*parameter));
+  return {};
+}
+
+Result<ChosenParameters> site_parameters(const SiteConfig& site) {
+  ChosenParameters chosen;
+  for (const ParameterConfig& config : site.model->parameters) {
+    if (auto added = chosen.add(config.name, *site.building, config.prior); !added) {
+      return tl::unexpected(added.error());
+    }
+  }
+  return chosen;
+}
+
+Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site) {
+  std::vector<model::MeterMap> maps;
+  for (const std::string& id : site.model->outputs) {
+    const MeterConfig& config = site.meters[*site.meter_index(id)];
+    if (config.end_uses) {
+      maps.push_back(*config.end_uses);
+      continue;
+    }
+    const auto map = model::default_meter_map(config.meter.utility);
+    if (!map)
+      return failure(map.error().code, fmt::format("meter '{}': {}", id, map.error().message));
+    maps.push_back(*map);
+  }
+  return maps;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,63 @@
+/// What every model of a site is made from: months, electricity, calibration parameters, meters.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/assessment/output_assessment.hpp"
+#include "core/model/end_use.hpp"
+#include "core/model/parameter_library.hpp"
+#include "core/profile/electricity_profile.hpp"
+#include "core/result.hpp"
+#include "daemon/site/config/site_config.hpp"
+#include "daemon/site/replay/recording.hpp"
+#include "daemon/site/replay/site_weather.hpp"
+
+namespace recald::daemon {
+
+/// The months of the site's period that have weather.
+struct SiteMonths {
+  std::vector<metering::Month> all;  ///< Calibration first, then validation.
+  std::vector<assessment::MonthRole> roles;
+  std::vector<metering::Month> calibration;  ///< The leading part of `all`.
+
+  /// Ascending, each once.
+  [[nodiscard]] std::vector<metering::Month> in_order() const;
+};
+
+/// A month whose weather is mostly invented is left out; that, and weather with holes, in words.
+[[nodiscard]] SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
+                                       std::vector<std::string>& warnings);
+
+/// The meter that tells lights and plugs: the first one of electricity that is modelled and counts
+/// them, or else the first one that counts them, or else the first one. An index of the site's
+/// meters. @pre the site has a model
+[[nodiscard]] std::optional<std::size_t> profile_meter(const SiteConfig& site);
+
+/// What that meter has recorded.
+/// @return not_enough_data where the site has none.
+[[nodiscard]] Result<const MeterRecord*> electricity_meter(const SiteConfig& site,
+                                                           const Recording& recording);
+
+/// The recorded hours of these months, in their order.
+[[nodiscard]] std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
+                                                        const std::vector<metering::Month>& months);
+
+/// Calibration parameters and how they enter a building, in the same order.
+struct ChosenParameters {
+  std::vector<const model::ParameterDefinition*> definitions;
+  std::vector<Parameter> parameters;
+
+  /// @return what `find_parameter` and `make_parameter` find; then nothing was added.
+  [[nodiscard]] Result<void> add(std::string_view name, const model::Building& nominal,
+                                 const std::optional<Prior>& prior);
+};
+
+/// Those that the site file names. @pre the site has a model
+[[nodiscard]] Result<ChosenParameters> site_parameters(const SiteConfig& site);
+
+/// What each modelled meter counts, in order of the model's outputs. @pre the site has a model
+[[nodiscard]] Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site);
+
+}  // namespace recald::daemon

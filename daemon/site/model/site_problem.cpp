@@ -1,0 +1,295 @@
+#include "daemon/site/model/site_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <map>
+
+#include "core/absent.hpp"
+#include "core/assessment/assessed_calibration.hpp"
+#include "core/model/hourly/prepare.hpp"
+#include "daemon/site/model/site_parts.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using diagnosis::SiteProblem;
+using metering::Month;
+
+constexpr std::size_t kLeastMonths = 6;
+constexpr double kLeastOkShare = 0.5;
+constexpr double kLeastReadShare = 0.5;  // of the hours of a month that counts as read
+// Positions in `weather::kWeatherVariables` of humidity and wind, without which the model can do.
+constexpr std::array<std::size_t, 2> kAssumable = {1, 2};
+
+/// What day parts can inform besides the parameters that the site file names. Where drawings may be
+/// wrong by a factor the prior is log-normal about them, wider than the library's range: a
+/// diagnosis must not take a misremembered number for an effect.
+struct DayPartParameter {
+  std::string_view name;
+  double log_sd = 0.0;        ///< 0: the library's prior.
+  double median = 0.0;        ///< 0: the drawings' value.
+  double second_start = 0.0;  ///< Score.
+  bool of_own_chiller = false;
+};
+constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
+    {"start_early"},
+    {"stop_late"},
+    {"occupancy_density", 0.5},
+    {"outdoor_airflow", 0.4},
+    {"cooling_setpoint"},
+    {"heating_setpoint"},
+    {"u_factor_scale", 0.3},
+    {"shgc_scale", 0.4},
+    {"specific_heat_scale", 0.6},
+    {"leakage_area", 0.7},
+    {"supply_temperature"},
+    {"minimum_supply_flow", 0.35},
+    {"hot_water_volume", 0.6},
+    {"base_heat", 0.7},
+    {.name = "closet_share", .second_start = -2.0},
+    {"gains_to_core"},
+    {"supply_reset"},
+    {"warm_up"},
+    {"closed_start"},
+    // What no drawing gives: about what the training buildings have.
+    {"mass_coupling", 0.5, 0.5},
+    {.name = "core_mass", .log_sd = 0.9, .median = 0.3, .second_start = -1.0},
+    {"air_capacity", 0.5, 35.0},
+    {"night_fan"},
+    {.name = "chiller_lift", .of_own_chiller = true},
+});
+
+bool is_recorded(const SiteWeather& weather, std::size_t variable) {
+  return std::ranges::any_of(weather.filled.coverage, [&](const weather::WeatherCoverage& month) {
+    return month.measured[variable] > 0.0;
+  });
+}
+
+/// Months of the period with weather, ascending. What the whole record lacks and the model assumes
+/// makes no month incomplete.
+std::vector<Month> months_with_weather(const SiteConfig& site, SiteWeather weather,
+                                       std::vector<std::string>& words) {
+  for (const std::size_t variable : kAssumable) {
+    if (is_recorded(weather, variable)) continue;
+    for (weather::WeatherCoverage& month : weather.filled.coverage) month.measured[variable] = 1.0;
+  }
+  return choose_months(*site.period, weather, words).in_order();
+}
+
+bool is_read(const MeterRecord& record, Month month) {
+  const auto found = record.hours.find(month);
+  if (found == record.hours.end()) return false;
+  const auto read = std::ranges::count_if(found->second, [](const profile::HourlyLoad& hour) {
+    return hour.ok_share >= kLeastOkShare;
+  });
+  return static_cast<double>(read) >= kLeastReadShare * 24.0 * metering::days_in(month);
+}
+
+/// Those in which some meter of the model was read.
+std::vector<Month> months_read(const SiteConfig& site, const Recording& recording,
+                               const std::vector<Month>& months) {
+  std::vector<Month> read;
+  std::ranges::copy_if(months, std::back_inserter(read), [&](Month month) {
+    return std::ranges::any_of(site.model->outputs, [&](const std::string& id) {
+      return is_read(recording.meters[*site.meter_index(id)], month);
+    });
+  });
+  return read;
+}
+
+/// A month without readings proves nothing, so none is held or kept to be shown: it counts as one
+/// to fit and adds nothing.
+std::vector<diagnosis::Role> roles_of(const std::vector<Month>& months,
+                                      const std::vector<Month>& read,
+                                      const diagnosis::SplitOptions& split) {
+  std::vector<diagnosis::Role> roles(months.size(), diagnosis::Role::fit);
+  const std::vector<diagnosis::Role> of_read = diagnosis::split_months(read, split);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    roles[static_cast<std::size_t>(std::ranges::find(months, read[i]) - months.begin())] =
+        of_read[i];
+  }
+  return roles;
+}
+
+/// Measured hours of one meter in the order of the drivers; NaN where not measured. The hour that
+/// the clock repeats in autumn is recorded once and stands twice.
+Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers) {
+  std::map<std::pair<metering::Day, int>, double> by_hour;
+  for (const auto& [month, hours] : record.hours) {
+    for (const profile::HourlyLoad& hour : hours) {
+      if (hour.ok_share >= kLeastOkShare) by_hour[{hour.date, hour.hour}] = hour.mean_kW;
+    }
+  }
+  Eigen::ArrayXd values(static_cast<Eigen::Index>(drivers.hours.size()));
+  for (std::size_t i = 0; i < drivers.hours.size(); ++i) {
+    const auto found = by_hour.find({drivers.hours[i].date, drivers.hours[i].local_hour});
+    values[static_cast<Eigen::Index>(i)] = found == by_hour.end() ? kAbsent : found->second;
+  }
+  return values;
+}
+
+/// The prior of a diagnosis; absent: the library's.
+std::optional<Prior> wide_prior(const DayPartParameter& parameter, const model::Building& nominal) {
+  if (parameter.log_sd == 0.0) return std::nullopt;
+  const auto definition = model::find_parameter(parameter.name);
+  const double drawn = definition ? (*definition)->get(nominal) : 0.0;
+  const double median = parameter.median > 0.0 ? parameter.median : drawn;
+  if (!(median > 0.0)) return std::nullopt;
+  return Prior{LogNormalPrior{.median = median, .log_sd = parameter.log_sd}};
+}
+
+/// Those of the site file, and what else day parts can inform. A prior that the file gives stands.
+Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
+  ChosenParameters chosen;
+  for (const ParameterConfig& config : site.model->parameters) {
+    const auto wide = std::ranges::find(kDayPartParameters, config.name, &DayPartParameter::name);
+    const bool widen = !config.prior && wide != kDayPartParameters.end();
+    const auto prior = widen ? wide_prior(*wide, *site.building) : config.prior;
+    if (auto added = chosen.add(config.name, *site.building, prior); !added) {
+      return tl::unexpected(added.error());
+    }
+  }
+  for (const DayPartParameter& parameter : kDayPartParameters) {
+    if (std::ranges::find(chosen.parameters, parameter.name, &Parameter::name) !=
+        chosen.parameters.end()) {
+      continue;
+    }
+    if (parameter.of_own_chiller && !site.building->chiller_cop) continue;
+    // A design value of 0 or outside the library's range: the drawings are taken at their word.
+    (void)chosen.add(parameter.name, *site.building, wide_prior(parameter, *site.building));
+  }
+  return chosen;
+}
+
+/// "2021-03 to 2021-05", in order of time.
+std::string span_words(const std::vector<Month>& months) {
+  if (months.size() == 1) return metering::to_string(months.front());
+  return metering::to_string(months.front()) + " to " + metering::to_string(months.back());
+}
+
+/// Where the middle of the priors leads astray: rooms that are cool at night either have closets or
+/// little mass, and from the one no small step leads to the other.
+Eigen::VectorXd second_start_of(const std::vector<Parameter>& parameters) {
+  Eigen::VectorXd scores = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const auto found =
+        std::ranges::find(kDayPartParameters, parameters[j].name, &DayPartParameter::name);
+    if (found != kDayPartParameters.end()) {
+      scores[static_cast<Eigen::Index>(j)] = found->second_start;
+    }
+  }
+  return scores;
+}
+
+}  // namespace
+
+Result<void> require_months(const SiteConfig& site, const Recording& recording,
+                            const SiteWeather& weather) {
+  std::vector<std::string> words;
+  const std::vector<Month> months = months_with_weather(site, weather, words);
+  const std::vector<Month> read = months_read(site, recording, months);
+  if (read.size() >= kLeastMonths) return {};
+  std::string missing = "widen [period]";
+  const auto first = std::ranges::find_if(words, [](const std::string& sentence) {
+    return sentence.find(" is left out: ") != std::string::npos;
+  });
+  if (months.size() < kLeastMonths && first != words.end()) {
+    missing = "give more weather: " + first->substr(0, first->size() - 1);
+  } else if (read.size() < months.size()) {
+    missing = fmt::format("give more readings: those of {} cover {} with half of their hours",
+                          site.id, read.empty() ? "no month" : span_words(read));
+  }
+  return failure(ErrorCode::not_enough_data,
+                 fmt::format("a diagnosis needs at least {} months with weather and readings; {} "
+                             "has {}; {}",
+                             kLeastMonths, site.id, read.size(), missing));
+}
+
+std::vector<std::string> data_words(const SiteConfig& site, const Recording& recording,
+                                    const SiteWeather& weather) {
+  std::vector<std::string> words = weather.notes;
+  const std::vector<Month> months = months_with_weather(site, weather, words);
+  for (const std::size_t variable : kAssumable) {
+    if (is_recorded(weather, variable)) continue;
+    words.push_back(fmt::format(
+        "The weather has no {}: a constant was assumed, and effects that need it are not "
+        "identifiable here.",
+        variable == kAssumable.front() ? "humidity" : "wind"));
+  }
+  for (const std::string& id : site.model->outputs) {
+    const MeterRecord& record = recording.meters[*site.meter_index(id)];
+    const auto read = static_cast<std::size_t>(
+        std::ranges::count_if(months, [&](Month month) { return is_read(record, month); }));
+    if (read >= kLeastMonths) continue;
+    words.push_back(fmt::format(
+        "Meter '{}' was read in {} of {} months only, and a diagnosis needs {}: what is missing "
+        "there may go unseen; give more readings.",
+        id, read, months.size(), kLeastMonths));
+  }
+  return words;
+}
+
+Result<SiteProblem> make_site_problem(const SiteConfig& site,
+                                      const metering::LocalCalendar& calendar,
+                                      const Recording& recording, const SiteWeather& weather,
+                                      std::optional<Month> last_taught) {
+  SiteProblem problem;
+  problem.nominal = *site.building;
+  std::vector<std::string> said_elsewhere;
+  const std::vector<Month> months = months_with_weather(site, weather, said_elsewhere);
+  if (months.size() < kLeastMonths) {
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("a diagnosis needs at least {} months with weather and meters; {} "
+                               "has {}; widen [period] or give more weather",
+                               kLeastMonths, site.id, months.size()));
+  }
+  const auto electricity = electricity_meter(site, recording);
+  if (!electricity) return tl::unexpected(electricity.error());
+  const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
+  const diagnosis::SplitOptions split;
+  problem.month_roles = roles_of(months, months_read(site, recording, months), split);
+  // The months to be shown must not tell their own electricity.
+  std::vector<Month> told;
+  for (std::size_t i = 0; i < months.size(); ++i) {
+    const bool is_told =
+        last_taught ? months[i] <= *last_taught : problem.month_roles[i] != diagnosis::Role::show;
+    if (is_told) told.push_back(months[i]);
+  }
+  auto profile = model::hourly::fit_profile_without_plant(loads_of(**electricity, told),
+                                                          *site.building, place, months);
+  if (!profile) return tl::unexpected(profile.error());
+  // One profile for all months: factors of calendar months would hide what a diagnosis looks for.
+  profile->loads.month_factor.fill(1.0);
+
+  auto drivers =
+      model::make_drivers(months, calendar, site.holidays, *site.building, profile->loads,
+                          *site.location, weather.filled.series, model::MissingWeather::assume);
+  if (!drivers) return tl::unexpected(drivers.error());
+  problem.drivers = std::make_shared<const model::Drivers>(std::move(*drivers));
+
+  const auto maps = meter_maps(site);
+  if (!maps) return tl::unexpected(maps.error());
+  problem.measured_kW.resize(static_cast<Eigen::Index>(problem.drivers->hours.size()),
+                             static_cast<Eigen::Index>(maps->size()));
+  for (std::size_t k = 0; k < maps->size(); ++k) {
+    const std::string& id = site.model->outputs[k];
+    const std::size_t meter = *site.meter_index(id);
+    problem.meters.push_back({id, site.meters[meter].meter.utility, (*maps)[k]});
+    problem.measured_kW.col(static_cast<Eigen::Index>(k)) =
+        hours_of(recording.meters[meter], *problem.drivers);
+  }
+  auto chosen = choose_parameters(site);
+  if (!chosen) return tl::unexpected(chosen.error());
+  problem.definitions = std::move(chosen->definitions);
+  problem.parameters = std::move(chosen->parameters);
+  problem.second_start = second_start_of(problem.parameters);
+  problem.day_parts = diagnosis::make_day_parts(*problem.drivers);
+  problem.measured_parts_kW = diagnosis::measured_parts(problem.day_parts, problem.measured_kW);
+  problem.roles = diagnosis::part_roles(problem.day_parts, problem.month_roles, split.buffer_days);
+  return problem;
+}
+
+}  // namespace recald::daemon

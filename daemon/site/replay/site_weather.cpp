@@ -1,0 +1,99 @@
+#include "daemon/site/replay/site_weather.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "adapters/csv/weather_csv.hpp"
+#include "adapters/epw/epw.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// Positions in `weather::kWeatherVariables` of what a building model cannot do without.
+constexpr std::array<std::size_t, 4> kNeeded = {0, 1, 2, 4};
+
+Result<weather::WeatherSeries> read_csv(const WeatherConfig& config,
+                                        std::vector<std::string>& notes) {
+  auto read = csv::read_weather(config.file, {.stamps = config.stamps});
+  if (!read) return tl::unexpected(read.error());
+  if (read->issues.total > 0) {
+    notes.push_back(fmt::format("Weather file: {} bad line{} kept out, the first at line {}: {}.",
+                                read->issues.total, read->issues.total == 1 ? "" : "s",
+                                read->issues.listed.front().line,
+                                read->issues.listed.front().reason));
+  }
+  if (!read->ignored_columns.empty()) {
+    notes.push_back(
+        fmt::format("Weather file: columns not used: {}.", fmt::join(read->ignored_columns, ", ")));
+  }
+  return std::move(read->series);
+}
+
+/// One calendar year after the other from the same file. A typical year stands for each of them; a
+/// recorded year only for itself.
+Result<weather::WeatherSeries> read_epw_years(const WeatherConfig& config,
+                                              const metering::MonthRange& months,
+                                              std::vector<std::string>& notes) {
+  const auto own = epw::read_epw(config.file);
+  if (!own) return tl::unexpected(own.error());
+  if (!own->typical) {
+    notes.insert(notes.end(), own->notes.begin(), own->notes.end());
+    return own->series;
+  }
+  notes.push_back(
+      "The weather is a typical year, not the weather of the measured months: misfit of single "
+      "months says little.");
+  weather::WeatherSeries all;
+  // A year of local standard time ends within a day of the UTC year, so one more on each side.
+  for (int year = static_cast<int>(months.first.year()) - 1;
+       year <= static_cast<int>(months.last.year()) + 1; ++year) {
+    const auto one = epw::read_epw(config.file, year);
+    if (!one) return tl::unexpected(one.error());
+    if (all.hours.empty()) all.begin = one->series.begin;
+    all.hours.insert(all.hours.end(), one->series.hours.begin(), one->series.hours.end());
+  }
+  return all;
+}
+
+struct KnownShare {
+  double share;
+  std::size_t variable;  ///< Position in `weather::kWeatherVariables`.
+};
+
+/// Of the needed variables the one that is known least; none of a month that the file does not
+/// touch.
+KnownShare least_known(const weather::FilledWeather& filled, metering::Month month) {
+  const auto found = std::ranges::find(filled.coverage, month, &weather::WeatherCoverage::month);
+  if (found == filled.coverage.end()) return {0.0, kNeeded.front()};
+  KnownShare least{1.0, kNeeded.front()};
+  for (const std::size_t variable : kNeeded) {
+    const double share = found->measured[variable] + found->interpolated[variable];
+    if (share < least.share) least = {share, variable};
+  }
+  return least;
+}
+
+}  // namespace
+
+Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                                 const metering::MonthRange& months) {
+  SiteWeather result;
+  const auto series = site.weather->format == WeatherFormat::epw
+                          ? read_epw_years(*site.weather, months, result.notes)
+                          : read_csv(*site.weather, result.notes);
+  if (!series) return tl::unexpected(series.error());
+  result.filled = weather::fill_gaps(*series, calendar);
+  return result;
+}
+
+double weather_coverage(const weather::FilledWeather& filled, metering::Month month) {
+  return least_known(filled, month).share;
+}
+
+std::string_view least_known_variable(const weather::FilledWeather& filled, metering::Month month) {
+  return weather::kWeatherVariables[least_known(filled, month).variable].name;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,35 @@
+/// The weather of a site over the months it needs, whole and hourly.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/metering/civil_time.hpp"
+#include "core/metering/month_closer.hpp"
+#include "core/result.hpp"
+#include "core/weather/weather_series.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+struct SiteWeather {
+  weather::FilledWeather filled;
+  std::vector<std::string> notes;  ///< What was done to it, in words.
+};
+
+/// Reads the site's weather file and fills what it can. @pre site.weather
+/// @param months  Those that are needed: an EPW file is laid on their years.
+[[nodiscard]] Result<SiteWeather> load_weather(const SiteConfig& site,
+                                               const metering::LocalCalendar& calendar,
+                                               const metering::MonthRange& months);
+
+/// Share of a month's hours in which the weather was measured or interpolated, worst of the
+/// variables that the models need; 0 for a month that the file does not touch.
+[[nodiscard]] double weather_coverage(const weather::FilledWeather& filled, metering::Month month);
+
+/// Column of the variable that `weather_coverage` speaks of: "ghi_W_m2".
+[[nodiscard]] std::string_view least_known_variable(const weather::FilledWeather& filled,
+                                                    metering::Month month);
+
+}  // namespace recald::daemon

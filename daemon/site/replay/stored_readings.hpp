@@ -1,0 +1,32 @@
+/// What the daemon has read from live meters, as its store has it: for whoever calibrates,
+/// diagnoses or replays, while the daemon goes on writing.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/result.hpp"
+#include "daemon/site/config/site_config.hpp"
+#include "daemon/site/replay/recording.hpp"
+
+namespace recald::daemon {
+
+class StoredReadings final : public LiveReadings {
+ public:
+  /// Opens the site's store to read from it.
+  /// @return not_found when there is none yet; or as SqliteStore::open.
+  [[nodiscard]] static Result<std::unique_ptr<StoredReadings>> open(const SiteConfig& site);
+  ~StoredReadings() override;
+
+  Result<std::uint64_t> for_each(const MeterConfig& meter, const ReadingSink& sink) override;
+
+  /// SHA-256 of all that has been handed out. Ends the digest.
+  [[nodiscard]] std::string digest();
+
+ private:
+  struct Impl;
+  explicit StoredReadings(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace recald::daemon

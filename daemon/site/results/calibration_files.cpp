@@ -1,0 +1,376 @@
+#include "daemon/site/results/calibration_files.hpp"
+#include "daemon/site/results/json_number.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace recald::daemon {
+namespace {
+
+// Keys in the order they are written: files are read by people too.
+using Json = nlohmann::ordered_json;
+using assessment::MonthRole;
+
+const char* role_word(MonthRole role) {
+  switch (role) {
+    case MonthRole::calibration:
+      return "calibration";
+    case MonthRole::validation:
+      return "validation";
+    case MonthRole::unused:
+      return "unused";
+  }
+  return "unused";
+}
+
+Json summary_json(const calibration::Summary& s) {
+  return {{"name", s.name},
+          {"unit", s.unit},
+          {"mean", json_number(s.mean)},
+          {"sd", json_number(s.sd)},
+          {"q05", json_number(s.q05)},
+          {"q50", json_number(s.q50)},
+          {"q95", json_number(s.q95)},
+          {"contraction", json_number(s.contraction)},
+          {"rhat", json_number(s.rhat)},
+          {"ess_bulk", json_number(s.ess_bulk)},
+          {"ess_tail", json_number(s.ess_tail)},
+          {"mcse", json_number(s.mcse)}};
+}
+
+/// Ends that a prior does not have are null.
+Json prior_json(const Prior& prior) {
+  return {{"distribution", prior.name()},      {"min", json_number(prior.min())},
+          {"mode", json_number(prior.mode())}, {"max", json_number(prior.max())},
+          {"mean", json_number(prior.mean())}, {"sd", json_number(std::sqrt(prior.variance()))}};
+}
+
+Json parameters_json(const assessment::AssessedCalibration& result) {
+  Json list = Json::array();
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    Json entry = summary_json(result.calibration.parameters[j]);
+    entry["prior"] = prior_json(result.parameters[j].prior);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+/// Parameters that the model has and the calibration leaves at their prior means.
+Json fixed_parameters_json(const assessment::AssessedCalibration& result) {
+  Json list = Json::array();
+  for (const Parameter& parameter : result.fixed_parameters) {
+    list.push_back({{"name", parameter.name},
+                    {"unit", parameter.unit},
+                    {"value", json_number(parameter.prior.mean())},
+                    {"prior", prior_json(parameter.prior)}});
+  }
+  return list;
+}
+
+Json metamodel_json(const assessment::AssessedCalibration& result) {
+  if (!result.metamodel) return nullptr;
+  const assessment::MetamodelFacts& facts = *result.metamodel;
+  Json sigma_r = Json::object();
+  for (std::size_t k = 0; k < facts.sigma_r.size(); ++k) {
+    sigma_r[result.outputs[k].name] = json_number(facts.sigma_r[k]);
+  }
+  return {{"form", facts.form},
+          {"why", facts.why},
+          {"r2_left_out", json_number(facts.r2_left_out)},
+          {"sigma_r", sigma_r}};
+}
+
+Json metrics_json(const std::optional<assessment::FitMetrics>& metrics) {
+  if (!metrics) return nullptr;
+  return {{"nmbe_sim_minus_meas", json_number(metrics->nmbe_sim_minus_meas)},
+          {"nmbe_g14", json_number(metrics->nmbe_g14)},
+          {"cvrmse", json_number(metrics->cvrmse)},
+          {"months", metrics->n}};
+}
+
+Json stage_json(const assessment::AssessedCalibration& result,
+                assessment::PeriodMetrics assessment::OutputAssessment::*stage) {
+  Json calibration = Json::object();
+  Json validation = Json::object();
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    const assessment::PeriodMetrics& metrics = output.assessment.*stage;
+    calibration[output.name] = metrics_json(metrics.calibration);
+    validation[output.name] = metrics_json(metrics.validation);
+  }
+  return {{"calibration", calibration}, {"validation", validation}};
+}
+
+Json guideline_json(const assessment::AssessedCalibration& result) {
+  Json outputs = Json::object();
+  bool pass = true;
+  std::string why;
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    const auto& metrics = output.assessment.after.calibration;
+    // An output that was not fitted is met by its own profile: that is no evidence for the model.
+    if (!metrics || !output.calibrated) continue;
+    const auto verdict = assessment::guideline14_verdict(*metrics);
+    outputs[output.name] = {{"pass", verdict.pass}, {"why", verdict.why}};
+    pass = pass && verdict.pass;
+    if (!verdict.pass) why += (why.empty() ? "" : " ") + output.name + ": " + verdict.why;
+  }
+  if (why.empty())
+    why = "every fitted output is within the monthly limits over the calibration months";
+  return {{"pass", pass}, {"why", why}, {"outputs", outputs}};
+}
+
+Json range_json(const assessment::AssessedCalibration& result,
+                const std::vector<calibration::OutOfRange>& points) {
+  Json list = Json::array();
+  for (const calibration::OutOfRange& point : points) {
+    list.push_back({{"output", result.outputs[static_cast<std::size_t>(point.output)].name},
+                    {"month", result.month_names[static_cast<std::size_t>(point.month)]},
+                    {"value", json_number(point.value)},
+                    {"range", {json_number(point.low), json_number(point.high)}}});
+  }
+  return list;
+}
+
+/// "measured_kWh", "measured_kW": a number is not written without its unit.
+std::string with_unit(const char* name, const assessment::OutputCalibration& output) {
+  const std::string unit = output.unit.substr(0, output.unit.find('/'));  // a day's kWh
+  return unit.empty() ? name : fmt::format("{}_{}", name, unit);
+}
+
+Json scores_json(const std::optional<assessment::PredictiveScores>& scores,
+                 const assessment::OutputCalibration& output) {
+  if (!scores) return nullptr;
+  return {{"months", scores->months},
+          {"inside_50", scores->inside_50},
+          {"inside_90", scores->inside_90},
+          {with_unit("crps", output), json_number(scores->crps)}};
+}
+
+Json outputs_json(const assessment::AssessedCalibration& result) {
+  Json list = Json::array();
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    Json months = Json::array();
+    for (std::size_t i = 0; i < result.month_names.size(); ++i) {
+      const assessment::BoxPlot& box = output.assessment.boxes[i];
+      months.push_back({{"month", result.month_names[i]},
+                        {"role", role_word(result.roles[i])},
+                        {with_unit("measured", output), json_number(output.measured[i])},
+                        {"draws_q25", json_number(box.q25)},
+                        {"draws_q50", json_number(box.q50)},
+                        {"draws_q75", json_number(box.q75)}});
+    }
+    list.push_back({{"name", output.name},
+                    {"meter", output.label},
+                    {"unit", output.unit},
+                    {"weight", output.weight},
+                    {"calibrated", output.calibrated},
+                    {"predictive",
+                     {{"calibration", scores_json(output.assessment.scores_calibration, output)},
+                      {"validation", scores_json(output.assessment.scores_validation, output)}}},
+                    {"months", months}});
+  }
+  return list;
+}
+
+Json sensitivity_json(const assessment::AssessedCalibration& result) {
+  if (!result.sensitivity) return nullptr;
+  Json list = Json::array();
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    const calibration::ParameterSensitivity& s = result.sensitivity->parameters[j];
+    list.push_back({{"name", result.parameters[j].name},
+                    {"mean_at_smaller_discrepancy", json_number(s.mean_at_smaller)},
+                    {"mean_at_larger_discrepancy", json_number(s.mean_at_larger)},
+                    {"largest_move_sd", json_number(s.largest_move_sd)},
+                    {"prior_driven", s.prior_driven}});
+  }
+  return {{"factor", result.sensitivity->factor}, {"parameters", list}};
+}
+
+Json sampling_json(const calibration::SamplingReport& report) {
+  long divergences = 0;
+  long depth_limit_hits = 0;
+  Json acceptance = Json::array();
+  Json e_bfmi = Json::array();
+  for (const calibration::ChainStatistics& chain : report.chains) {
+    divergences += chain.divergences;
+    depth_limit_hits += chain.depth_limit_hits;
+    acceptance.push_back(json_number(chain.acceptance_rate));
+    e_bfmi.push_back(json_number(chain.e_bfmi));
+  }
+  return {{"draws", report.kept},
+          {"doublings", report.doublings},
+          {"taken_over", report.taken_over.empty() ? Json(nullptr) : Json(report.taken_over)},
+          {"acceptance_rate", acceptance},
+          {"divergences", divergences},
+          {"depth_limit_hits", depth_limit_hits},
+          {"e_bfmi", e_bfmi},
+          {"density_evaluations", report.density_evaluations},
+          {"gradient_evaluations", report.gradient_evaluations}};
+}
+
+Json evidence_json(const calibration::Calibration& calibration) {
+  Json json = {{"by_bridge", nullptr}, {"by_populations", nullptr}};
+  if (calibration.evidence) {
+    json["by_bridge"] = {{"log_evidence", json_number(calibration.evidence->log_evidence)},
+                         {"mcse", json_number(calibration.evidence->mcse)}};
+  }
+  if (std::isfinite(calibration.sampling.log_evidence)) {
+    json["by_populations"] = {{"log_evidence", json_number(calibration.sampling.log_evidence)},
+                              {"mcse", json_number(calibration.sampling.log_evidence_se)}};
+  }
+  return json;
+}
+
+Json leave_out_json(const calibration::Calibration& calibration) {
+  Json list = Json::array();
+  for (const calibration::LeaveOutScore& score : calibration.leave_out) {
+    list.push_back({{"months_left_out_together", score.block_months},
+                    {"blocks", score.blocks},
+                    {"elpd", json_number(score.elpd)},
+                    {"se", json_number(score.standard_error)},
+                    {"pareto_k_max", json_number(score.pareto_k_max)},
+                    {"unreliable_blocks", score.unreliable}});
+  }
+  return list;
+}
+
+/// In units of prior standard deviations.
+Json weak_directions_json(const assessment::AssessedCalibration& result) {
+  Json list = Json::array();
+  for (const calibration::WeakDirection& direction : result.calibration.weak_directions) {
+    Json loadings = Json::object();
+    for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+      loadings[result.parameters[j].name] =
+          json_number(direction.loadings[static_cast<Eigen::Index>(j)]);
+    }
+    list.push_back({{"information", json_number(direction.information)}, {"loadings", loadings}});
+  }
+  return list;
+}
+
+Json schedule_json(const model::HourlySchedule& schedule) {
+  Json days = Json::object();
+  for (std::size_t i = 0; i < model::kDayTypes; ++i) {
+    Json hours = Json::array();
+    for (int hour = 0; hour < 24; ++hour) {
+      hours.push_back(json_number(schedule.at(static_cast<model::DayType>(i), hour)));
+    }
+    days[model::kDayTypeNames[i]] = hours;
+  }
+  return days;
+}
+
+Json profile_object(const profile::ElectricityProfile& profile) {
+  return {{"measured_kW", schedule_json(profile.measured_kW)},
+          {"standard_error_kW", schedule_json(profile.standard_error_kW)},
+          {"lights_kW", schedule_json(profile.loads.lights_kW)},
+          {"plugs_kW", schedule_json(profile.loads.plugs_kW)},
+          {"fans_and_pumps_kW", schedule_json(profile.known.fans_and_pumps_kW)},
+          {"exterior_kW", profile.known.exterior_kW},
+          {"standby_kW", profile.standby_kW},
+          {"month_factor", profile.loads.month_factor},
+          {"hours_used", profile.hours_used},
+          {"monthly_cvrmse", json_number(profile.check.monthly_cvrmse)},
+          {"check", profile.check.words}};
+}
+
+}  // namespace
+
+std::string calibration_json(const assessment::AssessedCalibration& result, const RunFacts& facts) {
+  Json months = Json::array();
+  for (std::size_t i = 0; i < result.month_names.size(); ++i) {
+    months.push_back({{"month", result.month_names[i]}, {"role", role_word(result.roles[i])}});
+  }
+  Json hyperparameters = Json::array();
+  for (const calibration::Summary& s : result.calibration.hyperparameters) {
+    Json entry = summary_json(s);
+    entry["prior"] = {{"mean", json_number(s.prior_mean)}, {"sd", json_number(s.prior_sd)}};
+    hyperparameters.push_back(std::move(entry));
+  }
+  const auto& calibration = result.calibration;
+  Json json = {{"model", result.model},
+               {"status", calibration.converged ? "converged" : "unconverged"},
+               {"months", months},
+               {"parameters", parameters_json(result)},
+               {"fixed_parameters", fixed_parameters_json(result)},
+               {"hyperparameters", hyperparameters},
+               {"metamodel", metamodel_json(result)},
+               {"before", stage_json(result, &assessment::OutputAssessment::before)},
+               {"prior_mean", stage_json(result, &assessment::OutputAssessment::prior_mean)},
+               {"after", stage_json(result, &assessment::OutputAssessment::after)},
+               {"guideline14", guideline_json(result)},
+               {"extrapolation", range_json(result, calibration.range.extrapolation)},
+               {"range_fail", range_json(result, calibration.range.by_month)},
+               {"prior_sensitivity", sensitivity_json(result)},
+               {"warnings", result.warnings},
+               {"outputs", outputs_json(result)},
+               {"sampler", facts.sampler},
+               {"hyper_prior", calibration.hyper_prior.name},
+               {"iterations", facts.iterations},
+               {"burn_in", facts.burn_in},
+               {"chains", facts.chains},
+               {"design_runs", facts.design_runs},
+               {"seed", facts.seed},
+               {"data_revision", facts.data_revision},
+               {"model_version", facts.model_version},
+               {"recald_version", facts.recald_version},
+               {"tzdata", facts.time_zone_data},
+               {"wall_s", facts.wall_s}};
+  json["sampling"] = sampling_json(calibration.sampling);
+  json["evidence"] = evidence_json(calibration);
+  json["leave_out"] = leave_out_json(calibration);
+  json["weak_directions"] = weak_directions_json(result);
+  return json.dump(2) + "\n";
+}
+
+std::string draws_csv(const assessment::AssessedCalibration& result, std::size_t chain,
+                      const RunFacts& facts) {
+  const calibration::ChainDraws& draws = result.calibration.chains[chain];
+  std::string text = fmt::format(
+      "# model = {}\n# method = sample\n# num_samples = {}\n# num_warmup = {}\n# save_warmup = 0\n"
+      "# thin = 1\n# sampler = {}\n# seed = {}\n# id = {}\nlp__,accept_stat__",
+      facts.model_version, draws.log_density.size(), facts.burn_in, facts.sampler, facts.seed,
+      chain + 1);
+  for (const Parameter& parameter : result.parameters) text += "," + parameter.name;
+  for (const calibration::Summary& s : result.calibration.hyperparameters) text += "," + s.name;
+  text += '\n';
+  auto out = std::back_inserter(text);
+  for (Eigen::Index i = 0; i < draws.log_density.size(); ++i) {
+    fmt::format_to(out, "{:.10g},{:.4g}", draws.log_density[i], draws.acceptance_rate);
+    for (const double value : draws.theta.row(i)) fmt::format_to(out, ",{:.10g}", value);
+    fmt::format_to(out, ",{:.10g},{:.10g}", draws.discrepancy_precision[i],
+                   draws.error_precision[i]);
+    for (const double value : draws.beta.row(i)) fmt::format_to(out, ",{:.10g}", value);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string months_csv(const Recording& recording, const std::string& tzdata) {
+  std::string text =
+      "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
+      "revision,tzdata\n";
+  for (const MeterRecord& record : recording.meters) {
+    for (const metering::MonthlyFigure& figure : record.figures) {
+      const std::string value = std::isfinite(figure.daily_average_kWh)
+                                    ? fmt::format("{:.6g}", figure.daily_average_kWh)
+                                    : "";
+      const std::string peak = figure.peak ? fmt::format("{:.6g}", figure.peak->kW) : "";
+      const std::string peak_at = figure.peak ? metering::to_string(figure.peak->start) : "";
+      text += fmt::format("{},{},{},kWh/day,{:.6f},{:.6f},{},{},block-{}s,{},{},{},{}\n",
+                          metering::to_string(figure.month), record.meter.id, value,
+                          figure.coverage, figure.filled_share, peak, peak_at,
+                          figure.peak_window.count(), figure.usable ? "yes" : "no",
+                          is_site_different(recording, figure.month) ? "yes" : "no",
+                          figure.revision, tzdata);
+    }
+  }
+  return text;
+}
+
+std::string profile_json(const profile::ElectricityProfile& profile) {
+  return profile_object(profile).dump(2) + "\n";
+}
+
+}  // namespace recald::daemon

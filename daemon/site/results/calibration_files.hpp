@@ -1,0 +1,29 @@
+/// The files of a calibration: calibration.json, draws_<chain>.csv, months.csv.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/result.hpp"
+#include "daemon/site/calibrate/site_calibration.hpp"
+#include "daemon/site/model/run_facts.hpp"
+
+namespace recald::daemon {
+
+/// One JSON object as text, indented; absent numbers are null.
+[[nodiscard]] std::string calibration_json(const assessment::AssessedCalibration& result,
+                                           const RunFacts& facts);
+
+/// Draws of one chain as CmdStan writes them, so that ArviZ and R's posterior read them.
+[[nodiscard]] std::string draws_csv(const assessment::AssessedCalibration& result,
+                                    std::size_t chain, const RunFacts& facts);
+
+/// `month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,revision,
+/// tzdata`, one row a meter and month; `different` when any meter says that the month is not like
+/// the same months before.
+[[nodiscard]] std::string months_csv(const Recording& recording, const std::string& tzdata);
+
+/// The profile as JSON: schedules in kW by kind of day and hour.
+[[nodiscard]] std::string profile_json(const profile::ElectricityProfile& profile);
+
+}  // namespace recald::daemon

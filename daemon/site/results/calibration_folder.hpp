@@ -1,0 +1,27 @@
+/// All files of a calibration, written so that no interruption leaves half of two results.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/result.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
+#include "daemon/site/calibrate/site_on_design.hpp"
+
+namespace recald::daemon {
+
+/// The report page. @param generated_at  Shown on it.
+[[nodiscard]] std::string render(const FinishedCalibration& done, const std::string& generated_at);
+
+/// Draws, months, profile, page and, last, calibration.json: who finds that finds everything it
+/// speaks of. What an earlier calibration left in the folder goes.
+[[nodiscard]] Result<void> write_calibration(const FinishedCalibration& done,
+                                             const std::string& json,
+                                             const std::string& generated_at,
+                                             const std::filesystem::path& folder);
+
+/// Draws and, last, calibration.json.
+[[nodiscard]] Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,
+                                             const std::filesystem::path& folder);
+
+}  // namespace recald::daemon

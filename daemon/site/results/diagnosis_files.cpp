@@ -1,0 +1,276 @@
+#include "daemon/site/results/diagnosis_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/diagnosis/effect_posterior.hpp"
+#include "daemon/site/results/diagnosis_words.hpp"
+#include "daemon/site/results/json_number.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using diagnosis::Addition;
+using diagnosis::Candidate;
+using diagnosis::ChangeInterval;
+using diagnosis::Diagnosis;
+using diagnosis::ModelGap;
+using diagnosis::ParameterPosterior;
+using diagnosis::SiteProblem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kFindingsShown = 40;
+
+std::string meter_name(const SiteProblem& site, int meter) {
+  return meter < 0 ? std::string{} : site.meters[static_cast<std::size_t>(meter)].id;
+}
+
+Json located_json(const SiteProblem& site, const std::vector<diagnosis::Finding>& findings) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(findings.size(), kFindingsShown); ++i) {
+    const diagnosis::Finding& f = findings[i];
+    list.push_back({{"meter", site.meters[f.meter].id},
+                    {"by", f.family},
+                    {"where", f.words},
+                    {"share", json_number(f.share)},
+                    {"share_se", json_number(f.share_se)},
+                    {"kWh_month", json_number(f.kWh_month)},
+                    {"t", json_number(f.statistic)},
+                    {"adjusted_p", json_number(f.adjusted_p)}});
+  }
+  return list;
+}
+
+/// Days are written as the dates that people read, too.
+Json parameters_json(const SiteProblem& site, const std::vector<ParameterPosterior>& posterior) {
+  Json list = Json::array();
+  for (const ParameterPosterior& p : posterior) {
+    Json entry = {{"name", p.name},
+                  {"unit", p.unit},
+                  {"mode", json_number(p.mode)},
+                  {"sd", json_number(p.sd)},
+                  {"q05", json_number(p.q05)},
+                  {"q50", json_number(p.q50)},
+                  {"q95", json_number(p.q95)}};
+    if (p.is_day()) {
+      const auto date = [&](double days) { return metering::to_string(day_after(site, days)); };
+      entry["date"] = date(p.mode);
+      entry["date_q05"] = date(p.q05);
+      entry["date_q95"] = date(p.q95);
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosis::Explanation& e,
+                     Json& entry) {
+  const Candidate& candidate = d.candidates[e.candidate];
+  entry["key"] = candidate.key(site);
+  entry["title"] = candidate.effect->title;
+  entry["parameters"] = parameters_json(site, posterior_of(candidate, e.fit));
+  entry["evidence_gain"] = json_number(e.evidence_gain);
+  entry["log_likelihood_gain"] = json_number(e.likelihood_gain);
+  entry["first_look"] = json_number(e.first_look);
+  entry["support"] = json_number(e.support);
+  entry["selected_gain"] = json_number(e.selected_gain);
+  entry["selected_se"] = json_number(e.selected_se);
+  entry["null_scale"] = json_number(e.null_scale);
+  if (!e.objection.empty()) entry["objection"] = e.objection;
+  entry["at_truncation"] = e.at_truncation;
+  Json confusable = Json::array();
+  Json separated = Json::array();
+  for (const diagnosis::Confusable& c : candidate.effect->confusable) {
+    confusable.push_back(c.effect);
+    separated.push_back(c.separated_by);
+  }
+  entry["confusable_with"] = confusable;
+  entry["separated_by"] = separated;
+}
+
+/// Of the first search: there all rivals started from the model as drawn.
+Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
+  const diagnosis::Naming& naming = d.passes.front().naming;
+  Json list = Json::array();
+  for (const diagnosis::NameProbability& p : naming.probabilities) {
+    Json entry = {{"effect", p.effect}, {"probability", json_number(p.probability)}};
+    if (p.meter >= 0) entry["meter"] = meter_name(site, p.meter);
+    if (p.explanation) add_explanation(site, d, naming.explanations[*p.explanation], entry);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+/// All candidates as the residuals alone see them, before any was fitted.
+Json first_look_json(const SiteProblem& site, const Diagnosis& d) {
+  Json list = Json::array();
+  const diagnosis::FirstLook& look = d.passes.front().look;
+  for (std::size_t i = 0; i < look.candidates.size(); ++i) {
+    const diagnosis::CandidateLook& c = look.candidates[i];
+    Json entry = {{"effect", d.candidates[i].effect->id},
+                  {"key", d.candidates[i].key(site)},
+                  {"log_bayes_factor", json_number(c.log_bayes_factor)},
+                  {"score", json_number(c.best.score)},
+                  {"detectability", json_number(c.best.detectability)}};
+    if (d.candidates[i].meter >= 0) entry["meter"] = meter_name(site, d.candidates[i].meter);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json base_parameters_json(const SiteProblem& site,
+                          const std::vector<diagnosis::ParameterBelief>& beliefs) {
+  Json list = Json::array();
+  for (std::size_t j = 0; j < beliefs.size(); ++j) {
+    list.push_back({{"name", site.parameters[j].name},
+                    {"unit", site.definitions[j]->unit},
+                    {"mode", json_number(beliefs[j].mode)},
+                    {"q05", json_number(beliefs[j].q05)},
+                    {"q95", json_number(beliefs[j].q95)}});
+  }
+  return list;
+}
+
+Json gaps_json(const SiteProblem& site, const std::vector<diagnosis::MeterGap>& gaps) {
+  Json json = Json::object();
+  for (std::size_t g = 0; g < gaps.size(); ++g) {
+    json[site.meters[g].id] = {{"nmbe_sim_minus_meas", json_number(gaps[g].nmbe_sim_minus_meas)},
+                               {"cvrmse", json_number(gaps[g].cvrmse_monthly)},
+                               {"cvrmse_daily", json_number(gaps[g].cvrmse_daily)},
+                               {"discrepancy_share", json_number(gaps[g].discrepancy_share)},
+                               {"log_score", json_number(gaps[g].log_score)}};
+  }
+  return json;
+}
+
+Json hourly_gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
+  Json change = Json::object();
+  for (std::size_t g = 0; g < gap.log_score_change.size(); ++g) {
+    change[site.meters[g].id] = {{"sum", json_number(gap.log_score_change[g].sum)},
+                                 {"se", json_number(gap.log_score_change[g].se)}};
+  }
+  return {{"before", gaps_json(site, gap.before)},
+          {"after", gaps_json(site, gap.after)},
+          {"log_score_change", change},
+          {"confirmed", gap.confirmed}};
+}
+
+Json figures_json(const ModelGap& gap, const std::vector<ModelGap::Figures>& figures) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    json[gap.outputs[i]] = {{"nmbe_sim_minus_meas", json_number(figures[i].nmbe_sim_minus_meas)},
+                            {"cvrmse", json_number(figures[i].cvrmse)},
+                            {"discrepancy_share", json_number(figures[i].discrepancy_share)},
+                            {"log_score", json_number(figures[i].log_score)}};
+  }
+  return json;
+}
+
+Json change_json(const ModelGap& gap) {
+  const auto interval = [](const ChangeInterval& change) {
+    return Json{{"q05", json_number(change.low)}, {"q95", json_number(change.high)}};
+  };
+  Json json = Json::object();
+  for (std::size_t i = 0; i < gap.change.size(); ++i) {
+    const ModelGap::Change& change = gap.change[i];
+    json[gap.outputs[i]] = {
+        {"log_score",
+         {{"sum", json_number(change.log_score.sum)}, {"se", json_number(change.log_score.se)}}},
+        {"nmbe_size", interval(change.nmbe_size)},
+        {"cvrmse", interval(change.cvrmse)}};
+  }
+  return json;
+}
+
+/// One entry a model; null where nothing was added or no month was kept back.
+Json gap_json(const SiteProblem& site, const Diagnosis& d, const std::vector<ModelGap>& others) {
+  Json json = Json::object();
+  if (d.gap) json["hourly"] = hourly_gap_json(site, *d.gap);
+  for (const ModelGap& gap : others) {
+    json[gap.model] = {{"before", figures_json(gap, gap.before)},
+                       {"after", figures_json(gap, gap.after)},
+                       {"change", change_json(gap)}};
+  }
+  return json.empty() ? Json(nullptr) : json;
+}
+
+/// Ids of what is in the model now, in the order of their addition.
+Json added_json(const Diagnosis& d) {
+  Json list = Json::array();
+  if (d.not_confirmed) return list;
+  for (const Addition& addition : d.added) list.push_back(addition.candidate.effect->id);
+  return list;
+}
+
+Json additions_json(const SiteProblem& site, const Diagnosis& d) {
+  Json list = Json::array();
+  for (const Addition& addition : d.added) {
+    Json impact = Json::object();
+    for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
+      impact[site.meters[g].id] = json_number(addition.monthly_kWh[g]);
+    }
+    Json entry = {{"effect", addition.candidate.effect->id},
+                  {"key", addition.candidate.key(site)},
+                  {"title", addition.candidate.effect->title},
+                  {"meaning", addition.candidate.effect->meaning},
+                  {"meter", meter_name(site, addition.candidate.meter)},
+                  {"status", d.not_confirmed ? "tried and taken back" : "added"},
+                  {"when", when_words(site, addition)},
+                  {"probability", json_number(addition.probability)},
+                  {"evidence_gain", json_number(addition.evidence_gain)},
+                  {"parameters", parameters_json(site, posterior_of(addition))},
+                  {"monthly_kWh", impact}};
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json not_identifiable_json(const SiteProblem& site, const Diagnosis& d) {
+  Json list = Json::array();
+  for (const NotSeen& n : not_seen_here(d)) {
+    Json entry = {{"effect", n.effect}, {"why", n.why}};
+    if (n.meter >= 0) entry["meter"] = meter_name(site, n.meter);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const RunFacts& facts,
+                           const std::vector<ModelGap>& others) {
+  const diagnosis::Pass& first = d.passes.front();
+  Json json = {{"outcome", to_string(d.outcome)},
+               {"why", d.why},
+               {"not_confirmed", d.not_confirmed},
+               {"located", located_json(site, first.located)},
+               {"candidates", candidates_json(site, d)},
+               {"confusable", first.naming.confusable},
+               {"added", added_json(d)},
+               {"additions", additions_json(site, d)},
+               {"null_threshold", json_number(first.naming.null_threshold)},
+               {"unknown_gain", json_number(first.naming.unknown_gain)},
+               {"first_look", first_look_json(site, d)},
+               {"parameters_before", base_parameters_json(site, d.parameters_before)},
+               {"parameters_after", base_parameters_json(site, d.parameters_after)},
+               {"base_fit", gaps_json(site, d.base_fit)},
+               {"held_fit", gaps_json(site, d.passes.front().gaps)},
+               {"gap", gap_json(site, d, others)},
+               {"not_identifiable_here", not_identifiable_json(site, d)},
+               {"warnings", d.warnings},
+               {"model_runs", d.model_runs},
+               {"seed", facts.seed},
+               {"recald_version", facts.recald_version},
+               {"data_revision", facts.data_revision},
+               {"model_version", facts.model_version},
+               {"wall_s", facts.wall_s}};
+  if (!d.added.empty()) json["located_after"] = located_json(site, d.passes.back().located);
+  // Bytes of a name that are not UTF-8 become U+FFFD instead of an exception.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,255 @@
+#include "daemon/site/results/diagnosis_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "adapters/report/format.hpp"
+#include "core/absent.hpp"
+#include "core/diagnosis/effect_posterior.hpp"
+#include "daemon/site/results/diagnosis_words.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using diagnosis::Addition;
+using diagnosis::Diagnosis;
+using diagnosis::ModelGap;
+using diagnosis::ParameterPosterior;
+using diagnosis::Role;
+using diagnosis::SiteProblem;
+
+report::DiagnosisVerdict verdict_of(const Diagnosis& d) {
+  if (d.not_confirmed) return report::DiagnosisVerdict::not_confirmed;
+  switch (d.outcome) {
+    case diagnosis::Outcome::named:
+      return report::DiagnosisVerdict::named;
+    case diagnosis::Outcome::confusable:
+      return report::DiagnosisVerdict::confusable;
+    case diagnosis::Outcome::unknown:
+      return report::DiagnosisVerdict::unknown;
+    case diagnosis::Outcome::none:
+      break;
+  }
+  return report::DiagnosisVerdict::none;
+}
+
+report::Provenance diagnosis_provenance(const RunFacts& facts) {
+  // No computing time: the same data and seed give the same page.
+  return {.recald_version = facts.recald_version,
+          .data_revision = facts.data_revision,
+          .model_version = facts.model_version,
+          .time_zone_data = facts.time_zone_data,
+          .catalogue = fmt::format("{} effects, of recald {}", diagnosis::catalogue().size(),
+                                   facts.recald_version),
+          .seed = facts.seed};
+}
+
+std::vector<report::EffectParameterRow> rows_of(const SiteProblem& site,
+                                                const std::vector<ParameterPosterior>& posterior) {
+  std::vector<report::EffectParameterRow> rows;
+  for (const ParameterPosterior& p : posterior) {
+    const auto text = [&](double value) {
+      if (p.is_day()) return day_words(day_after(site, value));
+      const bool has_unit = !p.unit.empty() && p.unit != "-";
+      return report::number_text(value) + (has_unit ? " " + p.unit : "");
+    };
+    std::string name = p.name;
+    std::ranges::replace(name, '_', ' ');
+    rows.push_back({std::move(name), text(p.mode), text(p.q05), text(p.q95)});
+  }
+  return rows;
+}
+
+report::AddedEffectCard card_of(const SiteProblem& site, const Addition& addition) {
+  const diagnosis::Effect& effect = *addition.candidate.effect;
+  report::AddedEffectCard card{.title = effect_label(site, effect.id, addition.candidate.meter),
+                               .meaning = std::string{effect.meaning},
+                               .physics = std::string{effect.physics},
+                               .when = when_words(site, addition),
+                               .probability = addition.probability,
+                               .impacts = {},
+                               .parameters = rows_of(site, posterior_of(addition))};
+  for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
+    card.impacts.push_back({meter_label(site.meters[g].id), addition.monthly_kWh[g]});
+  }
+  return card;
+}
+
+std::vector<report::LocatedRow> located_of(const SiteProblem& site,
+                                           const std::vector<diagnosis::Finding>& findings) {
+  std::vector<report::LocatedRow> rows;
+  for (const diagnosis::Finding& f : findings) {
+    rows.push_back(
+        {meter_label(site.meters[f.meter].id), f.words, f.share, f.share_se, f.kWh_month});
+  }
+  return rows;
+}
+
+report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d,
+                            const diagnosis::NameProbability& p) {
+  report::CandidateBar bar{.label = effect_label(site, p.effect, p.meter),
+                           .meaning = {},
+                           .kind = report::CandidateKind::effect,
+                           .probability = p.probability,
+                           .evidence_gain = kAbsent,
+                           .parameters = {}};
+  const diagnosis::Naming& naming = d.passes.front().naming;
+  if (p.effect == "none") {
+    bar.kind = report::CandidateKind::none;
+    bar.meaning = "The model lacks nothing that these meters can show.";
+  } else if (p.effect == "unknown") {
+    bar.kind = report::CandidateKind::unknown;
+    bar.meaning = "The gap has a pattern that no effect of the catalogue makes.";
+    bar.evidence_gain = naming.unknown_gain;
+  } else if (const diagnosis::Effect* effect = diagnosis::find_effect(p.effect)) {
+    bar.meaning = effect->meaning;
+  }
+  if (p.explanation) {
+    const diagnosis::Explanation& e = naming.explanations[*p.explanation];
+    bar.evidence_gain = e.evidence_gain;
+    bar.parameters = rows_of(site, posterior_of(d.candidates[e.candidate], e.fit));
+  }
+  return bar;
+}
+
+/// A meter without a reading on the months kept back is judged by nothing, not by zero.
+std::vector<diagnosis::MeterGap> where_measured(const SiteProblem& site,
+                                                std::vector<diagnosis::MeterGap> gaps) {
+  for (std::size_t g = 0; g < gaps.size(); ++g) {
+    bool measured = false;
+    for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {
+      measured =
+          measured || (site.roles[static_cast<std::size_t>(i)] == Role::show &&
+                       std::isfinite(site.measured_parts_kW(i, static_cast<Eigen::Index>(g))));
+    }
+    if (!measured) gaps[g] = {kAbsent, kAbsent, kAbsent, kAbsent, gaps[g].discrepancy_share};
+  }
+  return gaps;
+}
+
+/// The model as drawn, then one step an addition; empty where no month was kept back.
+std::vector<report::GapStep> steps_of(const SiteProblem& site, const Diagnosis& d) {
+  if (std::ranges::count(site.roles, Role::show) == 0) return {};
+  std::vector<report::GapStep> steps{{"as drawn", where_measured(site, d.passes.front().gaps)}};
+  for (std::size_t i = 0; i < d.added.size(); ++i) {
+    const diagnosis::Candidate& candidate = d.added[i].candidate;
+    const auto& gaps = i + 1 < d.passes.size() ? d.passes[i + 1].gaps : d.gaps;
+    steps.push_back({"+ " + effect_label(site, candidate.effect->id, candidate.meter),
+                     where_measured(site, gaps)});
+  }
+  return steps;
+}
+
+std::vector<report::MeterMaps> maps_of(const SiteProblem& site, const Diagnosis& d,
+                                       const std::vector<double>& limits_C) {
+  const Eigen::ArrayXXd before = residual_shares(site, d.passes.front().modelled_kW);
+  const Eigen::ArrayXXd after = residual_shares(site, d.modelled_kW);
+  const std::size_t months = site.drivers->months.size();
+  std::vector<report::MeterMaps> maps;
+  for (std::size_t g = 0; g < site.meters.size(); ++g) {
+    const auto column = static_cast<Eigen::Index>(g);
+    maps.push_back({.meter = meter_label(site.meters[g].id),
+                    .mean_kW = measured_mean_kW(site, column),
+                    .before = residual_map(site.day_parts, before.col(column), months, limits_C),
+                    .after = {}});
+    if (!d.added.empty()) {
+      maps.back().after = residual_map(site.day_parts, after.col(column), months, limits_C);
+    }
+  }
+  return maps;
+}
+
+std::vector<report::EffectSignature> signatures_of(const SiteProblem& site, const Diagnosis& d,
+                                                   const std::vector<double>& limits_C) {
+  std::vector<report::EffectSignature> signatures;
+  for (std::size_t i = 0; i < std::min(d.added.size(), d.passes.size()); ++i) {
+    const Addition& addition = d.added[i];
+    const Eigen::ArrayXXd& old_kW = d.passes[i].modelled_kW;
+    const Eigen::ArrayXXd& new_kW =
+        i + 1 < d.passes.size() ? d.passes[i + 1].modelled_kW : d.modelled_kW;
+    const Eigen::ArrayXXd residual = residual_shares(site, old_kW);
+    const Eigen::ArrayXXd change = change_shares(site, new_kW - old_kW);
+    const Eigen::ArrayXXd alone = change_shares(site, addition.effect_kW);
+    for (std::size_t g = 0; g < site.meters.size(); ++g) {
+      const auto column = static_cast<Eigen::Index>(g);
+      const auto signature = [&](const Eigen::ArrayXXd& shares) {
+        return signature_of(site.day_parts, shares.col(column), limits_C);
+      };
+      signatures.push_back(
+          {.effect = effect_label(site, addition.candidate.effect->id, addition.candidate.meter),
+           .meter = meter_label(site.meters[g].id),
+           .residual = signature(residual),
+           .change = signature(change),
+           .effect_alone = signature(alone)});
+    }
+  }
+  return signatures;
+}
+
+std::vector<report::OtherGapRow> other_gaps_of(const std::vector<ModelGap>& gaps) {
+  std::vector<report::OtherGapRow> rows;
+  for (const ModelGap& gap : gaps) {
+    for (std::size_t i = 0; i < gap.outputs.size(); ++i) {
+      const ModelGap::Figures& before = gap.before[i];
+      const ModelGap::Figures& after = gap.after[i];
+      rows.push_back({.model = gap.model,
+                      .output = meter_label(gap.outputs[i]),
+                      .cvrmse_before = before.cvrmse,
+                      .cvrmse_after = after.cvrmse,
+                      .nmbe_before = before.nmbe_sim_minus_meas,
+                      .nmbe_after = after.nmbe_sim_minus_meas,
+                      .log_score_before = before.log_score,
+                      .log_score_after = after.log_score});
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagnosis& d,
+                                          const SiteProblem& site, const RunFacts& facts,
+                                          std::string generated_at,
+                                          const std::vector<ModelGap>& others) {
+  OutcomeWords words = outcome_words(d, site, others);
+  report::DiagnosisData data{.title = "Diagnosis of " + config.name,
+                             .generated_at = std::move(generated_at),
+                             .site = {config.id, config.name, config.timezone},
+                             .provenance = diagnosis_provenance(facts),
+                             .verdict = verdict_of(d),
+                             .headline = std::move(words.headline),
+                             .explanations = std::move(words.sentences)};
+  for (const std::string& warning : d.warnings) {
+    data.notices.push_back({report::Severity::warning, warning});
+  }
+  for (const Addition& addition : d.added) data.added.push_back(card_of(site, addition));
+  for (const diagnosis::MeterData& meter : site.meters)
+    data.meters.push_back(meter_label(meter.id));
+  data.months = site.drivers->months;
+  data.uses = site.month_roles;
+  data.temperature_limits_C = diagnosis::temperature_limits_C(site.day_parts);
+  data.maps = maps_of(site, d, data.temperature_limits_C);
+  data.located = located_of(site, d.passes.front().located);
+  if (!d.added.empty() && d.passes.size() > 1) {
+    data.located_after = located_of(site, d.passes.back().located);
+  }
+  for (const auto& p : d.passes.front().naming.probabilities) {
+    data.candidates.push_back(bar_of(site, d, p));
+  }
+  for (SeparationWords& s : separations_of(d, site)) {
+    data.separations.push_back(
+        {std::move(s.effect), std::move(s.rival), s.probability, std::move(s.measurement)});
+  }
+  data.steps = steps_of(site, d);
+  data.other_gaps = other_gaps_of(others);
+  data.signatures = signatures_of(site, d, data.temperature_limits_C);
+  data.base_fit = d.base_fit;
+  for (const NotSeen& n : not_seen_here(d)) {
+    data.not_identifiable.push_back({effect_label(site, n.effect, n.meter), n.why});
+  }
+  return data;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,365 @@
+#include "daemon/site/results/diagnosis_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "adapters/report/format.hpp"
+#include "core/absent.hpp"
+#include "core/diagnosis/effect_posterior.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using diagnosis::Addition;
+using diagnosis::ChangeInterval;
+using diagnosis::Diagnosis;
+using diagnosis::ModelGap;
+using diagnosis::NameProbability;
+using diagnosis::Outcome;
+using diagnosis::ParameterPosterior;
+using diagnosis::SiteProblem;
+
+constexpr std::size_t kFindingsInWords = 5;
+constexpr std::size_t kCandidatesInWords = 5;
+// A meter that an effect touches by less than this share of the most it does is not worth a word.
+constexpr double kImpactWorthAWord = 0.05;
+constexpr double kLeastImpact_kWh = 0.5;
+// Beyond ten times the simulation a percentage says nothing: there is next to none.
+constexpr double kSharePeopleRead = 10.0;
+// Below this probability the likeliest effect is no lead worth a measurement.
+constexpr double kLeadWorthMeasuring = 0.1;
+
+std::string quoted_label(const SiteProblem& site, std::string_view effect, int meter) {
+  return "\"" + effect_label(site, effect, meter) + "\"";
+}
+
+std::string label_of(const SiteProblem& site, const Addition& addition) {
+  return quoted_label(site, addition.candidate.effect->id, addition.candidate.meter);
+}
+
+/// "a", "a and b", "a, b and c"
+std::string listed(const std::vector<std::string>& items, const char* last) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) text += i + 1 == items.size() ? fmt::format(" {} ", last) : ", ";
+    text += items[i];
+  }
+  return text;
+}
+
+std::string sentence_of(std::string words) {
+  if (words.empty()) return words;
+  if (words.front() >= 'a' && words.front() <= 'z') words.front() -= 'a' - 'A';
+  return words + ".";
+}
+
+/// "about 4,200 kWh a month more at Steam and 120 kWh less at Chilled water"
+std::string impact_words(const SiteProblem& site, const Addition& addition) {
+  double most = 0.0;
+  for (const double kWh : addition.monthly_kWh) most = std::max(most, std::abs(kWh));
+  std::vector<std::string> items;
+  for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
+    const double kWh = addition.monthly_kWh[g];
+    if (!(std::abs(kWh) > std::max(kImpactWorthAWord * most, kLeastImpact_kWh))) continue;
+    items.push_back(fmt::format("{} kWh a month {} at {}", report::count_text(std::abs(kWh)),
+                                kWh > 0.0 ? "more" : "less", meter_label(site.meters[g].id)));
+  }
+  return items.empty() ? "no change of any meter's month" : "about " + listed(items, "and");
+}
+
+std::string addition_words(const SiteProblem& site, const Addition& addition) {
+  return fmt::format("{}: {} Probability {}. {} It makes {}.", label_of(site, addition),
+                     addition.candidate.effect->meaning,
+                     report::probability_text(addition.probability), when_words(site, addition),
+                     impact_words(site, addition));
+}
+
+std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
+  if (!d.gap) {
+    // What was taken back for that reason says so itself.
+    return d.not_confirmed ? ""
+                           : "No reading lies in the months kept back: nothing confirms this yet.";
+  }
+  std::vector<std::string> items;
+  for (std::size_t g = 0; g < d.gap->before.size(); ++g) {
+    items.push_back(
+        fmt::format("{} {:.1f} % before, {:.1f} % after", meter_label(site.meters[g].id),
+                    100.0 * d.gap->before[g].cvrmse_daily, 100.0 * d.gap->after[g].cvrmse_daily));
+  }
+  const auto kept = std::ranges::count(site.month_roles, diagnosis::Role::show);
+  return fmt::format("Scatter of days (CV(RMSE)) on the {} months kept back: {}.", kept,
+                     listed(items, "and"));
+}
+
+/// "electricity_daily_kWh" -> "Electricity"
+std::string output_label(std::string_view output) {
+  constexpr std::string_view kSuffix = "_daily_kWh";
+  if (output.ends_with(kSuffix)) output.remove_suffix(kSuffix.size());
+  return meter_label(std::string{output});
+}
+
+/// Empty where the model has nothing to judge by.
+std::string other_model_words(const ModelGap& gap) {
+  std::vector<std::string> items;
+  for (std::size_t i = 0; i < gap.change.size(); ++i) {
+    const ChangeInterval& change = gap.change[i].cvrmse;
+    if (!std::isfinite(gap.before[i].cvrmse) || !std::isfinite(change.low)) continue;
+    items.push_back(
+        fmt::format("{} {:.1f} % before, {:.1f} % after (90 % of the change: {:+.1f} to "
+                    "{:+.1f})",
+                    output_label(gap.outputs[i]), 100.0 * gap.before[i].cvrmse,
+                    100.0 * gap.after[i].cvrmse, 100.0 * change.low, 100.0 * change.high));
+  }
+  if (items.empty()) return {};
+  return fmt::format("Scatter of months in the {} model: {}.",
+                     gap.model == "epc" ? "monthly" : gap.model, listed(items, "and"));
+}
+
+/// What the last search left open, after effects had been added.
+std::string remainder_words(const Diagnosis& d) {
+  const diagnosis::Pass& last = d.passes.back();
+  if (d.passes.size() < 2 || last.located.empty()) return {};
+  return fmt::format(
+      "Something is left after that: {} places still stand out, the clearest in diagnosis.json; "
+      "{}.",
+      last.located.size(), last.naming.why);
+}
+
+/// The members of the confusable set with their meters, the likeliest first.
+std::vector<std::pair<std::string, int>> confusable_names(const diagnosis::Naming& naming) {
+  std::vector<std::pair<std::string, int>> names;
+  for (const NameProbability& p : naming.probabilities) {
+    const bool in_set = std::ranges::count(naming.confusable, p.effect) > 0;
+    if (in_set && names.size() < naming.confusable.size()) names.emplace_back(p.effect, p.meter);
+  }
+  return names;
+}
+
+std::string confusable_headline(const Diagnosis& d, const SiteProblem& site) {
+  std::vector<std::string> labels;
+  for (const auto& [id, meter] : confusable_names(d.passes.front().naming)) {
+    labels.push_back(quoted_label(site, id, meter));
+  }
+  return fmt::format("{} explanations fit equally well: {}.",
+                     labels.size() == 2 ? "Two" : "Several", listed(labels, "or"));
+}
+
+std::string headline_of(const Diagnosis& d, const SiteProblem& site) {
+  std::vector<std::string> labels;
+  for (const Addition& addition : d.added) labels.push_back(label_of(site, addition));
+  if (d.not_confirmed) {
+    return fmt::format("Not confirmed: {} {} tried and taken back.", listed(labels, "and"),
+                       labels.size() == 1 ? "was" : "were");
+  }
+  switch (d.outcome) {
+    case Outcome::named:
+      return fmt::format("Missing in the model: {}.", listed(labels, "and"));
+    case Outcome::confusable:
+      return confusable_headline(d, site);
+    case Outcome::unknown:
+      return "Something is missing in the model, and it is not known what.";
+    case Outcome::none:
+      break;
+  }
+  return d.passes.front().located.empty()
+             ? "The calibrated model follows the meters within what chance explains."
+             : "No missing effect could be shown.";
+}
+
+std::string find_it_words(const Diagnosis& d) {
+  return d.passes.front().located.empty()
+             ? ""
+             : "Ask those who run the building what happens at the places where meters and model "
+               "disagree.";
+}
+
+std::vector<std::string> separation_sentences(const Diagnosis& d, const SiteProblem& site) {
+  std::vector<std::string> sentences;
+  for (const SeparationWords& s : separations_of(d, site)) {
+    sentences.push_back(
+        fmt::format("To tell \"{}\" from \"{}\": {}", s.effect, s.rival, s.measurement));
+  }
+  if (sentences.empty()) {
+    sentences.emplace_back("The catalogue knows no measurement that would tell them apart.");
+  }
+  return sentences;
+}
+
+/// The effects whose rivals are worth knowing.
+std::vector<std::pair<std::string, int>> leads_of(const Diagnosis& d) {
+  std::vector<std::pair<std::string, int>> leads;
+  if (!d.added.empty()) {
+    for (const Addition& addition : d.added) {
+      leads.emplace_back(addition.candidate.effect->id, addition.candidate.meter);
+    }
+    return leads;
+  }
+  const diagnosis::Naming& naming = d.passes.front().naming;
+  if (!naming.confusable.empty()) return confusable_names(naming);
+  const auto first = std::ranges::find_if(
+      naming.probabilities, [](const NameProbability& p) { return p.explanation.has_value(); });
+  if (first != naming.probabilities.end() && first->probability >= kLeadWorthMeasuring) {
+    leads.emplace_back(first->effect, first->meter);
+  }
+  return leads;
+}
+
+/// Summed over the meters of an effect; NaN where it was not fitted.
+double probability_of(const diagnosis::Naming& naming, std::string_view effect) {
+  double sum = kAbsent;
+  for (const NameProbability& p : naming.probabilities) {
+    if (p.effect == effect) sum = (std::isnan(sum) ? 0.0 : sum) + p.probability;
+  }
+  return sum;
+}
+
+std::string located_words(const Diagnosis& d, const SiteProblem& site) {
+  const auto& located = d.passes.front().located;
+  if (located.empty()) return "No single hour, weather or month stands out beyond chance.\n";
+  std::string text = "Where simulation and meters disagree most:\n";
+  for (std::size_t i = 0; i < std::min(located.size(), kFindingsInWords); ++i) {
+    const diagnosis::Finding& f = located[i];
+    const std::string share =
+        std::abs(f.share) > kSharePeopleRead
+            ? "next to nothing is simulated"
+            : fmt::format("{:+.0f} % +- {:.0f}", 100.0 * f.share, 100.0 * f.share_se);
+    text += fmt::format("  {}, {}: {}, {:+.0f} kWh a month\n", meter_label(site.meters[f.meter].id),
+                        f.words, share, f.kWh_month);
+  }
+  return text;
+}
+
+std::string probability_words(const Diagnosis& d, const SiteProblem& site) {
+  std::string text = "Explanations:\n";
+  const auto& probabilities = d.passes.front().naming.probabilities;
+  for (std::size_t i = 0; i < std::min(probabilities.size(), kCandidatesInWords); ++i) {
+    const NameProbability& p = probabilities[i];
+    text += fmt::format("  {:5.1f} %  {}\n", 100.0 * p.probability,
+                        effect_label(site, p.effect, p.meter));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string meter_label(const std::string& id) {
+  std::string label = id;
+  std::ranges::replace(label, '_', ' ');
+  if (!label.empty() && label.front() >= 'a' && label.front() <= 'z') label.front() -= 'a' - 'A';
+  return label;
+}
+
+std::string effect_label(const SiteProblem& site, std::string_view effect, int meter) {
+  if (effect == "none") return "No effect";
+  if (effect == "unknown") return "Something else";
+  const diagnosis::Effect* entry = diagnosis::find_effect(effect);
+  const std::string title{entry == nullptr ? effect : entry->title};
+  if (meter < 0) return title;
+  return fmt::format("{} ({})", title,
+                     meter_label(site.meters[static_cast<std::size_t>(meter)].id));
+}
+
+std::string day_words(metering::Day day) {
+  return fmt::format("{} {}", unsigned{day.day()}, report::month_text(day.year() / day.month()));
+}
+
+std::string when_words(const SiteProblem& site, const Addition& addition) {
+  const diagnosis::Candidate& candidate = addition.candidate;
+  if (!candidate.begins && !candidate.ends) return "At all times of the record.";
+  const std::vector<ParameterPosterior> posterior = posterior_of(addition);
+  const auto day_with_range = [&](const ParameterPosterior& p) {
+    return fmt::format("{} (90 %: {} to {})", day_words(day_after(site, p.mode)),
+                       day_words(day_after(site, p.q05)), day_words(day_after(site, p.q95)));
+  };
+  // The days come after the effect's own parameters, the first before the last.
+  const ParameterPosterior& last = posterior.back();
+  if (!candidate.ends) return fmt::format("Since about {}.", day_with_range(last));
+  if (!candidate.begins) return fmt::format("Until about {}.", day_with_range(last));
+  return fmt::format("From about {} until about {}.", day_with_range(*(posterior.end() - 2)),
+                     day_with_range(last));
+}
+
+std::vector<SeparationWords> separations_of(const Diagnosis& d, const SiteProblem& site) {
+  const diagnosis::Naming& naming = d.passes.front().naming;
+  std::vector<SeparationWords> list;
+  for (const auto& [id, meter] : leads_of(d)) {
+    const diagnosis::Effect* effect = diagnosis::find_effect(id);
+    if (effect == nullptr) continue;
+    for (const diagnosis::Confusable& rival : effect->confusable) {
+      const bool in_set = std::ranges::count(naming.confusable, rival.effect) > 0;
+      if (d.outcome == Outcome::confusable && !in_set) continue;
+      list.push_back({.effect = effect_label(site, id, meter),
+                      .rival = effect_label(site, rival.effect, -1),
+                      .probability = probability_of(naming, rival.effect),
+                      .measurement = std::string{rival.separated_by}});
+    }
+  }
+  return list;
+}
+
+std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
+  std::vector<NotSeen> list;
+  for (const diagnosis::NotIdentifiable& n : d.not_identifiable)
+    list.push_back({n.effect, -1, n.why});
+  // An effect stands in the list of candidates once for each way of dating it: the best one counts.
+  std::map<std::pair<std::string, int>, double> most_detectable;
+  const auto& looks = d.passes.front().look.candidates;
+  for (std::size_t i = 0; i < std::min(looks.size(), d.candidates.size()); ++i) {
+    const std::pair name{std::string{d.candidates[i].effect->id}, d.candidates[i].meter};
+    const double detectability =
+        looks[i].visible ? std::numeric_limits<double>::infinity() : looks[i].most_detectable;
+    const auto [at, is_new] = most_detectable.try_emplace(name, detectability);
+    if (!is_new) at->second = std::max(at->second, detectability);
+  }
+  for (const auto& [name, detectability] : most_detectable) {
+    if (std::isinf(detectability)) continue;
+    list.push_back(
+        {name.first, name.second,
+         fmt::format("too faint at these meters: a typical one stands out {:.1f} times the noise, "
+                     "{:.0f} are needed",
+                     detectability, diagnosis::kLeastDetectability)});
+  }
+  return list;
+}
+
+OutcomeWords outcome_words(const Diagnosis& d, const SiteProblem& site,
+                           const std::vector<ModelGap>& others) {
+  OutcomeWords words{.headline = headline_of(d, site), .sentences = {}};
+  const auto add = [&words](std::string sentence) {
+    if (!sentence.empty()) words.sentences.push_back(std::move(sentence));
+  };
+  add(sentence_of(d.why));
+  if (!d.added.empty()) {
+    add(confirmation_words(d, site));
+    for (const ModelGap& gap : others) add(other_model_words(gap));
+    if (!d.not_confirmed) add(remainder_words(d));
+    return words;
+  }
+  if (d.outcome == Outcome::confusable) {
+    for (std::string& sentence : separation_sentences(d, site)) add(std::move(sentence));
+  } else {
+    add(find_it_words(d));
+  }
+  return words;
+}
+
+std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site,
+                            const std::vector<ModelGap>& others) {
+  std::string text = located_words(d, site) + probability_words(d, site);
+  const OutcomeWords words = outcome_words(d, site, others);
+  text += fmt::format("Outcome: {}. {}\n", to_string(d.outcome), words.headline);
+  for (const Addition& addition : d.added) {
+    text += fmt::format("{}{}\n", d.not_confirmed ? "Tried and taken back: " : "",
+                        addition_words(site, addition));
+  }
+  for (const std::string& sentence : words.sentences) text += sentence + "\n";
+  for (const std::string& warning : d.warnings) text += "! " + warning + "\n";
+  return text;
+}
+
+}  // namespace recald::daemon

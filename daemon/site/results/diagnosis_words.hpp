@@ -1,0 +1,64 @@
+/// A diagnosis in words, for the person who runs the building: the same on a terminal and a page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/diagnosis/diagnose.hpp"
+#include "core/diagnosis/monthly_vote.hpp"
+
+namespace recald::daemon {
+
+struct OutcomeWords {
+  std::string headline;                ///< The answer, one sentence.
+  std::vector<std::string> sentences;  ///< Why, how sure, what to do next.
+};
+
+/// @param others  Gaps of other models than the hourly one.
+/// @pre the diagnosis has a pass.
+[[nodiscard]] OutcomeWords outcome_words(const diagnosis::Diagnosis& diagnosis,
+                                         const diagnosis::SiteProblem& site,
+                                         const std::vector<diagnosis::ModelGap>& others = {});
+
+/// For a terminal. @pre the diagnosis has a pass.
+[[nodiscard]] std::string diagnosis_words(const diagnosis::Diagnosis& diagnosis,
+                                          const diagnosis::SiteProblem& site,
+                                          const std::vector<diagnosis::ModelGap>& others = {});
+
+/// "Chilled water" of "chilled_water".
+[[nodiscard]] std::string meter_label(const std::string& id);
+
+/// "Meter's scale is wrong (Steam)": an effect's title, with the meter of an effect of one meter.
+/// `none` and `unknown` are "No effect" and "Something else".
+/// @param meter  -1: none.
+[[nodiscard]] std::string effect_label(const diagnosis::SiteProblem& site, std::string_view effect,
+                                       int meter);
+
+/// "12 Mar 2021"
+[[nodiscard]] std::string day_words(metering::Day day);
+
+/// "At all times of the record." or "Since about 12 Mar 2021 (90 %: 1 Mar 2021 to 20 Mar 2021)."
+[[nodiscard]] std::string when_words(const diagnosis::SiteProblem& site,
+                                     const diagnosis::Addition& addition);
+
+/// Effects that could be mistaken for each other here, and what to measure.
+struct SeparationWords {
+  std::string effect;       ///< Label.
+  std::string rival;        ///< Label.
+  double probability;       ///< Of the rival in the first search; NaN where it was not fitted.
+  std::string measurement;  ///< One sentence.
+};
+
+/// Of each effect that was added, or of the confusable set, or of the likeliest effect: its rivals.
+[[nodiscard]] std::vector<SeparationWords> separations_of(const diagnosis::Diagnosis& diagnosis,
+                                                          const diagnosis::SiteProblem& site);
+
+/// Effects that cannot be judged at this site, and why; each once.
+struct NotSeen {
+  std::string effect;  ///< Id.
+  int meter = -1;      ///< Of an effect of one meter.
+  std::string why;
+};
+[[nodiscard]] std::vector<NotSeen> not_seen_here(const diagnosis::Diagnosis& diagnosis);
+
+}  // namespace recald::daemon

@@ -1,0 +1,159 @@
+#include "daemon/site/results/drift_words.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace recald::daemon {
+namespace {
+
+/// Mean of (measured - forecast) / forecast from the change to the alarm.
+double relative_excess(const SiteDrift& drift, const drift::Alarm& alarm) {
+  double measured = 0.0;
+  double expected = 0.0;
+  for (const drift::PrequentialMonth& month : drift.record) {
+    const auto& output = month.outputs[static_cast<std::size_t>(alarm.output)];
+    if (!output || month.month < alarm.since || month.month > alarm.month) continue;
+    measured += output->measured;
+    expected += output->q50;
+  }
+  return measured / expected - 1.0;
+}
+
+/// Months of an output inside the 90 % interval of their forecasts, and how many there are.
+std::pair<int, int> inside_90(const SiteDrift& drift, std::size_t output) {
+  int inside = 0;
+  int all = 0;
+  for (const drift::PrequentialMonth& month : drift.record) {
+    const auto& record = month.outputs[output];
+    if (!record) continue;
+    ++all;
+    inside += record->q05 <= record->measured && record->measured <= record->q95 ? 1 : 0;
+  }
+  return {inside, all};
+}
+
+/// "2020-04 (90 %: 2020-03 to 2020-05)", to the day where days were watched.
+std::string since_words(const SiteDrift& drift, const drift::Alarm& alarm) {
+  if (const auto& days = alarm.days) {
+    return fmt::format("{} (90 %: {} to {})", metering::to_string(days->since),
+                       metering::to_string(days->since_earliest),
+                       metering::to_string(days->since_latest));
+  }
+  return fmt::format("{} (90 %: {} to {})", drift.month_name(alarm.since),
+                     drift.month_name(alarm.since_earliest), drift.month_name(alarm.since_latest));
+}
+
+}  // namespace
+
+std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm) {
+  const FollowedOutput& output = drift.outputs[static_cast<std::size_t>(alarm.output)];
+  std::string sentence =
+      fmt::format("{} is {} than forecast since {}, by {:+.0f} %; raised {}, evidence {:.3g} to 1.",
+                  output.name, alarm.direction > 0 ? "more" : "less", since_words(drift, alarm),
+                  100.0 * (alarm.days ? alarm.days->excess : relative_excess(drift, alarm)),
+                  alarm.days ? "by its days on " + metering::to_string(alarm.days->raised)
+                             : "after " + drift.month_name(alarm.month),
+                  alarm.evidence);
+  if (!alarm.is_calibrated) {
+    sentence +=
+        " The forecasts before were not true to their own spread, so false alarms are more "
+        "frequent than stated.";
+  }
+  return sentence;
+}
+
+std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
+  const auto at = static_cast<std::size_t>(cause.index);
+  switch (cause.kind) {
+    case drift::CauseKind::nothing:
+      return "chance: nothing has changed";
+    case drift::CauseKind::unknown:
+      if (cause.index < 0) return "something that the model lacks";
+      return fmt::format("something that the model lacks and that {} alone shows",
+                         drift.outputs[at].meter);
+    case drift::CauseKind::parameter:
+      return fmt::format("{} is {:.3g} {} since (90 %: {:.3g} to {:.3g})",
+                         drift.parameters[at].name, cause.mean, drift.parameters[at].unit,
+                         cause.q05, cause.q95);
+    case drift::CauseKind::direction:
+      return fmt::format("{} is {:+.0f} % since (90 %: {:+.0f} to {:+.0f} %)",
+                         drift.directions[at].name, 100.0 * (cause.mean - 1.0),
+                         100.0 * (cause.q05 - 1.0), 100.0 * (cause.q95 - 1.0));
+    case drift::CauseKind::meter:
+      return fmt::format("meter {} shows {:.3g} times what it should (90 %: {:.3g} to {:.3g})",
+                         drift.outputs[at].meter, cause.mean, cause.q05, cause.q95);
+  }
+  return "";
+}
+
+std::string advice_words(drift::CauseKind kind) {
+  switch (kind) {
+    case drift::CauseKind::nothing:
+      return "Wait for another month.";
+    case drift::CauseKind::parameter:
+    case drift::CauseKind::direction:
+      return "Look at what was changed in the building about then.";
+    case drift::CauseKind::meter:
+      return "Look at the meter: its transformers, its unit, its register map.";
+    case drift::CauseKind::unknown:
+      return "Let `recald diagnose` name it.";
+  }
+  return "";
+}
+
+std::string trust_words(const SiteDrift& drift, std::size_t output) {
+  const auto [inside, all] = inside_90(drift, output);
+  if (all == 0) return "No month to compare.";
+  const auto& check = drift.outputs[output].state.calibration;
+  return fmt::format("{} of {} months within 90 %; {}.", inside, all,
+                     check ? fmt::format("forecasts true with p = {:.2g}", check->pvalue)
+                           : "too few since the last change to check");
+}
+
+std::string meter_change_words(const MeterChange& change) {
+  return change.sentence + (change.kind == MeterChange::Kind::unit
+                                ? ". Its months since then are not compared."
+                                : ". Look at the meter and at the way to it.");
+}
+
+std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& alarm) {
+  std::string sentence = alarm_sentence(drift, alarm.alarm);
+  if (alarm.causes.empty()) return sentence + " Too little was known before to say why.";
+  const drift::Cause& first = alarm.causes.front();
+  const drift::Cause& second = alarm.causes[1];
+  sentence += fmt::format(" Likeliest ({:.0f} %): {}", 100.0 * first.probability,
+                          cause_words(drift, first));
+  if (second.probability >= 0.1) {
+    sentence += fmt::format("; else ({:.0f} %): {}", 100.0 * second.probability,
+                            cause_words(drift, second));
+  }
+  return sentence + ". " + advice_words(first.kind);
+}
+
+std::string drift_words(const SiteDrift& drift) {
+  std::string words =
+      fmt::format("{} months from {} to {}, the first {} to learn from.\n", drift.months.size(),
+                  drift.months.front(), drift.months.back(), drift.learning_months);
+  for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
+    words += fmt::format("{:<28} {}\n", drift.outputs[k].name, trust_words(drift, k));
+  }
+  for (const ExplainedAlarm& alarm : drift.alarms) {
+    words += explained_sentence(drift, alarm) + "\n";
+  }
+  if (drift.alarms.empty()) words += "No alarm.\n";
+  for (const MeterChange& change : drift.meter_changes) {
+    words += meter_change_words(change) + "\n";
+  }
+  for (std::size_t j = 0; j < drift.last_year.size(); ++j) {
+    const drift::Shift& shift = drift.last_year[j];
+    const ParameterPath& path = drift.windows.front().paths[j];
+    words += fmt::format(
+        "{:<28} {:.4g} {}; from the last year but one to the last {:+.2f} sd (p {:.2f})\n",
+        drift.parameters[j].name, path.mean.back(), drift.parameters[j].unit, shift.standardised,
+        shift.pvalue);
+  }
+  return words;
+}
+
+}  // namespace recald::daemon

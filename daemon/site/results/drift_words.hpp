@@ -1,0 +1,30 @@
+/// What a followed site shows, in sentences and in a table.
+#pragma once
+
+#include <string>
+
+#include "daemon/site/drift/site_drift.hpp"
+
+namespace recald::daemon {
+
+/// "steam uses more than forecast since 2020-04 (90 %: 2020-03 to 2020-05), …".
+[[nodiscard]] std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm);
+
+/// "outdoor_airflow: 5.0 before, 6.9 m3/s since (90 %: 6.2 to 7.6)".
+[[nodiscard]] std::string cause_words(const SiteDrift& drift, const drift::Cause& cause);
+
+/// What to look at. @param kind  Of the likeliest cause.
+[[nodiscard]] std::string advice_words(drift::CauseKind kind);
+
+/// How true an output's forecasts were so far.
+[[nodiscard]] std::string trust_words(const SiteDrift& drift, std::size_t output);
+
+[[nodiscard]] std::string meter_change_words(const MeterChange& change);
+
+/// The alarm, what it likely comes from, and what to look at.
+[[nodiscard]] std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& alarm);
+
+/// Of all outputs and months, and every alarm.
+[[nodiscard]] std::string drift_words(const SiteDrift& drift);
+
+}  // namespace recald::daemon

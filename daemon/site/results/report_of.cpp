@@ -1,0 +1,335 @@
+#include "daemon/site/results/report_of.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace recald::daemon {
+namespace {
+
+using assessment::MonthRole;
+
+std::string local_text(metering::Instant t, const metering::LocalCalendar& calendar) {
+  const metering::LocalTime local = calendar.local_time(t);
+  return fmt::format("{} {:02}:{:02}", metering::to_string(local.date), local.minute_of_day / 60,
+                     local.minute_of_day % 60);
+}
+
+/// "chilled_water" as people say it: "Chilled water".
+std::string label_of(const std::string& id) {
+  std::string label = id;
+  std::ranges::replace(label, '_', ' ');
+  if (!label.empty() && label.front() >= 'a' && label.front() <= 'z') label.front() -= 'a' - 'A';
+  return label;
+}
+
+std::string window_words(std::chrono::seconds window) {
+  return window.count() % 3600 == 0
+             ? fmt::format("highest {}-hour mean, fixed blocks", window.count() / 3600)
+             : fmt::format("highest {}-minute mean, fixed blocks", window.count() / 60);
+}
+
+report::Provenance provenance_of(const RunFacts& facts) {
+  return {.recald_version = facts.recald_version,
+          .data_revision = facts.data_revision,
+          .model_version = facts.model_version,
+          .time_zone_data = facts.time_zone_data,
+          .sampler = facts.sampler,
+          .hyper_prior_profile = facts.hyper_prior_profile,
+          .seed = facts.seed,
+          .iterations = facts.iterations,
+          .burn_in = facts.burn_in,
+          // No computing time: the same data and seed give the same page.
+          .chains = facts.chains};
+}
+
+std::vector<report::Finding> findings_of(const Recording& recording,
+                                         const metering::LocalCalendar& calendar) {
+  std::vector<report::Finding> findings;
+  for (const MeterRecord& record : recording.meters) {
+    for (const metering::DataFinding& finding : record.findings) {
+      const bool dated = finding.span.end > finding.span.begin;
+      findings.push_back({.meter = label_of(finding.meter),
+                          .sentence = finding.sentence,
+                          .from = dated ? local_text(finding.span.begin, calendar) : "",
+                          .to = dated ? local_text(finding.span.end, calendar) : "",
+                          .count = finding.slots});
+    }
+  }
+  return findings;
+}
+
+report::ParameterResult parameter_of(const SiteCalibration& result, std::size_t j) {
+  const calibration::Summary& s = result.calibration.parameters[j];
+  report::ParameterResult shown{.name = s.name,
+                                .label = std::string{result.definitions[j]->label},
+                                .unit = s.unit,
+                                .prior = result.parameters[j].prior,
+                                .mean = s.mean,
+                                .sd = s.sd,
+                                .q05 = s.q05,
+                                .q50 = s.q50,
+                                .q95 = s.q95,
+                                .contraction = s.contraction,
+                                .rhat = s.rhat,
+                                .ess_bulk = s.ess_bulk,
+                                .ess_tail = s.ess_tail};
+  for (const calibration::ChainDraws& chain : result.calibration.chains) {
+    const auto column = chain.theta.col(static_cast<Eigen::Index>(j));
+    shown.draws.insert(shown.draws.end(), column.begin(), column.end());
+  }
+  return shown;
+}
+
+report::MonthRole role_of(MonthRole role) {
+  switch (role) {
+    case MonthRole::calibration:
+      return report::MonthRole::calibration;
+    case MonthRole::validation:
+      return report::MonthRole::validation;
+    case MonthRole::unused:
+      return report::MonthRole::unused;
+  }
+  return report::MonthRole::unused;
+}
+
+bool is_peak(const assessment::OutputCalibration& output) { return output.unit == "kW"; }
+
+report::OutputMonth month_of(const Recording& recording, const SiteCalibration& result,
+                             const assessment::OutputCalibration& output, std::size_t i) {
+  const MeterRecord& record = recording.meters[output.meter];
+  report::OutputMonth shown{.month = result.months[i], .role = role_of(result.roles[i])};
+  const assessment::BoxPlot& box = output.assessment.boxes[i];
+  shown.box =
+      report::ModelBox{box.low_whisker, box.q25, box.q50, box.q75, box.high_whisker, box.mean};
+  shown.flagged_different = is_site_different(recording, shown.month);
+  const auto figure =
+      std::ranges::find(record.figures, shown.month, &metering::MonthlyFigure::month);
+  if (figure == record.figures.end()) return shown;
+  if (std::isfinite(figure->daily_average_kWh)) shown.measured_kWh = figure->daily_average_kWh;
+  shown.measured_usable = figure->usable;
+  shown.coverage = figure->coverage;
+  shown.filled_share = figure->filled_share;
+  shown.unusable_because = figure->unusable_because;
+  return shown;
+}
+
+/// Months that belong to no period still show what was measured.
+void append_other_months(const Recording& recording, const SiteCalibration& result,
+                         const MeterRecord& record, std::vector<report::OutputMonth>& months) {
+  for (const metering::MonthlyFigure& figure : record.figures) {
+    if (std::ranges::find(result.months, figure.month) != result.months.end()) continue;
+    report::OutputMonth shown{.month = figure.month, .role = report::MonthRole::unused};
+    if (std::isfinite(figure.daily_average_kWh)) shown.measured_kWh = figure.daily_average_kWh;
+    shown.measured_usable = figure.usable;
+    shown.coverage = figure.coverage;
+    shown.filled_share = figure.filled_share;
+    shown.unusable_because = figure.unusable_because;
+    shown.flagged_different = is_site_different(recording, figure.month);
+    months.push_back(std::move(shown));
+  }
+  std::ranges::sort(months, {}, &report::OutputMonth::month);
+}
+
+std::optional<report::FitMetrics> metrics_of(const std::optional<assessment::FitMetrics>& m) {
+  if (!m) return {};
+  return report::FitMetrics{m->nmbe_sim_minus_meas, m->nmbe_g14, m->cvrmse};
+}
+
+report::MetricsRow row_of(std::string stage, const assessment::PeriodMetrics& metrics) {
+  return {std::move(stage), metrics_of(metrics.calibration), metrics_of(metrics.validation)};
+}
+
+std::optional<report::PredictiveScores> scores_of(
+    const std::optional<assessment::PredictiveScores>& s) {
+  if (!s) return {};
+  const double n = s->months;
+  return report::PredictiveScores{s->inside_50 / n, s->inside_90 / n, s->crps};
+}
+
+report::OutputResult output_of(const Recording& recording, const SiteCalibration& result,
+                               const assessment::OutputCalibration& output) {
+  const MeterRecord& record = recording.meters[output.meter];
+  report::OutputResult shown{.label = label_of(record.meter.id)};
+  for (std::size_t i = 0; i < result.months.size(); ++i) {
+    shown.months.push_back(month_of(recording, result, output, i));
+  }
+  append_other_months(recording, result, record, shown.months);
+  const assessment::OutputAssessment& a = output.assessment;
+  shown.metrics = {row_of("Before (prior mode)", a.before), row_of("Prior mean", a.prior_mean),
+                   row_of("After", a.after)};
+  shown.draw_cvrmse_calibration = a.draw_cvrmse_calibration;
+  shown.draw_cvrmse_validation = a.draw_cvrmse_validation;
+  shown.scores_calibration = scores_of(a.scores_calibration);
+  shown.scores_validation = scores_of(a.scores_validation);
+  return shown;
+}
+
+report::PeakSeries peaks_of(const MeterRecord& record, const metering::LocalCalendar& calendar) {
+  report::PeakSeries series{.meter = label_of(record.meter.id)};
+  for (const metering::MonthlyFigure& figure : record.figures) {
+    series.window = window_words(figure.peak_window);
+    report::PeakMonth month{.month = figure.month, .coverage = figure.coverage};
+    if (figure.peak) {
+      month.peak_kW = figure.peak->kW;
+      month.start = local_text(figure.peak->start, calendar);
+      month.could_be_exceeded = figure.peak->could_be_exceeded;
+    }
+    series.months.push_back(std::move(month));
+  }
+  return series;
+}
+
+report::HourStatus status_of(const profile::HourlyLoad& hour) {
+  if (hour.suspect) return report::HourStatus::suspect;
+  if (hour.ok_share <= 0.0) return report::HourStatus::missing;
+  return hour.ok_share < 1.0 ? report::HourStatus::partly_filled : report::HourStatus::ok;
+}
+
+report::LoadGrid load_of(const MeterRecord& record) {
+  report::LoadGrid grid{.meter = label_of(record.meter.id)};
+  if (record.hours.empty()) return grid;
+  grid.first_day = record.hours.begin()->first / 1;
+  const metering::Month last = record.hours.rbegin()->first;
+  const std::chrono::sys_days begin{grid.first_day};
+  const std::chrono::sys_days end{metering::next_month(last) / 1};
+  const auto cells = static_cast<std::size_t>((end - begin).count()) * 24;
+  grid.mean_kW.assign(cells, std::numeric_limits<float>::quiet_NaN());
+  grid.status.assign(cells, report::HourStatus::missing);
+  for (const auto& [month, hours] : record.hours) {
+    for (const profile::HourlyLoad& hour : hours) {
+      const auto day = (std::chrono::sys_days{hour.date} - begin).count();
+      const auto cell = static_cast<std::size_t>(day * 24 + hour.hour);
+      grid.mean_kW[cell] = static_cast<float>(hour.mean_kW);
+      grid.status[cell] = status_of(hour);
+    }
+  }
+  return grid;
+}
+
+report::DayTypeProfile day_profile_of(const profile::ElectricityProfile& profile,
+                                      model::DayType day, std::string label) {
+  report::DayTypeProfile shown{.label = std::move(label)};
+  const auto hours = [&](auto value) {
+    report::HourlyProfile kW{};
+    for (int hour = 0; hour < 24; ++hour) kW[static_cast<std::size_t>(hour)] = value(hour);
+    return kW;
+  };
+  const auto& loads = profile.loads;
+  const auto standing = [&](int hour) {
+    return std::min(profile.standby_kW, loads.plugs_kW.at(day, hour));
+  };
+  shown.parts = {
+      {"Exterior", hours([&](int) { return profile.known.exterior_kW; })},
+      {"Standby", hours(standing)},
+      {"Plug loads", hours([&](int h) { return loads.plugs_kW.at(day, h) - standing(h); })},
+      {"Lights", hours([&](int h) { return loads.lights_kW.at(day, h); })},
+      {"Fans and pumps", hours([&](int h) { return profile.known.fans_and_pumps_kW.at(day, h); })}};
+  shown.measured_mean_kW = hours([&](int h) { return profile.measured_kW.at(day, h); });
+  return shown;
+}
+
+std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+
+void add_headlines(const Recording& recording, const SiteCalibration& result,
+                   report::ReportData& data) {
+  int passing = 0;
+  int judged = 0;
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    const auto& after = output.assessment.after.calibration;
+    // Electricity that its own profile reproduces is no evidence for the model.
+    if (!after || !output.calibrated || is_peak(output)) continue;
+    const auto verdict = assessment::guideline14_verdict(*after);
+    data.verdicts.push_back(
+        {label_of(recording.meters[output.meter].meter.id), verdict.pass, verdict.why});
+    judged += 1;
+    passing += verdict.pass ? 1 : 0;
+  }
+  const bool converged = result.calibration.converged;
+  data.headlines.push_back(
+      judged == 0
+          ? "No output had enough measured months to judge the model."
+          : fmt::format("{} of {} fitted meters are met within the monthly limits of ASHRAE "
+                        "Guideline 14 after calibration{}.",
+                        passing, judged, converged ? "" : ", but the sampler has not converged"));
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    const auto& a = output.assessment;
+    if (is_peak(output) || !a.before.calibration || !a.prior_mean.calibration ||
+        !a.after.calibration) {
+      continue;
+    }
+    std::string line = fmt::format(
+        "{}: CV(RMSE) {} before calibration, {} at the prior mean, {} after",
+        label_of(recording.meters[output.meter].meter.id), percent(a.before.calibration->cvrmse),
+        percent(a.prior_mean.calibration->cvrmse), percent(a.after.calibration->cvrmse));
+    if (a.after.validation) {
+      line += fmt::format("; on months it has not seen {}", percent(a.after.validation->cvrmse));
+    }
+    data.headlines.push_back(line + ".");
+  }
+}
+
+void add_not_known(const SiteCalibration& result, report::ReportData& data) {
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    const calibration::Summary& s = result.calibration.parameters[j];
+    if (s.contraction > 0.25) continue;
+    data.not_known.push_back(fmt::format(
+        "{}: the measurements narrow it by {:.0f} % of its variance at most; its value is what "
+        "was assumed.",
+        result.definitions[j]->label, 100.0 * std::max(s.contraction, 0.0)));
+  }
+  data.not_known.emplace_back(
+      "A parameter that fits is not a parameter that was measured: another combination of values, "
+      "or an effect that the model lacks, may explain the same months.");
+  data.not_known.emplace_back(
+      result.model == "hourly"
+          ? "Peak demand is shown as measured; how the model tells it stands in calibration.json."
+          : "Peak demand is measured only. The monthly model has no peaks.");
+  data.not_known.emplace_back(
+      "The discrepancy between model and building is known in size, not in cause, and is not "
+      "carried into other operating conditions.");
+}
+
+}  // namespace
+
+report::ReportData report_of(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                             const Recording& recording, const SiteCalibration& result,
+                             const RunFacts& facts, std::string generated_at) {
+  report::ReportData data{.title = "Calibration of " + site.name,
+                          .generated_at = std::move(generated_at),
+                          .site = {site.id, site.name, site.timezone},
+                          .provenance = provenance_of(facts)};
+  add_headlines(recording, result, data);
+  if (!result.calibration.converged) {
+    data.notices.push_back({report::Severity::failure,
+                            "The sampler has not converged to the limits set for it (R-hat, "
+                            "effective sample size): treat intervals as rough."});
+  }
+  for (const std::string& warning : result.warnings) {
+    data.notices.push_back({report::Severity::warning, warning});
+  }
+  data.findings = findings_of(recording, calendar);
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    if (is_peak(output)) continue;  // the page shows peaks as measured, beside each other
+    data.outputs.push_back(output_of(recording, result, output));
+  }
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    data.parameters.push_back(parameter_of(result, j));
+  }
+  for (const MeterRecord& record : recording.meters) {
+    data.peaks.push_back(peaks_of(record, calendar));
+    data.loads.push_back(load_of(record));
+  }
+  using enum model::DayType;
+  data.profile = {
+      .day_types = {day_profile_of(result.profile, workday, "Working day"),
+                    day_profile_of(result.profile, saturday, "Saturday"),
+                    day_profile_of(result.profile, sunday_or_holiday, "Sunday and holiday")},
+      .check_sentence = result.profile.check.words};
+  add_not_known(result, data);
+  return data;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,19 @@
+/// A calibration in the shape that the report shows.
+#pragma once
+
+#include <string>
+
+#include "adapters/report/report_data.hpp"
+#include "daemon/site/calibrate/site_calibration.hpp"
+#include "daemon/site/model/run_facts.hpp"
+
+namespace recald::daemon {
+
+/// @param generated_at  As it shall stand on the page.
+[[nodiscard]] report::ReportData report_of(const SiteConfig& site,
+                                           const metering::LocalCalendar& calendar,
+                                           const Recording& recording,
+                                           const SiteCalibration& result, const RunFacts& facts,
+                                           std::string generated_at);
+
+}  // namespace recald::daemon

@@ -1,0 +1,354 @@
+/// The whole of ingestion on a virtual clock: buses, counters, a real store, months. What the
+/// devices counted is known, so every kilowatt-hour is accounted for.
+#include "daemon/gateway/run/gateway.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "adapters/sqlite/sqlite_store.hpp"
+#include "tests/support/counter_bus.hpp"
+#include "tests/support/failing_store.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/virtual_loop.hpp"
+
+namespace recald::daemon::gateway_test {
+namespace {
+
+using metering::Instant;
+using metering::Month;
+using metering::Validity;
+using recald::testing::CounterBus;
+using recald::testing::CounterDevice;
+using recald::testing::FailingStore;
+using recald::testing::TemporaryFolder;
+using recald::testing::VirtualLoop;
+using std::chrono::days;
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using std::chrono::seconds;
+using ::testing::Contains;
+using ::testing::Field;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+constexpr const char* kSite = R"([site]
+id = "tower"
+timezone = "America/Chicago"
+watermark = "2h"
+
+[bus.plant]
+type = "tcp"
+host = "unused"
+
+[[meter]]
+id = "main"
+source = "modbus"
+utility = "electricity"
+bus = "plant"
+unit = 1
+map = "counter.toml"
+rated_kW = 400
+poll = "60s"
+
+[[meter]]
+id = "cooling"
+source = "modbus"
+utility = "chilled_water"
+bus = "plant"
+unit = 2
+map = "counter.toml"
+rated_kW = 900
+poll = "60s"
+)";
+
+const Instant kStart = std::chrono::sys_days{std::chrono::year{2024} / 2 / 28};
+
+double hours_of(milliseconds t) { return static_cast<double>(t.count()) / 3.6e6; }
+
+/// 60 kW with a daily course of 30 kW.
+double main_kWh(milliseconds t) {
+  const double h = hours_of(t);
+  return 5000.0 + 60.0 * h + 30.0 * 24.0 / 6.283185307 * (1.0 - std::cos(h / 24.0 * 6.283185307));
+}
+
+class GatewayTest : public ::testing::Test {
+ protected:
+  GatewayTest()
+      : calendar_{metering::LocalCalendar::open("America/Chicago").value()},
+        disk_{sqlite::SqliteStore::open(":memory:").value()},
+        store_{disk_},
+        loop_{kStart} {
+    recald::testing::write_text(folder_ / "counter.toml", CounterBus::kMap);
+    recald::testing::write_text(folder_ / "site.toml", kSite);
+    site_ = load_site(folder_ / "site.toml").value();
+    devices_[1].energy_kWh = main_kWh;
+    devices_[2].energy_kWh = [](milliseconds t) { return 100.0 * hours_of(t); };
+  }
+
+  void begin() {
+    gateway_.reset();
+    auto opened = Gateway::open(
+        site_, calendar_,
+        {.loop = loop_,
+         .store = store_,
+         .make_bus =
+             [this](const BusConfig&) { return std::make_unique<CounterBus>(loop_, devices_); },
+         .time_zone_release = "2025b",
+         .is_clock_settling = is_clock_settling_},
+        [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
+          months_.push_back({meter.id, figure});
+        });
+    ASSERT_TRUE(opened.has_value()) << opened.error().message;
+    gateway_ = std::move(*opened);
+    gateway_->start();
+  }
+
+  /// Energy of a meter's stored intervals in a span, those without a value left out.
+  double stored_kWh(const std::string& id, const metering::TimeSpan& span) {
+    double sum_kWh = 0.0;
+    const auto number = disk_.meter_number(id, seconds{900}).value();
+    (void)disk_.for_each_interval(number, span, [&](const StoredInterval& stored) {
+      if (!std::isnan(stored.reading.mean_kW)) sum_kWh += stored.reading.mean_kW * 0.25;
+    });
+    return sum_kWh;
+  }
+  int count(const std::string& id, Validity validity) {
+    int counted = 0;
+    const auto number = disk_.meter_number(id, seconds{900}).value();
+    (void)disk_.for_each_interval(
+        number, {Instant::min(), Instant::max()},
+        [&](const StoredInterval& stored) { counted += stored.reading.validity == validity; });
+    return counted;
+  }
+  [[nodiscard]] metering::TimeSpan march() const {
+    return calendar_.month_span(std::chrono::year{2024} / 3);
+  }
+  [[nodiscard]] double true_kWh(const metering::TimeSpan& span) const {
+    return main_kWh(span.end - kStart) - main_kWh(span.begin - kStart);
+  }
+  [[nodiscard]] std::vector<metering::MonthlyFigure> months_of(const std::string& id) const {
+    std::vector<metering::MonthlyFigure> figures;
+    for (const auto& [meter, figure] : months_) {
+      if (meter == id) figures.push_back(figure);
+    }
+    return figures;
+  }
+
+  TemporaryFolder folder_;
+  metering::LocalCalendar calendar_;
+  sqlite::SqliteStore disk_;
+  FailingStore store_;
+  VirtualLoop loop_;
+  SiteConfig site_;
+  std::map<std::uint8_t, CounterDevice> devices_;
+  std::function<bool()> is_clock_settling_;
+  std::unique_ptr<Gateway> gateway_;
+  std::vector<std::pair<std::string, metering::MonthlyFigure>> months_;
+};
+
+// Two registers of 0.1 kWh bound an energy, so a sum is known to within that.
+constexpr double kTick = 0.1 + 1e-6;
+
+TEST_F(GatewayTest, AMonthFromRegistersToFigures) {
+  begin();
+  loop_.run_for(days{36} + seconds{1});
+  EXPECT_NEAR(stored_kWh("main", march()), true_kWh(march()), kTick);
+  const auto figures = months_of("main");
+  ASSERT_THAT(figures, SizeIs(2));
+  EXPECT_EQ(metering::to_string(figures[1].month), "2024-03");
+  EXPECT_NEAR(figures[1].daily_average_kWh, true_kWh(march()) / 31.0, kTick);
+  EXPECT_EQ(figures[1].coverage, 1.0);
+  EXPECT_EQ(figures[1].slots, 31 * 96 - 4);
+  EXPECT_NEAR(figures[1].peak->kW, 90.0, 0.5);
+  EXPECT_THAT(months_of("cooling"), SizeIs(2));
+  const GatewayStatus status = gateway_->status();
+  EXPECT_TRUE(status.clock_ok);
+  EXPECT_FALSE(status.store.is_degraded);
+  ASSERT_THAT(status.meters, SizeIs(2));
+  EXPECT_EQ(status.meters[0].id, "main");
+  EXPECT_EQ(status.meters[0].poll->state, UnitState::up);
+  EXPECT_EQ(status.meters[0].last_interval->start, kStart + days{36} - minutes{15});
+  EXPECT_NEAR(*status.meters[0].live.register_kWh, main_kWh(days{36}), 2.0);
+  EXPECT_EQ(gateway_->meter_status("cooling")->live.register_kWh,
+            status.meters[1].live.register_kWh);
+  EXPECT_FALSE(gateway_->meter_status("lift").has_value());
+}
+
+// The monthly energy of a month with outages is that of a month without.
+TEST_F(GatewayTest, OutagesCostNoEnergy) {
+  devices_[1].is_silent = [](milliseconds t) {
+    return (t > days{5} && t < days{5} + hours{6}) || (t > days{12} && t < days{12} + minutes{40});
+  };
+  begin();
+  loop_.run_for(days{36});
+  EXPECT_NEAR(stored_kWh("main", march()), true_kWh(march()), kTick);
+  EXPECT_NEAR(months_of("main").at(1).daily_average_kWh, true_kWh(march()) / 31.0, kTick);
+  EXPECT_GE(count("main", Validity::scaled), 24 + 2);
+  EXPECT_LE(count("main", Validity::scaled), 24 + 2 + 26);  // until a probe finds it again
+  EXPECT_EQ(count("cooling", Validity::scaled), 0);         // its neighbour lost nothing
+}
+
+// Killed without a word every few hours at odd minutes, and back after some: no interval is lost or
+// doubled, and the energy is that of a run without.
+TEST_F(GatewayTest, KillsCostNoEnergy) {
+  begin();
+  for (int kill = 0; kill < 200; ++kill) {
+    loop_.run_for(hours{4} + minutes{7} + seconds{13 * kill % 60});
+    gateway_.reset();
+    loop_.run_for(seconds{20 + 7 * kill});
+    begin();
+  }
+  loop_.run_for(days{1});
+  EXPECT_NEAR(stored_kWh("main", march()), true_kWh(march()), kTick);
+  EXPECT_EQ(count("main", Validity::missing), 0);
+  ASSERT_THAT(months_of("main"), SizeIs(2));
+  EXPECT_NEAR(months_of("main").at(1).daily_average_kWh, true_kWh(march()) / 31.0, kTick);
+}
+
+TEST_F(GatewayTest, AFullDiskForHoursCostsNothing) {
+  begin();
+  loop_.run_for(days{3});
+  store_.refuses = true;
+  loop_.run_for(hours{20});
+  EXPECT_TRUE(gateway_->status().store.is_degraded);
+  store_.refuses = false;
+  loop_.run_for(days{33});
+  EXPECT_FALSE(gateway_->status().store.is_degraded);
+  EXPECT_EQ(gateway_->status().store.lost_intervals, 0u);
+  EXPECT_NEAR(stored_kWh("main", march()), true_kWh(march()), kTick);
+  EXPECT_EQ(count("main", Validity::ok), 36 * 96 + 20 * 4 - 1);  // the last one is under way
+}
+
+// A device that was silent over the end of a month comes back after the month was closed: the month
+// is closed again, exact, as revision 1.
+TEST_F(GatewayTest, LateAfterClose) {
+  const milliseconds end = march().end - kStart;
+  devices_[1].is_silent = [=](milliseconds t) { return t > end - hours{5} && t < end + hours{3}; };
+  begin();
+  loop_.run_for(end + days{1});
+  const auto figures = months_of("main");
+  ASSERT_THAT(figures, SizeIs(3));
+  EXPECT_EQ(figures[1].revision, 0);
+  EXPECT_LT(figures[1].coverage, 1.0);
+  EXPECT_EQ(figures[2].month, figures[1].month);
+  EXPECT_EQ(figures[2].revision, 1);
+  // The hole reaches into April; the usual day says how it was shared (evenly it would be 0.7 off).
+  EXPECT_NEAR(figures[2].daily_average_kWh, true_kWh(march()) / 31.0, 0.4);
+  int late = 0;
+  const auto number = disk_.meter_number("main", seconds{900}).value();
+  (void)disk_.for_each_interval(number, march(), [&](const StoredInterval& stored) {
+    late += static_cast<int>(stored.reading.late);
+  });
+  EXPECT_GE(late, 20);
+  EXPECT_THAT(*disk_.reopened(), SizeIs(0));
+}
+
+// The same, with a restart just before the device comes back: what is closed and how the load
+// usually runs is known again.
+TEST_F(GatewayTest, LateAfterCloseAndRestart) {
+  const milliseconds end = march().end - kStart;
+  devices_[1].is_silent = [=](milliseconds t) { return t > end - hours{5} && t < end + hours{3}; };
+  begin();
+  loop_.run_for(end + hours{2} + minutes{30});
+  begin();
+  loop_.run_for(hours{17});
+  const auto figures = months_of("main");
+  ASSERT_THAT(figures, SizeIs(3));
+  EXPECT_EQ(figures[2].revision, 1);
+  EXPECT_NEAR(figures[2].daily_average_kWh, true_kWh(march()) / 31.0, 0.4);
+}
+
+// clock_1970_then_sync: a gateway without a clock battery wakes up in 1970. What it reads is kept
+// and stamped when the time is known.
+TEST_F(GatewayTest, Clock1970ThenSync) {
+  const auto true_start = loop_.now().wall;
+  loop_.set_wall_clock(-true_start.time_since_epoch());
+  begin();
+  loop_.run_for(hours{3});
+  EXPECT_FALSE(gateway_->status().clock_ok);
+  EXPECT_EQ(count("main", Validity::ok), 0);
+  loop_.set_wall_clock(true_start.time_since_epoch());
+  loop_.run_for(hours{3});
+  EXPECT_TRUE(gateway_->status().clock_ok);
+  EXPECT_GE(count("main", Validity::ok), 23);
+  EXPECT_NEAR(stored_kWh("main", {kStart, kStart + hours{6}}),
+              main_kWh(hours{6}) - main_kWh(minutes{0}), 25.0);
+  EXPECT_EQ(count("main", Validity::missing), 0);
+}
+
+// Booted with a clock that looks right and is five hours ahead, until a time server is heard:
+// nothing bears a wrong stamp.
+TEST_F(GatewayTest, AClockThatIsAboutToBeSetIsNotBelieved) {
+  bool is_settling = true;
+  is_clock_settling_ = [&] { return is_settling; };
+  loop_.set_wall_clock(hours{5});
+  begin();
+  loop_.run_for(minutes{8});
+  EXPECT_FALSE(gateway_->status().clock_ok);
+  loop_.set_wall_clock(-hours{5});
+  is_settling = false;
+  loop_.run_for(hours{3} - minutes{8});
+  EXPECT_TRUE(gateway_->status().clock_ok);
+  EXPECT_GE(count("main", Validity::ok), 11);
+  EXPECT_EQ(count("main", Validity::missing), 0);
+  EXPECT_NEAR(stored_kWh("main", {kStart, kStart + hours{3}}),
+              main_kWh(hours{3} - minutes{15}) - main_kWh(minutes{0}), 1.0);
+  is_settling = true;  // a clock that loses its server still runs
+  loop_.run_for(hours{1});
+  EXPECT_TRUE(gateway_->status().clock_ok);
+}
+
+TEST_F(GatewayTest, StepBack20Min) {
+  begin();
+  loop_.run_for(hours{3} + minutes{5});
+  loop_.set_wall_clock(-minutes{20});
+  loop_.run_for(hours{3});
+  // 2:45 to 3:15 is doubted; all else is what it was, and nothing is there twice.
+  EXPECT_EQ(count("main", Validity::ok) + count("main", Validity::missing),
+            static_cast<int>((hours{5} + minutes{45}) / minutes{15}) - 1);
+  EXPECT_LE(count("main", Validity::missing), 2);
+  const auto events = disk_.events(10);
+  EXPECT_THAT(*events, Contains(Field(&StoreEvent::kind, "clock_set")));
+}
+
+TEST_F(GatewayTest, StepForward2H) {
+  begin();
+  loop_.run_for(hours{3} + minutes{5});
+  loop_.set_wall_clock(hours{2});
+  loop_.run_for(hours{3});
+  EXPECT_GE(count("main", Validity::missing), 8);
+  EXPECT_LE(count("main", Validity::missing), 10);
+  EXPECT_EQ(count("main", Validity::scaled), 0);
+  const auto events = disk_.events(10);
+  EXPECT_THAT(*events, Not(Contains(Field(&StoreEvent::kind, "counter_jump"))));
+}
+
+TEST_F(GatewayTest, ADeadMeterIsSeenAndItsNeighbourIsNot) {
+  devices_[1].is_silent = [](milliseconds) { return true; };
+  begin();
+  loop_.run_for(hours{6});
+  const GatewayStatus status = gateway_->status();
+  EXPECT_EQ(status.meters[0].poll->state, UnitState::down);
+  EXPECT_FALSE(status.meters[0].last_interval.has_value());
+  EXPECT_EQ(status.meters[1].poll->state, UnitState::up);
+  // Its first poll waited for a time-out, and the last interval is under way.
+  EXPECT_EQ(count("cooling", Validity::ok), 24 - 2);
+}
+
+TEST_F(GatewayTest, AStoreThatCannotBeReadAtTheStartIsToldAtOnce) {
+  store_.refuses = true;
+  const auto opened = Gateway::open(
+      site_, calendar_,
+      {.loop = loop_,
+       .store = store_,
+       .make_bus =
+           [this](const BusConfig&) { return std::make_unique<CounterBus>(loop_, devices_); }},
+      {});
+  ASSERT_FALSE(opened.has_value());
+  EXPECT_EQ(opened.error().code, ErrorCode::io_failed);
+}
+
+}  // namespace
+}  // namespace recald::daemon::gateway_test

@@ -1,0 +1,108 @@
+/// power_cut_unsynced: the power goes while the gateway writes. What was not synced is lost, torn
+/// or written in another order; what was acknowledged is there.
+#include <gmock/gmock.h>
+
+#include "tests/daemon/gateway/run/gateway_rig.hpp"
+#include "tests/daemon/gateway/run/surviving_store.hpp"
+#include "tests/support/failing_store.hpp"
+#include "tests/support/faulty_disk.hpp"
+
+namespace recald::daemon::power_cut_test {
+namespace {
+
+using recald::testing::FailingStore;
+using recald::testing::FaultyDisk;
+using recald::testing::TemporaryFolder;
+using recald::testing::VirtualLoop;
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using testing::GatewayRig;
+using testing::kRigStart;
+using testing::Promise;
+
+constexpr std::uint32_t kMeters = 2;
+constexpr double kTick_kWh = 0.1 + 1e-6;  // two registers of 0.1 kWh bound an energy
+
+/// A gateway that writes to a disk whose power may go at any step.
+class PowerCut : public ::testing::Test {
+ protected:
+  /// Runs for a day with cuts at random steps. @return how many images it looked at.
+  /// @param synchronous  As SQLite's pragma; the store's own is FULL.
+  int run_with_cuts(const std::string& synchronous) {
+    auto store = sqlite::SqliteStore::open(folder_ / "site.db", {.vfs = disk_.name()}).value();
+    // Checkpoints are rare by nature; here every fourth commit or so makes one.
+    EXPECT_TRUE(store.database().execute("PRAGMA wal_autocheckpoint=40").has_value());
+    EXPECT_TRUE(store.database().execute("PRAGMA synchronous=" + synchronous).has_value());
+    FailingStore watched{store};
+    watched.after_commit = [&](const StoreBatch& batch) { testing::promise(batch, promises_); };
+    disk_.before = [&](const FaultyDisk::Step& step) {
+      const bool is_sync = step.operation == FaultyDisk::Operation::sync;
+      const bool reads = step.operation == FaultyDisk::Operation::read;
+      if (!reads && rng_.below(is_sync ? 2 : 8) == 0) cut();
+      return 0;
+    };
+    const GatewayRig rig{site_, watched, loop_};
+    loop_.run_for(hours{26});
+    disk_.before = {};
+    return images_;
+  }
+
+  /// The power goes now: the store is opened again from what is left, and goes on.
+  void cut() {
+    recald::testing::write_image(disk_.after_power_cut(rng_), folder_ / "left");
+    FaultyDisk left_disk{"left"};
+    auto left = sqlite::SqliteStore::open(folder_ / "left" / "site.db", {.vfs = "left"});
+    ++images_;
+    const std::string wrong =
+        left ? testing::what_is_wrong(*left, kMeters, promises_) : left.error().message;
+    if (!wrong.empty()) {
+      wrong_.push_back(fmt::format("image {}: {}", images_, wrong));
+    } else if (images_ % 20 == 0) {
+      goes_on(*left);
+    }
+  }
+
+  /// A gateway that starts on what is left books all that the meters counted meanwhile.
+  void goes_on(sqlite::SqliteStore& left) {
+    VirtualLoop loop{loop_.now().wall + milliseconds{17'000}};
+    const GatewayRig rig{site_, left, loop};
+    loop.run_for(hours{2});
+    const auto extent = left.interval_extent(0).value();
+    ASSERT_TRUE(extent.has_value());
+    const metering::TimeSpan span{extent->begin, extent->end + std::chrono::seconds{900}};
+    EXPECT_GE(span.end, std::chrono::floor<std::chrono::seconds>(loop.now().wall) - hours{1});
+    EXPECT_NEAR(testing::stored_kWh(left, 0, span),
+                testing::main_kWh(span.end - kRigStart) - testing::main_kWh(span.begin - kRigStart),
+                kTick_kWh)
+        << "image " << images_;
+  }
+
+  TemporaryFolder folder_;
+  SiteConfig site_ = testing::rig_site(folder_.path());
+  VirtualLoop loop_{kRigStart};
+  FaultyDisk disk_{"power-cut"};
+  Rng rng_{1};
+  std::vector<Promise> promises_;
+  std::vector<std::string> wrong_;
+  int images_ = 0;
+};
+
+TEST_F(PowerCut, LosesNothingThatWasAcknowledged) {
+  EXPECT_GE(run_with_cuts("FULL"), 300);
+  EXPECT_GE(promises_.size(), 2u * 4 * 25);
+  EXPECT_THAT(wrong_, ::testing::IsEmpty());
+}
+
+// The same with less syncing loses commits: these tests would see it.
+TEST_F(PowerCut, WithoutASyncACommitItDoesLose) {
+  EXPECT_GE(run_with_cuts("NORMAL"), 300);
+  EXPECT_THAT(wrong_, ::testing::Contains(::testing::HasSubstr("was acknowledged and is lost")));
+}
+
+TEST_F(PowerCut, WithoutAnySyncTheFileItselfIsDamaged) {
+  EXPECT_GE(run_with_cuts("OFF"), 300);
+  EXPECT_THAT(wrong_, ::testing::SizeIs(::testing::Gt(images_ / 4)));
+}
+
+}  // namespace
+}  // namespace recald::daemon::power_cut_test

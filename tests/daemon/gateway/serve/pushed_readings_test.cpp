@@ -1,0 +1,207 @@
+/// Readings that others send.
+#include "daemon/gateway/serve/pushed_readings.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <ostream>
+
+#include "tests/daemon/gateway/serve/served_site.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using std::chrono::days;
+using std::chrono::hours;
+using std::chrono::minutes;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class PushedMeterSite : public ServedSite {
+ protected:
+  PushedMeterSite()
+      : ServedSite(R"(
+[[meter]]
+id = "chw"
+source = "http"
+utility = "chilled_water"
+rated_kW = 500
+multiplier = 2
+)") {}
+
+  http::Response post(const std::string& body) {
+    return answer(served_,
+                  {.method = http::Method::post, .path = "/api/v1/readings", .body = body});
+  }
+  Json taken(const std::string& body) {
+    const http::Response response = post(body);
+    EXPECT_EQ(response.status, 200) << response.body;
+    return Json::parse(response.body);
+  }
+  /// Quarter hours from `start` on of so many kWh each.
+  static std::string body_of(metering::Instant start, int count, double kWh) {
+    std::string list;
+    for (int i = 0; i < count; ++i) {
+      list += fmt::format(R"({}{{"time":"{}","value":{}}})", i == 0 ? "" : ",",
+                          metering::to_string(start + i * minutes{15}), kWh + (i % 2));
+    }
+    return fmt::format(R"({{"meter":"chw","unit":"kWh","readings":[{}]}})", list);
+  }
+  Json intervals() { return get_json("/api/v1/intervals", {{"meter", "chw"}})["intervals"]; }
+};
+
+TEST_F(PushedMeterSite, WhatIsAnsweredIsStored) {
+  const Json said = taken(R"({"meter":"chw","unit":"kWh","readings":[
+      {"time":"2024-03-30T06:00:00-05:00","value":10},{"time":"2024-03-30T11:15:00Z","value":null}]})");
+  EXPECT_EQ(said["stored"], 2);
+  EXPECT_THAT(said["conflicts"], IsEmpty());
+  const Json stored = intervals();
+  ASSERT_THAT(stored, SizeIs(2));
+  EXPECT_EQ(stored[0]["start"], "2024-03-30T11:00:00Z");
+  EXPECT_EQ(stored[0]["mean_kW"], 80.0);  // 10 kWh in a quarter of an hour, twice by the multiplier
+  EXPECT_EQ(stored[1]["validity"], "missing");
+}
+
+TEST_F(PushedMeterSite, SentAgainItIsTakenOnce) {
+  const std::string body = body_of(kStart - hours{3}, 4, 5.0);
+  EXPECT_EQ(taken(body)["stored"], 4);
+  const Json again = taken(body);
+  EXPECT_EQ(again["stored"], 0);
+  EXPECT_EQ(again["known"], 4);
+  EXPECT_THAT(intervals(), SizeIs(4));
+}
+
+TEST_F(PushedMeterSite, AnotherValueIsNotTakenAndTold) {
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})");
+  const Json said = taken(
+      R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":9}]})");
+  EXPECT_THAT(said["conflicts"], ElementsAre("2024-03-30T10:00:00Z"));
+  EXPECT_EQ(intervals()[0]["mean_kW"], 14.0);
+  loop_.run_for(minutes{1});
+  const Json events = get_json("/api/v1/events")["events"];
+  ASSERT_THAT(events, ::testing::Not(IsEmpty()));
+  EXPECT_EQ(events[0]["kind"], "reading_conflict");
+}
+
+TEST_F(PushedMeterSite, EndStampsAndRates) {
+  taken(
+      R"({"meter":"chw","unit":"ton","stamps":"end","readings":[{"time":"2024-03-30T10:00:00Z","value":1}]})");
+  EXPECT_EQ(intervals()[0]["start"], "2024-03-30T09:45:00Z");
+  EXPECT_NEAR(intervals()[0]["mean_kW"].get<double>(), 2.0 * 3.516852842, 1e-6);
+}
+
+TEST_F(PushedMeterSite, AMonthClosesAndALateReadingOpensItAgain) {
+  const metering::Instant march{calendar_.month_span(std::chrono::year{2024} / 3).begin};
+  for (int day = 0; day < 29; ++day) taken(body_of(march + days{day}, 96, 6.0));
+  loop_.run_for(days{3});
+  Json months = get_json("/api/v1/months", {{"meter", "chw"}})["months"];
+  ASSERT_THAT(months, SizeIs(1));
+  EXPECT_EQ(months[0]["revision"], 0);
+  EXPECT_NEAR(months[0]["coverage"].get<double>(), 29.0 * 96 / (31 * 96 - 4), 1e-9);
+  taken(body_of(march + days{29}, 96, 6.0));
+  loop_.run_for(hours{2});
+  months = get_json("/api/v1/months", {{"meter", "chw"}})["months"];
+  EXPECT_EQ(months[0]["revision"], 1);
+  EXPECT_NEAR(months[0]["coverage"].get<double>(), 30.0 * 96 / (31 * 96 - 4), 1e-9);
+}
+
+TEST_F(PushedMeterSite, WhatIsKnownOpensNoMonth) {
+  const metering::Instant march{calendar_.month_span(std::chrono::year{2024} / 3).begin};
+  for (int day = 0; day < 29; ++day) taken(body_of(march + days{day}, 96, 6.0));
+  loop_.run_for(days{3});
+  for (int day = 0; day < 29; ++day) taken(body_of(march + days{day}, 96, 6.0));
+  loop_.run_for(hours{2});
+  const Json months = get_json("/api/v1/months", {{"meter", "chw"}})["months"];
+  ASSERT_THAT(months, SizeIs(1));
+  EXPECT_EQ(months[0]["revision"], 0);
+}
+
+TEST_F(PushedMeterSite, WhatIsNotTakenIsNotShown) {
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})");
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":9}]})");
+  EXPECT_EQ(get_json("/api/v1/meters/chw")["last_interval"]["mean_kW"], 14.0);
+  EXPECT_THAT(get("/metrics").body,
+              HasSubstr(R"(recald_intervals_total{meter="chw",validity="ok"} 1)"));
+}
+
+TEST_F(PushedMeterSite, IsShownAsSuch) {
+  taken(body_of(kStart - hours{3}, 4, 5.0));
+  const Json meter = get_json("/api/v1/meters/chw");
+  EXPECT_EQ(meter["source"], "http");
+  EXPECT_FALSE(meter.contains("state"));
+  EXPECT_EQ(meter["read_at"], "2024-03-30T12:00:00Z");
+  EXPECT_THAT(get("/").body, HasSubstr("sent by others"));
+  const std::string metrics = get("/metrics").body;
+  EXPECT_THAT(metrics, HasSubstr(R"(recald_intervals_total{meter="chw",validity="ok"} 4)"));
+  EXPECT_THAT(metrics, ::testing::Not(HasSubstr(R"(recald_unit_state{meter="chw"})")));
+}
+
+TEST_F(PushedMeterSite, ARefusedStoreIsTold) {
+  store_.refuses = true;
+  EXPECT_EQ(post(body_of(kStart - hours{3}, 4, 5.0)).status, 503);
+  store_.refuses = false;
+  EXPECT_THAT(intervals(), IsEmpty());
+}
+
+TEST_F(PushedMeterSite, ARestartKnowsWhatWasSent) {
+  taken(body_of(kStart - hours{3}, 4, 5.0));
+  begin();
+  EXPECT_EQ(get_json("/api/v1/meters/chw")["last_interval"]["start"], "2024-03-30T09:45:00Z");
+}
+
+struct WrongBody {
+  const char* body;
+  const char* said;
+  friend void PrintTo(const WrongBody& wrong, std::ostream* out) { *out << wrong.said; }
+};
+
+class WrongBodies : public PushedMeterSite, public ::testing::WithParamInterface<WrongBody> {};
+
+TEST_P(WrongBodies, AreRefusedWhole) {
+  EXPECT_EQ(in_short(post(GetParam().body)), GetParam().said);
+  EXPECT_THAT(intervals(), IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    PushedReadings, WrongBodies,
+    ::testing::Values(
+        WrongBody{"", "400 malformed body"}, WrongBody{"{", "400 malformed body"},
+        WrongBody{"[]", "400 malformed body"}, WrongBody{R"({"meter":3})", "400 malformed meter"},
+        WrongBody{R"({"meter":"x"})", "404 not_found meter"},
+        WrongBody{R"({"meter":"main","readings":[]})", "409 not_possible meter"},
+        WrongBody{R"({"meter":"old","readings":[]})", "409 not_possible meter"},
+        WrongBody{R"({"meter":"chw"})", "400 malformed unit"},
+        WrongBody{R"({"meter":"chw","unit":"furlong"})", "400 invalid_value unit"},
+        WrongBody{R"({"meter":"chw","unit":"kWh"})", "400 malformed readings"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[]})", "400 malformed readings"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","reading":[]})", "400 malformed reading"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","stamps":"middle","readings":[1]})",
+                  "400 invalid_value stamps"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[1]})", "400 malformed readings[0]"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z"}]})",
+                  "400 invalid_value readings[0].value"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[{"time":"noon","value":1}]})",
+                  "400 invalid_value readings[0].time"},
+        WrongBody{
+            R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z","value":"1"}]})",
+            "400 invalid_value readings[0].value"},
+        WrongBody{
+            R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z","value":1e300}]})",
+            "400 invalid_value readings[0].value"},
+        WrongBody{
+            R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:07:00Z","value":1}]})",
+            "400 invalid_value readings[0].time"},
+        WrongBody{
+            R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T12:00:00Z","value":1}]})",
+            "400 invalid_value readings[0].time"},
+        WrongBody{
+            R"({"meter":"chw","unit":"kWh","readings":[{"time":"2000-01-01T00:00:00Z","value":1}]})",
+            "400 invalid_value readings[0].time"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[
+            {"time":"2024-03-30T10:00:00Z","value":1},{"time":"2024-03-30T10:15:00Z","valve":1}]})",
+                  "400 malformed readings[1]"}));
+
+}  // namespace
+}  // namespace recald::daemon

@@ -1,0 +1,182 @@
+/// Daily backups, old samples, the reserve, and what is done about a damaged store at the start.
+#include "daemon/gateway/upkeep/upkeep.hpp"
+
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include "adapters/sqlite/sample_table.hpp"
+#include "daemon/gateway/upkeep/backups.hpp"
+#include "daemon/gateway/upkeep/open_store.hpp"
+#include "tests/support/damage.hpp"
+#include "tests/support/faulty_disk.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using recald::testing::FaultyDisk;
+using recald::testing::TemporaryFolder;
+using std::chrono::days;
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// Midnight in Chicago.
+const Instant kMidnight = std::chrono::sys_days{std::chrono::year{2024} / 3 / 1} + hours{6};
+constexpr std::uintmax_t kReserve = 256 * 1024;
+
+class UpkeepTest : public ::testing::Test {
+ protected:
+  UpkeepTest() {
+    config_ = default_store(folder_ / "site.toml");
+    rules_.reserve_bytes = kReserve;
+    rules_.backup_pages = 8;
+    rules_.samples_rows = 100;
+  }
+  void commit_samples(sqlite::SqliteStore& store, Instant first, int count) {
+    StoreBatch batch;
+    for (int i = 0; i < count; ++i) {
+      batch.samples.push_back({0, "energy", first + i * minutes{15}, 1.0 * i});
+    }
+    ASSERT_TRUE(store.commit(batch).has_value());
+  }
+  /// Until there is no more to do. @return how many portions it took.
+  int maintain(Upkeep& upkeep, Instant now) {
+    int portions = 1;
+    while ((rest_ = upkeep.maintain(now)) == rules_.pause) ++portions;
+    return portions;
+  }
+  static int samples(sqlite::SqliteStore& store) {
+    int count = 0;
+    (void)sqlite::for_each_sample(store.database(), 0, "energy", [&](const auto&) { ++count; });
+    return count;
+  }
+  sqlite::SqliteStore open() {
+    auto store = sqlite::SqliteStore::open(config_.file).value();
+    (void)store.meter_number("main", minutes{15});
+    return store;
+  }
+
+  TemporaryFolder folder_;
+  StoreConfig config_;
+  UpkeepRules rules_;
+  metering::LocalCalendar calendar_ = metering::LocalCalendar::open("America/Chicago").value();
+  milliseconds rest_{0};
+};
+
+TEST_F(UpkeepTest, ABackupADayAtItsTimeAndSevenAreKept) {
+  auto store = open();
+  commit_samples(store, kMidnight, 2000);
+  Upkeep upkeep{store, config_, calendar_, rules_};
+  EXPECT_EQ(maintain(upkeep, kMidnight + hours{3}), 1);
+  EXPECT_EQ(rest_, minutes{15});  // until 3:15
+  EXPECT_THAT(backups_of(config_), IsEmpty());
+  EXPECT_GT(maintain(upkeep, kMidnight + hours{3} + minutes{15}), 3);
+  EXPECT_EQ(rest_, hours{1});
+  ASSERT_THAT(backups_of(config_), ElementsAre(folder_ / "backups" / "site-2024-03-01.db"));
+  auto copy = sqlite::SqliteStore::open(backups_of(config_)[0]).value();
+  EXPECT_EQ(samples(copy), 2000);
+  EXPECT_EQ(maintain(upkeep, kMidnight + hours{20}), 1);  // once a day
+  recald::testing::write_text(folder_ / "backups" / "site-notes.db", "mine");
+  for (int day = 1; day <= 9; ++day) maintain(upkeep, kMidnight + days{day} + hours{9});
+  const auto kept = backups_of(config_);
+  ASSERT_THAT(kept, SizeIs(kBackupsKept));
+  EXPECT_EQ(kept.front().filename(), "site-2024-03-10.db");
+  EXPECT_EQ(kept.back().filename(), "site-2024-03-04.db");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "backups" / "site-notes.db"));
+}
+
+TEST_F(UpkeepTest, ABackupThatFailsIsOneEventAndTriedAgain) {
+  auto store = open();
+  recald::testing::write_text(folder_ / "backups", "in the way");
+  Upkeep upkeep{store, config_, calendar_, rules_};
+  for (int hour = 4; hour < 8; ++hour) maintain(upkeep, kMidnight + hours{hour});
+  const auto events = store.events(10).value();
+  ASSERT_THAT(events, SizeIs(1));
+  EXPECT_EQ(events[0].kind, "backup_failed");
+  std::filesystem::remove(folder_ / "backups");
+  maintain(upkeep, kMidnight + hours{9});
+  EXPECT_THAT(backups_of(config_), SizeIs(1));
+}
+
+TEST_F(UpkeepTest, WithoutABackupTimeThereIsNone) {
+  config_.backup_at.reset();
+  auto store = open();
+  Upkeep upkeep{store, config_, calendar_, rules_};
+  maintain(upkeep, kMidnight + hours{12});
+  EXPECT_EQ(rest_, hours{1});
+  EXPECT_THAT(backups_of(config_), IsEmpty());
+}
+
+TEST_F(UpkeepTest, OldSamplesAreDeletedInPortions) {
+  config_.backup_at.reset();
+  config_.raw_kept = days{2};
+  auto store = open();
+  commit_samples(store, kMidnight, 3 * 96);
+  Upkeep upkeep{store, config_, calendar_, rules_};
+  EXPECT_GE(maintain(upkeep, kMidnight + days{4}), 2);
+  EXPECT_EQ(samples(store), 96);
+}
+
+TEST_F(UpkeepTest, AFullDiskTakesTheReserveAndTheCommitIsThere) {
+  const auto reserve = folder_ / "site.db.reserve";
+  FaultyDisk disk{"full"};
+  auto store = sqlite::SqliteStore::open(config_.file, {.vfs = disk.name()}).value();
+  (void)store.meter_number("main", minutes{15});
+  Upkeep upkeep{store, config_, calendar_, rules_};
+  maintain(upkeep, kMidnight);
+  EXPECT_EQ(std::filesystem::file_size(reserve), kReserve);
+  int refused = 0;
+  disk.before = [&](const FaultyDisk::Step& step) {
+    const bool is_full =
+        step.operation == FaultyDisk::Operation::write && std::filesystem::exists(reserve);
+    refused += static_cast<int>(is_full);
+    return is_full ? SQLITE_FULL : SQLITE_OK;
+  };
+  commit_samples(store, kMidnight, 10);
+  EXPECT_EQ(samples(store), 10);
+  EXPECT_EQ(refused, 1);
+  EXPECT_FALSE(std::filesystem::exists(reserve));
+  disk.before = [](const FaultyDisk::Step& step) {
+    return step.operation == FaultyDisk::Operation::write ? SQLITE_FULL : SQLITE_OK;
+  };
+  EXPECT_FALSE(store.commit({.samples = {{0, "energy", kMidnight + days{1}, 1.0}}}).has_value());
+  disk.before = {};
+  maintain(upkeep, kMidnight + hours{1});
+  EXPECT_TRUE(std::filesystem::exists(reserve));
+}
+
+TEST_F(UpkeepTest, AReserveThatWouldFillTheDiskIsNotTaken) {
+  rules_.reserve_bytes = std::filesystem::space(folder_.path()).available;
+  auto store = open();
+  Upkeep upkeep{store, config_, calendar_, rules_};
+  maintain(upkeep, kMidnight);
+  maintain(upkeep, kMidnight + hours{1});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "site.db.reserve"));
+  EXPECT_EQ(store.events(1).value().at(0).kind, "no_reserve");
+}
+
+TEST_F(UpkeepTest, ADamagedStoreIsRecoveredWithTheBackupsHelp) {
+  {
+    auto store = open();
+    commit_samples(store, kMidnight, 2000);
+    Upkeep upkeep{store, config_, calendar_, rules_};
+    maintain(upkeep, kMidnight + hours{4});
+  }
+  recald::testing::damage_leaf(config_.file, "sample", 5);
+  auto opened = open_store(config_, kMidnight + hours{5}).value();
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(samples(opened.store), 2000);
+  const auto event = opened.store.events(1).value().at(0);
+  EXPECT_EQ(event.kind, "store_recovered");
+  EXPECT_EQ(event.severity, Severity::error);
+  EXPECT_THAT(event.text, ::testing::HasSubstr("the backup was 'site-2024-03-01.db'"));
+  EXPECT_FALSE(open_store(config_, kMidnight + hours{6}).value().recovery.has_value());
+}
+
+}  // namespace
+}  // namespace recald::daemon

@@ -1,0 +1,229 @@
+/// Buses and live meters in a site file: what a right one says, and a sentence for each mistake.
+#include "daemon/site/config/bus_config.hpp"
+
+#include <gmock/gmock.h>
+
+#include "daemon/site/config/site_config.hpp"
+#include "tests/support/sample_site.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon::bus_config_test {
+namespace {
+
+using recald::testing::edited;
+using recald::testing::TemporaryFolder;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string kSite = R"([site]
+id = "tower"
+timezone = "America/Chicago"
+
+[bus.plant]
+type = "tcp"
+host = "10.20.0.15"
+port = 1502
+connect_delay = "200ms"
+request_gap = "20ms"
+timeout = "2s"
+down_after = 5
+probe_max = "10m"
+
+[bus.cellar]
+type = "rtu"
+port = "ttyUSB0"
+baud = 19200
+format = "8N2"
+
+[[meter]]
+id = "main"
+source = "modbus"
+utility = "electricity"
+bus = "plant"
+unit = 7
+map = "siemens-pac3200"
+rated_kW = 400
+multiplier = 40
+poll = "10s"
+
+[[meter]]
+id = "cooling"
+source = "modbus"
+utility = "chilled_water"
+bus = "cellar"
+unit = 3
+map = "belimo-energy-valve"
+rated_kW = 900
+timeout = "1500ms"
+
+[[meter]]
+id = "heat"
+source = "modbus"
+utility = "heating"
+bus = "cellar"
+unit = 3
+map = "belimo-energy-valve"
+energy = ["energy_heating"]
+power = "power_heating"
+rated_kW = 500
+)";
+
+tl::expected<SiteConfig, Problems> loaded(const std::string& text) {
+  const TemporaryFolder folder;
+  recald::testing::write_text(folder / "site.toml", text);
+  return load_site(folder / "site.toml");
+}
+
+Problems problems_with(std::string_view from, std::string_view to) {
+  const auto site = loaded(edited(kSite, from, to));
+  return site ? Problems{} : site.error();
+}
+
+TEST(BusConfig, SaysWhatTheFileSays) {
+  const auto site = loaded(kSite);
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  ASSERT_EQ(site->buses.size(), 2u);
+  const BusConfig& cellar = site->buses[0];
+  EXPECT_EQ(cellar.name, "cellar");
+  EXPECT_EQ(cellar.endpoint, modbus::Endpoint(modbus::SerialPort{"/dev/ttyUSB0", 19'200, 8,
+                                                                 modbus::Parity::none, 2}));
+  EXPECT_EQ(cellar.timeout, milliseconds{0});
+  const BusConfig& plant = site->buses[1];
+  EXPECT_EQ(plant.endpoint,
+            modbus::Endpoint(modbus::TcpEndpoint{
+                .host = "10.20.0.15", .port = 1502, .connect_delay = milliseconds{200}}));
+  EXPECT_EQ(plant.request_gap, milliseconds{20});
+  EXPECT_EQ(plant.timeout, seconds{2});
+  EXPECT_EQ(plant.down_after, 5);
+  EXPECT_EQ(plant.probe_max, std::chrono::minutes{10});
+  ASSERT_EQ(site->meters.size(), 3u);
+  const MeterConfig& main = site->meters[0];
+  ASSERT_TRUE(main.live.has_value());
+  EXPECT_TRUE(main.file.empty());
+  EXPECT_EQ(main.live->bus, "plant");
+  EXPECT_EQ(main.live->unit, 7);
+  EXPECT_EQ(main.live->poll, seconds{10});
+  EXPECT_EQ(main.multiplier, 40.0);
+  EXPECT_THAT(main.live->map.energy, ElementsAre("energy_import_t1", "energy_import_t2"));
+  EXPECT_EQ(site->meters[1].live->timeout, milliseconds{1500});
+  EXPECT_EQ(site->meters[1].live->poll, seconds{60});
+  EXPECT_THAT(site->meters[1].live->map.energy, ElementsAre("energy_cooling"));
+  EXPECT_THAT(site->meters[2].live->map.energy, ElementsAre("energy_heating"));
+  EXPECT_EQ(site->meters[2].live->map.power, "power_heating");
+}
+
+struct Mistake {
+  std::string from;
+  std::string to;
+  std::string said;
+};
+
+TEST(BusConfig, EveryMistakeHasItsSentence) {
+  const std::vector<Mistake> mistakes{
+      {"type = \"tcp\"\n", "", "[bus.plant] 'type' is missing"},
+      {"type = \"tcp\"", "type = \"udp\"", "it must be one of tcp, rtu"},
+      {"host = \"10.20.0.15\"\n", "", "'host' is missing"},
+      {"host = \"10.20.0.15\"", "host = 10", "'host' must be a text in quotes"},
+      {"port = 1502", "port = 70000", "'port' is 70000; it must be between 1 and 65535"},
+      {"port = 1502", "port = \"502\"", "'port' must be a number"},
+      {"connect_delay = \"200ms\"", "connect_delay = 200", "'connect_delay' must be a text"},
+      {"connect_delay = \"200ms\"", "connect_delay = \"fast\"", "such as \"200ms\" or \"5s\""},
+      {"timeout = \"2s\"", "timeout = \"-1s\"", "'timeout' is \"-1s\""},
+      {"down_after = 5", "down_after = 0", "'down_after' is 0; it must be between 1 and 100"},
+      {"down_after = 5", "down_afer = 5", "unknown key 'down_afer'; did you mean 'down_after'?"},
+      {"port = \"ttyUSB0\"\n", "", "[bus.cellar] 'port' is missing"},
+      {"baud = 19200", "baud = 12345", "'baud' is 12345; it must be one of 1200"},
+      {"format = \"8N2\"", "format = \"9N1\"", "such as \"8E1\" or \"8N2\""},
+      {"format = \"8N2\"", "format = \"8X1\"", "'format' is \"8X1\""},
+      {"format = \"8N2\"", "format = \"8N\"", "'format' is \"8N\""},
+      {"bus = \"plant\"", "bus = \"roof\"", "'bus' names 'roof', but there is no [bus.roof]"},
+      {"bus = \"plant\"\n", "", "'bus' is missing"},
+      {"unit = 7\n", "", "'unit' is missing: the device's Modbus address"},
+      {"unit = 7", "unit = 300", "'unit' is 300; it must be between 0 and 255"},
+      {"unit = 7", "unit = 1.5", "'unit' is 1.5; it must be a whole number"},
+      {"map = \"siemens-pac3200\"\n", "", "'map' is missing"},
+      {"map = \"siemens-pac3200\"", "map = \"siemens-pac\"", "no register map is called"},
+      {"map = \"siemens-pac3200\"", "map = \"our.toml\"", "our.toml' cannot be read"},
+      {"rated_kW = 400\n", "", "a live counter needs 'rated_kW'"},
+      {"poll = \"10s\"", "poll = \"0s\"", "'poll' must lie between \"1s\" and \"15m\""},
+      {"poll = \"10s\"", "poll = \"20m\"", "'poll' must lie between \"1s\" and \"15m\""},
+      {"poll = \"10s\"", "file = \"x.csv\"", "unknown key 'file'"},
+      {"energy = [\"energy_heating\"]", "energy = [\"heating\"]",
+       "'energy' names 'heating', but map 'belimo-energy-valve' has"},
+      {"power = \"power_heating\"", "power = \"watts\"", "'power' names 'watts'"},
+      {"energy = [\"energy_heating\"]\n", "",
+       "meters 'cooling' and 'heat' are the same registers of unit 3 on bus 'cellar'"},
+      {"source = \"modbus\"\nutility = \"heating\"", "source = \"mqtt\"\nutility = \"heating\"",
+       "it must be one of csv, modbus"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    SCOPED_TRACE(mistake.to);
+    EXPECT_THAT(problems_with(mistake.from, mistake.to), Contains(HasSubstr(mistake.said)));
+  }
+}
+
+TEST(BusConfig, AMeterWithoutACounterIsReadMoreOftenAndNeedsNoRating) {
+  const std::string text = edited(edited(kSite, "energy = [\"energy_heating\"]\n", "energy = []\n"),
+                                  "rated_kW = 500\n", "");
+  const auto site = loaded(text);
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  EXPECT_EQ(site->meters[2].live->poll, seconds{15});
+  EXPECT_THAT(site->meters[2].live->map.energy, IsEmpty());
+  const auto seldom = loaded(text + "poll = \"3m\"\n");
+  ASSERT_FALSE(seldom.has_value());
+  EXPECT_THAT(seldom.error(),
+              Contains(HasSubstr("'poll' must lie between \"1s\" and \"2m\": the meter has no "
+                                 "counter")));
+  const auto twice = loaded(text + R"(
+[[meter]]
+id = "again"
+source = "modbus"
+utility = "heating"
+bus = "cellar"
+unit = 3
+map = "belimo-energy-valve"
+energy = []
+power = "power_heating"
+)");
+  ASSERT_FALSE(twice.has_value());
+  EXPECT_THAT(twice.error(), Contains(HasSubstr("meters 'heat' and 'again' are the same")));
+}
+
+TEST(BusConfig, SunSpecDevicesShareNoUnitWithOtherMaps) {
+  const auto site = loaded(edited(kSite, "map = \"siemens-pac3200\"", "map = \"sunspec-meter\""));
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  EXPECT_THAT(site->meters[0].live->map.sunspec_models, ElementsAre(201, 202, 203, 204));
+  EXPECT_THAT(problems_with("map = \"belimo-energy-valve\"\nrated_kW = 900",
+                            "map = \"sunspec-meter\"\nrated_kW = 900"),
+              Contains(HasSubstr("give both maps the same 'sunspec_models'")));
+}
+
+TEST(BusConfig, ABrokenMapIsToldWithItsLine) {
+  const TemporaryFolder folder;
+  recald::testing::write_text(folder / "ours.toml", "base = 0\nsource = \"x\"\nenergy = [\"e\"]\n");
+  recald::testing::write_text(folder / "site.toml",
+                              edited(kSite, "map = \"siemens-pac3200\"", "map = \"ours.toml\""));
+  const auto site = load_site(folder / "site.toml");
+  ASSERT_FALSE(site.has_value());
+  EXPECT_THAT(site.error(), Contains(HasSubstr("ours.toml:")));
+}
+
+// 6.2 of the bus's arithmetic: twenty registers at 9600 baud take some 150 ms.
+TEST(BusConfig, PollTimeOfASerialLine) {
+  const auto site = loaded(kSite);
+  BusConfig line{.name = "line", .endpoint = modbus::SerialPort{.baud = 9600}};
+  LiveMeterConfig meter = *site->meters[0].live;
+  meter.map.power.reset();
+  meter.map.energy = {"energy_import_t1", "energy_import_t2"};  // 8 registers, one read
+  // (8 + 5 + 16 + 7) characters of 11 bits at 9600 baud: 41.25 ms, and 60 ms of thinking.
+  EXPECT_EQ(poll_time(line, meter), milliseconds{102});
+  EXPECT_EQ(poll_time({.endpoint = modbus::TcpEndpoint{}, .request_gap = milliseconds{25}}, meter),
+            milliseconds{45});
+}
+
+}  // namespace
+}  // namespace recald::daemon::bus_config_test

@@ -1,0 +1,95 @@
+/// [http] and [recalibration] of a site file.
+#include "daemon/site/config/service_config.hpp"
+
+#include <gmock/gmock.h>
+
+namespace recald::daemon::service_config_test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+struct ReadHttp {
+  HttpConfig config;
+  Problems problems;
+};
+
+ReadHttp http(const char* text) {
+  ReadHttp read;
+  const toml::table table = toml::parse(text);
+  TomlReader reader{table, "site.toml", "[http]", read.problems};
+  read.config = read_http(reader, "/etc/recald/site.toml");
+  return read;
+}
+
+Problems recalibration_problems(const char* text) {
+  Problems problems;
+  const toml::table table = toml::parse(text);
+  TomlReader reader{table, "site.toml", "[recalibration]", problems};
+  static_cast<void>(read_recalibration(reader, "/etc/recald/site.toml"));
+  return problems;
+}
+
+TEST(HttpConfig, StaysOnThisMachineUnlessTold) {
+  const auto [config, problems] = http("");
+  EXPECT_THAT(problems, IsEmpty());
+  EXPECT_EQ(config.address, "127.0.0.1");
+  EXPECT_EQ(config.port, 8080);
+  EXPECT_TRUE(config.token_file.empty());
+}
+
+TEST(HttpConfig, ReadsAddressPortAndFiles) {
+  const auto [config, problems] = http(
+      "listen = \"[::]:443\"\ntoken_file = \"token\"\n"
+      "certificate_file = \"/etc/cert.pem\"\nkey_file = \"key.pem\"");
+  EXPECT_THAT(problems, IsEmpty());
+  EXPECT_EQ(config.address, "::");
+  EXPECT_EQ(config.port, 443);
+  EXPECT_EQ(config.token_file, "/etc/recald/token");
+  EXPECT_EQ(config.certificate_file, "/etc/cert.pem");
+  EXPECT_EQ(config.key_file, "/etc/recald/key.pem");
+}
+
+TEST(HttpConfig, ThisMachineHasSeveralNames) {
+  for (const char* text : {"listen = \"localhost:1\"", "listen = \"[::1]:1\"",
+                           "listen = \"127.8.0.1:1\"", "listen = \"127.0.0.1:0\""}) {
+    EXPECT_THAT(http(text).problems, IsEmpty()) << text;
+  }
+}
+
+TEST(HttpConfig, OtherMachinesNeedATokenAndTls) {
+  for (const char* text :
+       {"listen = \"0.0.0.0:80\"", "listen = \"[::]:80\"",
+        "listen = \"10.0.0.1:80\"\ntoken_file = \"token\"",
+        "listen = \"10.0.0.1:80\"\ncertificate_file = \"c\"\nkey_file = \"k\""}) {
+    EXPECT_THAT(http(text).problems, ElementsAre(HasSubstr("opens"))) << text;
+  }
+}
+
+TEST(HttpConfig, MistakesAreNamedWithTheirKey) {
+  for (const char* text :
+       {"listen = \"8080\"", "listen = \":8080\"", "listen = \"127.0.0.1:\"",
+        "listen = \"127.0.0.1:70000\"", "listen = \"::1:8080\"", "listen = \"127.0.0.1:80a\""}) {
+    EXPECT_THAT(http(text).problems, ElementsAre(HasSubstr("site.toml:1: [http] 'listen' is")))
+        << text;
+  }
+  EXPECT_THAT(http("certificate_file = \"c\"").problems, ElementsAre(HasSubstr("TLS needs both")));
+  EXPECT_THAT(http("key_file = \"c\"").problems, ElementsAre(HasSubstr("TLS needs both")));
+  EXPECT_THAT(http("token = \"c\"").problems, ElementsAre(HasSubstr("token_file")));
+  EXPECT_THAT(http("listen = 8080").problems, ElementsAre(HasSubstr("listen")));
+  EXPECT_THAT(http("token_file = \"$RECALD_NO_SUCH/token\"").problems,
+              ElementsAre(HasSubstr("'token_file' begins with $RECALD_NO_SUCH")));
+}
+
+TEST(RecalibrationConfig, MistakesAreNamedWithTheirKey) {
+  EXPECT_THAT(recalibration_problems("schedule = \"monthly\"\nmonths = 12"), IsEmpty());
+  EXPECT_THAT(recalibration_problems("schedule = \"weekly\""),
+              ElementsAre(HasSubstr("site.toml:1: [recalibration] 'schedule'")));
+  EXPECT_THAT(recalibration_problems("months = 5"), ElementsAre(HasSubstr("months")));
+  EXPECT_THAT(recalibration_problems("months = 6.5"), ElementsAre(HasSubstr("months")));
+  EXPECT_THAT(recalibration_problems("month = 12"), ElementsAre(HasSubstr("months")));
+}
+
+}  // namespace
+}  // namespace recald::daemon::service_config_test

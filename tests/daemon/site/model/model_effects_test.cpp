@@ -1,0 +1,144 @@
+#include "daemon/site/model/model_effects.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/sample_building.hpp"
+
+namespace recald::daemon {
+namespace {
+
+std::vector<double> draws_of(const Prior& distribution) {
+  std::vector<double> draws;
+  for (int i = 0; i < 200; ++i) draws.push_back(distribution.quantile((i + 0.5) / 200.0));
+  return draws;
+}
+
+TEST(PriorFromDraws, HasTheirMeanAndSpreadInTheOriginalSupport) {
+  const Prior share = UniformPrior{0.0, 1.0};
+  for (const auto& [location, sd] : {std::pair{0.5, 0.05}, {0.97, 0.05}, {0.02, 0.1}}) {
+    const Prior posterior = TruncatedNormalPrior{location, sd, 0.0, 1.0};
+    const Prior fitted = prior_from_draws(share, draws_of(posterior));
+    EXPECT_NEAR(fitted.mean(), posterior.mean(), 0.01 * sd) << location;
+    EXPECT_NEAR(std::sqrt(fitted.variance()), std::sqrt(posterior.variance()), 0.02 * sd);
+    EXPECT_EQ(fitted.min(), 0.0);
+    EXPECT_EQ(fitted.max(), 1.0);
+  }
+}
+
+TEST(PriorFromDraws, KeepsALogNormalOne) {
+  const Prior original = LogNormalPrior{2.0, 0.5};
+  const Prior posterior = LogNormalPrior{3.0, 0.1};
+  const Prior fitted = prior_from_draws(original, draws_of(posterior));
+  EXPECT_EQ(fitted.name(), "log_normal");
+  EXPECT_NEAR(fitted.mean(), posterior.mean(), 0.01);
+  EXPECT_NEAR(fitted.variance(), posterior.variance(), 0.01);
+}
+
+TEST(PriorFromDraws, IsOneEvenWhereAllDrawsAreTheSame) {
+  const Prior fitted = prior_from_draws(UniformPrior{0.0, 1.0}, std::vector{1.0, 1.0, 1.0});
+  EXPECT_GT(fitted.mean(), 0.99);
+  EXPECT_GT(fitted.variance(), 0.0);
+}
+
+// Draws that fill their support evenly have no normal with their moments; the widest is near.
+TEST(PriorFromDraws, ComesNearAUniformPosterior) {
+  const Prior even = UniformPrior{0.0, 1.0};
+  const Prior fitted = prior_from_draws(even, draws_of(even));
+  EXPECT_NEAR(fitted.mean(), 0.5, 0.01);
+  EXPECT_NEAR(std::sqrt(fitted.variance()), std::sqrt(1.0 / 12.0), 0.02);
+}
+
+/// The sample building's 2021 with its electricity and steam.
+std::shared_ptr<const diagnosis::SiteProblem> sample_site() {
+  auto site = std::make_shared<diagnosis::SiteProblem>();
+  site->nominal = recald::testing::sample_building();
+  site->drivers =
+      std::make_shared<const model::Drivers>(recald::testing::sample_drivers(site->nominal, 12));
+  for (const auto& [id, utility] : {std::pair{"electricity", metering::Utility::electricity},
+                                    std::pair{"steam", metering::Utility::steam}}) {
+    site->meters.push_back({id, utility, *model::default_meter_map(utility)});
+  }
+  site->day_parts = diagnosis::make_day_parts(*site->drivers);
+  site->measured_parts_kW = Eigen::ArrayXXd::Constant(site->day_parts.count(), 2, 50.0);
+  return site;
+}
+
+diagnosis::EffectParameterRecord record(const std::string& name, const Prior& prior,
+                                        std::vector<double> draws) {
+  diagnosis::EffectParameterRecord record{.name = name, .unit = "-", .prior = prior};
+  record.draws = std::move(draws);
+  record.mean = record.q50 = record.draws[record.draws.size() / 2];
+  return record;
+}
+
+/// A scale fault of the steam meter since the 200th day of a record that began with July 2020.
+diagnosis::AddedEffect scale_since_day_200() {
+  diagnosis::AddedEffect added{.effect = "scale_fault",
+                               .title = "Meter's scale is wrong",
+                               .meter = "steam",
+                               .from = {},
+                               .to = {},
+                               .physics = "",
+                               .parameters = {},
+                               .log_evidence_gain = 9.0,
+                               .probability = 0.9};
+  const auto site = sample_site();
+  const auto own = diagnosis::find_effect("scale_fault")->parameters(site->facts());
+  added.parameters = {record(own[0].name, own[0].prior, {1.19, 1.2, 1.21}),
+                      record("first_day", UniformPrior{21.0, 344.0}, {198.0, 200.0, 202.0})};
+  added.from = metering::Day{std::chrono::sys_days{std::chrono::year{2020} / 7 / 1} +
+                             std::chrono::days{201}};  // of the mode
+  return added;
+}
+
+// Six months of 2020 lie before the record at hand: 184 days.
+TEST(ModelEffects, BringsDaysFromTheRecordThatTheyWereCountedIn) {
+  const auto effects = make_model_effects({scale_since_day_200()}, sample_site());
+  ASSERT_TRUE(effects.has_value()) << effects.error().message;
+  ASSERT_EQ(effects->draws.cols(), 2);
+  EXPECT_EQ(effects->draws(1, 0), 1.2);
+  EXPECT_EQ(effects->draws(1, 1), 16.0);
+  EXPECT_EQ(effects->parameters[0].name,
+            "scale_fault_steam_" + scale_since_day_200().parameters[0].name);
+  EXPECT_NEAR(effects->parameters[1].prior.mean(), 16.0, 0.1);
+  EXPECT_EQ(effects->labels[1]->definition.label, "Meter's scale is wrong: first day");
+  EXPECT_NEAR(effects->mean()[1], 16.0, 1e-9);
+}
+
+TEST(ModelEffects, MonthlyAndHourlyHaveTheSame) {
+  const auto effects = make_model_effects({scale_since_day_200()}, sample_site());
+  ASSERT_TRUE(effects.has_value());
+  const std::vector<double> eta{1.2, 16.0};
+  std::vector<double> meters(24, 100.0);
+  effects->monthly({}).front().apply({}, eta, meters);
+  EXPECT_EQ(meters[0], 100.0);  // electricity
+  EXPECT_NEAR(meters[12], 100.0 * (1.0 + 0.2 * 15.0 / 31.0), 1.0);
+  EXPECT_NEAR(meters[13], 120.0, 1e-9);
+  diagnosis::Predictor predictor{*effects->site, effects->alterations(eta)};
+  diagnosis::Predictor plain{*effects->site};
+  const Eigen::Index may = 24 * 130;
+  EXPECT_NEAR((predictor.parts_kW({}), predictor.hours_kW()(may, 1)),
+              1.2 * (plain.parts_kW({}), plain.hours_kW()(may, 1)), 1e-9);
+}
+
+TEST(ModelEffects, WhatDoesNotFitTheCatalogueOrTheSiteIsASentence) {
+  const auto refused = [](diagnosis::AddedEffect added) {
+    const auto effects = make_model_effects({std::move(added)}, sample_site());
+    return effects ? std::string{} : effects.error().message;
+  };
+  diagnosis::AddedEffect other_meter = scale_since_day_200();
+  other_meter.meter = "gas";
+  EXPECT_THAT(refused(other_meter), ::testing::HasSubstr("of meter 'gas', which is not modelled"));
+  diagnosis::AddedEffect renamed = scale_since_day_200();
+  renamed.parameters[0].name = "colour";
+  EXPECT_THAT(refused(renamed), ::testing::HasSubstr("other parameters than the catalogue"));
+  diagnosis::AddedEffect without_draws = scale_since_day_200();
+  without_draws.parameters[0].draws.clear();
+  EXPECT_THAT(refused(without_draws), ::testing::HasSubstr("has no posterior draws of"));
+}
+
+}  // namespace
+}  // namespace recald::daemon

@@ -1,0 +1,129 @@
+#include "tests/layout/include_rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string_view>
+
+namespace recald::layout {
+namespace {
+
+/// From the bottom to the top: a room may include itself and those before it.
+constexpr auto kOrder = std::to_array<std::string_view>({
+    "core",
+    "adapters",
+    "daemon/version",
+    "daemon/site/config",
+    "daemon/site/replay",
+    "daemon/site/model",
+    "daemon/site/calibrate",
+    "daemon/site/diagnose",
+    "daemon/site/drift",
+    "daemon/site/results",
+    "daemon/gateway/poll",
+    "daemon/gateway/ingest",
+    "daemon/gateway/upkeep",
+    "daemon/gateway/serve",
+    "daemon/gateway/run",
+    "daemon/commands",
+    "daemon/main",
+});
+
+/// A building that shares the equations of the model it is held against proves nothing: values and
+/// file formats are all that simulators have of core.
+constexpr auto kOfCoreForSimulators = std::to_array<std::string_view>(
+    {"core/absent", "core/metering", "core/random", "core/result", "core/text"});
+
+bool is_below(std::string_view path, std::string_view room) {
+  return path.starts_with(room) && path.size() > room.size() &&
+         (path[room.size()] == '/' || path[room.size()] == '.');
+}
+
+/// Place in the order; its size for what has none.
+std::size_t rank(std::string_view path) {
+  const auto room =
+      std::ranges::find_if(kOrder, [&](std::string_view one) { return is_below(path, one); });
+  return static_cast<std::size_t>(room - kOrder.begin());
+}
+
+bool is_allowed(std::string_view from, std::string_view to) {
+  if (is_below(from, "simulators")) {
+    return is_below(to, "simulators") ||
+           std::ranges::any_of(kOfCoreForSimulators,
+                               [&](std::string_view room) { return is_below(to, room); });
+  }
+  return rank(from) < kOrder.size() && rank(to) <= rank(from);
+}
+
+std::string folder_of(const std::string& file) { return file.substr(0, file.rfind('/')); }
+
+}  // namespace
+
+Includes read_includes(const std::string& root) {
+  constexpr std::string_view begin = "#include \"";
+  Includes includes;
+  for (const char* top : {"core", "adapters", "daemon", "simulators"}) {
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(std::filesystem::path{root} / top)) {
+      if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
+      const std::string file = entry.path().lexically_relative(root).generic_string();
+      std::set<std::string>& included = includes[file];
+      std::ifstream in(entry.path());
+      for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with(begin)) continue;
+        included.insert(line.substr(begin.size(), line.rfind('"') - begin.size()));
+      }
+    }
+  }
+  return includes;
+}
+
+std::vector<std::string> forbidden_arrows(const Includes& includes) {
+  std::vector<std::string> found;
+  for (const auto& [file, included] : includes) {
+    for (const std::string& other : included) {
+      if (!is_allowed(file, other)) found.push_back(file + " must not include " + other);
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> circles(const Includes& includes) {
+  std::map<std::string, std::set<std::string>> reached;
+  for (const auto& [file, included] : includes) {
+    std::set<std::string>& next = reached[folder_of(file)];
+    for (const std::string& other : included) {
+      if (folder_of(other) != folder_of(file)) next.insert(folder_of(other));
+    }
+  }
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (auto& [folder, next] : reached) {
+      std::set<std::string> further;
+      for (const std::string& one : next) {
+        if (const auto known = reached.find(one); known != reached.end()) {
+          further.insert(known->second.begin(), known->second.end());
+        }
+      }
+      const std::size_t before = next.size();
+      next.merge(further);
+      grows = grows || next.size() > before;
+    }
+  }
+  std::set<std::string> found;
+  for (const auto& [folder, next] : reached) {
+    if (!next.contains(folder)) continue;
+    std::string circle;
+    for (const std::string& other : next) {
+      const auto back = reached.find(other);
+      const bool is_part = back != reached.end() && back->second.contains(folder);
+      if (is_part) circle += (circle.empty() ? "" : " ") + other;
+    }
+    found.insert(circle);
+  }
+  return {found.begin(), found.end()};
+}
+
+}  // namespace recald::layout
