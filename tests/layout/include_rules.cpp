@@ -57,7 +57,11 @@ bool is_allowed(std::string_view from, std::string_view to) {
   return rank(from) < kOrder.size() && rank(to) <= rank(from);
 }
 
-std::string folder_of(const std::string& file) { return file.substr(0, file.rfind('/')); }
+/// Files that lie beside a wing's folders, `daemon/main.cpp`, are rooms of their own.
+std::string folder_of(const std::string& file) {
+  const std::size_t last = file.rfind('/');
+  return file.find('/') == last ? file.substr(0, file.rfind('.')) : file.substr(0, last);
+}
 
 }  // namespace
 
