@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adapters/ports/job_result.hpp"
 #include "core/metering/interval_book.hpp"
 #include "core/metering/monthly_figure.hpp"
 #include "core/metering/power_book.hpp"
@@ -71,7 +72,7 @@ struct StoredJob {
   bool accepted = false;  ///< Passed its gates: the latest such result is the one in use.
   std::string message;    ///< Why it failed, or was not accepted; else empty.
   std::string folder;     ///< With its files, beside the store; empty: none.
-  std::string result;     ///< JSON as calibration.json or diagnosis.json; empty until done.
+  JobResult result;       ///< Empty until done.
 };
 
 /// What was expected of one month of one output before its figure was looked at, and how it did.
@@ -165,6 +166,13 @@ class Store {
 
   /// The latest revision of each month, ascending.
   virtual Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) = 0;
+
+  /// The rules that the meter's months were closed by; empty: it has none yet.
+  virtual Result<std::string> closing_rules(std::uint32_t meter) = 0;
+
+  /// The meter's months close by these rules from now on. Where they were others, the closed months
+  /// are reopened. @return how many were.
+  virtual Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) = 0;
 
   /// The newest events first.
   virtual Result<std::vector<StoreEvent>> events(int limit) = 0;

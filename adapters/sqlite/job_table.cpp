@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "adapters/results/job_result_json.hpp"
+
 namespace recald::sqlite {
 namespace {
 
@@ -36,7 +38,7 @@ void bind_job(Statement& statement, const StoredJob& job) {
   statement.bind(6, std::int64_t{job.accepted})
       .bind(7, std::string_view{job.message})
       .bind(8, std::string_view{job.folder})
-      .bind(9, std::string_view{job.result});
+      .bind(9, std::string_view{job.result.document});
 }
 
 /// Columns as in `kColumns`.
@@ -70,7 +72,7 @@ Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
   if (!row) return tl::unexpected(row.error());
   if (!*row) return std::optional<StoredJob>{};
   StoredJob job = read_job(query);
-  job.result = query.text(10);
+  job.result = results::read_job_result(query.text(10));
   query.reset();
   return std::optional{std::move(job)};
 }

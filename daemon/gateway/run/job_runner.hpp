@@ -21,7 +21,7 @@ struct JobOutcome {
   bool accepted = false;  ///< Its gates hold: this is the result in use from now on.
   std::string message;    ///< Which gate failed; else empty.
   std::string folder;     ///< With its files.
-  std::string result;     ///< JSON
+  JobResult result;
   std::vector<StoredForecast> forecasts;  ///< For the record.
   std::optional<JobKind> next;            ///< What it gives reason for; "drift" asks for it.
 };

@@ -17,6 +17,7 @@
 #include "daemon/site/results/diagnosis_folder.hpp"
 #include "daemon/site/results/drift_json.hpp"
 #include "daemon/site/results/drift_report.hpp"
+#include "daemon/site/results/drift_summary.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -32,7 +33,7 @@ JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const 
                       const std::filesystem::path& folder) {
   JobOutcome outcome{.accepted = calibration.calibration.converged,
                      .folder = folder.string(),
-                     .result = calibration_json(calibration, facts)};
+                     .result = calibration_result(calibration, facts)};
   if (!outcome.accepted) {
     outcome.message = "the chains have not converged, so the result before stays in use";
   }
@@ -46,7 +47,7 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
   const auto done = calibrate_on_design(modelled, design, context);
   if (!done) return tl::unexpected(done.error());
   JobOutcome outcome = outcome_of(done->calibration, done->facts, folder);
-  if (auto written = write_calibration(*done, outcome.result, folder); !written) {
+  if (auto written = write_calibration(*done, outcome.result.document, folder); !written) {
     return tl::unexpected(written.error());
   }
   return outcome;
@@ -91,8 +92,9 @@ bool asks_for_a_name(const SiteDrift& drift) {
 
 /// What all months say, beside a calibration that stands by itself.
 /// @return or why there is nothing to say: too few months, a model that cannot be followed.
-Result<void> follow(OpenSite site, metering::Instant now, const calibration::RunContext& context,
-                    const std::filesystem::path& folder, JobOutcome& outcome) {
+Result<DriftSummary> follow(OpenSite site, metering::Instant now,
+                            const calibration::RunContext& context,
+                            const std::filesystem::path& folder, JobOutcome& outcome) {
   const DriftOptions options{.sequential = {.particles = kDriftParticles}};
   auto modelled = load_modelled_site(
       std::move(site), now,
@@ -108,11 +110,10 @@ Result<void> follow(OpenSite site, metering::Instant now, const calibration::Run
   if (!drift) return tl::unexpected(drift.error());
   auto written = write_drift(modelled->site.config, *drift, modelled->facts,
                              metering::to_string(now), drift_json(*drift, modelled->facts), folder);
-  if (!written) return written;
-  outcome.result = with_drift(outcome.result, *drift);
+  if (!written) return tl::unexpected(written.error());
   outcome.forecasts = forecasts_of(*drift, modelled->facts, now);
   if (asks_for_a_name(*drift)) outcome.next = JobKind::diagnosis;
-  return {};
+  return summary_of(*drift);
 }
 
 Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
@@ -129,12 +130,15 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   const auto done = finish_calibration(std::move(*modelled), {}, context);
   if (!done) return tl::unexpected(done.error());
   JobOutcome outcome = outcome_of(done->calibration, done->modelled.facts, folder);
-  const auto written = write_calibration(*done, outcome.result, metering::to_string(now), folder);
+  const auto written =
+      write_calibration(*done, outcome.result.document, metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
-  const auto followed = follow(whole, now, context, folder, outcome);
-  if (followed) return outcome;
-  if (followed.error().code == ErrorCode::cancelled) return tl::unexpected(followed.error());
-  outcome.result = without_drift(outcome.result, followed.error().message);
+  auto followed = follow(whole, now, context, folder, outcome);
+  if (!followed && followed.error().code == ErrorCode::cancelled) {
+    return tl::unexpected(followed.error());
+  }
+  const FollowUp follow_up = std::move(followed).map_error(&Error::message);
+  outcome.result = calibration_result(done->calibration, done->modelled.facts, &follow_up);
   return outcome;
 }
 
@@ -150,13 +154,13 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
                                   [&](const char*, double) { return goes_on(); });
   if (!done) return tl::unexpected(done.error());
   modelled->facts.seed = kSeed;
-  JobOutcome outcome{
-      .accepted = true,
-      .folder = folder.string(),
-      .result = diagnosis_json(done->diagnosis, *problem, modelled->facts, done->others)};
+  JobOutcome outcome{.accepted = true,
+                     .folder = folder.string(),
+                     .result = {.document = diagnosis_json(done->diagnosis, *problem,
+                                                           modelled->facts, done->others)}};
   if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
-  const auto written =
-      write_diagnosis(*done, *modelled, *problem, outcome.result, metering::to_string(now), folder);
+  const auto written = write_diagnosis(*done, *modelled, *problem, outcome.result.document,
+                                       metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
   return outcome;
 }

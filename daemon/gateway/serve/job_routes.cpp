@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "adapters/csv/fields.hpp"
+#include "adapters/results/job_result_json.hpp"
 #include "daemon/gateway/serve/api.hpp"
 #include "daemon/gateway/serve/json_answer.hpp"
 #include "daemon/gateway/serve/parameters.hpp"
@@ -94,10 +95,12 @@ http::Response get_jobs_of(JobKind kind, const Served& served, const http::Reque
 http::Response get_job_of(JobKind kind, const Served& served, const std::string& id) {
   const auto job = find_job(kind, served, id);
   if (!job) return job.error();
-  Json json = linked(*job);
-  const Json result = Json::parse(job->result, nullptr, false);
-  json["result"] = result.is_discarded() ? Json() : result;
-  return json_answer(json);
+  http::Response response = json_answer(linked(*job));
+  // The document goes out as it stands: before the brace that closes the job.
+  const std::string& document = job->result.document;
+  response.body.resize(response.body.rfind('}'));
+  response.body += ",\"result\":" + (document.empty() ? "null" : document) + "}\n";
+  return response;
 }
 
 http::Response cancel_job_of(JobKind kind, const Served& served, const std::string& id) {
@@ -148,9 +151,10 @@ http::Response get_drift(const Served& served, const http::Request& request) {
   Json calibration;
   if (*job) {
     calibration = location(**job);
-    const Json result = Json::parse((*job)->result, nullptr, false);
-    if (result.is_object() && result.contains("drift")) drift = result["drift"];
-    if (result.is_object() && result.contains("alarms")) alarms = result["alarms"];
+    if (const auto& told = (*job)->result.drift) {
+      drift = results::outputs_json(*told);
+      alarms = results::alarms_json(*told);
+    }
   }
   return json_answer({{"calibration", calibration}, {"drift", drift}, {"alarms", alarms}});
 }

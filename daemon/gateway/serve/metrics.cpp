@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "core/absent.hpp"
@@ -13,8 +12,6 @@
 
 namespace recald::daemon {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double seconds_of(metering::Instant t) { return static_cast<double>(t.time_since_epoch().count()); }
 
@@ -116,68 +113,34 @@ void write_store(PrometheusText& text, const Served& served, const GatewayStatus
   text.sample(0.0);
 }
 
-/// The largest R-hat of a calibration's parameters and hyperparameters; NaN where none has one.
-double rhat_max(const Json& result) {
-  double largest = kAbsent;
-  for (const char* group : {"parameters", "hyperparameters"}) {
-    if (!result.contains(group) || !result[group].is_array()) continue;
-    for (const Json& one : result[group]) {
-      if (!one.is_object() || !one.contains("rhat") || !one["rhat"].is_number()) continue;
-      largest = std::fmax(largest, one["rhat"].get<double>());
-    }
-  }
-  return largest;
-}
-
-/// @return log evidence as a share of the one that raises an alarm; NaN where nothing is watched.
-double evidence_ratio(const Json& watch) {
-  if (!watch.is_object()) return kAbsent;
-  const auto evidence = watch.find("log_evidence");
-  const auto threshold = watch.find("log_threshold");
-  if (evidence == watch.end() || threshold == watch.end()) return kAbsent;
-  if (!evidence->is_number() || !threshold->is_number()) return kAbsent;
-  return evidence->get<double>() / threshold->get<double>();
-}
-
 /// Climbs before an alarm does.
-void write_evidence(PrometheusText& text, const Json& result, const std::string& model) {
+void write_evidence(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
   text.begin("recald_drift_evidence_ratio", "gauge",
              "Log evidence that something has changed, by months and by days; 1 raises an alarm.");
-  for (const Json& one : result["drift"]) {
-    if (!one.is_object() || !one.contains("output") || !one["output"].is_string()) continue;
-    const auto sample = [&](const Json& watch, const char* grain) {
-      const double ratio = evidence_ratio(watch);
+  for (const OutputDrift& one : drift.outputs) {
+    const auto sample = [&](double ratio, const char* grain) {
       if (!std::isfinite(ratio)) return;
-      const std::string output = one["output"].get<std::string>();
-      text.sample(ratio, {{"model", model}, {"output", output}, {"grain", grain}});
+      text.sample(ratio, {{"model", model}, {"output", one.output}, {"grain", grain}});
     };
-    sample(one, "month");
-    if (one.contains("daily")) sample(one["daily"], "day");
+    sample(one.log_evidence / one.log_threshold, "month");
+    if (one.daily) sample(one.daily->log_evidence / one.daily->log_threshold, "day");
   }
 }
 
-void write_drift(PrometheusText& text, const Json& result, const std::string& model) {
-  if (!result.contains("drift") || !result["drift"].is_array()) return;
-  write_evidence(text, result, model);
+void write_drift(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
+  write_evidence(text, drift, model);
   text.begin("recald_drift_pvalue", "gauge",
              "How well the newest month agrees with the calibration in use; small: it drifts.");
-  for (const Json& one : result["drift"]) {
-    if (!one.is_object() || !one.contains("output") || !one.contains("pvalue")) continue;
-    if (!one["output"].is_string() || !one["pvalue"].is_number()) continue;
-    text.sample(one["pvalue"].get<double>(),
-                {{"model", model}, {"output", one["output"].get<std::string>()}});
+  for (const OutputDrift& one : drift.outputs) {
+    if (!std::isfinite(one.pvalue)) continue;
+    text.sample(one.pvalue, {{"model", model}, {"output", one.output}});
   }
 }
 
 /// Who wants to be woken up watches this.
-void write_alarms(PrometheusText& text, const Json& result, const std::string& model) {
-  if (!result.contains("alarms") || !result["alarms"].is_array()) return;
+void write_alarms(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
   std::map<std::string, int> alarms;
-  for (const Json& one : result["alarms"]) {
-    if (one.is_object() && one.contains("output") && one["output"].is_string()) {
-      ++alarms[one["output"].get<std::string>()];
-    }
-  }
+  for (const DriftAlarm& one : drift.alarms) ++alarms[one.output];
   text.begin("recald_drift_alarms", "gauge",
              "Alarms among the months that were followed: the building or a meter has changed.");
   for (const auto& [output, count] : alarms) {
@@ -189,18 +152,18 @@ void write_alarms(PrometheusText& text, const Json& result, const std::string& m
 void write_calibration(PrometheusText& text, const Served& served) {
   const auto job = served.store.last_accepted(JobKind::calibration);
   if (!job || !*job || !(*job)->ended) return;
-  const Json result = Json::parse((*job)->result, nullptr, false);
-  if (!result.is_object()) return;
+  const JobResult& result = (*job)->result;
   const std::string model = served.site.model ? served.site.model->kind : "";
   text.begin("recald_calibration_age_seconds", "gauge", "Since the calibration in use was made.");
   text.sample(static_cast<double>((served.now() - *(*job)->ended).count()), {{"model", model}});
-  if (const double rhat = rhat_max(result); std::isfinite(rhat)) {
+  if (std::isfinite(result.rhat_max)) {
     text.begin("recald_calibration_rhat_max", "gauge",
                "The largest R-hat of the calibration in use; near 1: its chains agree.");
-    text.sample(rhat, {{"model", model}});
+    text.sample(result.rhat_max, {{"model", model}});
   }
-  write_drift(text, result, model);
-  write_alarms(text, result, model);
+  if (!result.drift) return;
+  write_drift(text, *result.drift, model);
+  write_alarms(text, *result.drift, model);
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -134,15 +132,14 @@ void write_jobs(Html& html, const Served& served, JobKind kind, std::string capt
 void write_alarms(Html& html, const Served& served) {
   const auto job = served.store.last_accepted(JobKind::calibration);
   if (!job || !*job) return;
-  const auto result = nlohmann::json::parse((*job)->result, nullptr, false);
-  if (!result.is_object() || !result.contains("alarms") || !result["alarms"].is_array()) return;
+  const auto& drift = (*job)->result.drift;
+  if (!drift || drift->alarms.empty()) return;
   Table table{"What has changed"};
   table.columns({"Since", "What", "In words"});
-  for (const auto& alarm : result["alarms"]) {
-    table.row(
-        {{alarm.value("since", "")}, {alarm.value("output", "")}, {alarm.value("sentence", "")}});
+  for (const DriftAlarm& alarm : drift->alarms) {
+    table.row({{alarm.since}, {alarm.output}, {alarm.sentence}});
   }
-  if (!result["alarms"].empty()) table.write(html);
+  table.write(html);
 }
 
 Cell severity_cell(Severity severity) {

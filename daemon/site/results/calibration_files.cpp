@@ -1,10 +1,11 @@
 #include "daemon/site/results/calibration_files.hpp"
-#include "daemon/site/results/json_number.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "adapters/results/job_result_json.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -28,23 +29,26 @@ const char* role_word(MonthRole role) {
 Json summary_json(const calibration::Summary& s) {
   return {{"name", s.name},
           {"unit", s.unit},
-          {"mean", json_number(s.mean)},
-          {"sd", json_number(s.sd)},
-          {"q05", json_number(s.q05)},
-          {"q50", json_number(s.q50)},
-          {"q95", json_number(s.q95)},
-          {"contraction", json_number(s.contraction)},
-          {"rhat", json_number(s.rhat)},
-          {"ess_bulk", json_number(s.ess_bulk)},
-          {"ess_tail", json_number(s.ess_tail)},
-          {"mcse", json_number(s.mcse)}};
+          {"mean", results::number(s.mean)},
+          {"sd", results::number(s.sd)},
+          {"q05", results::number(s.q05)},
+          {"q50", results::number(s.q50)},
+          {"q95", results::number(s.q95)},
+          {"contraction", results::number(s.contraction)},
+          {"rhat", results::number(s.rhat)},
+          {"ess_bulk", results::number(s.ess_bulk)},
+          {"ess_tail", results::number(s.ess_tail)},
+          {"mcse", results::number(s.mcse)}};
 }
 
 /// Ends that a prior does not have are null.
 Json prior_json(const Prior& prior) {
-  return {{"distribution", prior.name()},      {"min", json_number(prior.min())},
-          {"mode", json_number(prior.mode())}, {"max", json_number(prior.max())},
-          {"mean", json_number(prior.mean())}, {"sd", json_number(std::sqrt(prior.variance()))}};
+  return {{"distribution", prior.name()},
+          {"min", results::number(prior.min())},
+          {"mode", results::number(prior.mode())},
+          {"max", results::number(prior.max())},
+          {"mean", results::number(prior.mean())},
+          {"sd", results::number(std::sqrt(prior.variance()))}};
 }
 
 Json parameters_json(const assessment::AssessedCalibration& result) {
@@ -63,7 +67,7 @@ Json fixed_parameters_json(const assessment::AssessedCalibration& result) {
   for (const Parameter& parameter : result.fixed_parameters) {
     list.push_back({{"name", parameter.name},
                     {"unit", parameter.unit},
-                    {"value", json_number(parameter.prior.mean())},
+                    {"value", results::number(parameter.prior.mean())},
                     {"prior", prior_json(parameter.prior)}});
   }
   return list;
@@ -74,19 +78,19 @@ Json metamodel_json(const assessment::AssessedCalibration& result) {
   const assessment::MetamodelFacts& facts = *result.metamodel;
   Json sigma_r = Json::object();
   for (std::size_t k = 0; k < facts.sigma_r.size(); ++k) {
-    sigma_r[result.outputs[k].name] = json_number(facts.sigma_r[k]);
+    sigma_r[result.outputs[k].name] = results::number(facts.sigma_r[k]);
   }
   return {{"form", facts.form},
           {"why", facts.why},
-          {"r2_left_out", json_number(facts.r2_left_out)},
+          {"r2_left_out", results::number(facts.r2_left_out)},
           {"sigma_r", sigma_r}};
 }
 
 Json metrics_json(const std::optional<assessment::FitMetrics>& metrics) {
   if (!metrics) return nullptr;
-  return {{"nmbe_sim_minus_meas", json_number(metrics->nmbe_sim_minus_meas)},
-          {"nmbe_g14", json_number(metrics->nmbe_g14)},
-          {"cvrmse", json_number(metrics->cvrmse)},
+  return {{"nmbe_sim_minus_meas", results::number(metrics->nmbe_sim_minus_meas)},
+          {"nmbe_g14", results::number(metrics->nmbe_g14)},
+          {"cvrmse", results::number(metrics->cvrmse)},
           {"months", metrics->n}};
 }
 
@@ -126,8 +130,8 @@ Json range_json(const assessment::AssessedCalibration& result,
   for (const calibration::OutOfRange& point : points) {
     list.push_back({{"output", result.outputs[static_cast<std::size_t>(point.output)].name},
                     {"month", result.month_names[static_cast<std::size_t>(point.month)]},
-                    {"value", json_number(point.value)},
-                    {"range", {json_number(point.low), json_number(point.high)}}});
+                    {"value", results::number(point.value)},
+                    {"range", {results::number(point.low), results::number(point.high)}}});
   }
   return list;
 }
@@ -144,7 +148,7 @@ Json scores_json(const std::optional<assessment::PredictiveScores>& scores,
   return {{"months", scores->months},
           {"inside_50", scores->inside_50},
           {"inside_90", scores->inside_90},
-          {with_unit("crps", output), json_number(scores->crps)}};
+          {with_unit("crps", output), results::number(scores->crps)}};
 }
 
 Json outputs_json(const assessment::AssessedCalibration& result) {
@@ -155,10 +159,10 @@ Json outputs_json(const assessment::AssessedCalibration& result) {
       const assessment::BoxPlot& box = output.assessment.boxes[i];
       months.push_back({{"month", result.month_names[i]},
                         {"role", role_word(result.roles[i])},
-                        {with_unit("measured", output), json_number(output.measured[i])},
-                        {"draws_q25", json_number(box.q25)},
-                        {"draws_q50", json_number(box.q50)},
-                        {"draws_q75", json_number(box.q75)}});
+                        {with_unit("measured", output), results::number(output.measured[i])},
+                        {"draws_q25", results::number(box.q25)},
+                        {"draws_q50", results::number(box.q50)},
+                        {"draws_q75", results::number(box.q75)}});
     }
     list.push_back({{"name", output.name},
                     {"meter", output.label},
@@ -179,9 +183,9 @@ Json sensitivity_json(const assessment::AssessedCalibration& result) {
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     const calibration::ParameterSensitivity& s = result.sensitivity->parameters[j];
     list.push_back({{"name", result.parameters[j].name},
-                    {"mean_at_smaller_discrepancy", json_number(s.mean_at_smaller)},
-                    {"mean_at_larger_discrepancy", json_number(s.mean_at_larger)},
-                    {"largest_move_sd", json_number(s.largest_move_sd)},
+                    {"mean_at_smaller_discrepancy", results::number(s.mean_at_smaller)},
+                    {"mean_at_larger_discrepancy", results::number(s.mean_at_larger)},
+                    {"largest_move_sd", results::number(s.largest_move_sd)},
                     {"prior_driven", s.prior_driven}});
   }
   return {{"factor", result.sensitivity->factor}, {"parameters", list}};
@@ -195,8 +199,8 @@ Json sampling_json(const calibration::SamplingReport& report) {
   for (const calibration::ChainStatistics& chain : report.chains) {
     divergences += chain.divergences;
     depth_limit_hits += chain.depth_limit_hits;
-    acceptance.push_back(json_number(chain.acceptance_rate));
-    e_bfmi.push_back(json_number(chain.e_bfmi));
+    acceptance.push_back(results::number(chain.acceptance_rate));
+    e_bfmi.push_back(results::number(chain.e_bfmi));
   }
   return {{"draws", report.kept},
           {"doublings", report.doublings},
@@ -212,12 +216,12 @@ Json sampling_json(const calibration::SamplingReport& report) {
 Json evidence_json(const calibration::Calibration& calibration) {
   Json json = {{"by_bridge", nullptr}, {"by_populations", nullptr}};
   if (calibration.evidence) {
-    json["by_bridge"] = {{"log_evidence", json_number(calibration.evidence->log_evidence)},
-                         {"mcse", json_number(calibration.evidence->mcse)}};
+    json["by_bridge"] = {{"log_evidence", results::number(calibration.evidence->log_evidence)},
+                         {"mcse", results::number(calibration.evidence->mcse)}};
   }
   if (std::isfinite(calibration.sampling.log_evidence)) {
-    json["by_populations"] = {{"log_evidence", json_number(calibration.sampling.log_evidence)},
-                              {"mcse", json_number(calibration.sampling.log_evidence_se)}};
+    json["by_populations"] = {{"log_evidence", results::number(calibration.sampling.log_evidence)},
+                              {"mcse", results::number(calibration.sampling.log_evidence_se)}};
   }
   return json;
 }
@@ -227,9 +231,9 @@ Json leave_out_json(const calibration::Calibration& calibration) {
   for (const calibration::LeaveOutScore& score : calibration.leave_out) {
     list.push_back({{"months_left_out_together", score.block_months},
                     {"blocks", score.blocks},
-                    {"elpd", json_number(score.elpd)},
-                    {"se", json_number(score.standard_error)},
-                    {"pareto_k_max", json_number(score.pareto_k_max)},
+                    {"elpd", results::number(score.elpd)},
+                    {"se", results::number(score.standard_error)},
+                    {"pareto_k_max", results::number(score.pareto_k_max)},
                     {"unreliable_blocks", score.unreliable}});
   }
   return list;
@@ -242,9 +246,10 @@ Json weak_directions_json(const assessment::AssessedCalibration& result) {
     Json loadings = Json::object();
     for (std::size_t j = 0; j < result.parameters.size(); ++j) {
       loadings[result.parameters[j].name] =
-          json_number(direction.loadings[static_cast<Eigen::Index>(j)]);
+          results::number(direction.loadings[static_cast<Eigen::Index>(j)]);
     }
-    list.push_back({{"information", json_number(direction.information)}, {"loadings", loadings}});
+    list.push_back(
+        {{"information", results::number(direction.information)}, {"loadings", loadings}});
   }
   return list;
 }
@@ -254,7 +259,7 @@ Json schedule_json(const model::HourlySchedule& schedule) {
   for (std::size_t i = 0; i < model::kDayTypes; ++i) {
     Json hours = Json::array();
     for (int hour = 0; hour < 24; ++hour) {
-      hours.push_back(json_number(schedule.at(static_cast<model::DayType>(i), hour)));
+      hours.push_back(results::number(schedule.at(static_cast<model::DayType>(i), hour)));
     }
     days[model::kDayTypeNames[i]] = hours;
   }
@@ -271,13 +276,24 @@ Json profile_object(const profile::ElectricityProfile& profile) {
           {"standby_kW", profile.standby_kW},
           {"month_factor", profile.loads.month_factor},
           {"hours_used", profile.hours_used},
-          {"monthly_cvrmse", json_number(profile.check.monthly_cvrmse)},
+          {"monthly_cvrmse", results::number(profile.check.monthly_cvrmse)},
           {"check", profile.check.words}};
+}
+
+void add_follow_up(const FollowUp& follow_up, Json& json) {
+  if (!follow_up) {
+    json["drift_not_followed"] = follow_up.error();
+    return;
+  }
+  json["drift"] = results::outputs_json(*follow_up);
+  json["alarms"] = results::alarms_json(*follow_up);
+  json["meter_changes"] = results::changed_meters_json(*follow_up);
 }
 
 }  // namespace
 
-std::string calibration_json(const assessment::AssessedCalibration& result, const RunFacts& facts) {
+std::string calibration_json(const assessment::AssessedCalibration& result, const RunFacts& facts,
+                             const FollowUp* follow_up) {
   Json months = Json::array();
   for (std::size_t i = 0; i < result.month_names.size(); ++i) {
     months.push_back({{"month", result.month_names[i]}, {"role", role_word(result.roles[i])}});
@@ -285,7 +301,7 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
   Json hyperparameters = Json::array();
   for (const calibration::Summary& s : result.calibration.hyperparameters) {
     Json entry = summary_json(s);
-    entry["prior"] = {{"mean", json_number(s.prior_mean)}, {"sd", json_number(s.prior_sd)}};
+    entry["prior"] = {{"mean", results::number(s.prior_mean)}, {"sd", results::number(s.prior_sd)}};
     hyperparameters.push_back(std::move(entry));
   }
   const auto& calibration = result.calibration;
@@ -321,7 +337,21 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
   json["evidence"] = evidence_json(calibration);
   json["leave_out"] = leave_out_json(calibration);
   json["weak_directions"] = weak_directions_json(result);
+  if (follow_up != nullptr) add_follow_up(*follow_up, json);
   return json.dump(2) + "\n";
+}
+
+JobResult calibration_result(const assessment::AssessedCalibration& result, const RunFacts& facts,
+                             const FollowUp* follow_up) {
+  JobResult told{.document = calibration_json(result, facts, follow_up)};
+  for (const auto* summaries :
+       {&result.calibration.parameters, &result.calibration.hyperparameters}) {
+    for (const calibration::Summary& s : *summaries) {
+      told.rhat_max = std::fmax(told.rhat_max, s.rhat);
+    }
+  }
+  if (follow_up != nullptr && *follow_up) told.drift = **follow_up;
+  return told;
 }
 
 std::string draws_csv(const assessment::AssessedCalibration& result, std::size_t chain,

@@ -4,15 +4,26 @@
 #include <filesystem>
 #include <string>
 
+#include "adapters/ports/job_result.hpp"
 #include "core/result.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/run_facts.hpp"
 
 namespace recald::daemon {
 
+/// What the months after a calibration have said, or why the site could not be followed.
+using FollowUp = tl::expected<DriftSummary, std::string>;
+
 /// One JSON object as text, indented; absent numbers are null.
+/// @param follow_up  Null: nobody has followed the site.
 [[nodiscard]] std::string calibration_json(const assessment::AssessedCalibration& result,
-                                           const RunFacts& facts);
+                                           const RunFacts& facts,
+                                           const FollowUp* follow_up = nullptr);
+
+/// The same as the result of a job.
+[[nodiscard]] JobResult calibration_result(const assessment::AssessedCalibration& result,
+                                           const RunFacts& facts,
+                                           const FollowUp* follow_up = nullptr);
 
 /// Draws of one chain as CmdStan writes them, so that ArviZ and R's posterior read them.
 [[nodiscard]] std::string draws_csv(const assessment::AssessedCalibration& result,

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "adapters/results/job_result_json.hpp"
 #include "core/diagnosis/effect_posterior.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
-#include "daemon/site/results/json_number.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -36,11 +36,11 @@ Json located_json(const SiteProblem& site, const std::vector<diagnosis::Finding>
     list.push_back({{"meter", site.meters[f.meter].id},
                     {"by", f.family},
                     {"where", f.words},
-                    {"share", json_number(f.share)},
-                    {"share_se", json_number(f.share_se)},
-                    {"kWh_month", json_number(f.kWh_month)},
-                    {"t", json_number(f.statistic)},
-                    {"adjusted_p", json_number(f.adjusted_p)}});
+                    {"share", results::number(f.share)},
+                    {"share_se", results::number(f.share_se)},
+                    {"kWh_month", results::number(f.kWh_month)},
+                    {"t", results::number(f.statistic)},
+                    {"adjusted_p", results::number(f.adjusted_p)}});
   }
   return list;
 }
@@ -51,11 +51,11 @@ Json parameters_json(const SiteProblem& site, const std::vector<ParameterPosteri
   for (const ParameterPosterior& p : posterior) {
     Json entry = {{"name", p.name},
                   {"unit", p.unit},
-                  {"mode", json_number(p.mode)},
-                  {"sd", json_number(p.sd)},
-                  {"q05", json_number(p.q05)},
-                  {"q50", json_number(p.q50)},
-                  {"q95", json_number(p.q95)}};
+                  {"mode", results::number(p.mode)},
+                  {"sd", results::number(p.sd)},
+                  {"q05", results::number(p.q05)},
+                  {"q50", results::number(p.q50)},
+                  {"q95", results::number(p.q95)}};
     if (p.is_day()) {
       const auto date = [&](double days) { return metering::to_string(day_after(site, days)); };
       entry["date"] = date(p.mode);
@@ -73,13 +73,13 @@ void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosi
   entry["key"] = candidate.key(site);
   entry["title"] = candidate.effect->title;
   entry["parameters"] = parameters_json(site, posterior_of(candidate, e.fit));
-  entry["evidence_gain"] = json_number(e.evidence_gain);
-  entry["log_likelihood_gain"] = json_number(e.likelihood_gain);
-  entry["first_look"] = json_number(e.first_look);
-  entry["support"] = json_number(e.support);
-  entry["selected_gain"] = json_number(e.selected_gain);
-  entry["selected_se"] = json_number(e.selected_se);
-  entry["null_scale"] = json_number(e.null_scale);
+  entry["evidence_gain"] = results::number(e.evidence_gain);
+  entry["log_likelihood_gain"] = results::number(e.likelihood_gain);
+  entry["first_look"] = results::number(e.first_look);
+  entry["support"] = results::number(e.support);
+  entry["selected_gain"] = results::number(e.selected_gain);
+  entry["selected_se"] = results::number(e.selected_se);
+  entry["null_scale"] = results::number(e.null_scale);
   if (!e.objection.empty()) entry["objection"] = e.objection;
   entry["at_truncation"] = e.at_truncation;
   Json confusable = Json::array();
@@ -97,7 +97,7 @@ Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
   const diagnosis::Naming& naming = d.passes.front().naming;
   Json list = Json::array();
   for (const diagnosis::NameProbability& p : naming.probabilities) {
-    Json entry = {{"effect", p.effect}, {"probability", json_number(p.probability)}};
+    Json entry = {{"effect", p.effect}, {"probability", results::number(p.probability)}};
     if (p.meter >= 0) entry["meter"] = meter_name(site, p.meter);
     if (p.explanation) add_explanation(site, d, naming.explanations[*p.explanation], entry);
     list.push_back(std::move(entry));
@@ -113,9 +113,9 @@ Json first_look_json(const SiteProblem& site, const Diagnosis& d) {
     const diagnosis::CandidateLook& c = look.candidates[i];
     Json entry = {{"effect", d.candidates[i].effect->id},
                   {"key", d.candidates[i].key(site)},
-                  {"log_bayes_factor", json_number(c.log_bayes_factor)},
-                  {"score", json_number(c.best.score)},
-                  {"detectability", json_number(c.best.detectability)}};
+                  {"log_bayes_factor", results::number(c.log_bayes_factor)},
+                  {"score", results::number(c.best.score)},
+                  {"detectability", results::number(c.best.detectability)}};
     if (d.candidates[i].meter >= 0) entry["meter"] = meter_name(site, d.candidates[i].meter);
     list.push_back(std::move(entry));
   }
@@ -128,9 +128,9 @@ Json base_parameters_json(const SiteProblem& site,
   for (std::size_t j = 0; j < beliefs.size(); ++j) {
     list.push_back({{"name", site.parameters[j].name},
                     {"unit", site.definitions[j]->unit},
-                    {"mode", json_number(beliefs[j].mode)},
-                    {"q05", json_number(beliefs[j].q05)},
-                    {"q95", json_number(beliefs[j].q95)}});
+                    {"mode", results::number(beliefs[j].mode)},
+                    {"q05", results::number(beliefs[j].q05)},
+                    {"q95", results::number(beliefs[j].q95)}});
   }
   return list;
 }
@@ -138,11 +138,12 @@ Json base_parameters_json(const SiteProblem& site,
 Json gaps_json(const SiteProblem& site, const std::vector<diagnosis::MeterGap>& gaps) {
   Json json = Json::object();
   for (std::size_t g = 0; g < gaps.size(); ++g) {
-    json[site.meters[g].id] = {{"nmbe_sim_minus_meas", json_number(gaps[g].nmbe_sim_minus_meas)},
-                               {"cvrmse", json_number(gaps[g].cvrmse_monthly)},
-                               {"cvrmse_daily", json_number(gaps[g].cvrmse_daily)},
-                               {"discrepancy_share", json_number(gaps[g].discrepancy_share)},
-                               {"log_score", json_number(gaps[g].log_score)}};
+    json[site.meters[g].id] = {
+        {"nmbe_sim_minus_meas", results::number(gaps[g].nmbe_sim_minus_meas)},
+        {"cvrmse", results::number(gaps[g].cvrmse_monthly)},
+        {"cvrmse_daily", results::number(gaps[g].cvrmse_daily)},
+        {"discrepancy_share", results::number(gaps[g].discrepancy_share)},
+        {"log_score", results::number(gaps[g].log_score)}};
   }
   return json;
 }
@@ -150,8 +151,8 @@ Json gaps_json(const SiteProblem& site, const std::vector<diagnosis::MeterGap>& 
 Json hourly_gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
   Json change = Json::object();
   for (std::size_t g = 0; g < gap.log_score_change.size(); ++g) {
-    change[site.meters[g].id] = {{"sum", json_number(gap.log_score_change[g].sum)},
-                                 {"se", json_number(gap.log_score_change[g].se)}};
+    change[site.meters[g].id] = {{"sum", results::number(gap.log_score_change[g].sum)},
+                                 {"se", results::number(gap.log_score_change[g].se)}};
   }
   return {{"before", gaps_json(site, gap.before)},
           {"after", gaps_json(site, gap.after)},
@@ -162,26 +163,27 @@ Json hourly_gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
 Json figures_json(const ModelGap& gap, const std::vector<ModelGap::Figures>& figures) {
   Json json = Json::object();
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    json[gap.outputs[i]] = {{"nmbe_sim_minus_meas", json_number(figures[i].nmbe_sim_minus_meas)},
-                            {"cvrmse", json_number(figures[i].cvrmse)},
-                            {"discrepancy_share", json_number(figures[i].discrepancy_share)},
-                            {"log_score", json_number(figures[i].log_score)}};
+    json[gap.outputs[i]] = {
+        {"nmbe_sim_minus_meas", results::number(figures[i].nmbe_sim_minus_meas)},
+        {"cvrmse", results::number(figures[i].cvrmse)},
+        {"discrepancy_share", results::number(figures[i].discrepancy_share)},
+        {"log_score", results::number(figures[i].log_score)}};
   }
   return json;
 }
 
 Json change_json(const ModelGap& gap) {
   const auto interval = [](const ChangeInterval& change) {
-    return Json{{"q05", json_number(change.low)}, {"q95", json_number(change.high)}};
+    return Json{{"q05", results::number(change.low)}, {"q95", results::number(change.high)}};
   };
   Json json = Json::object();
   for (std::size_t i = 0; i < gap.change.size(); ++i) {
     const ModelGap::Change& change = gap.change[i];
-    json[gap.outputs[i]] = {
-        {"log_score",
-         {{"sum", json_number(change.log_score.sum)}, {"se", json_number(change.log_score.se)}}},
-        {"nmbe_size", interval(change.nmbe_size)},
-        {"cvrmse", interval(change.cvrmse)}};
+    json[gap.outputs[i]] = {{"log_score",
+                             {{"sum", results::number(change.log_score.sum)},
+                              {"se", results::number(change.log_score.se)}}},
+                            {"nmbe_size", interval(change.nmbe_size)},
+                            {"cvrmse", interval(change.cvrmse)}};
   }
   return json;
 }
@@ -211,7 +213,7 @@ Json additions_json(const SiteProblem& site, const Diagnosis& d) {
   for (const Addition& addition : d.added) {
     Json impact = Json::object();
     for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
-      impact[site.meters[g].id] = json_number(addition.monthly_kWh[g]);
+      impact[site.meters[g].id] = results::number(addition.monthly_kWh[g]);
     }
     Json entry = {{"effect", addition.candidate.effect->id},
                   {"key", addition.candidate.key(site)},
@@ -220,8 +222,8 @@ Json additions_json(const SiteProblem& site, const Diagnosis& d) {
                   {"meter", meter_name(site, addition.candidate.meter)},
                   {"status", d.not_confirmed ? "tried and taken back" : "added"},
                   {"when", when_words(site, addition)},
-                  {"probability", json_number(addition.probability)},
-                  {"evidence_gain", json_number(addition.evidence_gain)},
+                  {"probability", results::number(addition.probability)},
+                  {"evidence_gain", results::number(addition.evidence_gain)},
                   {"parameters", parameters_json(site, posterior_of(addition))},
                   {"monthly_kWh", impact}};
     list.push_back(std::move(entry));
@@ -252,8 +254,8 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"confusable", first.naming.confusable},
                {"added", added_json(d)},
                {"additions", additions_json(site, d)},
-               {"null_threshold", json_number(first.naming.null_threshold)},
-               {"unknown_gain", json_number(first.naming.unknown_gain)},
+               {"null_threshold", results::number(first.naming.null_threshold)},
+               {"unknown_gain", results::number(first.naming.unknown_gain)},
                {"first_look", first_look_json(site, d)},
                {"parameters_before", base_parameters_json(site, d.parameters_before)},
                {"parameters_after", base_parameters_json(site, d.parameters_after)},

@@ -28,7 +28,7 @@ class JobTable : public ::testing::Test {
   std::int64_t add(JobKind kind, JobState state = JobState::waiting, bool accepted = false) {
     StoredJob job{.kind = kind, .state = state, .asked_by = "api", .asked = kAsked};
     job.accepted = accepted;
-    job.result = "{}";
+    job.result.document = "{}";
     return store_->add_job(job).value_or(-1);
   }
 
@@ -46,7 +46,7 @@ TEST_F(JobTable, EveryPartOfAJobIsThereAfterARestart) {
   job.accepted = true;
   job.message = "R-hat 1.2 of heat gains";
   job.folder = "diagnosis-1";
-  job.result = R"({"outcome": "none"})";
+  job.result.document = R"({"outcome": "none"})";
   const auto number = store_->add_job(job);
   ASSERT_TRUE(number.has_value()) << number.error().message;
   reopen();
@@ -63,7 +63,7 @@ TEST_F(JobTable, EveryPartOfAJobIsThereAfterARestart) {
   EXPECT_EQ(kept.accepted, job.accepted);
   EXPECT_EQ(kept.message, job.message);
   EXPECT_EQ(kept.folder, job.folder);
-  EXPECT_EQ(kept.result, job.result);
+  EXPECT_EQ(kept.result.document, job.result.document);
 }
 
 TEST_F(JobTable, AJobThatHasNotBegunHasNoTimes) {
@@ -108,7 +108,7 @@ TEST_F(JobTable, TheLastGoodResultStaysInUseWhenALaterOneFailsItsGates) {
   const auto last = store_->last_accepted(JobKind::calibration);
   ASSERT_TRUE(last.has_value() && last->has_value());
   EXPECT_EQ((*last)->number, good);
-  EXPECT_EQ((*last)->result, "{}");
+  EXPECT_EQ((*last)->result.document, "{}");
 }
 
 TEST_F(JobTable, WhatWaitsOrRunsIsFoundAgainInTheOrderOfAsking) {
@@ -140,7 +140,7 @@ TEST_F(JobTable, AStoreFromBeforeJobsIsUpgraded) {
   ASSERT_TRUE(number.has_value());
   const auto made_old = store_->database().execute(
       "ALTER TABLE interval DROP COLUMN edit; DROP TABLE edit; DROP TABLE job;"
-      "DROP TABLE forecast;"
+      "DROP TABLE forecast; DROP TABLE closing;"
       "PRAGMA user_version = 1");
   ASSERT_TRUE(made_old.has_value()) << made_old.error().message;
   reopen();

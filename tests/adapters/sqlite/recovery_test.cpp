@@ -38,7 +38,8 @@ class RecoveryTest : public ::testing::Test {
     }
     metering::MonthlyFigure march{.month = std::chrono::year{2024} / 3};
     EXPECT_TRUE(store.put_month(0, march, "2025b", kStart).has_value());
-    EXPECT_TRUE(store.add_job({.asked_by = "api", .asked = kStart, .result = "{}"}).has_value());
+    EXPECT_TRUE(store.add_job({.asked_by = "api", .asked = kStart, .result = {.document = "{}"}})
+                    .has_value());
   }
 
   [[nodiscard]] std::filesystem::path file() const { return folder_ / "site.db"; }

@@ -56,7 +56,7 @@ class JobRunnerTest : public ::testing::Test {
     return JobOutcome{.accepted = accepts_,
                       .message = accepts_ ? "" : "not converged",
                       .folder = "calibration-" + std::to_string(job.number),
-                      .result = "{\"job\": " + std::to_string(job.number) + "}",
+                      .result = {.document = "{\"job\": " + std::to_string(job.number) + "}"},
                       .forecasts = forecasts_,
                       .next = job.kind == JobKind::calibration ? next_ : std::nullopt};
   }
@@ -93,7 +93,7 @@ TEST_F(JobRunnerTest, AJobRunsAndItsResultIsKept) {
   EXPECT_EQ(job.state, JobState::done);
   EXPECT_TRUE(job.accepted);
   EXPECT_EQ(job.folder, "calibration-1");
-  EXPECT_EQ(job.result, "{\"job\": 1}");
+  EXPECT_EQ(job.result.document, "{\"job\": 1}");
   ASSERT_TRUE(job.started && job.ended);
   EXPECT_EQ(*job.ended - *job.started, minutes{1});
   EXPECT_THAT(told_, ElementsAre("1 waiting", "1 running", "1 done"));

@@ -240,7 +240,7 @@ TEST_F(Jobs, AreAskedForAndFollowed) {
   done.state = JobState::done;
   done.accepted = true;
   done.ended = kStart + hours{1};
-  done.result =
+  done.result.document =
       R"({"model":"epc","drift":[{"output":"main_daily_kWh","pvalue":0.5}],)"
       R"("alarms":[{"output":"main_daily_kWh","since":"2023-02","sentence":"More <b>."}]})";
   ASSERT_TRUE(disk_.put_job(done));

@@ -106,12 +106,12 @@ TEST_F(Metrics, TheCalibrationInUse) {
   ASSERT_TRUE(disk_.add_job({.state = JobState::done,
                              .ended = kStart - hours{1},
                              .accepted = true,
-                             .result = R"({"parameters":[{"rhat":1.01},{"rhat":null}],
+                             .result = {.document = R"({"parameters":[{"rhat":1.01},{"rhat":null}],
                                  "hyperparameters":[{"rhat":1.02}],
                                  "drift":[{"output":"main_daily_kWh","pvalue":0.25,
                                  "log_evidence":1.5,"log_threshold":6.0,
                                  "daily":{"log_evidence":-1.0,"log_threshold":8.0}},
-                                 {"output":"old","pvalue":0.5,"daily":null}]})"}));
+                                 {"output":"old","pvalue":0.5,"daily":null}]})"}}));
   const Exposition seen = scrape();
   EXPECT_EQ(seen.sample("recald_calibration_age_seconds{model=\"\"}"), 3600);
   EXPECT_EQ(seen.sample("recald_calibration_rhat_max{model=\"\"}"), 1.02);

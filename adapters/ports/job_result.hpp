@@ -1,0 +1,79 @@
+/// What came of a job: what the daemon itself goes by, and the document that people and machines
+/// read.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/absent.hpp"
+
+namespace recald {
+
+/// How near the watch of an output's days is to an alarm.
+struct DailyEvidence {
+  double log_evidence = kAbsent;
+  double log_threshold = kAbsent;  ///< Raises an alarm.
+  double lag_one = kAbsent;
+  double month_factor = kAbsent;
+};
+
+/// The newest month of one output against what was forecast of it.
+struct OutputDrift {
+  std::string output;  ///< "steam_daily_kWh"
+  std::string month;   ///< Empty: none was forecast.
+  double pvalue = kAbsent;
+  double log_evidence = kAbsent;
+  double log_threshold = kAbsent;
+  double change_within_year = kAbsent;
+  std::optional<DailyEvidence> daily = {};
+};
+
+/// The days that an alarm speaks of, where days raised it.
+struct AlarmedDays {
+  std::string raised, since, since_earliest, since_latest;
+  double excess = kAbsent;
+};
+
+/// What an alarm may come from.
+struct AlarmCause {
+  std::string kind;
+  std::optional<std::string> subject;  ///< A parameter, use or output.
+  double probability = kAbsent;
+  double log_evidence = kAbsent;
+  double mean = kAbsent, q05 = kAbsent, q95 = kAbsent;
+  std::string words;
+};
+
+/// Something has changed, since when and why. Months as "2024-03".
+struct DriftAlarm {
+  std::string month, output, direction;
+  double evidence = kAbsent;
+  std::string since, since_earliest, since_latest;
+  std::optional<AlarmedDays> days = {};
+  bool forecasts_are_true = false;
+  std::vector<AlarmCause> causes;
+  std::string explained_until, consequence, sentence;
+};
+
+/// A change that a meter's readings show without any model.
+struct ChangedMeter {
+  std::string meter, kind, since, seen;
+  double factor = kAbsent;
+  std::string sentence;
+};
+
+/// What the months after a calibration have said of it.
+struct DriftSummary {
+  std::vector<OutputDrift> outputs;
+  std::vector<DriftAlarm> alarms;
+  std::vector<ChangedMeter> changed_meters;
+};
+
+struct JobResult {
+  std::string document;               ///< calibration.json or diagnosis.json; empty: not done.
+  double rhat_max = kAbsent;          ///< Of a calibration's parameters and hyper-parameters.
+  std::optional<DriftSummary> drift;  ///< Of a calibration whose site could be followed.
+};
+
+}  // namespace recald
