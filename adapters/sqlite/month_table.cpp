@@ -129,4 +129,37 @@ Result<std::vector<MeterMonth>> reopened_months(Database& database) {
   }
 }
 
+Result<std::string> closing_rules_of(Database& database, std::uint32_t meter) {
+  auto query = database.prepare("SELECT rules FROM closing WHERE meter = ?");
+  if (!query) return tl::unexpected(query.error());
+  const auto row = query->bind(0, std::int64_t{meter}).step();
+  if (!row) return tl::unexpected(row.error());
+  return *row ? query->text(0) : std::string{};
+}
+
+Result<int> replace_closing_rules(Database& database, std::uint32_t meter,
+                                  const std::string& rules) {
+  return database.transaction([&]() -> Result<int> {
+    const auto known = closing_rules_of(database, meter);
+    if (!known) return tl::unexpected(known.error());
+    if (*known == rules) return 0;
+    auto reopen = database.prepare(
+        "INSERT OR IGNORE INTO reopened SELECT DISTINCT meter, month FROM month WHERE meter = ?");
+    if (!reopen) return tl::unexpected(reopen.error());
+    reopen->bind(0, std::int64_t{meter});
+    if (auto done = reopen->run(); !done) return tl::unexpected(done.error());
+    auto count = database.prepare("SELECT count(DISTINCT month) FROM month WHERE meter = ?");
+    if (!count) return tl::unexpected(count.error());
+    const auto row = count->bind(0, std::int64_t{meter}).step();
+    if (!row) return tl::unexpected(row.error());
+    const auto months = static_cast<int>(count->integer(0));
+    count->reset();
+    auto put = database.prepare("INSERT OR REPLACE INTO closing VALUES (?, ?)");
+    if (!put) return tl::unexpected(put.error());
+    put->bind(0, std::int64_t{meter}).bind(1, std::string_view{rules});
+    if (auto done = put->run(); !done) return tl::unexpected(done.error());
+    return months;
+  });
+}
+
 }  // namespace recald::sqlite

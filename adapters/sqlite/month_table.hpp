@@ -25,4 +25,9 @@ struct StoredMonth {
 
 [[nodiscard]] Result<std::vector<MeterMonth>> reopened_months(Database& database);
 
+/// Store::closing_rules and Store::put_closing_rules.
+[[nodiscard]] Result<std::string> closing_rules_of(Database& database, std::uint32_t meter);
+[[nodiscard]] Result<int> replace_closing_rules(Database& database, std::uint32_t meter,
+                                                const std::string& rules);
+
 }  // namespace recald::sqlite

@@ -158,8 +158,9 @@ const std::vector<SalvagedTable>& salvaged_tables() {
       {"meter", false, "number", 1},      {"edit", false, "number", 1},
       {"interval", true, "t_start", 900}, {"register", true, nullptr, 0},
       {"sample", true, "t", 900},         {"month", true, nullptr, 0},
-      {"reopened", true, nullptr, 0},     {"event", false, "number", 1},
-      {"job", false, "number", 1},        {"forecast", false, "number", 1}};
+      {"reopened", true, nullptr, 0},     {"closing", true, nullptr, 0},
+      {"event", false, "number", 1},      {"job", false, "number", 1},
+      {"forecast", false, "number", 1}};
   return tables;
 }
 

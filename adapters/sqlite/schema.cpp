@@ -132,6 +132,12 @@ CREATE TABLE forecast (
   crps          REAL    NOT NULL,
   UNIQUE (output, month, revision)
 ) STRICT;
+)sql",
+    R"sql(
+CREATE TABLE closing (
+  meter INTEGER PRIMARY KEY REFERENCES meter (number),
+  rules TEXT    NOT NULL
+) STRICT;
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {

@@ -5,7 +5,7 @@
 
 namespace recald::sqlite {
 
-inline constexpr int kSchemaVersion = 3;
+inline constexpr int kSchemaVersion = 4;
 
 /// The version of a file's tables; 0: it has none yet.
 /// @return or unsupported when the file was written by a newer version; malformed when it is

@@ -147,6 +147,14 @@ Result<std::vector<MonthlyFigure>> SqliteStore::months(std::uint32_t meter) {
   return figures;
 }
 
+Result<std::string> SqliteStore::closing_rules(std::uint32_t meter) {
+  return closing_rules_of(database_, meter);
+}
+
+Result<int> SqliteStore::put_closing_rules(std::uint32_t meter, const std::string& rules) {
+  return replace_closing_rules(database_, meter, rules);
+}
+
 Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
   auto query = database_.prepare(
       "SELECT t, severity, kind, subject, text FROM event ORDER BY t DESC, number DESC LIMIT ?");

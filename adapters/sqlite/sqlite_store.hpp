@@ -30,6 +30,8 @@ class SqliteStore final : public Store {
   Result<int> put_month(std::uint32_t meter, const metering::MonthlyFigure& figure,
                         const std::string& time_zone_release, metering::Instant now) override;
   Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) override;
+  Result<std::string> closing_rules(std::uint32_t meter) override;
+  Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) override;
   Result<std::vector<StoreEvent>> events(int limit) override;
   Result<std::int64_t> add_job(const StoredJob& job) override;
   Result<void> put_job(const StoredJob& job) override;

@@ -28,6 +28,11 @@ Received received(const Reading& reading) {
 
 }  // namespace
 
+TimeSpan span_judged_by(const MonthRange& months, const LocalCalendar& calendar) {
+  return {calendar.month_span(previous_month(months.first)).begin,
+          calendar.month_span(months.last).end + kJudgedAfterwards};
+}
+
 MonthCloser::MonthCloser(LocalCalendar calendar, std::vector<Meter> meters, CloserOptions options,
                          Sink sink)
     : calendar_{std::move(calendar)},

@@ -19,6 +19,13 @@ struct MonthRange {
   Month last;
 };
 
+/// Readings so long after a month judge its last slots.
+inline constexpr std::chrono::hours kJudgedAfterwards{48};
+
+/// The readings that have a say in these months: from the month before, which shows what a meter is
+/// like, to two days after, by which the last slots are judged.
+[[nodiscard]] TimeSpan span_judged_by(const MonthRange& months, const LocalCalendar& calendar);
+
 struct CloserOptions {
   ClosingOptions closing;
   /// A month closes when the meter's own readings reach this far beyond its end.

@@ -79,23 +79,22 @@ int run_replay(const ReplayArguments& arguments, const Console& console) {
   if (!site) return console.fail(site.error());
 
   VirtualClock clock{metering::Instant{}};
-  const auto recorded =
+  const auto recording =
       record_site(*site, {*from, *to}, clock,
                   [&](const metering::Meter& meter, const metering::MonthlyFigure& figure,
                       metering::Instant now) {
                     if (!arguments.json) console.out << figure_line(meter, figure, now) << "\n";
                   });
-  if (!recorded) return console.fail(recorded.error());
-  const Recording& recording = recorded->recording;
-  for (const MeterRecord& record : recording.meters) console.err << source_line(record);
-  print_data_words(recording, console);
+  if (!recording) return console.fail(recording.error());
+  for (const MeterRecord& record : recording->meters) console.err << source_line(record);
+  print_data_words(*recording, console);
   if (!arguments.out.empty()) {
     if (auto made = system::make_folder(arguments.out); !made) return console.fail(made.error());
     const auto written = system::write_file(arguments.out / "months.csv",
-                                            months_csv(recording, system::time_zone_release()));
+                                            months_csv(*recording, system::time_zone_release()));
     if (!written) return console.fail(written.error());
   }
-  if (arguments.json) console.out << summary_json(site->config, recording).dump(2) << "\n";
+  if (arguments.json) console.out << summary_json(site->config, *recording).dump(2) << "\n";
   return kSuccess;
 }
 

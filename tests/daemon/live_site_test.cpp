@@ -75,7 +75,7 @@ TEST_F(LiveSite, AStoreWithoutAnyReadingIsToldApartFromNone) {
   run({"import", path("live.toml"), path("nothing.csv"), "--reason", "made by it"});
   const Outcome outcome = run({"calibrate", path("live.toml")});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("the store has no reading of any meter"));
+  EXPECT_THAT(outcome.err, HasSubstr("the store has no closed month of meter 'electricity' yet"));
 }
 
 TEST_F(LiveSite, AModelledMeterThatWasNeverReadIsNamed) {
@@ -85,7 +85,7 @@ TEST_F(LiveSite, AModelledMeterThatWasNeverReadIsNamed) {
   run({"import", path("live.toml"), path("history.csv"), "--reason", "half of it"});
   const Outcome outcome = run({"calibrate", path("live.toml")});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("no reading of meter 'district_heat' yet"));
+  EXPECT_THAT(outcome.err, HasSubstr("no closed month of meter 'district_heat' yet"));
 }
 
 TEST(ProfileMeter, IsTheModelledOneThatCountsLightsAndPlugs) {
@@ -132,6 +132,37 @@ TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {
   EXPECT_NE(from_store["data_revision"], from_file["data_revision"]);
 }
 
+// What the API shows is what is calibrated: a month that was closed otherwise is taken as it
+// stands.
+TEST_F(LiveSite, CalibratesOnTheMonthsThatTheStoreHas) {
+  import_history();
+  metering::MonthlyFigure march;
+  {
+    auto store = sqlite::SqliteStore::open(folder_ / "live.db").value();
+    const std::uint32_t heat = store.find_meter("district_heat").value().value();
+    march = store.months(heat).value()[2];
+    march.daily_average_kWh = 4321.0;
+    ASSERT_EQ(store.put_month(heat, march, "2025b", metering::Instant{}), 1);
+  }
+  const Outcome outcome =
+      run({"calibrate", path("live.toml"), "--json", "--draws", "600", "--burn-in", "200"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("4321.0"));
+}
+
+TEST_F(LiveSite, AChangedRuleIsToldUntilItsMonthsAreClosedAnew) {
+  import_history();
+  std::string live = read_text(folder_ / "live.toml");
+  replace(live, "rated_kW = 900", "rated_kW = 901");
+  write_text(folder_ / "live.toml", live);
+  const auto calibrated = [&] {
+    return run({"calibrate", path("live.toml"), "--json", "--draws", "600", "--burn-in", "200"});
+  };
+  EXPECT_THAT(calibrated().out, HasSubstr("closed months of 'district_heat' wait"));
+  run({"import", path("live.toml"), path("history.csv"), "--reason", "once more"});
+  EXPECT_THAT(calibrated().out, Not(HasSubstr("closed months of")));
+}
+
 // The history ends with 2021; that nobody has read the meters since is no reason to close months.
 TEST_F(LiveSite, AnImportClosesNoMonthBeyondItsReadings) {
   import_history();
@@ -170,7 +201,7 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
 
   const auto outcome = work(job, now, [] { return true; });
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
-  json result = json::parse(outcome->result);
+  json result = json::parse(outcome->result.document);
   EXPECT_THAT(result["drift_not_followed"].get<std::string>(),
               HasSubstr("takes 13 months of all modelled meters"));
   result.erase("drift_not_followed");  // what has changed is said beside the calibration's own file
@@ -195,7 +226,7 @@ TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   const auto outcome =
       work({}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
-  const json result = json::parse(outcome->result);
+  const json result = json::parse(outcome->result.document);
   EXPECT_EQ(result["model"], "metamodel");
   EXPECT_TRUE(outcome->accepted) << outcome->message;
   // Nine months were simulated; October and November, measured since, show how well it does.

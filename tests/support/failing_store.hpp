@@ -31,6 +31,14 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.for_each_interval(meter, span, visit);
   }
+  Result<std::string> closing_rules(std::uint32_t meter) override {
+    if (refuses) return refusal();
+    return behind_.closing_rules(meter);
+  }
+  Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) override {
+    if (refuses) return refusal();
+    return behind_.put_closing_rules(meter, rules);
+  }
   Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) override {
     if (refuses) return refusal();
     return behind_.interval_extent(meter);

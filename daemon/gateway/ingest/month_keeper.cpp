@@ -1,21 +1,19 @@
 #include "daemon/gateway/ingest/month_keeper.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <optional>
 #include <utility>
 
+#include "core/metering/closing_rules.hpp"
+
 namespace recald::daemon {
-namespace {
 
 using metering::Instant;
 using metering::Month;
 using metering::MonthlyFigure;
-
-/// Readings after a month that its last slots are judged by.
-constexpr std::chrono::hours kAfterwards{48};
-
-}  // namespace
 
 Result<MonthlyFigure> stored_figure(Store& store, const metering::LocalCalendar& calendar,
                                     const metering::CloserOptions& closing,
@@ -27,10 +25,8 @@ Result<MonthlyFigure> stored_figure(Store& store, const metering::LocalCalendar&
       calendar, {meter.meter}, options, [&](metering::ClosedMonth&& closed) {
         if (closed.figure.month == month) made = closed.figure;
       }};
-  // The month before says what this meter is like.
-  const metering::TimeSpan span{
-      calendar.month_span(metering::previous_month(month)).begin,
-      std::min(known_until, calendar.month_span(month).end + kAfterwards)};
+  metering::TimeSpan span = metering::span_judged_by({month, month}, calendar);
+  span.end = std::min(span.end, known_until);
   const auto read = store.for_each_interval(meter.number, span, [&](const StoredInterval& stored) {
     metering::Reading reading = stored.reading;
     reading.meter = 0;
@@ -46,7 +42,8 @@ std::vector<Month> months_that_depend_on(Instant start, const metering::LocalCal
   const Month month = calendar.month_of(start);
   std::vector<Month> months;
   const Month before = metering::previous_month(month);
-  if (start < calendar.month_span(before).end + kAfterwards) months.push_back(before);
+  if (start < calendar.month_span(before).end + metering::kJudgedAfterwards)
+    months.push_back(before);
   months.push_back(month);
   months.push_back(metering::next_month(month));
   return months;
@@ -58,6 +55,21 @@ MonthKeeper::MonthKeeper(Store& store, metering::LocalCalendar calendar,
       calendar_(std::move(calendar)),
       options_(std::move(options)),
       time_zone_release_(std::move(time_zone_release)) {}
+
+Result<void> MonthKeeper::take_rules(const StoredMeter& meter, Instant now) {
+  const auto reopened = store_.put_closing_rules(
+      meter.number, metering::closing_rules(options_.closing, meter.meter));
+  if (!reopened) return tl::unexpected(reopened.error());
+  if (*reopened == 0) return {};
+  const auto told = store_.commit(
+      {.events = {{now, Severity::info, "rules_changed", meter.meter.id,
+                   fmt::format("the rules that months are closed by have changed: {} closed "
+                               "month{} of {} {} closed anew",
+                               *reopened, *reopened == 1 ? "" : "s", meter.meter.id,
+                               *reopened == 1 ? "is" : "are")}}});
+  if (!told) return tl::unexpected(told.error());
+  return {};
+}
 
 Result<std::vector<Month>> MonthKeeper::due(const StoredMeter& meter,
                                             std::span<const MeterMonth> reopened,
@@ -82,7 +94,10 @@ Result<std::vector<Month>> MonthKeeper::due(const StoredMeter& meter,
 
 Result<std::vector<ClosedFigure>> MonthKeeper::close_due(
     std::span<const StoredMeter> meters, Instant now,
-    const std::function<void(const ClosedFigure&)>& on_closed) {
+    const std::function<void(const ClosedFigure&)>& on_closed, std::size_t at_most) {
+  for (const StoredMeter& meter : meters) {
+    if (auto taken = take_rules(meter, now); !taken) return tl::unexpected(taken.error());
+  }
   const auto reopened = store_.reopened();
   if (!reopened) return tl::unexpected(reopened.error());
   std::vector<ClosedFigure> figures;
@@ -90,6 +105,7 @@ Result<std::vector<ClosedFigure>> MonthKeeper::close_due(
     const auto months = due(meter, *reopened, now);
     if (!months) return tl::unexpected(months.error());
     for (const Month month : *months) {
+      if (figures.size() == at_most) return figures;
       auto made = stored_figure(store_, calendar_, options_, meter, month);
       if (!made) return tl::unexpected(made.error());
       const auto revision = store_.put_month(meter.number, *made, time_zone_release_, now);

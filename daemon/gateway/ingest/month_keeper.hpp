@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -43,18 +44,22 @@ class MonthKeeper {
               std::string time_zone_release);
 
   /// Closes the months of each meter that ended a watermark ago, from its first reading on, and
-  /// those that were reopened.
+  /// those that were reopened. A meter whose rules have changed since has all its closed months
+  /// reopened first, once; an event says so.
   /// @param on_closed  Is told of each as soon as it is stored; may be empty.
   /// @return the new figures in order of meter and month, or the store's failure; what was closed
   ///         before it stays closed.
+  /// @param at_most    So many months of all meters together; the others at the next call.
   [[nodiscard]] Result<std::vector<ClosedFigure>> close_due(
       std::span<const StoredMeter> meters, metering::Instant now,
-      const std::function<void(const ClosedFigure&)>& on_closed = {});
+      const std::function<void(const ClosedFigure&)>& on_closed = {},
+      std::size_t at_most = std::numeric_limits<std::size_t>::max());
 
   /// Months that close from now on do so by other rules.
   void set_options(metering::CloserOptions options) { options_ = std::move(options); }
 
  private:
+  [[nodiscard]] Result<void> take_rules(const StoredMeter& meter, metering::Instant now);
   [[nodiscard]] Result<std::vector<metering::Month>> due(const StoredMeter& meter,
                                                          std::span<const MeterMonth> reopened,
                                                          metering::Instant now) const;

@@ -21,6 +21,7 @@ using std::chrono::seconds;
 constexpr milliseconds kClockSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
+constexpr std::size_t kMonthsAtATime = 12;  // of one meter, in one step of the loop
 
 /// A day of all meters, and no less than usual, is kept while the store refuses.
 CommitRules rules_for(const SiteConfig& site) {
@@ -125,6 +126,10 @@ Result<void> Gateway::reload(const SiteConfig& site) {
     buses_.push_back(std::move(bus));
   }
   keeper_.set_options(site.closing);
+  // Rules that changed close months anew, but not before the reload has ended.
+  ports_.loop.post([weak = std::weak_ptr{self_}] {
+    if (const auto self = weak.lock()) (*self)->close_months();
+  });
   return {};
 }
 
@@ -261,32 +266,36 @@ void Gateway::close_months() {
   close_months_of(std::move(meters));
 }
 
-/// The last one of them first, and the others after what else waits for the loop: a thousand months
-/// take seconds.
+/// The last one of them first, some of its months at a time, and the others after what else waits
+/// for the loop: a thousand months take seconds.
 void Gateway::close_months_of(std::vector<std::uint32_t> meters) {
   if (meters.empty()) return;
-  const std::uint32_t number = meters.back();
-  meters.pop_back();
   // A reload may have taken it away meanwhile.
-  if (const MeterProgress* const meter = find_progress(number)) close_months_of(*meter);
+  const MeterProgress* const meter = find_progress(meters.back());
+  const bool has_more = meter != nullptr && close_months_of(*meter);
+  if (!has_more) meters.pop_back();
   if (meters.empty()) return;
   ports_.loop.post([weak = std::weak_ptr{self_}, meters = std::move(meters)]() mutable {
     if (const auto self = weak.lock()) (*self)->close_months_of(std::move(meters));
   });
 }
 
-void Gateway::close_months_of(const MeterProgress& meter) {
+bool Gateway::close_months_of(const MeterProgress& meter) {
   const Instant now = ports_.loop.now().instant();
   const StoredMeter stored = meter.stored;
-  const auto closed = keeper_.close_due({&stored, 1}, now, [&](const ClosedFigure& one) {
-    MeterProgress& progress = *find_progress(stored.number);
-    progress.closed_until =
-        std::max(progress.closed_until, calendar_.month_span(one.figure.month).end);
-    if (on_month_) on_month_(stored.meter, one.figure);
-  });
+  const auto closed = keeper_.close_due(
+      {&stored, 1}, now,
+      [&](const ClosedFigure& one) {
+        MeterProgress& progress = *find_progress(stored.number);
+        progress.closed_until =
+            std::max(progress.closed_until, calendar_.month_span(one.figure.month).end);
+        if (on_month_) on_month_(stored.meter, one.figure);
+      },
+      kMonthsAtATime);
   if (!closed) {
     note({now, Severity::error, "month_not_closed", stored.meter.id, closed.error().message});
   }
+  return closed && closed->size() == kMonthsAtATime;
 }
 
 void Gateway::close_months_every_hour() {

@@ -114,7 +114,8 @@ class Gateway {
   [[nodiscard]] double coverage_of(const MeterProgress& progress) const;
   void close_months();
   void close_months_of(std::vector<std::uint32_t> meters);
-  void close_months_of(const MeterProgress& meter);
+  /// @return whether it may have more.
+  bool close_months_of(const MeterProgress& meter);
   void close_months_every_hour();
 
   metering::LocalCalendar calendar_;

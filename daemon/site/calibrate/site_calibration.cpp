@@ -147,6 +147,7 @@ void warn_about_level_changes(const Recording& recording, SiteCalibration& resul
 
 void add_words(const Recording& recording, const SiteWeather& weather, SiteCalibration& result) {
   warn_about_level_changes(recording, result);
+  result.warnings.insert(result.warnings.end(), recording.notes.begin(), recording.notes.end());
   if (!result.profile.check.constant) result.warnings.push_back(result.profile.check.words);
   result.warnings.insert(result.warnings.end(), weather.notes.begin(), weather.notes.end());
 }

@@ -25,14 +25,21 @@ void leave_out_unmodelled_live_meters(SiteConfig& site) {
 }
 
 /// @pre what the model has no use for is left out
-Result<void> require_live_readings(const SiteConfig& site, const Recording& recording) {
+Result<void> require_live_months(const SiteConfig& site, const Recording& recording) {
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     if (!site.meters[i].is_stored() || !recording.meters[i].figures.empty()) continue;
     return failure(ErrorCode::not_enough_data,
-                   fmt::format("the store has no reading of meter '{}' yet, which the model needs",
+                   fmt::format("the store has no closed month of meter '{}' yet, which the model "
+                               "needs; the daemon closes a month some days after its end",
                                site.meters[i].meter.id));
   }
   return {};
+}
+
+/// Null for a site without live meters.
+Result<std::unique_ptr<StoredReadings>> open_live_readings(const SiteConfig& site) {
+  if (!has_stored_meters(site)) return nullptr;
+  return StoredReadings::open(site);
 }
 
 }  // namespace
@@ -57,43 +64,48 @@ Result<void> require_model(const SiteConfig& site) {
                   site.file.filename().string()));
 }
 
-Result<SiteRecording> record_site(const OpenSite& site, const ReplayOptions& options,
-                                  VirtualClock& clock, const OnMonthClosed& on_month_closed) {
-  std::unique_ptr<StoredReadings> live;
-  if (has_stored_meters(site.config)) {
-    auto opened = StoredReadings::open(site.config);
-    if (!opened) return tl::unexpected(opened.error());
-    live = std::move(*opened);
-  }
-  auto recording =
-      replay_meters(site.config, site.calendar, options, clock, on_month_closed, live.get());
-  if (!recording) return tl::unexpected(recording.error());
-  return SiteRecording{std::move(*recording), live ? live->digest() : ""};
+Result<Recording> record_site(const OpenSite& site, const ReplayOptions& options,
+                              VirtualClock& clock, const OnMonthClosed& on_month_closed) {
+  const auto live = open_live_readings(site.config);
+  if (!live) return tl::unexpected(live.error());
+  return replay_meters(site.config, site.calendar, options, clock, on_month_closed, live->get());
 }
 
 Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
                                         const ChoosePeriod& choose) {
   leave_out_unmodelled_live_meters(site.config);
   VirtualClock clock{metering::Instant{}};
-  auto recorded = record_site(site, {}, clock, {});
-  if (!recorded) return tl::unexpected(recorded.error());
-  if (auto read = require_live_readings(site.config, recorded->recording); !read) {
+  auto recording = replay_meters(site.config, site.calendar, {}, clock, {});
+  if (!recording) return tl::unexpected(recording.error());
+  auto live = open_live_readings(site.config);
+  if (!live) return tl::unexpected(live.error());
+  if (*live) {
+    if (auto taken = take_closed_months(site.config, **live, *recording); !taken) {
+      return tl::unexpected(taken.error());
+    }
+  }
+  if (auto read = require_live_months(site.config, *recording); !read) {
     return tl::unexpected(read.error());
   }
   if (choose) {
-    const auto period = choose(site, recorded->recording, now);
+    const auto period = choose(site, *recording, now);
     if (!period) return tl::unexpected(period.error());
     site.config.period = *period;
   } else if (!site.config.period) {
-    const auto months = latest_months(site, recorded->recording, now);
+    const auto months = latest_months(site, *recording, now);
     if (!months) return tl::unexpected(months.error());
     site.config.period = PeriodConfig{*months, {}};
   }
-  auto facts = facts_of(site.config, recorded->live_digest);
+  if (*live) {
+    auto taken =
+        take_hours(site.config, site.calendar, whole_period(site.config), **live, *recording);
+    if (!taken) return tl::unexpected(taken.error());
+  }
+  auto facts = facts_of(site.config, *live ? (*live)->digest() : "");
   if (!facts) return tl::unexpected(facts.error());
   auto weather = load_weather(site.config, site.calendar, whole_period(site.config));
   if (!weather) return tl::unexpected(weather.error());
-  return ModelledSite{std::move(site), std::move(recorded->recording), std::move(*weather),
+  return ModelledSite{std::move(site), std::move(*recording), std::move(*weather),
                       std::move(*facts)};
 }
 

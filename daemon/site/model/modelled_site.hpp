@@ -30,20 +30,19 @@ struct ModelledSite {
   RunFacts facts;
 };
 
-/// A site's readings, from its files and, where it has live meters, from its store.
-struct SiteRecording {
-  Recording recording;
-  std::string live_digest;  ///< Of the store's part; empty without live meters.
-};
-[[nodiscard]] Result<SiteRecording> record_site(const OpenSite& site, const ReplayOptions& options,
-                                                VirtualClock& clock,
-                                                const OnMonthClosed& on_month_closed);
+/// A site's readings, from its files and, where it has live meters, from its store, every month
+/// closed by the rules of the site file.
+[[nodiscard]] Result<Recording> record_site(const OpenSite& site, const ReplayOptions& options,
+                                            VirtualClock& clock,
+                                            const OnMonthClosed& on_month_closed);
 
 /// The months to model, from what was recorded until `now`.
 using ChoosePeriod = std::function<Result<PeriodConfig>(
     const OpenSite& site, const Recording& recording, metering::Instant now)>;
 
-/// Reads everything that the model needs. Live meters that it has no use for are no part of the
+/// Reads everything that the model needs. Of live meters it takes the months that the daemon has
+/// closed, in the revision that the API shows, and of their readings those of the period, for
+/// profiles, diagnoses, days and pictures. Live meters that it has no use for are no part of the
 /// site that is returned, so they neither mark months as different nor stand in reports; meters in
 /// files do, since they are read anyway.
 /// @param now     A site without a [period] is modelled on the latest months that are closed then.

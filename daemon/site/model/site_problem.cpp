@@ -210,7 +210,8 @@ Result<void> require_months(const SiteConfig& site, const Recording& recording,
 
 std::vector<std::string> data_words(const SiteConfig& site, const Recording& recording,
                                     const SiteWeather& weather) {
-  std::vector<std::string> words = weather.notes;
+  std::vector<std::string> words = recording.notes;
+  words.insert(words.end(), weather.notes.begin(), weather.notes.end());
   const std::vector<Month> months = months_with_weather(site, weather, words);
   for (const std::size_t variable : kAssumable) {
     if (is_recorded(weather, variable)) continue;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
+#include <iterator>
 
 namespace recald::daemon {
 namespace {
@@ -45,11 +45,61 @@ csv::ReadingsOptions file_options(const SiteConfig& site, const std::vector<std:
   return options;
 }
 
+/// What the closed months of one meter show besides their figures.
+class SlotRecord {
+ public:
+  void take(const ClosedMonth& closed, MeterRecord& record) {
+    const metering::Month month = closed.figure.month;
+    record.hours[month] = profile::hourly_loads(closed.slots);
+    episodes_[month] = metering::find_episodes(closed.slots);
+    zero_runs_[month] = metering::find_believed_zero_runs(closed.slots);
+  }
+
+  /// @param figures  Of the months that were taken.
+  void describe(const std::vector<metering::MonthlyFigure>& figures,
+                const metering::LocalCalendar& calendar, MeterRecord& record) const {
+    record.findings =
+        metering::describe_data(record.meter.id, joined_episodes(), joined_zero_runs(), figures,
+                                record.level_changes, record.counts, calendar);
+  }
+
+ private:
+  [[nodiscard]] std::vector<metering::Episode> joined_episodes() const {
+    std::vector<metering::Episode> all;
+    for (const auto& [month, episodes] : episodes_) {
+      all.insert(all.end(), episodes.begin(), episodes.end());
+    }
+    return metering::join_episodes(std::move(all));
+  }
+
+  [[nodiscard]] std::vector<TimeSpan> joined_zero_runs() const {
+    std::vector<TimeSpan> all;
+    for (const auto& [month, runs] : zero_runs_) {
+      for (const TimeSpan& run : runs) {
+        if (!all.empty() && all.back().end == run.begin) {
+          all.back().end = run.end;
+        } else {
+          all.push_back(run);
+        }
+      }
+    }
+    return all;
+  }
+
+  std::map<metering::Month, std::vector<metering::Episode>> episodes_;
+  std::map<metering::Month, std::vector<TimeSpan>> zero_runs_;
+};
+
+void find_changes(MeterRecord& record) {
+  record.level_changes = metering::find_level_changes(
+      record.meter.id, record.figures, metering::level_change_options(record.meter.utility));
+}
+
 /// Collects what closed months leave behind.
 class Recorder {
  public:
   Recorder(const SiteConfig& site, Recording& recording)
-      : recording_(recording), episodes_(site.meters.size()), zero_runs_(site.meters.size()) {
+      : recording_(recording), slots_(site.meters.size()) {
     for (const MeterConfig& config : site.meters) {
       recording_.meters.push_back({.meter = config.meter});
     }
@@ -64,9 +114,7 @@ class Recorder {
     } else {
       record.figures.insert(place, closed.figure);
     }
-    record.hours[closed.figure.month] = profile::hourly_loads(closed.slots);
-    episodes_[closed.meter][closed.figure.month] = metering::find_episodes(closed.slots);
-    zero_runs_[closed.meter][closed.figure.month] = metering::find_believed_zero_runs(closed.slots);
+    slots_[closed.meter].take(closed, record);
   }
 
   void describe(const metering::MonthCloser& closer, const metering::LocalCalendar& calendar) {
@@ -74,41 +122,17 @@ class Recorder {
       MeterRecord& record = recording_.meters[i];
       record.counts = closer.counts(static_cast<std::uint32_t>(i));
       record.meter = closer.meters()[i];
-      record.level_changes = metering::find_level_changes(
-          record.meter.id, record.figures, metering::level_change_options(record.meter.utility));
-      record.findings =
-          metering::describe_data(record.meter.id, joined_episodes(i), joined_zero_runs(i),
-                                  record.figures, record.level_changes, record.counts, calendar);
+      find_changes(record);
+      slots_[i].describe(record.figures, calendar, record);
     }
   }
 
  private:
-  [[nodiscard]] std::vector<metering::Episode> joined_episodes(std::size_t meter) const {
-    std::vector<metering::Episode> all;
-    for (const auto& [month, episodes] : episodes_[meter]) {
-      all.insert(all.end(), episodes.begin(), episodes.end());
-    }
-    return metering::join_episodes(std::move(all));
-  }
-
-  [[nodiscard]] std::vector<TimeSpan> joined_zero_runs(std::size_t meter) const {
-    std::vector<TimeSpan> all;
-    for (const auto& [month, runs] : zero_runs_[meter]) {
-      for (const TimeSpan& run : runs) {
-        if (!all.empty() && all.back().end == run.begin) {
-          all.back().end = run.end;
-        } else {
-          all.push_back(run);
-        }
-      }
-    }
-    return all;
-  }
-
   Recording& recording_;
-  std::vector<std::map<metering::Month, std::vector<metering::Episode>>> episodes_;
-  std::vector<std::map<metering::Month, std::vector<TimeSpan>>> zero_runs_;
+  std::vector<SlotRecord> slots_;
 };
+
+constexpr TimeSpan kAllTime{Instant{}, metering::kLatestInstant};
 
 TimeSpan asked_span(const ReplayOptions& options, const metering::LocalCalendar& calendar) {
   TimeSpan span{Instant::min(), Instant::max()};
@@ -132,8 +156,6 @@ bool has_stored_meters(const SiteConfig& site) {
 Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                 const ReplayOptions& options, VirtualClock& clock,
                                 const OnMonthClosed& on_month_closed, LiveReadings* live) {
-  assert((live != nullptr || !has_stored_meters(site)) &&
-         "stored meters need a store to read from");
   Recording recording;
   Recorder recorder{site, recording};
   std::vector<metering::Meter> meters;
@@ -172,14 +194,14 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   }
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
-    if (!config.is_stored()) continue;
-    const auto count =
-        live->for_each(config, [&](const metering::Reading& reading) { take(i, reading); });
+    if (live == nullptr || !config.is_stored()) continue;
+    const auto count = live->for_each(config, kAllTime,
+                                      [&](const metering::Reading& reading) { take(i, reading); });
     if (!count) return tl::unexpected(count.error());
     recording.readings += *count;
   }
   // One that was added today says nothing yet; that must not stop what the others tell.
-  if (has_stored_meters(site) && recording.readings == 0) {
+  if (live != nullptr && recording.readings == 0) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("the store has no reading of any meter of {} yet", site.id));
   }
@@ -194,6 +216,59 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                site.meters[i].file.string(), site.meters[i].name_in_file));
   }
   return recording;
+}
+
+Result<void> take_closed_months(const SiteConfig& site, LiveReadings& live, Recording& recording) {
+  for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    const MeterConfig& config = site.meters[i];
+    if (!config.is_stored()) continue;
+    MeterRecord& record = recording.meters[i];
+    auto figures = live.months(config);
+    if (!figures) return tl::unexpected(figures.error());
+    record.figures = std::move(*figures);
+    find_changes(record);
+    const auto waiting = live.waiting_months(config);
+    if (!waiting) return tl::unexpected(waiting.error());
+    if (*waiting == 0) continue;
+    recording.notes.push_back(fmt::format(
+        "{} closed month{} of '{}' {} to be closed anew, after late readings or a change of the "
+        "rules; until `recald run` has done so, the figures are those from before.",
+        *waiting, *waiting == 1 ? "" : "s", config.meter.id, *waiting == 1 ? "waits" : "wait"));
+  }
+  return {};
+}
+
+Result<void> take_hours(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                        const metering::MonthRange& months, LiveReadings& live,
+                        Recording& recording) {
+  metering::CloserOptions options = site.closing;
+  options.period = months;
+  const TimeSpan span = metering::span_judged_by(months, calendar);
+  for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    const MeterConfig& config = site.meters[i];
+    if (!config.is_stored()) continue;
+    MeterRecord& record = recording.meters[i];
+    SlotRecord slots;
+    std::vector<metering::MonthlyFigure> figures;
+    metering::MonthCloser closer{calendar, {config.meter}, options, [&](ClosedMonth&& closed) {
+                                   const metering::Month month = closed.figure.month;
+                                   if (month < months.first || months.last < month) return;
+                                   slots.take(closed, record);
+                                 }};
+    const auto count = live.for_each(config, span, [&](metering::Reading reading) {
+      reading.meter = 0;
+      closer.add(reading);
+    });
+    if (!count) return tl::unexpected(count.error());
+    recording.readings += *count;
+    closer.finish();
+    record.counts = closer.counts(0);
+    std::ranges::copy_if(record.figures, std::back_inserter(figures), [&](const auto& figure) {
+      return months.first <= figure.month && figure.month <= months.last;
+    });
+    slots.describe(figures, calendar, record);
+  }
+  return {};
 }
 
 }  // namespace recald::daemon

@@ -40,6 +40,7 @@ struct Recording {
   std::vector<MeterRecord> meters;  ///< One for each of the site's meters.
   std::vector<FileIssues> files;
   std::uint64_t readings = 0;
+  std::vector<std::string> notes;  ///< In words: what is not settled about the months.
 };
 
 /// Whether any meter of the site says that this month is not like the same months before. A model
@@ -57,13 +58,20 @@ using OnMonthClosed = std::function<void(const metering::Meter&, const metering:
 
 using ReadingSink = std::function<void(const metering::Reading&)>;
 
-/// Where the readings of live meters are found again.
+/// Where the months and the readings of live meters are found again.
 class LiveReadings {
  public:
   virtual ~LiveReadings() = default;
 
-  /// The readings of one meter in order of time. @return how many there were.
-  virtual Result<std::uint64_t> for_each(const MeterConfig& meter, const ReadingSink& sink) = 0;
+  /// The closed months of one meter, ascending, each in its latest revision.
+  virtual Result<std::vector<metering::MonthlyFigure>> months(const MeterConfig& meter) = 0;
+
+  /// How many of them wait to be closed anew: late readings or another rule have changed them.
+  virtual Result<int> waiting_months(const MeterConfig& meter) = 0;
+
+  /// The readings of one meter that start in the span, in order of time. @return how many.
+  virtual Result<std::uint64_t> for_each(const MeterConfig& meter, const metering::TimeSpan& span,
+                                         const ReadingSink& sink) = 0;
 };
 
 /// Whether some meter of the site is read live.
@@ -72,7 +80,7 @@ class LiveReadings {
 /// Reads every file of the site's meters once, in order of time as the files have it, then what
 /// live meters left behind, and closes months as time passes.
 ///
-/// @param live  Where live meters' readings are; null for a site that has no live meter.
+/// @param live  Where live meters' readings are; null: live meters are left without a record.
 /// @return not_found / io_failed / malformed with the file's name; not_enough_data when a file has
 ///         no row of a meter that the site declares, or of live meters none was ever read.
 [[nodiscard]] Result<Recording> replay_meters(const SiteConfig& site,
@@ -80,5 +88,18 @@ class LiveReadings {
                                               const ReplayOptions& options, VirtualClock& clock,
                                               const OnMonthClosed& on_month_closed,
                                               LiveReadings* live = nullptr);
+
+/// Gives live meters their figures: the months that the daemon has closed, not closed once more.
+/// @return or the store's failure.
+[[nodiscard]] Result<void> take_closed_months(const SiteConfig& site, LiveReadings& live,
+                                              Recording& recording);
+
+/// Gives live meters their hours and findings in these months: what profiles, pictures and
+/// diagnoses need of the readings. Figures stay as they are.
+/// @return or the store's failure.
+[[nodiscard]] Result<void> take_hours(const SiteConfig& site,
+                                      const metering::LocalCalendar& calendar,
+                                      const metering::MonthRange& months, LiveReadings& live,
+                                      Recording& recording);
 
 }  // namespace recald::daemon

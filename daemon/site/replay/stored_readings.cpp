@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
+#include "core/metering/closing_rules.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -35,6 +37,7 @@ void add_to(system::Sha256& digest, const metering::Reading& reading) {
 
 struct StoredReadings::Impl {
   sqlite::SqliteStore store;
+  metering::ClosingOptions closing;
   system::Sha256 digest{};
 };
 
@@ -52,17 +55,49 @@ Result<std::unique_ptr<StoredReadings>> StoredReadings::open(const SiteConfig& s
       site.store.file, {.access = sqlite::Database::Access::read_only, .vfs = {}});
   if (!store) return tl::unexpected(store.error());
   return std::unique_ptr<StoredReadings>{
-      new StoredReadings{std::unique_ptr<Impl>{new Impl{std::move(*store)}}}};
+      new StoredReadings{std::unique_ptr<Impl>{new Impl{std::move(*store), site.closing.closing}}}};
 }
 
-Result<std::uint64_t> StoredReadings::for_each(const MeterConfig& meter, const ReadingSink& sink) {
+Result<std::vector<metering::MonthlyFigure>> StoredReadings::months(const MeterConfig& meter) {
+  const auto number = impl_->store.find_meter(meter.meter.id);
+  if (!number) return tl::unexpected(number.error());
+  if (!*number) return std::vector<metering::MonthlyFigure>{};
+  auto figures = impl_->store.months(**number);
+  if (!figures) return figures;
+  impl_->digest.add(meter.meter.id);
+  for (const metering::MonthlyFigure& figure : *figures) {
+    impl_->digest.add(fmt::format("{} {} {}", metering::to_string(figure.month), figure.revision,
+                                  figure.daily_average_kWh));
+  }
+  return figures;
+}
+
+Result<int> StoredReadings::waiting_months(const MeterConfig& meter) {
+  const auto number = impl_->store.find_meter(meter.meter.id);
+  if (!number) return tl::unexpected(number.error());
+  if (!*number) return 0;
+  const auto rules = impl_->store.closing_rules(**number);
+  if (!rules) return tl::unexpected(rules.error());
+  if (*rules != metering::closing_rules(impl_->closing, meter.meter)) {
+    const auto all = impl_->store.months(**number);
+    if (!all) return tl::unexpected(all.error());
+    return static_cast<int>(all->size());
+  }
+  const auto reopened = impl_->store.reopened();
+  if (!reopened) return tl::unexpected(reopened.error());
+  return static_cast<int>(std::ranges::count(*reopened, **number, &MeterMonth::meter));
+}
+
+Result<std::uint64_t> StoredReadings::for_each(const MeterConfig& meter,
+                                               const metering::TimeSpan& span,
+                                               const ReadingSink& sink) {
   const auto number = impl_->store.find_meter(meter.meter.id);
   if (!number) return tl::unexpected(number.error());
   if (!*number) return std::uint64_t{0};
   impl_->digest.add(meter.meter.id);
   std::uint64_t count = 0;
-  const auto read = impl_->store.for_each_interval(
-      **number, {metering::Instant{}, metering::kLatestInstant}, [&](const StoredInterval& stored) {
+  const auto read =
+      impl_->store.for_each_interval(**number, span, [&](const StoredInterval& stored) {
         add_to(impl_->digest, stored.reading);
         sink(stored.reading);
         ++count;

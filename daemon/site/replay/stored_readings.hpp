@@ -18,9 +18,12 @@ class StoredReadings final : public LiveReadings {
   [[nodiscard]] static Result<std::unique_ptr<StoredReadings>> open(const SiteConfig& site);
   ~StoredReadings() override;
 
-  Result<std::uint64_t> for_each(const MeterConfig& meter, const ReadingSink& sink) override;
+  Result<std::vector<metering::MonthlyFigure>> months(const MeterConfig& meter) override;
+  Result<int> waiting_months(const MeterConfig& meter) override;
+  Result<std::uint64_t> for_each(const MeterConfig& meter, const metering::TimeSpan& span,
+                                 const ReadingSink& sink) override;
 
-  /// SHA-256 of all that has been handed out. Ends the digest.
+  /// SHA-256 of all months and readings that have been handed out. Ends the digest.
   [[nodiscard]] std::string digest();
 
  private:

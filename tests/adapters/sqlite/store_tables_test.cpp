@@ -187,7 +187,7 @@ TEST_F(StoreTables, AReaderDoesNotUpgrade) {
   const auto reader = SqliteStore::open(file(), {.access = Database::Access::read_only});
   ASSERT_FALSE(reader.has_value());
   EXPECT_EQ(reader.error().code, ErrorCode::unsupported);
-  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, this recald reads 3"));
+  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, this recald reads 4"));
 }
 
 }  // namespace

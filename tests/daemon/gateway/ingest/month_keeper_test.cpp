@@ -141,6 +141,29 @@ TEST_F(MonthKeeperTest, AReopenedMonthIsClosedAgain) {
   EXPECT_THAT(*store_.reopened(), IsEmpty());
 }
 
+TEST_F(MonthKeeperTest, AnotherRuleClosesMonthsAnewOnceAndSaysSo) {
+  put(readings(main_.number, end_of(1), end_of(3)));
+  const Instant now = end_of(3) + hours{72};
+  ASSERT_THAT(*keeper().close_due(std::span{&main_, 1}, now), SizeIs(2));
+  EXPECT_THAT(*store_.events(10), IsEmpty());
+
+  metering::CloserOptions stricter;
+  stricter.closing.coverage_min = 0.999;
+  MonthKeeper other{store_, calendar(), stricter, "2025b"};
+  const auto anew = other.close_due(std::span{&main_, 1}, now + hours{1}, {}, 1);
+  ASSERT_THAT(*anew, SizeIs(1)) << "some at a time";
+  EXPECT_EQ(anew->front().figure.revision, 1);
+  EXPECT_THAT(*other.close_due(std::span{&main_, 1}, now + hours{1}), SizeIs(1));
+  EXPECT_THAT(*other.close_due(std::span{&main_, 1}, now + hours{2}), IsEmpty());
+  for (const metering::MonthlyFigure& figure : *store_.months(main_.number)) {
+    EXPECT_EQ(figure.revision, 1);
+  }
+  const auto events = *store_.events(10);
+  ASSERT_THAT(events, SizeIs(1));
+  EXPECT_EQ(events[0].kind, "rules_changed");
+  EXPECT_EQ(events[0].subject, "main");
+}
+
 TEST_F(MonthKeeperTest, AStoreThatRefusesIsAskedAgainLater) {
   put(readings(main_.number, end_of(1), end_of(2)));
   FailingStore failing{store_};
