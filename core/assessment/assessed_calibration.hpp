@@ -11,6 +11,7 @@
 #include "core/assessment/output_assessment.hpp"
 #include "core/calibration/calibration.hpp"
 #include "core/calibration/sensitivity.hpp"
+#include "core/model/model_kind.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter.hpp"
 #include "core/result.hpp"
@@ -42,7 +43,7 @@ struct MetamodelFacts {
 };
 
 struct AssessedCalibration {
-  std::string model;                     ///< "epc", "metamodel"
+  ModelKind model = ModelKind::epc;
   std::vector<std::string> month_names;  ///< "2016-03", or a number for a design without years.
   std::vector<MonthRole> roles;          ///< (months) calibration months come first.
   std::vector<Parameter> parameters;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/diagnosis/held_scores.hpp"
+#include "core/model/model_kind.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter.hpp"
 #include "core/result.hpp"
@@ -37,7 +38,7 @@ struct ModelGap {
     ChangeInterval nmbe_size;
     ChangeInterval cvrmse;
   };
-  std::string model;                 ///< "epc"
+  ModelKind model = ModelKind::epc;
   std::vector<std::string> outputs;  ///< (n) as in calibration.json: "steam_daily_kWh"
   std::vector<Figures> before;       ///< (n)
   std::vector<Figures> after;        ///< (n)

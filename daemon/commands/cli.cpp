@@ -17,6 +17,17 @@ void add_site(CLI::App& command, SiteArguments& arguments) {
   command.add_flag("--json", arguments.json, "One JSON object on standard output");
 }
 
+/// @param of_building_alone  Kinds that need no design.
+void add_model(CLI::App& command, std::optional<ModelKind>& kind, const std::string& text,
+               bool of_building_alone) {
+  std::vector<std::string> names;
+  for (const std::string_view name : model_kind_names(of_building_alone)) names.emplace_back(name);
+  command
+      .add_option_function<std::string>(
+          "--model", [&kind](const std::string& name) { kind = find_model_kind(name); }, text)
+      ->check(CLI::IsMember(names));
+}
+
 void add_sampling(CLI::App& command, SamplingArguments& arguments) {
   std::vector<std::string> samplers{"auto"};
   for (const calibration::Sampler& sampler : calibration::samplers()) {
@@ -79,8 +90,7 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
   CLI::Option* doe =
       command.add_option("--doe", arguments.design.folder, "Design folder instead of a site");
   site->excludes(doe);
-  command.add_option("--model", arguments.model, "Model to calibrate")
-      ->check(CLI::IsMember({"epc", "hourly", "metamodel"}));
+  add_model(command, arguments.model, "Model to calibrate", false);
   add_design(command, arguments.design);
   add_form(command, arguments.design);
   command.add_option("--metamodel", arguments.metamodel,
@@ -108,8 +118,7 @@ void add_screen(CLI::App& command, ScreenArguments& arguments) {
 
 void add_doe(CLI::App& command, DoeArguments& arguments) {
   add_site(command, arguments);
-  command.add_option("--model", arguments.model, "Model to run instead of the site file's")
-      ->check(CLI::IsMember({"epc", "hourly"}));
+  add_model(command, arguments.model, "Model to run instead of the site file's", true);
   command.add_option("--runs", arguments.runs, "Runs of the Latin hypercube")
       ->check(CLI::Range(20, 100'000))
       ->capture_default_str();
@@ -127,11 +136,11 @@ std::string misuse_of(const CalibrateArguments& arguments) {
   if (!has_design && arguments.site.empty()) {
     return "calibrate needs a site file or --doe with a design folder; see recald calibrate --help";
   }
-  if (has_design && !arguments.model.empty() && arguments.model != "metamodel") {
-    return "a design folder has no model but its meta-model; leave --model " + arguments.model +
-           " out";
+  if (has_design && arguments.model.value_or(ModelKind::metamodel) != ModelKind::metamodel) {
+    return "a design folder has no model but its meta-model; leave --model " +
+           std::string{name_of(*arguments.model)} + " out";
   }
-  if (!has_design && arguments.model == "metamodel") {
+  if (!has_design && arguments.model == ModelKind::metamodel) {
     return "a meta-model needs a design: make one with recald doe, then calibrate with --doe";
   }
   if (!arguments.metamodel.empty() && !arguments.parameters.empty()) {
@@ -341,8 +350,7 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
       app.add_subcommand("drift", "Forecast each month from those before: what has changed?");
   add_site(*drift, given.drift);
   drift->add_option("--out", given.drift.out, "Folder for drift.json and the page drift.html");
-  drift->add_option("--model", given.drift.model, "epc or hourly; else as the site file says")
-      ->check(CLI::IsMember({"epc", "hourly"}));
+  add_model(*drift, given.drift.model, "epc or hourly; else as the site file says", true);
   drift->add_option("--learn", given.drift.learning_months, "Months that the model is made from")
       ->check(CLI::Range(6, 60))
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/model/model_kind.hpp"
 #include "daemon/commands/console.hpp"
 
 namespace recald::daemon {
@@ -55,10 +56,10 @@ struct SamplingArguments {
 
 /// A site, or a design of experiments in its place.
 struct CalibrateArguments : SiteArguments, SamplingArguments {
-  std::filesystem::path out;  ///< Folder; for `report` the page itself.
-  std::string model;          ///< "epc", "hourly", "metamodel", or empty: as site or design say.
-  int design_runs = 200;      ///< Of a site.
-  DesignArguments design;     ///< `folder` empty: a site.
+  std::filesystem::path out;           ///< Folder; for `report` the page itself.
+  std::optional<ModelKind> model;      ///< Absent: as site or design say.
+  int design_runs = 200;               ///< Of a site.
+  DesignArguments design;              ///< `folder` empty: a site.
   std::filesystem::path metamodel;     ///< Given regression, or empty.
   std::filesystem::path measurements;  ///< Empty: measurements.csv of the folder.
   std::string parameters;              ///< "screened", "all" or names; empty: screened.
@@ -77,7 +78,7 @@ struct MetamodelArguments : ScreenArguments {
 
 struct DoeArguments : SiteArguments {
   std::filesystem::path out;
-  std::string model;  ///< "epc", "hourly", or empty: as the site file says.
+  std::optional<ModelKind> model;  ///< Absent: as the site file says.
   int runs = 200;
   std::uint64_t seed = 1;
   unsigned threads = 0;
@@ -91,8 +92,8 @@ struct DiagnoseArguments : SiteArguments {
 };
 
 struct DriftArguments : SiteArguments {
-  std::filesystem::path out;  ///< Folder for drift.json, or empty.
-  std::string model;          ///< "epc", "hourly", or empty: as the site file says.
+  std::filesystem::path out;       ///< Folder for drift.json, or empty.
+  std::optional<ModelKind> model;  ///< Absent: as the site file says.
   int learning_months = 12;
   int anew_every_months = 12;  ///< 1: recalibrated from scratch each month.
   int particles = 512;

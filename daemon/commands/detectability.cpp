@@ -67,7 +67,7 @@ void print_words(const diagnosis::Detectability& seen, const diagnosis::SiteProb
 }  // namespace
 
 int run_detectability(const DetectabilityArguments& arguments, const Console& console) {
-  const auto modelled = open_modelled_site(arguments.site, console, "hourly");
+  const auto modelled = open_modelled_site(arguments.site, console, ModelKind::hourly);
   if (!modelled) return modelled.error();
   const auto& [site, recording, weather, facts] = *modelled;
   if (auto enough = require_months(site.config, recording, weather); !enough) {

@@ -63,7 +63,7 @@ std::string fate_words(const diagnosis::Diagnosis& diagnosis, const DiagnoseArgu
 
 int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
-  auto modelled = open_modelled_site(arguments.site, console, "hourly");
+  auto modelled = open_modelled_site(arguments.site, console, ModelKind::hourly);
   if (!modelled) return modelled.error();
   const auto problem = prepare_diagnosis(*modelled);
   if (!problem) return console.fail(problem.error());

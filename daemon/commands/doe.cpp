@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "adapters/doe/folder_engine.hpp"
 #include "adapters/system/parallel_for.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
@@ -57,21 +58,25 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
   const doe::DesignPlan plan = plan_design(*prepared, options);
 
   const InterruptGuard guard;
-  const auto before = [&] {
+  auto engine = site_engine(*prepared);
+  auto folder = doe::FolderEngine::open(arguments.out, plan, &engine);
+  if (!folder) return console.fail(folder.error());
+  const int before = folder->done_count();
+  const auto runs = [&] {
     ProgressLine line{console};
-    return run_into_folder(*prepared, plan, arguments.out, system::parallel_for(arguments.threads),
-                           [&](int done, int total) {
-                             line.show({calibration::Progress::Stage::design, 0, done, total});
-                             return !guard.interrupted();
-                           });
+    return folder->run(plan.theta, system::parallel_for(arguments.threads),
+                       [&](int done, int total) {
+                         line.show({calibration::Progress::Stage::design, 0, done, total});
+                         return !guard.interrupted();
+                       });
   }();
-  if (!before) return console.fail(before.error());
+  if (!runs) return console.fail(runs.error());
   if (auto noted = note_site(arguments.out, arguments.site, version->effects); !noted) {
     return console.fail(noted.error());
   }
   const auto& warnings = prepared->so_far.warnings;
-  console.out << (arguments.json ? design_json(arguments, plan, *before, warnings)
-                                 : design_words(arguments, plan, *before, warnings));
+  console.out << (arguments.json ? design_json(arguments, plan, before, warnings)
+                                 : design_words(arguments, plan, before, warnings));
   return kSuccess;
 }
 

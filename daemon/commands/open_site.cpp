@@ -44,13 +44,14 @@ void print_data_words(const Recording& recording, const Console& console) {
 }
 
 tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
-                                                   const Console& console, const std::string& model,
+                                                   const Console& console,
+                                                   std::optional<ModelKind> model,
                                                    const ChoosePeriod& choose) {
   auto site = open_site(file);
   if (!site) return tl::unexpected(console.fail(site.error()));
   const auto fail = [&](const Error& error) { return tl::unexpected(console.fail(error)); };
   if (auto modelled = require_model(site->config); !modelled) return fail(modelled.error());
-  if (!model.empty()) site->config.model->kind = model;
+  if (model) site->config.model->kind = *model;
   auto modelled = load_modelled_site(
       std::move(*site), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()),
       choose);

@@ -14,12 +14,11 @@ namespace recald::daemon {
 void print_data_words(const Recording& recording, const Console& console);
 
 /// Reads and replays everything; what the data show goes to err in words.
-/// @param model   Kind of model in the place of the site file's; empty: that one.
+/// @param model   Kind of model in the place of the site file's; absent: that one.
 /// @param choose  As load_modelled_site's.
 /// @return the site, or the exit code after saying what is wrong.
-[[nodiscard]] tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
-                                                                 const Console& console,
-                                                                 const std::string& model = "",
-                                                                 const ChoosePeriod& choose = {});
+[[nodiscard]] tl::expected<ModelledSite, int> open_modelled_site(
+    const std::filesystem::path& file, const Console& console, std::optional<ModelKind> model = {},
+    const ChoosePeriod& choose = {});
 
 }  // namespace recald::daemon

@@ -216,7 +216,8 @@ class DepotWithMoreMachines : public DiagnoseCommand {
 
   void write_electricity_of_model() {
     std::ostringstream ignored;
-    const auto year = open_modelled_site(site(), Console{ignored, ignored, false}, "hourly");
+    const auto year =
+        open_modelled_site(site(), Console{ignored, ignored, false}, ModelKind::hourly);
     if (!year) throw std::runtime_error(ignored.str());
     const auto problem =
         make_site_problem(year->site.config, year->site.calendar, year->recording, year->weather);

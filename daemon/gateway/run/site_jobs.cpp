@@ -145,7 +145,7 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
                             const GoesOn& goes_on) {
   const auto folder = folder_of(site.config, job);
-  site.config.model->kind = "hourly";
+  site.config.model->kind = ModelKind::hourly;
   auto modelled = load_modelled_site(std::move(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
   const auto problem = prepare_diagnosis(*modelled);

@@ -153,7 +153,7 @@ void write_calibration(PrometheusText& text, const Served& served) {
   const auto job = served.store.last_accepted(JobKind::calibration);
   if (!job || !*job || !(*job)->ended) return;
   const JobResult& result = (*job)->result;
-  const std::string model = served.site.model ? served.site.model->kind : "";
+  const std::string model{served.site.model ? name_of(served.site.model->kind) : ""};
   text.begin("recald_calibration_age_seconds", "gauge", "Since the calibration in use was made.");
   text.sample(static_cast<double>((served.now() - *(*job)->ended).count()), {{"model", model}});
   if (std::isfinite(result.rhat_max)) {

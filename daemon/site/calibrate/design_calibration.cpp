@@ -149,7 +149,7 @@ std::string unit_of(const std::string& output) {
 
 void take_measurements(const doe::DesignFolder& design, const doe::MonthlyTable& measured,
                        const std::vector<doe::DesignMonth>& months, DesignCalibration& result) {
-  result.model = "metamodel";
+  result.model = ModelKind::metamodel;
   for (std::size_t i = 0; i < months.size(); ++i) {
     result.month_names.push_back(months[i].text());
     result.roles.push_back(i < design.months.size() ? MonthRole::calibration

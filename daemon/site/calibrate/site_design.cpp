@@ -4,15 +4,12 @@
 #include <vector>
 
 #include "core/design/latin_hypercube.hpp"
-#include "core/design/model_runs.hpp"
 
 namespace recald::daemon {
 namespace {
 
 /// The hypercube's stream, beyond those of any number of chains.
 constexpr std::uint64_t kHypercubeStream = std::uint64_t{1} << 32;
-/// Runs between two writes: what an interruption may cost.
-constexpr Eigen::Index kRunsPerWrite = 20;
 
 std::vector<doe::DesignMonth> design_months(std::span<const std::string> names) {
   std::vector<doe::DesignMonth> months;
@@ -64,38 +61,8 @@ doe::DesignPlan plan_design(const PreparedSite& site, const SiteDesignOptions& o
   return plan;
 }
 
-Result<int> run_into_folder(const PreparedSite& site, const doe::DesignPlan& plan,
-                            const std::filesystem::path& folder, const ForEachIndex& executor,
-                            const DesignObserver& observer) {
-  auto runs = doe::open_design(folder, plan);
-  if (!runs) return tl::unexpected(runs.error());
-  const int before = runs->done_count();
-  std::vector<Eigen::Index> missing;
-  for (std::size_t r = 0; r < runs->done.size(); ++r) {
-    if (!runs->done[r]) missing.push_back(static_cast<Eigen::Index>(r));
-  }
-  const auto total = static_cast<int>(runs->done.size());
-  for (auto next = missing.begin(); next != missing.end();) {
-    if (!observer(runs->done_count(), total)) {
-      return failure(ErrorCode::cancelled, "stopped after " + std::to_string(runs->done_count()) +
-                                               " of " + std::to_string(total) +
-                                               " runs; the same command goes on with the others");
-    }
-    const auto end = next + std::min<std::ptrdiff_t>(kRunsPerWrite, missing.end() - next);
-    const std::vector<Eigen::Index> rows{next, end};
-    const auto outputs =
-        design::run_model(*site.model, plan.parameters, plan.theta(rows, Eigen::all), executor);
-    if (!outputs) return tl::unexpected(outputs.error());
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      runs->outputs.row(rows[i]) = outputs->row(static_cast<Eigen::Index>(i));
-      runs->done[static_cast<std::size_t>(rows[i])] = true;
-    }
-    if (auto written = doe::write_outputs(folder, plan, *runs); !written) {
-      return tl::unexpected(written.error());
-    }
-    next = end;
-  }
-  return before;
+engines::BuiltInEngine site_engine(const PreparedSite& site) {
+  return {site.model->clone(), site.so_far.parameters};
 }
 
 }  // namespace recald::daemon

@@ -1,13 +1,11 @@
-/// A site's own model run over a design of experiments, into a folder.
+/// A site's own model over a design of experiments: what is run, by what, and what was measured.
 #pragma once
 
-#include <filesystem>
-#include <functional>
+#include <cstdint>
 #include <string>
 
 #include "adapters/doe/design_writer.hpp"
-#include "core/executor.hpp"
-#include "core/result.hpp"
+#include "adapters/engines/built_in_engine.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 
 namespace recald::daemon {
@@ -25,16 +23,7 @@ struct SiteDesignOptions {
 [[nodiscard]] doe::DesignPlan plan_design(const PreparedSite& site,
                                           const SiteDesignOptions& options);
 
-/// Told how many runs are done; returns false to stop.
-using DesignObserver = std::function<bool(int done, int total)>;
-
-/// Runs what the folder does not have yet, and writes after every few runs, so that little is lost.
-/// @return how many runs were there before, or not_finite from the model, cancelled (what was run
-/// is
-///         kept), or what `open_design` and writing find.
-[[nodiscard]] Result<int> run_into_folder(const PreparedSite& site, const doe::DesignPlan& plan,
-                                          const std::filesystem::path& folder,
-                                          const ForEachIndex& executor,
-                                          const DesignObserver& observer);
+/// The site's model of the calibration months, ready to be run.
+[[nodiscard]] engines::BuiltInEngine site_engine(const PreparedSite& site);
 
 }  // namespace recald::daemon

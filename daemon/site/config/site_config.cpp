@@ -281,7 +281,9 @@ ParameterConfig read_parameter(TomlReader& table) {
 
 ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
   ModelConfig config;
-  config.kind = table.word("kind", {"epc", "hourly"}).value_or("epc");
+  if (const auto kind = table.word("kind", model_kind_names(/*of_building_alone=*/true))) {
+    config.kind = *find_model_kind(*kind);
+  }
   const auto outputs = table.texts("outputs");
   config.outputs = outputs.value_or(std::vector<std::string>{});
   if (!table.has("outputs")) {

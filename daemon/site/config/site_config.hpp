@@ -15,6 +15,7 @@
 #include "core/metering/units.hpp"
 #include "core/model/building.hpp"
 #include "core/model/end_use.hpp"
+#include "core/model/model_kind.hpp"
 #include "core/model/parameter.hpp"
 #include "core/result.hpp"
 #include "core/weather/sun.hpp"
@@ -67,7 +68,7 @@ struct ParameterConfig {
 };
 
 struct ModelConfig {
-  std::string kind;                       ///< "epc" or "hourly"
+  ModelKind kind = ModelKind::epc;
   std::vector<std::string> outputs;       ///< Ids of meters.
   std::map<std::string, double> weights;  ///< By meter; absent: 1.
   std::vector<ParameterConfig> parameters;

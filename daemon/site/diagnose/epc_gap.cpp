@@ -71,7 +71,7 @@ Result<diagnosis::MonthlyVote> epc_gap(const SiteConfig& as_configured,
                                        std::span<const diagnosis::Addition> added,
                                        std::uint64_t seed) {
   SiteConfig site = as_configured;
-  site.model->kind = "epc";
+  site.model->kind = ModelKind::epc;
   const MonthlyFigures measured = measure(site, recording, problem);
   auto chosen = site_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
@@ -96,7 +96,7 @@ Result<diagnosis::MonthlyVote> epc_gap(const SiteConfig& as_configured,
   auto altered =
       with_effects((*make)(*site.building), at_modes(problem, added, chosen->parameters), added);
   auto vote = diagnosis::monthly_vote(*plain, altered, chosen->parameters, measured, seed);
-  vote.gap.model = "epc";
+  vote.gap.model = ModelKind::epc;
   return vote;
 }
 

@@ -9,6 +9,7 @@
 #include "core/drift/cause.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/drift/shift.hpp"
+#include "core/model/model_kind.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/drift/daily_watches.hpp"
 #include "daemon/site/model/modelled_site.hpp"
@@ -80,7 +81,7 @@ struct MeterChange {
 };
 
 struct SiteDrift {
-  std::string model;
+  ModelKind model;
   std::vector<std::string> months;  ///< "2019-03", ascending, the learning ones first.
   int learning_months;
   std::vector<Parameter> parameters;  ///< (q)

@@ -25,14 +25,13 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
   RunFacts facts;
   facts.recald_version = kVersion;
   facts.data_revision = data_digest.hex();
-  facts.model_version =
-      (site.model ? site.model->kind : "none") + "-" + site_digest.hex().substr(0, 12);
+  facts.model_version = std::string{site.model ? name_of(site.model->kind) : "none"} + "-" +
+                        site_digest.hex().substr(0, 12);
   facts.time_zone_data = system::time_zone_release();
   return facts;
 }
 
-Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
-                                const std::string& model) {
+Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files, ModelKind model) {
   system::Sha256 digest;
   for (const auto& file : files) {
     if (auto added = digest.add_file(file); !added) return tl::unexpected(added.error());
@@ -40,7 +39,7 @@ Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
   RunFacts facts;
   facts.recald_version = kVersion;
   facts.data_revision = digest.hex();
-  facts.model_version = model + "-" + facts.data_revision.substr(0, 12);
+  facts.model_version = std::string{name_of(model)} + "-" + facts.data_revision.substr(0, 12);
   return facts;
 }
 

@@ -84,7 +84,9 @@ Result<ModelFactory> hourly_model(const SiteConfig& site, const SiteModelParts& 
 
 }  // namespace
 
-bool is_hourly(const SiteConfig& site) { return site.model && site.model->kind == "hourly"; }
+bool is_hourly(const SiteConfig& site) {
+  return site.model && site.model->kind == ModelKind::hourly;
+}
 
 Result<ModelFactory> model_of(const SiteConfig& site, const SiteModelParts& parts,
                               const std::vector<Month>& months, const model::epc::Place& place) {

@@ -305,7 +305,7 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
     hyperparameters.push_back(std::move(entry));
   }
   const auto& calibration = result.calibration;
-  Json json = {{"model", result.model},
+  Json json = {{"model", name_of(result.model)},
                {"status", calibration.converged ? "converged" : "unconverged"},
                {"months", months},
                {"parameters", parameters_json(result)},

@@ -193,9 +193,9 @@ Json gap_json(const SiteProblem& site, const Diagnosis& d, const std::vector<Mod
   Json json = Json::object();
   if (d.gap) json["hourly"] = hourly_gap_json(site, *d.gap);
   for (const ModelGap& gap : others) {
-    json[gap.model] = {{"before", figures_json(gap, gap.before)},
-                       {"after", figures_json(gap, gap.after)},
-                       {"change", change_json(gap)}};
+    json[std::string{name_of(gap.model)}] = {{"before", figures_json(gap, gap.before)},
+                                             {"after", figures_json(gap, gap.after)},
+                                             {"change", change_json(gap)}};
   }
   return json.empty() ? Json(nullptr) : json;
 }

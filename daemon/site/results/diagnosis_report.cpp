@@ -194,7 +194,7 @@ std::vector<report::OtherGapRow> other_gaps_of(const std::vector<ModelGap>& gaps
     for (std::size_t i = 0; i < gap.outputs.size(); ++i) {
       const ModelGap::Figures& before = gap.before[i];
       const ModelGap::Figures& after = gap.after[i];
-      rows.push_back({.model = gap.model,
+      rows.push_back({.model = std::string{name_of(gap.model)},
                       .output = meter_label(gap.outputs[i]),
                       .cvrmse_before = before.cvrmse,
                       .cvrmse_after = after.cvrmse,

@@ -117,7 +117,8 @@ std::string other_model_words(const ModelGap& gap) {
   }
   if (items.empty()) return {};
   return fmt::format("Scatter of months in the {} model: {}.",
-                     gap.model == "epc" ? "monthly" : gap.model, listed(items, "and"));
+                     gap.model == ModelKind::epc ? "monthly" : name_of(gap.model),
+                     listed(items, "and"));
 }
 
 /// What the last search left open, after effects had been added.

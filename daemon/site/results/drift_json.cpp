@@ -116,7 +116,7 @@ Json shifts_json(const SiteDrift& drift) {
 
 std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
   const DriftSummary summary = summary_of(drift);
-  const Json json = {{"model", drift.model},
+  const Json json = {{"model", name_of(drift.model)},
                      {"months", drift.months},
                      {"learning_months", drift.learning_months},
                      {"alarms", results::alarms_json(summary)},

@@ -284,7 +284,7 @@ void add_not_known(const SiteCalibration& result, report::ReportData& data) {
       "A parameter that fits is not a parameter that was measured: another combination of values, "
       "or an effect that the model lacks, may explain the same months.");
   data.not_known.emplace_back(
-      result.model == "hourly"
+      facts_of(result.model).has_peaks
           ? "Peak demand is shown as measured; how the model tells it stands in calibration.json."
           : "Peak demand is measured only. The monthly model has no peaks.");
   data.not_known.emplace_back(

@@ -13,7 +13,7 @@ namespace recald::blind {
 Result<TwinGauge> TwinGauge::open(const std::filesystem::path& site_file) {
   std::ostringstream out;
   std::ostringstream err;
-  const auto site = daemon::open_modelled_site(site_file, {out, err, false}, "hourly");
+  const auto site = daemon::open_modelled_site(site_file, {out, err, false}, ModelKind::hourly);
   if (!site) return failure(ErrorCode::invalid_value, err.str());
   auto problem = daemon::make_site_problem(site->site.config, site->site.calendar, site->recording,
                                            site->weather);

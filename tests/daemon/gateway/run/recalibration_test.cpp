@@ -16,7 +16,9 @@ using ::testing::IsEmpty;
 
 class RecalibrationTest : public ::testing::Test {
  protected:
-  RecalibrationTest() { site_.model = ModelConfig{.kind = "epc", .outputs = {"main", "steam"}}; }
+  RecalibrationTest() {
+    site_.model = ModelConfig{.kind = ModelKind::epc, .outputs = {"main", "steam"}};
+  }
   void begin(const char* schedule) {
     site_.recalibration.schedule = parse_schedule(schedule).value();
     recalibration_ = std::make_unique<Recalibration>(

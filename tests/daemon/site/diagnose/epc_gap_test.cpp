@@ -34,8 +34,8 @@ class EpcGapTest : public ::testing::Test {
 
   void open() {
     std::ostringstream ignored;
-    auto opened =
-        open_modelled_site(folder_ / "site.toml", Console{ignored, ignored, false}, "hourly");
+    auto opened = open_modelled_site(folder_ / "site.toml", Console{ignored, ignored, false},
+                                     ModelKind::hourly);
     if (!opened) throw std::runtime_error(ignored.str());
     modelled_ = std::make_unique<ModelledSite>(std::move(*opened));
     auto problem = make_site_problem(modelled_->site.config, modelled_->site.calendar,

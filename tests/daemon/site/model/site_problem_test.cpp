@@ -19,8 +19,8 @@ class SiteProblemTest : public ::testing::Test {
   SiteProblemTest() {
     testing::write_depot_year(folder_.path());
     std::ostringstream ignored;
-    auto opened =
-        open_modelled_site(folder_ / "site.toml", Console{ignored, ignored, false}, "hourly");
+    auto opened = open_modelled_site(folder_ / "site.toml", Console{ignored, ignored, false},
+                                     ModelKind::hourly);
     if (!opened) throw std::runtime_error(ignored.str());
     modelled_ = std::make_unique<ModelledSite>(std::move(*opened));
   }

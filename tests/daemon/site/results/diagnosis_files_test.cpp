@@ -119,7 +119,7 @@ TEST_F(DiagnosisFiles, NamesEachEffectThatCannotBeSeenOnce) {
 }
 
 TEST_F(DiagnosisFiles, GivesOtherModelsAnEntryOfTheirOwn) {
-  const ModelGap epc{.model = "epc",
+  const ModelGap epc{.model = ModelKind::epc,
                      .outputs = {"steam_daily_kWh"},
                      .before = {{0.02, 0.12, -30.0, 0.5}},
                      .after = {{0.01, 0.07, std::nan(""), 0.4}},

@@ -1,0 +1,82 @@
+#include "adapters/doe/folder_engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace recald::doe {
+namespace {
+
+/// Runs between two writes: what an interruption may cost.
+constexpr std::ptrdiff_t kRunsPerWrite = 20;
+
+}  // namespace
+
+FolderEngine::FolderEngine(std::filesystem::path folder, DesignPlan plan, Engine* behind,
+                           DesignRunsSoFar runs)
+    : folder_{std::move(folder)}, plan_{std::move(plan)}, behind_{behind}, runs_{std::move(runs)} {}
+
+Result<FolderEngine> FolderEngine::open(std::filesystem::path folder, DesignPlan plan,
+                                        Engine* behind) {
+  auto runs = open_design(folder, plan);
+  if (!runs) return tl::unexpected(runs.error());
+  return FolderEngine{std::move(folder), std::move(plan), behind, std::move(*runs)};
+}
+
+Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& theta) const {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < theta.rows(); ++i) {
+    Eigen::Index row = 0;
+    while (row < plan_.theta.rows() && plan_.theta.row(row) != theta.row(i)) ++row;
+    if (row == plan_.theta.rows()) {
+      return failure(
+          ErrorCode::invalid_value,
+          fmt::format("the design in {} has no run with these parameters ({})", folder_.string(),
+                      describe(plan_.parameters, {theta.row(i).begin(), theta.row(i).end()})));
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Result<void> FolderEngine::run_rows(const std::vector<Eigen::Index>& rows,
+                                    const ForEachIndex& executor) {
+  const auto outputs = behind_->run(plan_.theta(rows, Eigen::all), executor, {});
+  if (!outputs) return tl::unexpected(outputs.error());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    runs_.outputs.row(rows[i]) = outputs->row(static_cast<Eigen::Index>(i));
+    runs_.done[static_cast<std::size_t>(rows[i])] = true;
+  }
+  return write_outputs(folder_, plan_, runs_);
+}
+
+Result<Eigen::MatrixXd> FolderEngine::run(const Eigen::MatrixXd& theta,
+                                          const ForEachIndex& executor, const Observer& observer) {
+  const auto rows = rows_of(theta);
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<Eigen::Index> missing;
+  std::ranges::copy_if(*rows, std::back_inserter(missing), [&](Eigen::Index row) {
+    return !runs_.done[static_cast<std::size_t>(row)];
+  });
+  if (!missing.empty() && behind_ == nullptr) {
+    return failure(ErrorCode::not_found,
+                   fmt::format("{} of {} runs are missing in {}", missing.size(), rows->size(),
+                               folder_.string()));
+  }
+  const auto total = static_cast<int>(runs_.done.size());
+  for (auto next = missing.begin(); next != missing.end();) {
+    if (observer && !observer(done_count(), total)) {
+      return failure(ErrorCode::cancelled,
+                     fmt::format("stopped after {} of {} runs; the same command goes on with the "
+                                 "others",
+                                 done_count(), total));
+    }
+    const auto end = next + std::min(kRunsPerWrite, missing.end() - next);
+    if (auto ran = run_rows({next, end}, executor); !ran) return tl::unexpected(ran.error());
+    next = end;
+  }
+  return Eigen::MatrixXd{runs_.outputs(*rows, Eigen::all)};
+}
+
+}  // namespace recald::doe
