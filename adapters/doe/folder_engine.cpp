@@ -30,10 +30,10 @@ Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& t
     Eigen::Index row = 0;
     while (row < plan_.theta.rows() && plan_.theta.row(row) != theta.row(i)) ++row;
     if (row == plan_.theta.rows()) {
-      return failure(
-          ErrorCode::invalid_value,
-          fmt::format("the design in {} has no run with these parameters ({})", folder_.string(),
-                      describe(plan_.parameters, {theta.row(i).begin(), theta.row(i).end()})));
+      const Eigen::VectorXd values = theta.row(i);
+      return failure(ErrorCode::invalid_value,
+                     fmt::format("the design in {} has no run at {}", folder_.string(),
+                                 describe(plan_.parameters, values)));
     }
     rows.push_back(row);
   }
