@@ -30,7 +30,7 @@ Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& t
     Eigen::Index row = 0;
     while (row < plan_.theta.rows() && plan_.theta.row(row) != theta.row(i)) ++row;
     if (row == plan_.theta.rows()) {
-      const Eigen::VectorXd values = theta.row(i);
+      const std::vector<double> values{theta.row(i).begin(), theta.row(i).end()};
       return failure(ErrorCode::invalid_value,
                      fmt::format("the design in {} has no run at {}", folder_.string(),
                                  describe(plan_.parameters, values)));
