@@ -46,7 +46,7 @@ struct ParameterBelief {
 
 /// One turn of the wheel.
 struct Pass {
-  std::vector<Finding> located;
+  std::vector<Misfit> located;
   FirstLook look;
   Naming naming;
   Eigen::ArrayXXd modelled_kW;  ///< (parts x m) the model at the start of the pass.

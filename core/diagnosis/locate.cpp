@@ -154,8 +154,8 @@ BinColumns columns_of(const FitContext& context, const Family& family, std::size
 }
 
 /// Size of the disagreement in a bin, in the meter's own unit.
-Finding describe(const FitContext& context, const JointFit& none, const Family& family,
-                 const Bin& bin, double t) {
+Misfit describe(const FitContext& context, const JointFit& none, const Family& family,
+                const Bin& bin, double t) {
   const MeterRows& rows = context.observations.meters[bin.meter];
   const auto g = static_cast<Eigen::Index>(bin.meter);
   double difference_kWh = 0.0;
@@ -182,13 +182,13 @@ Finding describe(const FitContext& context, const JointFit& none, const Family& 
 
 }  // namespace
 
-Result<std::vector<Finding>> locate(const FitContext& context, const JointFit& none, Rng& rng,
-                                    const LocateOptions& options) {
+Result<std::vector<Misfit>> locate(const FitContext& context, const JointFit& none, Rng& rng,
+                                   const LocateOptions& options) {
   const std::vector<Family> families = families_of(context.site);
   const NoiseNode& node = context.grid[static_cast<std::size_t>(none.best_node)];
   const Eigen::Index q = none.jacobian.cols();
   std::vector<TestFamily> tests;
-  std::vector<std::vector<Finding>> described;
+  std::vector<std::vector<Misfit>> described;
   for (std::size_t f = 0; f < families.size(); ++f) {
     for (std::size_t g = 0; g < context.observations.meters.size(); ++g) {
       const BinColumns bins = columns_of(context, families[f], f, g);
@@ -201,7 +201,7 @@ Result<std::vector<Finding>> locate(const FitContext& context, const JointFit& n
       const Eigen::VectorXd t = score(*system);
       const Eigen::VectorXd maxima = null_maxima(confusability(*system), options.null_draws, rng);
       TestFamily test{exceedance(maxima, t.cwiseAbs().maxCoeff()), {}};
-      std::vector<Finding> found;
+      std::vector<Misfit> found;
       for (std::size_t k = 0; k < bins.bins.size(); ++k) {
         const double statistic = t[static_cast<Eigen::Index>(k)];
         test.bin_p_values.push_back(normal_p_value(statistic));
@@ -212,7 +212,7 @@ Result<std::vector<Finding>> locate(const FitContext& context, const JointFit& n
     }
   }
   const auto flags = findings(tests, options.rate);
-  std::vector<Finding> result;
+  std::vector<Misfit> result;
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const std::vector<double> adjusted = benjamini_yekutieli(tests[i].bin_p_values);
     for (std::size_t k = 0; k < described[i].size(); ++k) {
@@ -222,7 +222,7 @@ Result<std::vector<Finding>> locate(const FitContext& context, const JointFit& n
     }
   }
   std::ranges::stable_sort(result, std::greater{},
-                           [](const Finding& finding) { return std::abs(finding.statistic); });
+                           [](const Misfit& finding) { return std::abs(finding.statistic); });
   return result;
 }
 

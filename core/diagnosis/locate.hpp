@@ -15,7 +15,8 @@
 
 namespace recald::diagnosis {
 
-struct Finding {
+/// A place where simulation and meter disagree: some of one meter's hours, days or months.
+struct Misfit {
   std::size_t meter;
   std::string family;  ///< "part of the week", "outdoor temperature", ...
   std::string words;   ///< "weekday nights above 20 degC"
@@ -33,7 +34,7 @@ struct LocateOptions {
 
 /// @param none  The base model at its mode.
 /// @return findings, the largest |t| first.
-[[nodiscard]] Result<std::vector<Finding>> locate(const FitContext& context, const JointFit& none,
-                                                  Rng& rng, const LocateOptions& options = {});
+[[nodiscard]] Result<std::vector<Misfit>> locate(const FitContext& context, const JointFit& none,
+                                                 Rng& rng, const LocateOptions& options = {});
 
 }  // namespace recald::diagnosis

@@ -139,9 +139,9 @@ Cause cause_of(const Contest& contest) {
 }
 
 /// The months since the change, given those before, at one particle.
-class Since {
+class MonthsSinceChange {
  public:
-  Since(Posterior& posterior, int since) : posterior_(posterior) {
+  MonthsSinceChange(Posterior& posterior, int since) : posterior_(posterior) {
     const auto& points = posterior.data().points;
     for (std::size_t i = 0; i < points.size(); ++i) {
       (points[i].month >= since ? ahead_ : behind_).push_back(static_cast<Eigen::Index>(i));
@@ -286,7 +286,7 @@ std::vector<Contest> contests_of(const ChangeCase& change, const CauseOptions& o
 /// Everything that one particle says of all causes.
 class Trial {
  public:
-  Trial(const ChangeCase& change, const CauseOptions& options, Since& since,
+  Trial(const ChangeCase& change, const CauseOptions& options, MonthsSinceChange& since,
         const std::vector<LevelBlock>& blocks)
       : change_(change), options_(options), since_(since), blocks_(blocks) {}
 
@@ -373,7 +373,7 @@ class Trial {
 
   const ChangeCase& change_;
   const CauseOptions& options_;
-  Since& since_;
+  MonthsSinceChange& since_;
   const std::vector<LevelBlock>& blocks_;
 };
 
@@ -388,7 +388,7 @@ PosteriorData known_points(const ChangeCase& change) {
   return select_points(change.data, rows);
 }
 
-std::vector<int> meters_of(const ChangeCase& change, const Since& since,
+std::vector<int> meters_of(const ChangeCase& change, const MonthsSinceChange& since,
                            const std::vector<LevelBlock>& blocks) {
   std::vector<int> meters;
   for (int output = 0; output < std::ssize(change.data.scales); ++output) {
@@ -427,7 +427,7 @@ Result<std::vector<Cause>> weigh_causes(const ChangeCase& change,
   if (!posterior) return tl::unexpected(posterior.error());
 
   const std::vector<LevelBlock> blocks = level_blocks(change);
-  Since since{*posterior, change.since};
+  MonthsSinceChange since{*posterior, change.since};
   std::vector<Contest> contests = contests_of(change, options, meters_of(change, since, blocks));
   Trial trial{change, options, since, blocks};
   Rng rng{seed, kStream};

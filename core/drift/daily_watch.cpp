@@ -112,7 +112,7 @@ void DailyWatch::begin_at(metering::Day since, double level_sd) {
 }
 
 /// Given that there was one change, by about a day's scatter, any day alike beforehand.
-DailyWatch::Since DailyWatch::date_change() const {
+DailyWatch::ChangeDays DailyWatch::date_change() const {
   const std::size_t first = seen_.size() - std::min(seen_.size(), kDatedDays);
   std::vector<double> logs(seen_.size() - first);
   double sum = 0.0;
@@ -124,7 +124,7 @@ DailyWatch::Since DailyWatch::date_change() const {
   const auto likeliest = std::ranges::max_element(logs);
   double total = 0.0;
   for (const double one : logs) total += std::exp(one - *likeliest);
-  Since since{first + static_cast<std::size_t>(likeliest - logs.begin()), first, first};
+  ChangeDays since{first + static_cast<std::size_t>(likeliest - logs.begin()), first, first};
   double below = 0.0;
   for (std::size_t i = 0; i < logs.size() && below < 0.95 * total; ++i) {
     if (below < 0.05 * total) since.earliest = first + i;
@@ -135,7 +135,7 @@ DailyWatch::Since DailyWatch::date_change() const {
 }
 
 DailyAlarm DailyWatch::alarm_of(int month) const {
-  const Since since = date_change();
+  const ChangeDays since = date_change();
   double measured_kW = 0.0;
   double expected_kW = 0.0;
   for (std::size_t i = since.likeliest; i < seen_.size(); ++i) {

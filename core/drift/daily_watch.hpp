@@ -70,7 +70,7 @@ class DailyWatch {
     double white;
   };
   /// Indices among the days seen.
-  struct Since {
+  struct ChangeDays {
     std::size_t likeliest;
     std::size_t earliest;
     std::size_t latest;
@@ -81,7 +81,7 @@ class DailyWatch {
   [[nodiscard]] std::vector<double> whitened(const std::vector<double>& standardised) const;
   void learn(int learning_months);
   void take_month(const std::vector<double>& white);
-  [[nodiscard]] Since date_change() const;
+  [[nodiscard]] ChangeDays date_change() const;
   [[nodiscard]] DailyAlarm alarm_of(int month) const;
 
   DailyWatchOptions options_;

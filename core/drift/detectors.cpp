@@ -99,10 +99,10 @@ double ChangePoint::change_within(std::size_t steps) const {
   return std::accumulate(probabilities_.begin(), end, 0.0);
 }
 
-ChangePoint::Since ChangePoint::since(double coverage) const {
+ChangePoint::StepsSince ChangePoint::since(double coverage) const {
   const auto likeliest = std::ranges::max_element(probabilities_) - probabilities_.begin();
   const double tail = 0.5 * (1.0 - coverage);
-  Since since{static_cast<std::size_t>(likeliest), 0, probabilities_.size() - 1};
+  StepsSince since{static_cast<std::size_t>(likeliest), 0, probabilities_.size() - 1};
   double sum = 0.0;
   bool has_shortest = false;
   for (std::size_t run = 0; run < probabilities_.size(); ++run) {

@@ -99,12 +99,12 @@ class ChangePoint {
   [[nodiscard]] double change_within(std::size_t steps) const;
 
   /// The steps since a change, as the shortest and longest of a central interval.
-  struct Since {
+  struct StepsSince {
     std::size_t likeliest;
     std::size_t shortest;
     std::size_t longest;
   };
-  [[nodiscard]] Since since(double coverage = 0.9) const;
+  [[nodiscard]] StepsSince since(double coverage = 0.9) const;
 
  private:
   Options options_;

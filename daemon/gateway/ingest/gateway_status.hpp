@@ -28,7 +28,7 @@ struct PollStatus {
 /// One meter whose readings the store keeps, as people see it.
 struct MeterStatus {
   std::string id;
-  std::optional<PollStatus> poll;  ///< Absent: others send its readings.
+  std::optional<PollStatus> poll;  ///< Absent: its readings are pushed.
   LiveValues live;                 ///< Of a meter that is not polled, only when it was heard of.
   std::optional<metering::Reading> last_interval;  ///< Committed.
   MeterCounters counters;

@@ -61,7 +61,7 @@ class Gateway {
   /// @pre the site's time zone is the same
   Result<void> reload(const SiteConfig& site);
 
-  /// Readings that others send, of a meter with source = "http". What it answers is stored.
+  /// Pushed readings, of a meter with source = "http". They are stored when it answers.
   /// @param readings  Their `meter` is not looked at.
   /// @return not_found for a meter that takes none, or the store's failure; then nothing is stored.
   [[nodiscard]] Result<CommitCounts> take_pushed(const std::string& meter,
@@ -79,7 +79,7 @@ class Gateway {
   [[nodiscard]] std::optional<MeterStatus> meter_status(std::string_view id) const;
 
  private:
-  /// A meter with source = "http".
+  /// A meter with source = "http": its readings come in by HTTP.
   struct PushedMeter {
     MeterProgress progress;
     std::optional<metering::Instant> heard_at;  ///< Since the process began.
@@ -98,7 +98,7 @@ class Gateway {
   [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
-  /// Opens the meters of `site` that others send readings of; what is known of them stays.
+  /// Opens the pushed meters of `site`; what is known of them stays.
   Result<void> open_pushed(const SiteConfig& site);
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();

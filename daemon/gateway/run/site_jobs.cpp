@@ -44,7 +44,7 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
                                        const std::filesystem::path& design,
                                        const std::filesystem::path& folder,
                                        const calibration::RunContext& context) {
-  const auto done = calibrate_on_design(modelled, design, context);
+  const auto done = calibrate_on_metamodel(modelled, design, context);
   if (!done) return tl::unexpected(done.error());
   JobOutcome outcome = outcome_of(done->calibration, done->facts, folder);
   if (auto written = write_calibration(*done, outcome.result.document, folder); !written) {

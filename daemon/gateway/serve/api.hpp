@@ -57,8 +57,8 @@ http::Response post_job(const Served& served, const http::Request& request) {
   return post_job_of(kind, served, request);
 }
 
-/// Readings of a meter with source = "http"; see daemon/gateway/serve/README.md. Sent twice, they
-/// are taken once.
+/// Pushed readings, of a meter with source = "http"; see daemon/gateway/serve/README.md. Sent
+/// twice, they are taken once.
 [[nodiscard]] http::Response post_readings(const Served& served, const http::Request& request);
 
 }  // namespace recald::daemon

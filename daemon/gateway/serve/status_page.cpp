@@ -28,7 +28,7 @@ constexpr double kCoverageGood = 0.9;
 /// A sign beside each word, so that nothing is said by colour alone.
 Cell state_cell(const MeterStatus* status) {
   if (status == nullptr) return {"recorded", "muted"};
-  if (!status->poll) return {"sent by others", "muted"};
+  if (!status->poll) return {"pushed", "muted"};
   switch (status->poll->state) {
     case UnitState::up:
       return {"✔ up", "good"};

@@ -59,7 +59,7 @@ Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
   return measured;
 }
 
-Result<SiteOnDesign> calibrate_on_design(const ModelledSite& modelled,
+Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
                                          const std::filesystem::path& folder,
                                          const calibration::RunContext& context) {
   const auto design = doe::read_design_folder(folder);

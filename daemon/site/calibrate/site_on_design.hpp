@@ -23,7 +23,7 @@ struct SiteOnDesign {
 
 /// As `recald calibrate --model metamodel --design` does it, but with the site's own months.
 /// @return or what reading the design, the site and the calibration find.
-[[nodiscard]] Result<SiteOnDesign> calibrate_on_design(const ModelledSite& modelled,
+[[nodiscard]] Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
                                                        const std::filesystem::path& design,
                                                        const calibration::RunContext& context);
 

@@ -29,10 +29,10 @@ std::string meter_name(const SiteProblem& site, int meter) {
   return meter < 0 ? std::string{} : site.meters[static_cast<std::size_t>(meter)].id;
 }
 
-Json located_json(const SiteProblem& site, const std::vector<diagnosis::Finding>& findings) {
+Json located_json(const SiteProblem& site, const std::vector<diagnosis::Misfit>& findings) {
   Json list = Json::array();
   for (std::size_t i = 0; i < std::min(findings.size(), kFindingsShown); ++i) {
-    const diagnosis::Finding& f = findings[i];
+    const diagnosis::Misfit& f = findings[i];
     list.push_back({{"meter", site.meters[f.meter].id},
                     {"by", f.family},
                     {"where", f.words},

@@ -78,9 +78,9 @@ report::AddedEffectCard card_of(const SiteProblem& site, const Addition& additio
 }
 
 std::vector<report::LocatedRow> located_of(const SiteProblem& site,
-                                           const std::vector<diagnosis::Finding>& findings) {
+                                           const std::vector<diagnosis::Misfit>& findings) {
   std::vector<report::LocatedRow> rows;
-  for (const diagnosis::Finding& f : findings) {
+  for (const diagnosis::Misfit& f : findings) {
     rows.push_back(
         {meter_label(site.meters[f.meter].id), f.words, f.share, f.share_se, f.kWh_month});
   }

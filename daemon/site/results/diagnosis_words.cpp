@@ -224,7 +224,7 @@ std::string located_words(const Diagnosis& d, const SiteProblem& site) {
   if (located.empty()) return "No single hour, weather or month stands out beyond chance.\n";
   std::string text = "Where simulation and meters disagree most:\n";
   for (std::size_t i = 0; i < std::min(located.size(), kFindingsInWords); ++i) {
-    const diagnosis::Finding& f = located[i];
+    const diagnosis::Misfit& f = located[i];
     const std::string share =
         std::abs(f.share) > kSharePeopleRead
             ? "next to nothing is simulated"

@@ -1,4 +1,4 @@
-/// Readings that others send.
+/// Pushed readings.
 #include "daemon/gateway/serve/pushed_readings.hpp"
 
 #include <fmt/format.h>
@@ -132,7 +132,7 @@ TEST_F(PushedMeterSite, IsShownAsSuch) {
   EXPECT_EQ(meter["source"], "http");
   EXPECT_FALSE(meter.contains("state"));
   EXPECT_EQ(meter["read_at"], "2024-03-30T12:00:00Z");
-  EXPECT_THAT(get("/").body, HasSubstr("sent by others"));
+  EXPECT_THAT(get("/").body, HasSubstr(">pushed<"));
   const std::string metrics = get("/metrics").body;
   EXPECT_THAT(metrics, HasSubstr(R"(recald_intervals_total{meter="chw",validity="ok"} 4)"));
   EXPECT_THAT(metrics, ::testing::Not(HasSubstr(R"(recald_unit_state{meter="chw"})")));
