@@ -6,8 +6,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -96,6 +99,22 @@ struct StoredForecast {
 [[nodiscard]] std::string_view name_of(JobKind kind);
 [[nodiscard]] std::string_view name_of(JobState state);
 
+/// A closed month as it is stored.
+struct StoredMonth {
+  metering::MonthlyFigure figure;
+  metering::Instant closed_at;
+  std::string time_zone_release;  ///< With which it was closed.
+};
+
+/// Readings that a person put in.
+struct StoreEdit {
+  metering::Instant time;
+  std::string author;
+  std::string reason;  ///< Not empty.
+  std::string file;    ///< Its name, without the folder.
+  std::string sha256;  ///< Of the file's bytes.
+};
+
 struct MeterMonth {
   std::uint32_t meter;
   metering::Month month;
@@ -135,6 +154,23 @@ struct CommitCounts {
   std::vector<bool> was_taken;               ///< By interval of the batch.
 };
 
+/// What a store says of itself.
+struct StoreCheck {
+  std::string damage;                 ///< In the words of what keeps it; empty: none.
+  std::vector<std::string> problems;  ///< A sentence each; not looked for where there is damage,
+  std::uint64_t intervals = 0;        ///< nor are the rows counted: all revisions.
+};
+
+/// A consistent copy of a store that goes on being written, made a portion at a time. Given up
+/// before it is whole, it leaves nothing.
+class StoreBackup {
+ public:
+  virtual ~StoreBackup() = default;
+
+  /// Copies some pages more, of 4 KiB each. @return whether the copy is whole and in its place.
+  virtual Result<bool> step(int pages) = 0;
+};
+
 class Store {
  public:
   virtual ~Store() = default;
@@ -144,8 +180,19 @@ class Store {
   virtual Result<std::uint32_t> meter_number(const std::string& id,
                                              std::chrono::seconds interval) = 0;
 
+  /// The number of a meter that is stored already; works on a store opened to read.
+  virtual Result<std::optional<std::uint32_t>> find_meter(const std::string& id) = 0;
+
   /// All of it or nothing. Intervals are placed by `metering::place`; meters are store numbers.
   virtual Result<CommitCounts> commit(const StoreBatch& batch) = 0;
+
+  /// @param make_room  Asked when a commit is refused, as by a full disk; true: room was made, and
+  ///                   the commit is tried once more.
+  virtual void on_refusal(std::function<bool()> make_room) = 0;
+
+  /// All that `work` writes is one commit; what fails leaves no trace of it.
+  /// @return what `work` returned, or why it could not be committed.
+  virtual Result<void> as_one(const std::function<Result<void>()>& work) = 0;
 
   /// The latest revision of each interval that starts in the span, in order of time.
   virtual Result<void> for_each_interval(
@@ -157,6 +204,24 @@ class Store {
 
   virtual Result<std::vector<RegisterState>> registers(std::uint32_t meter) = 0;
 
+  /// Samples of one field that have been kept, in order of time.
+  virtual Result<void> for_each_sample(
+      std::uint32_t meter, const std::string& field,
+      const std::function<void(const metering::RegisterSample&)>& visit) = 0;
+
+  /// Deletes samples from before `keep_from`, a bounded number at a time.
+  /// @return how many; fewer than `rows_max` when none are left.
+  virtual Result<int> delete_samples(metering::Instant keep_from, int rows_max) = 0;
+
+  /// An edit, which intervals then name. @return its number, or invalid_value without a reason.
+  virtual Result<std::int64_t> add_edit(const StoreEdit& edit) = 0;
+
+  /// Forgets an edit that no interval names.
+  virtual Result<void> remove_edit(std::int64_t number) = 0;
+
+  /// The UTC days, as their midnights, with intervals that an edit put there, in any revision.
+  virtual Result<std::set<metering::Instant>> edited_days(std::uint32_t meter) = 0;
+
   /// Months that were closed and have changed since, until they are put again.
   virtual Result<std::vector<MeterMonth>> reopened() = 0;
 
@@ -165,7 +230,7 @@ class Store {
                                 const std::string& time_zone_release, metering::Instant now) = 0;
 
   /// The latest revision of each month, ascending.
-  virtual Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) = 0;
+  virtual Result<std::vector<StoredMonth>> months(std::uint32_t meter) = 0;
 
   /// The rules that the meter's months were closed by; empty: it has none yet.
   virtual Result<std::string> closing_rules(std::uint32_t meter) = 0;
@@ -201,6 +266,13 @@ class Store {
 
   /// By output, month and revision.
   virtual Result<std::vector<StoredForecast>> forecasts() = 0;
+
+  /// Reads all of it: damage; rows that refer to nothing, revisions with gaps, intervals off their
+  /// meter's grid, no more than 20 sentences of a kind.
+  virtual Result<StoreCheck> check() = 0;
+
+  /// Begins a copy, which takes the place of `file` when it is whole. The store outlives it.
+  virtual Result<std::unique_ptr<StoreBackup>> begin_backup(const std::filesystem::path& file) = 0;
 };
 
 }  // namespace recald

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "adapters/ports/store.hpp"
 #include "adapters/sqlite/database.hpp"
 
 namespace recald::sqlite {
@@ -11,18 +12,17 @@ namespace recald::sqlite {
 /// Grows beside its target as "….part" and takes the target's place when it is whole; given up
 /// before, it leaves nothing. What the connection writes meanwhile goes into the copy too, so
 /// nothing waits for it.
-class Backup {
+class Backup final : public StoreBackup {
  public:
   /// @param database  Must outlive the backup.
   /// @return io_failed when the file cannot be made.
   [[nodiscard]] static Result<Backup> begin(Database& database, const std::filesystem::path& file);
 
-  ~Backup();
+  ~Backup() override;
   Backup(Backup&&) noexcept;
   Backup& operator=(Backup&&) noexcept;
 
-  /// Copies some pages more, of 4 KiB each. @return whether the copy is whole and in its place.
-  [[nodiscard]] Result<bool> step(int pages);
+  [[nodiscard]] Result<bool> step(int pages) override;
 
  private:
   struct Impl;

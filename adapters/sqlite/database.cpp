@@ -6,7 +6,6 @@
 #include <cassert>
 #include <utility>
 
-#include "adapters/sqlite/backup.hpp"
 #include "adapters/sqlite/handles.hpp"
 #include "core/absent.hpp"
 
@@ -14,7 +13,6 @@ namespace recald::sqlite {
 namespace {
 
 constexpr int kBusyTimeout_ms = 5000;
-constexpr int kBackupPages = 256;
 
 }  // namespace
 
@@ -176,16 +174,6 @@ void Database::roll_back(bool is_part) {
   // Some failures (a full disk) have rolled back already; then there is nothing left to do.
   if (sqlite3_get_autocommit(impl_->handle.get()) != 0) return;
   (void)execute(is_part ? "ROLLBACK TO part; RELEASE part" : "ROLLBACK");
-}
-
-Result<void> Database::back_up_to(const std::filesystem::path& file) {
-  auto backup = Backup::begin(*this, file);
-  if (!backup) return tl::unexpected(backup.error());
-  for (;;) {
-    const auto done = backup->step(kBackupPages);
-    if (!done) return tl::unexpected(done.error());
-    if (*done) return {};
-  }
 }
 
 Result<std::string> Database::quick_check() {

@@ -94,10 +94,6 @@ class Database {
     return result;
   }
 
-  /// A consistent copy. An existing file is replaced when the copy is whole. `Backup` makes one a
-  /// portion at a time.
-  [[nodiscard]] Result<void> back_up_to(const std::filesystem::path& file);
-
   /// What is damaged, in SQLite's words; empty when nothing is.
   [[nodiscard]] Result<std::string> quick_check();
 

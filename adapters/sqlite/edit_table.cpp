@@ -4,7 +4,7 @@
 
 namespace recald::sqlite {
 
-Result<std::int64_t> insert_edit(Database& database, const StoredEdit& edit) {
+Result<std::int64_t> insert_edit(Database& database, const StoreEdit& edit) {
   auto insert = database.prepare("INSERT INTO edit VALUES (NULL, ?, ?, ?, ?, ?) RETURNING number");
   if (!insert) return tl::unexpected(insert.error());
   insert->bind(0, seconds_of(edit.time))
@@ -19,17 +19,23 @@ Result<std::int64_t> insert_edit(Database& database, const StoredEdit& edit) {
   return number;
 }
 
-Result<std::vector<StoredEdit>> stored_edits(Database& database) {
-  auto query =
-      database.prepare("SELECT number, t, author, reason, file, sha256 FROM edit ORDER BY number");
+Result<void> delete_edit(Database& database, std::int64_t number) {
+  auto remove = database.prepare("DELETE FROM edit WHERE number = ?");
+  if (!remove) return tl::unexpected(remove.error());
+  return remove->bind(0, number).run();
+}
+
+Result<std::set<metering::Instant>> edited_days(Database& database, std::uint32_t meter) {
+  auto query = database.prepare(
+      "SELECT DISTINCT t_start / 86400 FROM interval WHERE meter = ? AND edit IS NOT NULL");
   if (!query) return tl::unexpected(query.error());
-  std::vector<StoredEdit> edits;
+  query->bind(0, std::int64_t{meter});
+  std::set<metering::Instant> days;
   for (;;) {
     const auto row = query->step();
     if (!row) return tl::unexpected(row.error());
-    if (!*row) return edits;
-    edits.push_back({query->integer(0), instant_of(query->integer(1)), query->text(2),
-                     query->text(3), query->text(4), query->text(5)});
+    if (!*row) return days;
+    days.insert(metering::Instant{std::chrono::days{query->integer(0)}});
   }
 }
 

@@ -3,27 +3,20 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
+#include <set>
 
+#include "adapters/ports/store.hpp"
 #include "adapters/sqlite/database.hpp"
-#include "core/metering/civil_time.hpp"
 
 namespace recald::sqlite {
 
-struct StoredEdit {
-  std::int64_t number = 0;  ///< Given by the store; 1, 2, 3 …
-  metering::Instant time;
-  std::string author;
-  std::string reason;
-  std::string file;    ///< Its name, without the folder.
-  std::string sha256;  ///< Of the file's bytes.
-};
-
 /// The edit's number is given by the table and returned. @return invalid_value without a reason.
-[[nodiscard]] Result<std::int64_t> insert_edit(Database& database, const StoredEdit& edit);
+[[nodiscard]] Result<std::int64_t> insert_edit(Database& database, const StoreEdit& edit);
 
-/// The oldest first.
-[[nodiscard]] Result<std::vector<StoredEdit>> stored_edits(Database& database);
+[[nodiscard]] Result<void> delete_edit(Database& database, std::int64_t number);
+
+/// As Store::edited_days.
+[[nodiscard]] Result<std::set<metering::Instant>> edited_days(Database& database,
+                                                              std::uint32_t meter);
 
 }  // namespace recald::sqlite

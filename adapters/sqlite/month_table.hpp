@@ -9,12 +9,6 @@
 
 namespace recald::sqlite {
 
-struct StoredMonth {
-  metering::MonthlyFigure figure;
-  metering::Instant closed_at;
-  std::string time_zone_release;  ///< With which it was closed.
-};
-
 /// As revision 0 or one more than the last; what was reopened is settled. @return the revision.
 [[nodiscard]] Result<int> insert_month(Database& database, std::uint32_t meter,
                                        const StoredMonth& month);

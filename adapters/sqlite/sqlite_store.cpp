@@ -5,11 +5,15 @@
 #include <cassert>
 #include <utility>
 
+#include "adapters/sqlite/backup.hpp"
+#include "adapters/sqlite/edit_table.hpp"
 #include "adapters/sqlite/forecast_table.hpp"
 #include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/job_table.hpp"
 #include "adapters/sqlite/month_table.hpp"
 #include "adapters/sqlite/register_json.hpp"
+#include "adapters/sqlite/row_checks.hpp"
+#include "adapters/sqlite/sample_table.hpp"
 #include "adapters/sqlite/schema.hpp"
 
 namespace recald::sqlite {
@@ -82,6 +86,10 @@ Result<CommitCounts> SqliteStore::commit(const StoreBatch& batch) {
   return counts;
 }
 
+Result<void> SqliteStore::as_one(const std::function<Result<void>()>& work) {
+  return database_.transaction(work);
+}
+
 Result<void> SqliteStore::for_each_interval(
     std::uint32_t meter, const metering::TimeSpan& span,
     const std::function<void(const StoredInterval&)>& visit) {
@@ -132,6 +140,28 @@ Result<std::vector<RegisterState>> SqliteStore::registers(std::uint32_t meter) {
   }
 }
 
+Result<void> SqliteStore::for_each_sample(
+    std::uint32_t meter, const std::string& field,
+    const std::function<void(const metering::RegisterSample&)>& visit) {
+  return sqlite::for_each_sample(database_, meter, field, visit);
+}
+
+Result<int> SqliteStore::delete_samples(Instant keep_from, int rows_max) {
+  return delete_old_samples(database_, keep_from, rows_max);
+}
+
+Result<std::int64_t> SqliteStore::add_edit(const StoreEdit& edit) {
+  return insert_edit(database_, edit);
+}
+
+Result<void> SqliteStore::remove_edit(std::int64_t number) {
+  return delete_edit(database_, number);
+}
+
+Result<std::set<Instant>> SqliteStore::edited_days(std::uint32_t meter) {
+  return sqlite::edited_days(database_, meter);
+}
+
 Result<std::vector<MeterMonth>> SqliteStore::reopened() { return reopened_months(database_); }
 
 Result<int> SqliteStore::put_month(std::uint32_t meter, const MonthlyFigure& figure,
@@ -139,12 +169,8 @@ Result<int> SqliteStore::put_month(std::uint32_t meter, const MonthlyFigure& fig
   return insert_month(database_, meter, {figure, now, time_zone_release});
 }
 
-Result<std::vector<MonthlyFigure>> SqliteStore::months(std::uint32_t meter) {
-  auto stored = stored_months(database_, meter);
-  if (!stored) return tl::unexpected(stored.error());
-  std::vector<MonthlyFigure> figures;
-  for (StoredMonth& month : *stored) figures.push_back(std::move(month.figure));
-  return figures;
+Result<std::vector<StoredMonth>> SqliteStore::months(std::uint32_t meter) {
+  return stored_months(database_, meter);
 }
 
 Result<std::string> SqliteStore::closing_rules(std::uint32_t meter) {
@@ -197,5 +223,22 @@ Result<void> SqliteStore::add_forecasts(std::span<const StoredForecast> forecast
 }
 
 Result<std::vector<StoredForecast>> SqliteStore::forecasts() { return stored_forecasts(database_); }
+
+Result<StoreCheck> SqliteStore::check() {
+  auto damage = database_.quick_check();
+  if (!damage) return tl::unexpected(damage.error());
+  if (!damage->empty()) return StoreCheck{.damage = std::move(*damage)};
+  auto problems = row_problems(database_);
+  if (!problems) return tl::unexpected(problems.error());
+  const auto intervals = count_intervals(database_);
+  if (!intervals) return tl::unexpected(intervals.error());
+  return StoreCheck{.problems = std::move(*problems), .intervals = *intervals};
+}
+
+Result<std::unique_ptr<StoreBackup>> SqliteStore::begin_backup(const std::filesystem::path& file) {
+  auto backup = Backup::begin(database_, file);
+  if (!backup) return tl::unexpected(backup.error());
+  return std::make_unique<Backup>(std::move(*backup));
+}
 
 }  // namespace recald::sqlite

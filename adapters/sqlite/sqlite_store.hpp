@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "adapters/ports/store.hpp"
@@ -21,15 +22,25 @@ class SqliteStore final : public Store {
                                                 const Database::Options& options = {});
 
   Result<std::uint32_t> meter_number(const std::string& id, std::chrono::seconds interval) override;
+  Result<std::optional<std::uint32_t>> find_meter(const std::string& id) override;
   Result<CommitCounts> commit(const StoreBatch& batch) override;
+  void on_refusal(std::function<bool()> make_room) override { make_room_ = std::move(make_room); }
+  Result<void> as_one(const std::function<Result<void>()>& work) override;
   Result<void> for_each_interval(std::uint32_t meter, const metering::TimeSpan& span,
                                  const std::function<void(const StoredInterval&)>& visit) override;
   Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) override;
   Result<std::vector<RegisterState>> registers(std::uint32_t meter) override;
+  Result<void> for_each_sample(
+      std::uint32_t meter, const std::string& field,
+      const std::function<void(const metering::RegisterSample&)>& visit) override;
+  Result<int> delete_samples(metering::Instant keep_from, int rows_max) override;
+  Result<std::int64_t> add_edit(const StoreEdit& edit) override;
+  Result<void> remove_edit(std::int64_t number) override;
+  Result<std::set<metering::Instant>> edited_days(std::uint32_t meter) override;
   Result<std::vector<MeterMonth>> reopened() override;
   Result<int> put_month(std::uint32_t meter, const metering::MonthlyFigure& figure,
                         const std::string& time_zone_release, metering::Instant now) override;
-  Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) override;
+  Result<std::vector<StoredMonth>> months(std::uint32_t meter) override;
   Result<std::string> closing_rules(std::uint32_t meter) override;
   Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) override;
   Result<std::vector<StoreEvent>> events(int limit) override;
@@ -41,13 +52,8 @@ class SqliteStore final : public Store {
   Result<std::vector<StoredJob>> unfinished_jobs() override;
   Result<void> add_forecasts(std::span<const StoredForecast> forecasts) override;
   Result<std::vector<StoredForecast>> forecasts() override;
-
-  /// The number of a meter that is stored already; works on a store opened to read.
-  [[nodiscard]] Result<std::optional<std::uint32_t>> find_meter(const std::string& id);
-
-  /// @param make_room  Asked when a commit is refused, as by a full disk; true: room was made, and
-  ///                   the commit is tried once more.
-  void on_refusal(std::function<bool()> make_room) { make_room_ = std::move(make_room); }
+  Result<StoreCheck> check() override;
+  Result<std::unique_ptr<StoreBackup>> begin_backup(const std::filesystem::path& file) override;
 
   [[nodiscard]] Database& database() { return database_; }
 

@@ -47,13 +47,14 @@ int run_export(const ExportArguments& arguments, const Console& console) {
   if (!span) return console.misused(span.error().message);
   auto store = open_to_read(site->config);
   if (!store) return console.fail(store.error());
-  const auto meters = stored_meters(*store, site->config);
+  const auto meters = stored_meters(**store, site->config);
   if (!meters) return console.fail(meters.error());
 
   std::ostringstream text;  // a file is written whole or not at all
   std::ostream& out = arguments.out.empty() ? console.out : text;
-  const auto written = arguments.months ? export_months(*store, site->calendar, *meters, *span, out)
-                                        : export_readings(*store, *meters, *span, out);
+  const auto written = arguments.months
+                           ? export_months(**store, site->calendar, *meters, *span, out)
+                           : export_readings(**store, *meters, *span, out);
   if (!written) return console.fail(written.error());
   if (arguments.out.empty()) return kSuccess;
   if (auto saved = system::write_file(arguments.out, text.str()); !saved) {

@@ -15,7 +15,7 @@ int run_verify(const SiteArguments& arguments, const Console& console) {
   if (!site) return console.fail(site.error());
   auto store = open_to_read(site->config);
   if (!store) return console.fail(store.error());
-  const auto verified = verify_store(*store, site->config, site->calendar);
+  const auto verified = verify_store(**store, site->config, site->calendar);
   if (!verified) return console.fail(verified.error());
   if (arguments.json) {
     const nlohmann::ordered_json json{{"sound", verified->problems.empty()},

@@ -1,6 +1,8 @@
 /// A store that refuses when a test says so, in front of a real one.
 #pragma once
 
+#include <utility>
+
 #include "adapters/ports/store.hpp"
 
 namespace recald::testing {
@@ -19,12 +21,23 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.meter_number(id, interval);
   }
+  Result<std::optional<std::uint32_t>> find_meter(const std::string& id) override {
+    if (refuses) return refusal();
+    return behind_.find_meter(id);
+  }
   Result<CommitCounts> commit(const StoreBatch& batch) override {
     if (refuses) return refusal();
     if (before_commit) before_commit(batch);
     auto counts = behind_.commit(batch);
     if (counts && after_commit) after_commit(batch);
     return counts;
+  }
+  void on_refusal(std::function<bool()> make_room) override {
+    behind_.on_refusal(std::move(make_room));
+  }
+  Result<void> as_one(const std::function<Result<void>()>& work) override {
+    if (refuses) return refusal();
+    return behind_.as_one(work);
   }
   Result<void> for_each_interval(std::uint32_t meter, const metering::TimeSpan& span,
                                  const std::function<void(const StoredInterval&)>& visit) override {
@@ -47,6 +60,28 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.registers(meter);
   }
+  Result<void> for_each_sample(
+      std::uint32_t meter, const std::string& field,
+      const std::function<void(const metering::RegisterSample&)>& visit) override {
+    if (refuses) return refusal();
+    return behind_.for_each_sample(meter, field, visit);
+  }
+  Result<int> delete_samples(metering::Instant keep_from, int rows_max) override {
+    if (refuses) return refusal();
+    return behind_.delete_samples(keep_from, rows_max);
+  }
+  Result<std::int64_t> add_edit(const StoreEdit& edit) override {
+    if (refuses) return refusal();
+    return behind_.add_edit(edit);
+  }
+  Result<void> remove_edit(std::int64_t number) override {
+    if (refuses) return refusal();
+    return behind_.remove_edit(number);
+  }
+  Result<std::set<metering::Instant>> edited_days(std::uint32_t meter) override {
+    if (refuses) return refusal();
+    return behind_.edited_days(meter);
+  }
   Result<std::vector<MeterMonth>> reopened() override {
     if (refuses) return refusal();
     return behind_.reopened();
@@ -56,7 +91,7 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.put_month(meter, figure, time_zone_release, now);
   }
-  Result<std::vector<metering::MonthlyFigure>> months(std::uint32_t meter) override {
+  Result<std::vector<StoredMonth>> months(std::uint32_t meter) override {
     if (refuses) return refusal();
     return behind_.months(meter);
   }
@@ -95,6 +130,14 @@ class FailingStore final : public Store {
   Result<std::vector<StoredForecast>> forecasts() override {
     if (refuses) return refusal();
     return behind_.forecasts();
+  }
+  Result<StoreCheck> check() override {
+    if (refuses) return refusal();
+    return behind_.check();
+  }
+  Result<std::unique_ptr<StoreBackup>> begin_backup(const std::filesystem::path& file) override {
+    if (refuses) return refusal();
+    return behind_.begin_backup(file);
   }
 
  private:

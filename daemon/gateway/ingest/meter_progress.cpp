@@ -29,7 +29,9 @@ Result<MeterProgress> MeterProgress::open(
   }
   const auto months = store.months(*number);
   if (!months) return tl::unexpected(months.error());
-  if (!months->empty()) progress.closed_until = calendar.month_span(months->back().month).end;
+  if (!months->empty()) {
+    progress.closed_until = calendar.month_span(months->back().figure.month).end;
+  }
   return progress;
 }
 

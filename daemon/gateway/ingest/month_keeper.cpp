@@ -83,8 +83,8 @@ Result<std::vector<Month>> MonthKeeper::due(const StoredMeter& meter,
   for (Month month = calendar_.month_of((*extent)->begin);
        calendar_.month_span(month).end + options_.watermark <= now;
        month = metering::next_month(month)) {
-    const bool is_closed =
-        std::ranges::find(*closed, month, &MonthlyFigure::month) != closed->end();
+    const bool is_closed = std::ranges::any_of(
+        *closed, [&](const StoredMonth& one) { return one.figure.month == month; });
     const bool is_reopened =
         std::ranges::find(reopened, MeterMonth{meter.number, month}) != reopened.end();
     if (!is_closed || is_reopened) months.push_back(month);

@@ -25,7 +25,7 @@ Result<std::optional<metering::Month>> last_common_month(Store& store, const Sit
     const auto months = store.months(*number);
     if (!months) return tl::unexpected(months.error());
     if (months->empty()) return std::nullopt;
-    const metering::Month last = months->back().month;
+    const metering::Month last = months->back().figure.month;
     common = common ? std::min(*common, last) : last;
   }
   return common;

@@ -81,23 +81,23 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
 /// ends before it.
 class Service {
  public:
-  Service(OpenSite site, const ServiceOptions& options, sqlite::SqliteStore store)
+  Service(OpenSite site, const ServiceOptions& options, std::unique_ptr<Store> store)
       : site_(std::move(site)),
         store_(std::move(store)),
         loop_(context_, options.trial),
         worker_(loop_),
         options_(options),
-        jobs_({loop_, store_, worker_}, make_site_work(site_),
+        jobs_({loop_, *store_, worker_}, make_site_work(site_),
               [](const StoredJob& job) { log_job(job); }),
-        upkeep_(store_, site_.config.store, site_.calendar),
-        watchdog_(loop_, [this] { return store_.events(1).has_value(); }) {}
+        upkeep_(*store_, site_.config.store, site_.calendar),
+        watchdog_(loop_, [this] { return store_->events(1).has_value(); }) {}
 
   Result<void> open() {
     signals_.add(SIGUSR1);
     auto gateway =
         Gateway::open(site_.config, site_.calendar,
                       {.loop = loop_,
-                       .store = store_,
+                       .store = *store_,
                        .make_bus =
                            [this](const BusConfig& bus) {
                              return std::make_unique<modbus::BusThread>(bus.endpoint, loop_);
@@ -120,7 +120,7 @@ class Service {
                  site_.config.store.file.string());
     if (auto resumed = jobs_.resume(); !resumed) return resumed;
     schedule();
-    if (auto asked = recalibration_->catch_up(store_, site_.config); !asked) return asked;
+    if (auto asked = recalibration_->catch_up(*store_, site_.config); !asked) return asked;
     gateway_->start();
     keep_up();
     loop_.post([this] { watchdog_.ready(); });
@@ -150,7 +150,7 @@ class Service {
     const Served served{
         .site = site_.config,
         .calendar = site_.calendar,
-        .store = store_,
+        .store = *store_,
         .status = [this] { return gateway_->status(); },
         .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
         .now = [this] { return loop_.now().instant(); },
@@ -232,7 +232,7 @@ class Service {
     jobs_.set_work(make_site_work(site_));
     schedule();
     // A month that closed within the last minute was to be asked for by the old schedule.
-    if (const auto asked = recalibration_->catch_up(store_, site_.config); !asked) {
+    if (const auto asked = recalibration_->catch_up(*store_, site_.config); !asked) {
       spdlog::warn("event=not_caught_up why=\"{}\"", asked.error().message);
     }
     return {};
@@ -267,7 +267,7 @@ class Service {
   }
 
   OpenSite site_;
-  sqlite::SqliteStore store_;
+  std::unique_ptr<Store> store_;
   boost::asio::io_context context_{1};
   boost::asio::signal_set signals_{context_, SIGINT, SIGTERM, SIGHUP};
   asio::AsioLoop loop_;
@@ -293,8 +293,8 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
       open_store(site.config.store,
                  std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
   if (!opened_store) return tl::unexpected(opened_store.error());
-  if (const auto& recovery = opened_store->recovery) {
-    spdlog::error("event=store_recovered what=\"{}\"", recovery->sentence());
+  if (const std::string& recovery = opened_store->recovery; !recovery.empty()) {
+    spdlog::error("event=store_recovered what=\"{}\"", recovery);
   }
   Service service{std::move(site), options, std::move(opened_store->store)};
   if (auto opened = service.open(); !opened) return opened;

@@ -73,9 +73,10 @@ http::Response get_months(const Served& served, const http::Request& request) {
     if (!meter.is_stored() || (query->meter != nullptr && query->meter != &meter)) continue;
     const auto number = served.store.meter_number(meter.meter.id, meter.meter.interval);
     if (!number) return refusal(number.error()).value();
-    const auto figures = served.store.months(*number);
-    if (!figures) return refusal(figures.error()).value();
-    for (const metering::MonthlyFigure& figure : *figures) {
+    const auto stored = served.store.months(*number);
+    if (!stored) return refusal(stored.error()).value();
+    for (const StoredMonth& one : *stored) {
+      const metering::MonthlyFigure& figure = one.figure;
       if (query->from && figure.month < *query->from) continue;
       if (query->to && figure.month >= *query->to) continue;
       if (m == query->first_meter && query->first_month && figure.month < *query->first_month) {

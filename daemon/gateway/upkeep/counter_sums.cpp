@@ -6,8 +6,6 @@
 #include <map>
 #include <optional>
 
-#include "adapters/sqlite/sample_table.hpp"
-
 namespace recald::daemon {
 namespace {
 
@@ -23,40 +21,23 @@ constexpr Reason kBroken =
     Reason::rollover | Reason::wrap | Reason::reset | Reason::jump | Reason::bounce | Reason::clock;
 
 /// The register at each UTC midnight that lies between two samples.
-Result<std::map<Instant, double>> midnights(sqlite::SqliteStore& store, std::uint32_t meter) {
+Result<std::map<Instant, double>> midnights(Store& store, std::uint32_t meter) {
   std::map<Instant, double> register_kWh;
   std::optional<RegisterSample> before;
-  const auto read =
-      sqlite::for_each_sample(store.database(), meter, "energy", [&](const RegisterSample& sample) {
-        const Instant midnight = std::chrono::floor<std::chrono::days>(sample.time);
-        if (sample.time == midnight) {
-          register_kWh[midnight] = sample.value_kWh;
-        } else if (before && before->time < midnight &&
-                   sample.time - before->time <= kSamplesApartMax) {
-          const double share =
-              std::chrono::duration<double>(midnight - before->time) / (sample.time - before->time);
-          register_kWh[midnight] =
-              before->value_kWh + share * (sample.value_kWh - before->value_kWh);
-        }
-        before = sample;
-      });
+  const auto read = store.for_each_sample(meter, "energy", [&](const RegisterSample& sample) {
+    const Instant midnight = std::chrono::floor<std::chrono::days>(sample.time);
+    if (sample.time == midnight) {
+      register_kWh[midnight] = sample.value_kWh;
+    } else if (before && before->time < midnight &&
+               sample.time - before->time <= kSamplesApartMax) {
+      const double share =
+          std::chrono::duration<double>(midnight - before->time) / (sample.time - before->time);
+      register_kWh[midnight] = before->value_kWh + share * (sample.value_kWh - before->value_kWh);
+    }
+    before = sample;
+  });
   if (!read) return tl::unexpected(read.error());
   return register_kWh;
-}
-
-/// Days with intervals that a person put in.
-Result<std::map<Instant, bool>> edited_days(sqlite::SqliteStore& store, std::uint32_t meter) {
-  auto query = store.database().prepare(
-      "SELECT DISTINCT t_start / 86400 FROM interval WHERE meter = ? AND edit IS NOT NULL");
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, std::int64_t{meter});
-  std::map<Instant, bool> days;
-  for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return days;
-    days[Instant{std::chrono::days{query->integer(0)}}] = true;
-  }
 }
 
 struct DaySum {
@@ -65,7 +46,7 @@ struct DaySum {
 };
 
 /// Sums of the days whose intervals all came from one line of the register.
-Result<std::map<Instant, DaySum>> day_sums(sqlite::SqliteStore& store, const StoredMeter& meter) {
+Result<std::map<Instant, DaySum>> day_sums(Store& store, const StoredMeter& meter) {
   std::map<Instant, DaySum> sums;
   const auto read = store.for_each_interval(
       meter.number, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
@@ -85,8 +66,7 @@ Result<std::map<Instant, DaySum>> day_sums(sqlite::SqliteStore& store, const Sto
 
 }  // namespace
 
-Result<CounterComparison> compare_with_counter(sqlite::SqliteStore& store,
-                                               const StoredMeter& meter) {
+Result<CounterComparison> compare_with_counter(Store& store, const StoredMeter& meter) {
   CounterComparison comparison;
   const auto states = store.registers(meter.number);
   if (!states) return tl::unexpected(states.error());
@@ -94,7 +74,7 @@ Result<CounterComparison> compare_with_counter(sqlite::SqliteStore& store,
   const double resolution_kWh = states->front().settings.resolution_kWh;
   const auto register_kWh = midnights(store, meter.number);
   if (!register_kWh) return tl::unexpected(register_kWh.error());
-  const auto edited = edited_days(store, meter.number);
+  const auto edited = store.edited_days(meter.number);
   if (!edited) return tl::unexpected(edited.error());
   const auto sums = day_sums(store, meter);
   if (!sums) return tl::unexpected(sums.error());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/ports/store.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 
 namespace recald::daemon {
@@ -18,7 +18,7 @@ struct CounterComparison {
 /// Compares the sum of each UTC day's intervals with the difference of the register's samples. The
 /// register at midnight lies between the samples around it, five minutes apart at most; days in
 /// which the register was reset, or that a person edited, are left out.
-[[nodiscard]] Result<CounterComparison> compare_with_counter(sqlite::SqliteStore& store,
+[[nodiscard]] Result<CounterComparison> compare_with_counter(Store& store,
                                                              const StoredMeter& meter);
 
 }  // namespace recald::daemon

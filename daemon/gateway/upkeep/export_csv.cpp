@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "adapters/sqlite/month_table.hpp"
-
 namespace recald::daemon {
 namespace {
 
@@ -18,7 +16,7 @@ std::string reading_line(const std::string& meter, const metering::Reading& read
                      reading.late ? 1 : 0, metering::to_string(reading.reasons));
 }
 
-std::string month_line(const std::string& meter, const sqlite::StoredMonth& month) {
+std::string month_line(const std::string& meter, const StoredMonth& month) {
   const metering::MonthlyFigure& figure = month.figure;
   return fmt::format("{},{},{},kWh/day,{},{},{},{},block-{}s,{},{}\n",
                      metering::to_string(figure.month), meter, number(figure.daily_average_kWh),
@@ -30,7 +28,7 @@ std::string month_line(const std::string& meter, const sqlite::StoredMonth& mont
 
 }  // namespace
 
-Result<void> export_readings(sqlite::SqliteStore& store, std::span<const StoredMeter> meters,
+Result<void> export_readings(Store& store, std::span<const StoredMeter> meters,
                              const metering::TimeSpan& span, std::ostream& out) {
   out << "timestamp,meter,value,unit,validity,late,reasons\n";
   for (const StoredMeter& meter : meters) {
@@ -43,14 +41,14 @@ Result<void> export_readings(sqlite::SqliteStore& store, std::span<const StoredM
   return {};
 }
 
-Result<void> export_months(sqlite::SqliteStore& store, const metering::LocalCalendar& calendar,
+Result<void> export_months(Store& store, const metering::LocalCalendar& calendar,
                            std::span<const StoredMeter> meters, const metering::TimeSpan& span,
                            std::ostream& out) {
   out << "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,revision,tzdata\n";
   for (const StoredMeter& meter : meters) {
-    const auto months = sqlite::stored_months(store.database(), meter.number);
+    const auto months = store.months(meter.number);
     if (!months) return tl::unexpected(months.error());
-    for (const sqlite::StoredMonth& month : *months) {
+    for (const StoredMonth& month : *months) {
       if (!span.contains(calendar.month_span(month.figure.month).begin)) continue;
       out << month_line(meter.meter.id, month);
     }

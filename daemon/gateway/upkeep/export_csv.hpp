@@ -4,21 +4,19 @@
 #include <ostream>
 #include <span>
 
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/ports/store.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 
 namespace recald::daemon {
 
 /// `timestamp,meter,value,unit,validity,late,reasons`: what holds of each interval that starts in
 /// the span, meter by meter. Values are mean kW to the last bit, so an import gives the same.
-[[nodiscard]] Result<void> export_readings(sqlite::SqliteStore& store,
-                                           std::span<const StoredMeter> meters,
+[[nodiscard]] Result<void> export_readings(Store& store, std::span<const StoredMeter> meters,
                                            const metering::TimeSpan& span, std::ostream& out);
 
 /// `month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,revision,tzdata`: the
 /// latest figure of each closed month that begins in the span; value is the daily average.
-[[nodiscard]] Result<void> export_months(sqlite::SqliteStore& store,
-                                         const metering::LocalCalendar& calendar,
+[[nodiscard]] Result<void> export_months(Store& store, const metering::LocalCalendar& calendar,
                                          std::span<const StoredMeter> meters,
                                          const metering::TimeSpan& span, std::ostream& out);
 

@@ -6,8 +6,6 @@
 #include <span>
 #include <utility>
 
-#include "adapters/sqlite/edit_table.hpp"
-#include "adapters/sqlite/month_table.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/time_zone_release.hpp"
 
@@ -22,8 +20,8 @@ constexpr std::size_t kBatchMax = 1000;
 /// One import, within a transaction.
 class Import {
  public:
-  Import(sqlite::SqliteStore& store, const SiteConfig& site,
-         const metering::LocalCalendar& calendar, const ImportOptions& options)
+  Import(Store& store, const SiteConfig& site, const metering::LocalCalendar& calendar,
+         const ImportOptions& options)
       : store_(store), site_(site), calendar_(calendar), options_(options) {}
 
   [[nodiscard]] Result<ImportOutcome> run(const std::filesystem::path& file,
@@ -36,7 +34,7 @@ class Import {
     if (!failed_) return tl::unexpected(failed_.error());
     outcome_.file = std::move(*report);
     if (outcome_.taken == 0) {
-      if (auto gone = forget_edit(); !gone) return tl::unexpected(gone.error());
+      if (auto gone = store_.remove_edit(edit_); !gone) return tl::unexpected(gone.error());
     }
     MonthKeeper keeper{store_, calendar_, site_.closing, system::time_zone_release()};
     std::vector<StoredMeter> stored;
@@ -60,11 +58,11 @@ class Import {
   Result<void> begin(const std::filesystem::path& file, metering::Instant now) {
     system::Sha256 hash;
     if (auto added = hash.add_file(file); !added) return added;
-    const auto edit = sqlite::insert_edit(store_.database(), {.time = now,
-                                                              .author = options_.author,
-                                                              .reason = options_.reason,
-                                                              .file = file.filename().string(),
-                                                              .sha256 = hash.hex()});
+    const auto edit = store_.add_edit({.time = now,
+                                       .author = options_.author,
+                                       .reason = options_.reason,
+                                       .file = file.filename().string(),
+                                       .sha256 = hash.hex()});
     if (!edit) return tl::unexpected(edit.error());
     edit_ = *edit;
     for (const MeterConfig& config : site_.meters) {
@@ -73,7 +71,7 @@ class Import {
       const auto months = store_.months(*number);
       if (!months) return tl::unexpected(months.error());
       MeterImport meter{.stored = {*number, config.meter}};
-      for (const metering::MonthlyFigure& figure : *months) meter.closed.insert(figure.month);
+      for (const StoredMonth& month : *months) meter.closed.insert(month.figure.month);
       meters_.push_back(std::move(meter));
     }
     return {};
@@ -148,13 +146,7 @@ class Import {
     if (const auto put = store_.commit(changes); !put) failed_ = tl::unexpected(put.error());
   }
 
-  Result<void> forget_edit() {
-    auto remove = store_.database().prepare("DELETE FROM edit WHERE number = ?");
-    if (!remove) return tl::unexpected(remove.error());
-    return remove->bind(0, edit_).run();
-  }
-
-  sqlite::SqliteStore& store_;
+  Store& store_;
   const SiteConfig& site_;
   const metering::LocalCalendar& calendar_;
   const ImportOptions& options_;
@@ -166,19 +158,20 @@ class Import {
 
 }  // namespace
 
-Result<ImportOutcome> import_readings(sqlite::SqliteStore& store, const SiteConfig& site,
+Result<ImportOutcome> import_readings(Store& store, const SiteConfig& site,
                                       const metering::LocalCalendar& calendar,
                                       const std::filesystem::path& file,
                                       const ImportOptions& options, metering::Instant now) {
-  std::optional<ImportOutcome> rehearsed;
-  auto outcome = store.database().transaction([&]() -> Result<ImportOutcome> {
+  std::optional<ImportOutcome> outcome;
+  const auto kept = store.as_one([&]() -> Result<void> {
     auto done = Import{store, site, calendar, options}.run(file, now);
-    if (!done || !options.dry_run) return done;
-    rehearsed = std::move(*done);
-    return failure(ErrorCode::cancelled, "a rehearsal is undone");
+    if (!done) return tl::unexpected(done.error());
+    outcome = std::move(*done);
+    if (options.dry_run) return failure(ErrorCode::cancelled, "a rehearsal is undone");
+    return {};
   });
-  if (rehearsed) return std::move(*rehearsed);
-  return outcome;
+  if (!kept && !(outcome && options.dry_run)) return tl::unexpected(kept.error());
+  return std::move(*outcome);
 }
 
 }  // namespace recald::daemon

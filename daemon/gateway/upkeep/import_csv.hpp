@@ -5,7 +5,7 @@
 #include <string>
 
 #include "adapters/csv/readings_csv.hpp"
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/ports/store.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -38,8 +38,10 @@ struct ImportOutcome {
 ///
 /// @pre  nobody else writes to the store.
 /// @return or as csv::read_readings, or the store's failure.
-[[nodiscard]] Result<ImportOutcome> import_readings(
-    sqlite::SqliteStore& store, const SiteConfig& site, const metering::LocalCalendar& calendar,
-    const std::filesystem::path& file, const ImportOptions& options, metering::Instant now);
+[[nodiscard]] Result<ImportOutcome> import_readings(Store& store, const SiteConfig& site,
+                                                    const metering::LocalCalendar& calendar,
+                                                    const std::filesystem::path& file,
+                                                    const ImportOptions& options,
+                                                    metering::Instant now);
 
 }  // namespace recald::daemon

@@ -4,11 +4,11 @@
 
 namespace recald::daemon {
 
-Result<sqlite::CheckedStore> open_store(const StoreConfig& config, metering::Instant now) {
-  auto opened = sqlite::open_checked(config.file, backups_of(config), now);
-  if (!opened || !opened->recovery) return opened;
-  const auto told = opened->store.commit(
-      {.events = {{now, Severity::error, "store_recovered", "", opened->recovery->sentence()}}});
+Result<stores::CheckedStore> open_store(const StoreConfig& config, metering::Instant now) {
+  auto opened = stores::open_checked(config.file, backups_of(config), now);
+  if (!opened || opened->recovery.empty()) return opened;
+  const auto told = opened->store->commit(
+      {.events = {{now, Severity::error, "store_recovered", "", opened->recovery}}});
   if (!told) return tl::unexpected(told.error());
   return opened;
 }

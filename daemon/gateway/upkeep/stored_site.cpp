@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "adapters/stores/open.hpp"
+
 namespace recald::daemon {
 
-Result<std::vector<StoredMeter>> stored_meters(sqlite::SqliteStore& store, const SiteConfig& site) {
+Result<std::vector<StoredMeter>> stored_meters(Store& store, const SiteConfig& site) {
   std::vector<StoredMeter> meters;
   for (const MeterConfig& config : site.meters) {
     const auto number = store.find_meter(config.meter.id);
@@ -20,14 +22,13 @@ Result<std::vector<StoredMeter>> stored_meters(sqlite::SqliteStore& store, const
   return meters;
 }
 
-Result<sqlite::SqliteStore> open_to_read(const SiteConfig& site) {
+Result<std::unique_ptr<Store>> open_to_read(const SiteConfig& site) {
   if (!std::filesystem::exists(site.store.file)) {
     return failure(ErrorCode::not_found,
                    fmt::format("there is no store '{}' yet; recald run or recald import make one",
                                site.store.file.string()));
   }
-  return sqlite::SqliteStore::open(site.store.file,
-                                   {.access = sqlite::Database::Access::read_only});
+  return stores::open_to_read(site.store.file);
 }
 
 }  // namespace recald::daemon

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "adapters/sqlite/sample_table.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 
@@ -17,7 +16,7 @@ constexpr milliseconds kRest = std::chrono::hours{1};
 
 }  // namespace
 
-Upkeep::Upkeep(sqlite::SqliteStore& store, StoreConfig config, metering::LocalCalendar calendar,
+Upkeep::Upkeep(Store& store, StoreConfig config, metering::LocalCalendar calendar,
                const UpkeepRules& rules)
     : store_(store),
       config_(std::move(config)),
@@ -79,15 +78,14 @@ Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
   if (auto made = system::make_folder(config_.backup_folder); !made) {
     return tl::unexpected(made.error());
   }
-  auto begun = sqlite::Backup::begin(store_.database(), file);
+  auto begun = store_.begin_backup(file);
   if (!begun) return tl::unexpected(begun.error());
   backup_ = std::move(*begun);
   return Progress::more;
 }
 
 Result<Upkeep::Progress> Upkeep::delete_samples(Instant now) {
-  const auto deleted =
-      sqlite::delete_old_samples(store_.database(), now - config_.raw_kept, rules_.samples_rows);
+  const auto deleted = store_.delete_samples(now - config_.raw_kept, rules_.samples_rows);
   if (!deleted) return tl::unexpected(deleted.error());
   samples_failure_.clear();
   return *deleted < rules_.samples_rows ? Progress::done : Progress::more;

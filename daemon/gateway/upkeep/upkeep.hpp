@@ -4,12 +4,10 @@
 
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
-#include "adapters/sqlite/backup.hpp"
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/ports/store.hpp"
 #include "adapters/system/reserved_space.hpp"
 #include "core/metering/civil_time.hpp"
 #include "daemon/site/config/store_config.hpp"
@@ -27,7 +25,7 @@ class Upkeep {
  public:
   /// From now on a commit that the disk refuses is tried again once the reserve is given up.
   /// @param store  Outlives the upkeep.
-  Upkeep(sqlite::SqliteStore& store, StoreConfig config, metering::LocalCalendar calendar,
+  Upkeep(Store& store, StoreConfig config, metering::LocalCalendar calendar,
          const UpkeepRules& rules = {});
 
   /// Does one portion of what is due; none takes longer than a commit. What fails becomes an event,
@@ -49,13 +47,13 @@ class Upkeep {
   void tell(metering::Instant now, std::string& known, const char* kind,
             const std::string& sentence);
 
-  sqlite::SqliteStore& store_;
+  Store& store_;
   StoreConfig config_;
   metering::LocalCalendar calendar_;
   UpkeepRules rules_;
   std::shared_ptr<system::ReservedSpace> reserve_;
-  std::optional<sqlite::Backup> backup_;  ///< Under way.
-  std::string reserve_failure_;           ///< The last one told.
+  std::unique_ptr<StoreBackup> backup_;  ///< Under way.
+  std::string reserve_failure_;          ///< The last one told.
   std::string backup_failure_;
   std::string samples_failure_;
 };

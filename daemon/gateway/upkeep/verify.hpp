@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/ports/store.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
@@ -19,14 +19,14 @@ struct Verification {
 
 /// Reads the whole store and changes nothing.
 ///
-/// - `quick_check`, rows that refer to nothing, intervals off their meter's grid;
+/// - damage, rows that refer to nothing, intervals off their meter's grid;
 /// - revisions of intervals and months without gaps;
 /// - states of registers that can be read;
 /// - the sum of a UTC day's intervals against the register's difference, within 2 r + 0.1 %, where
 ///   samples lie around both ends and nothing in between was reset, edited or wrapped;
 /// - closed months against what closing them again gives, with the same release of the time zones.
 /// @return or the store's failure to be read at all.
-[[nodiscard]] Result<Verification> verify_store(sqlite::SqliteStore& store, const SiteConfig& site,
+[[nodiscard]] Result<Verification> verify_store(Store& store, const SiteConfig& site,
                                                 const metering::LocalCalendar& calendar);
 
 }  // namespace recald::daemon

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/stores/open.hpp"
 #include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
 #include "core/metering/closing_rules.hpp"
@@ -36,7 +36,7 @@ void add_to(system::Sha256& digest, const metering::Reading& reading) {
 }  // namespace
 
 struct StoredReadings::Impl {
-  sqlite::SqliteStore store;
+  std::unique_ptr<Store> store;
   metering::ClosingOptions closing;
   system::Sha256 digest{};
 };
@@ -51,39 +51,41 @@ Result<std::unique_ptr<StoredReadings>> StoredReadings::open(const SiteConfig& s
                                "meters, `recald import` from files",
                                site.store.file.string(), site.file.filename().string()));
   }
-  auto store = sqlite::SqliteStore::open(
-      site.store.file, {.access = sqlite::Database::Access::read_only, .vfs = {}});
+  auto store = stores::open_to_read(site.store.file);
   if (!store) return tl::unexpected(store.error());
   return std::unique_ptr<StoredReadings>{
       new StoredReadings{std::unique_ptr<Impl>{new Impl{std::move(*store), site.closing.closing}}}};
 }
 
 Result<std::vector<metering::MonthlyFigure>> StoredReadings::months(const MeterConfig& meter) {
-  const auto number = impl_->store.find_meter(meter.meter.id);
+  const auto number = impl_->store->find_meter(meter.meter.id);
   if (!number) return tl::unexpected(number.error());
   if (!*number) return std::vector<metering::MonthlyFigure>{};
-  auto figures = impl_->store.months(**number);
-  if (!figures) return figures;
+  auto stored = impl_->store->months(**number);
+  if (!stored) return tl::unexpected(stored.error());
   impl_->digest.add(meter.meter.id);
-  for (const metering::MonthlyFigure& figure : *figures) {
+  std::vector<metering::MonthlyFigure> figures;
+  for (StoredMonth& month : *stored) {
+    const metering::MonthlyFigure& figure = month.figure;
     impl_->digest.add(fmt::format("{} {} {}", metering::to_string(figure.month), figure.revision,
                                   figure.daily_average_kWh));
+    figures.push_back(std::move(month.figure));
   }
   return figures;
 }
 
 Result<int> StoredReadings::waiting_months(const MeterConfig& meter) {
-  const auto number = impl_->store.find_meter(meter.meter.id);
+  const auto number = impl_->store->find_meter(meter.meter.id);
   if (!number) return tl::unexpected(number.error());
   if (!*number) return 0;
-  const auto rules = impl_->store.closing_rules(**number);
+  const auto rules = impl_->store->closing_rules(**number);
   if (!rules) return tl::unexpected(rules.error());
   if (*rules != metering::closing_rules(impl_->closing, meter.meter)) {
-    const auto all = impl_->store.months(**number);
+    const auto all = impl_->store->months(**number);
     if (!all) return tl::unexpected(all.error());
     return static_cast<int>(all->size());
   }
-  const auto reopened = impl_->store.reopened();
+  const auto reopened = impl_->store->reopened();
   if (!reopened) return tl::unexpected(reopened.error());
   return static_cast<int>(std::ranges::count(*reopened, **number, &MeterMonth::meter));
 }
@@ -91,13 +93,13 @@ Result<int> StoredReadings::waiting_months(const MeterConfig& meter) {
 Result<std::uint64_t> StoredReadings::for_each(const MeterConfig& meter,
                                                const metering::TimeSpan& span,
                                                const ReadingSink& sink) {
-  const auto number = impl_->store.find_meter(meter.meter.id);
+  const auto number = impl_->store->find_meter(meter.meter.id);
   if (!number) return tl::unexpected(number.error());
   if (!*number) return std::uint64_t{0};
   impl_->digest.add(meter.meter.id);
   std::uint64_t count = 0;
   const auto read =
-      impl_->store.for_each_interval(**number, span, [&](const StoredInterval& stored) {
+      impl_->store->for_each_interval(**number, span, [&](const StoredInterval& stored) {
         add_to(impl_->digest, stored.reading);
         sink(stored.reading);
         ++count;

@@ -14,7 +14,7 @@ namespace recald::daemon {
 class StoredReadings final : public LiveReadings {
  public:
   /// Opens the site's store to read from it.
-  /// @return not_found when there is none yet; or as SqliteStore::open.
+  /// @return not_found when there is none yet; or as stores::open_to_read.
   [[nodiscard]] static Result<std::unique_ptr<StoredReadings>> open(const SiteConfig& site);
   ~StoredReadings() override;
 

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include "adapters/sqlite/edit_table.hpp"
 #include "tests/support/damage.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -27,7 +26,7 @@ class RecoveryTest : public ::testing::Test {
     for (const char* id : {"main", "cooling"}) {
       const std::uint32_t meter = store.meter_number(id, kQuarter).value();
       StoreBatch batch;
-      batch.edit = insert_edit(store.database(), {.time = kStart, .reason = "began"}).value();
+      batch.edit = store.add_edit({.time = kStart, .reason = "began"}).value();
       for (int i = 0; i < kQuarters; ++i) {
         batch.intervals.push_back({{meter, kStart + i * kQuarter, 100.0 * meter + i}});
         batch.samples.push_back({meter, "energy", kStart + i * kQuarter, 25.0 * i});
@@ -48,6 +47,11 @@ class RecoveryTest : public ::testing::Test {
     auto opened = open_checked(file, backups, kNow);
     if (!opened) throw std::runtime_error(opened.error().message);
     return std::move(*opened);
+  }
+  void back_up_to(const std::filesystem::path& backup) const {
+    CheckedStore opened = open(file());
+    const auto whole = opened.store.begin_backup(backup).value()->step(10'000);
+    ASSERT_TRUE(whole.has_value() && *whole);
   }
   [[nodiscard]] static const RecoveredTable& table(const Recovery& recovery,
                                                    const std::string& name) {
@@ -95,7 +99,7 @@ TEST_F(RecoveryTest, APageOfReadingsCostsThatPage) {
   EXPECT_THAT(*opened.store.months(0), SizeIs(1));
   EXPECT_THAT(*opened.store.events(1000), SizeIs(60));
   EXPECT_TRUE(opened.store.job(1)->has_value());
-  EXPECT_THAT(*stored_edits(opened.store.database()), SizeIs(2));
+  EXPECT_EQ(table(recovery, "edit").from_damaged, 2);
   EXPECT_EQ(opened.store.database().quick_check().value(), "");
   EXPECT_THAT(recovery.sentence(), HasSubstr("it is kept as 'site.db.damaged-20240410T050000Z'"));
   EXPECT_THAT(recovery.sentence(), HasSubstr(" interval (not all),"));
@@ -105,7 +109,7 @@ TEST_F(RecoveryTest, APageOfReadingsCostsThatPage) {
 TEST_F(RecoveryTest, ABackupFillsTheHole) {
   const auto backup = folder_ / "backup.db";
   const auto bad_backup = folder_ / "bad.db";
-  ASSERT_TRUE(open(file()).store.database().back_up_to(backup).has_value());
+  back_up_to(backup);
   std::filesystem::copy(backup, bad_backup);
   recald::testing::damage_leaf(bad_backup, "interval", 2);
   recald::testing::damage_leaf(file(), "interval", 20);
@@ -129,7 +133,7 @@ TEST_F(RecoveryTest, WithoutItsMetersReadingsKeepTheirNumbers) {
 
 TEST_F(RecoveryTest, NothingReadableIsANewStoreAndABackupFillsIt) {
   const auto backup = folder_ / "backup.db";
-  ASSERT_TRUE(open(file()).store.database().back_up_to(backup).has_value());
+  back_up_to(backup);
   recald::testing::damage_page(file(), 1);
   CheckedStore opened = open(file(), {backup});
   ASSERT_TRUE(opened.recovery.has_value());

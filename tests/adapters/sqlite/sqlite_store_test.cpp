@@ -308,7 +308,7 @@ TEST_F(StoreFile, MonthsHaveRevisions) {
   const auto months = store_->months(main);
   ASSERT_TRUE(months.has_value());
   ASSERT_THAT(*months, SizeIs(3));
-  const metering::MonthlyFigure& march = months->at(0);
+  const metering::MonthlyFigure& march = months->at(0).figure;
   const metering::MonthlyFigure expected = figure(3, 101.0);
   EXPECT_EQ(march.month, expected.month);
   EXPECT_EQ(march.revision, 1);
@@ -324,10 +324,13 @@ TEST_F(StoreFile, MonthsHaveRevisions) {
   EXPECT_EQ(march.slots, 20);
   EXPECT_TRUE(march.usable);
   EXPECT_EQ(march.reasons, metering::Reason::stuck);
-  EXPECT_FALSE(months->at(2).usable);
-  EXPECT_EQ(months->at(2).unusable_because, "nothing was measured");
-  EXPECT_FALSE(months->at(2).peak.has_value());
-  EXPECT_TRUE(std::isnan(months->at(2).daily_average_kWh));
+  EXPECT_EQ(months->at(0).closed_at, kStart);
+  EXPECT_EQ(months->at(0).time_zone_release, "2025b");
+  const metering::MonthlyFigure& may = months->at(2).figure;
+  EXPECT_FALSE(may.usable);
+  EXPECT_EQ(may.unusable_because, "nothing was measured");
+  EXPECT_FALSE(may.peak.has_value());
+  EXPECT_TRUE(std::isnan(may.daily_average_kWh));
 }
 
 TEST_F(StoreFile, AReopenedMonthWaitsUntilItIsPutAgain) {
@@ -377,14 +380,15 @@ TEST_F(StoreFile, ABackupIsAStoreOfItsOwn) {
   const auto copy = folder_ / "backup.db";
   for (int day = 0; day < 2; ++day) {  // the second replaces the first
     (void)commit({.intervals = {{reading(main, 1 + day, 11.0)}}});
-    const auto copied = store_->database().back_up_to(copy);
+    const auto copied = store_->begin_backup(copy).value()->step(1000);
     ASSERT_TRUE(copied.has_value()) << copied.error().message;
+    EXPECT_TRUE(*copied);
   }
   auto opened = SqliteStore::open(copy);
   ASSERT_TRUE(opened.has_value()) << opened.error().message;
   EXPECT_EQ((*opened->interval_extent(main))->end, kStart + 2 * kQuarter);
   EXPECT_FALSE(std::filesystem::exists(copy.string() + ".part"));
-  const auto nowhere = store_->database().back_up_to(folder_ / "no" / "folder.db");
+  const auto nowhere = store_->begin_backup(folder_ / "no" / "folder.db");
   ASSERT_FALSE(nowhere.has_value());
   EXPECT_EQ(nowhere.error().code, ErrorCode::io_failed);
 }

@@ -3,9 +3,6 @@
 
 #include <thread>
 
-#include "adapters/sqlite/backup.hpp"
-#include "adapters/sqlite/edit_table.hpp"
-#include "adapters/sqlite/sample_table.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -46,11 +43,11 @@ class StoreTables : public ::testing::Test {
 };
 
 TEST_F(StoreTables, AnEditNamesItsIntervals) {
-  const auto edit = insert_edit(store_.database(), {.time = kStart,
-                                                    .author = "ada",
-                                                    .reason = "the logger's own file",
-                                                    .file = "may.csv",
-                                                    .sha256 = "abc"});
+  const auto edit = store_.add_edit({.time = kStart,
+                                     .author = "ada",
+                                     .reason = "the logger's own file",
+                                     .file = "may.csv",
+                                     .sha256 = "abc"});
   ASSERT_TRUE(edit.has_value());
   StoreBatch edited = batch(0, 2);
   edited.edit = *edit;
@@ -60,15 +57,37 @@ TEST_F(StoreTables, AnEditNamesItsIntervals) {
   std::vector<bool> by_hand;
   while (rows.step().value()) by_hand.push_back(!rows.is_null(0) && rows.integer(0) == *edit);
   EXPECT_THAT(by_hand, ElementsAre(true, true, false));
-  const auto edits = stored_edits(store_.database()).value();
-  ASSERT_THAT(edits, SizeIs(1));
-  EXPECT_EQ(edits[0].number, *edit);
-  EXPECT_EQ(edits[0].time, kStart);
-  EXPECT_EQ(edits[0].author, "ada");
-  EXPECT_EQ(edits[0].reason, "the logger's own file");
-  EXPECT_EQ(edits[0].file, "may.csv");
-  EXPECT_EQ(edits[0].sha256, "abc");
-  EXPECT_EQ(insert_edit(store_.database(), {.reason = ""}).error().code, ErrorCode::invalid_value);
+  EXPECT_THAT(*store_.edited_days(main_), ElementsAre(kStart));
+  auto row = store_.database().prepare("SELECT t, author, reason, file, sha256 FROM edit").value();
+  ASSERT_TRUE(row.step().value());
+  EXPECT_EQ(row.integer(0), kStart.time_since_epoch().count());
+  EXPECT_EQ(row.text(1), "ada");
+  EXPECT_EQ(row.text(2), "the logger's own file");
+  EXPECT_EQ(row.text(3), "may.csv");
+  EXPECT_EQ(row.text(4), "abc");
+  EXPECT_EQ(store_.add_edit({.reason = ""}).error().code, ErrorCode::invalid_value);
+}
+
+TEST_F(StoreTables, AnEditedDayIsOneWhateverCameAfterwards) {
+  const auto edit = store_.add_edit({.time = kStart, .reason = "by hand"}).value();
+  StoreBatch edited = batch(96 + 95, 2);  // the last quarter of the second day and one more
+  for (auto& interval : edited.intervals) interval.reading.validity = metering::Validity::scaled;
+  edited.edit = edit;
+  ASSERT_TRUE(store_.commit(edited).has_value());
+  ASSERT_TRUE(store_.commit(batch(0, 4 * 96)).has_value());  // measured after all
+  using std::chrono::days;
+  EXPECT_THAT(*store_.edited_days(main_), ElementsAre(kStart + days{1}, kStart + days{2}));
+  EXPECT_THAT(*store_.edited_days(main_ + 1), SizeIs(0));
+}
+
+TEST_F(StoreTables, AnEditThatPutNothingInIsForgotten) {
+  const auto empty = store_.add_edit({.time = kStart, .reason = "nothing new"}).value();
+  const auto other = store_.add_edit({.time = kStart, .reason = "stays"}).value();
+  ASSERT_TRUE(store_.remove_edit(empty).has_value());
+  auto row = store_.database().prepare("SELECT number FROM edit").value();
+  ASSERT_TRUE(row.step().value());
+  EXPECT_EQ(row.integer(0), other);
+  EXPECT_FALSE(row.step().value());
 }
 
 TEST_F(StoreTables, OldSamplesGoAPortionAtATime) {
@@ -79,61 +98,80 @@ TEST_F(StoreTables, OldSamplesGoAPortionAtATime) {
   }
   ASSERT_TRUE(store_.commit(samples).has_value());
   const Instant keep_from = kStart + 6 * kQuarter;
-  EXPECT_EQ(delete_old_samples(store_.database(), keep_from, 4).value(), 4);
-  EXPECT_EQ(delete_old_samples(store_.database(), keep_from, 4).value(), 4);
-  EXPECT_EQ(delete_old_samples(store_.database(), keep_from, 5).value(), 4);
-  EXPECT_EQ(delete_old_samples(store_.database(), keep_from, 5).value(), 0);
+  EXPECT_EQ(store_.delete_samples(keep_from, 4).value(), 4);
+  EXPECT_EQ(store_.delete_samples(keep_from, 4).value(), 4);
+  EXPECT_EQ(store_.delete_samples(keep_from, 5).value(), 4);
+  EXPECT_EQ(store_.delete_samples(keep_from, 5).value(), 0);
   for (const std::uint32_t meter : {main_, cooling}) {
     std::vector<Instant> times;
-    ASSERT_TRUE(for_each_sample(store_.database(), meter, "energy", [&](const auto& sample) {
-                  times.push_back(sample.time);
-                }).has_value());
+    ASSERT_TRUE(store_
+                    .for_each_sample(meter, "energy",
+                                     [&](const auto& sample) { times.push_back(sample.time); })
+                    .has_value());
     ASSERT_THAT(times, SizeIs(4));
     EXPECT_EQ(times.front(), keep_from);
   }
   EXPECT_EQ(intervals(store_, main_), 10);
 }
 
-TEST_F(StoreTables, ATransactionWithinAnotherIsAPartOfIt) {
-  const auto fail = [] { return Result<int>{failure(ErrorCode::cancelled, "no")}; };
-  const auto whole = store_.database().transaction([&]() -> Result<int> {
+TEST_F(StoreTables, WhatIsDoneAsOneMayHaveParts) {
+  const auto fail = [] { return Result<void>{failure(ErrorCode::cancelled, "no")}; };
+  const auto whole = store_.as_one([&]() -> Result<void> {
     EXPECT_TRUE(store_.commit(batch(0, 1)).has_value());
-    const auto part = store_.database().transaction([&] {
+    const auto part = store_.as_one([&] {
       EXPECT_TRUE(store_.commit(batch(1, 1)).has_value());
       return fail();
     });
     EXPECT_FALSE(part.has_value());
     EXPECT_TRUE(store_.commit(batch(2, 1)).has_value());
-    return 1;
+    return {};
   });
   EXPECT_TRUE(whole.has_value());
   EXPECT_EQ(intervals(store_, main_), 2);  // without the part that failed
-  const auto undone = store_.database().transaction([&] {
+  const auto undone = store_.as_one([&] {
     EXPECT_TRUE(store_.commit(batch(5, 3)).has_value());
     return fail();
   });
-  EXPECT_FALSE(undone.has_value());
+  ASSERT_FALSE(undone.has_value());
+  EXPECT_EQ(undone.error().code, ErrorCode::cancelled);
   EXPECT_EQ(intervals(store_, main_), 2);
 }
 
 TEST_F(StoreTables, ABackupInPortionsHasWhatCameMeanwhile) {
   ASSERT_TRUE(store_.commit(batch(0, 3000)).has_value());
-  auto backup = Backup::begin(store_.database(), folder_ / "copy.db").value();
+  const auto backup = store_.begin_backup(folder_ / "copy.db").value();
   int steps = 1;
-  while (!backup.step(4).value()) {
+  while (!backup->step(4).value()) {
     ASSERT_TRUE(store_.commit(batch(3000 + steps, 1)).has_value());
     ++steps;
   }
   EXPECT_GT(steps, 5);
   auto copy = SqliteStore::open(folder_ / "copy.db").value();
   EXPECT_EQ(intervals(copy, main_), 3000 + steps - 1);
-  EXPECT_EQ(copy.database().quick_check().value(), "");
+  EXPECT_EQ(copy.check().value().damage, "");
   {
-    auto given_up = Backup::begin(store_.database(), folder_ / "none.db").value();
-    (void)given_up.step(1);
+    const auto given_up = store_.begin_backup(folder_ / "none.db").value();
+    (void)given_up->step(1);
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.db"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.db.part"));
+}
+
+TEST_F(StoreTables, AStoreSaysWhatIsWrongWithIt) {
+  ASSERT_TRUE(store_.commit(batch(0, 100)).has_value());
+  StoreCheck check = store_.check().value();
+  EXPECT_EQ(check.damage, "");
+  EXPECT_THAT(check.problems, SizeIs(0));
+  EXPECT_EQ(check.intervals, 100u);
+  ASSERT_TRUE(store_.database()
+                  .execute("UPDATE interval SET revision = 2 WHERE t_start % 1800 = 0")
+                  .has_value());
+  check = store_.check().value();
+  ASSERT_THAT(check.problems, SizeIs(21));  // of a kind, 20 and how many more
+  EXPECT_EQ(check.problems[0],
+            "meter 'main': the revisions of the interval at 2024-03-01 00:00:00 UTC have a gap");
+  EXPECT_EQ(check.problems[20], "… and 30 more like the last");
+  EXPECT_EQ(check.intervals, 100u);
 }
 
 // A worker reads while the daemon writes and moves its log into the file: neither waits, and the

@@ -196,7 +196,7 @@ TEST_F(MonthKeeperTest, TzdataChanged) {
   EXPECT_LT(closed[0].figure.peak->kW, 200.0);  // that hour is March's now
   const auto months = store_.months(main_.number).value();
   ASSERT_THAT(months, SizeIs(2));
-  EXPECT_EQ(months[0].revision, 0);
+  EXPECT_EQ(months[0].figure.revision, 0);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 
+#include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/daemon/gateway/run/gateway_rig.hpp"
 #include "tests/daemon/gateway/run/surviving_store.hpp"
 #include "tests/support/failing_store.hpp"
@@ -175,8 +176,9 @@ TEST_F(Crash, AMonthOfKillsCostsNothing) {
   EXPECT_NEAR(testing::stored_kWh(store, 0, march), true_kWh, kTick_kWh);
   const auto months = store.months(0).value();
   ASSERT_EQ(months.size(), 2u);
-  EXPECT_NEAR(months[1].daily_average_kWh, true_kWh / 31.0, kTick_kWh);
-  EXPECT_EQ(months[1].slots_by_validity[static_cast<std::size_t>(metering::Validity::missing)], 0);
+  const metering::MonthlyFigure& figure = months[1].figure;
+  EXPECT_NEAR(figure.daily_average_kWh, true_kWh / 31.0, kTick_kWh);
+  EXPECT_EQ(figure.slots_by_validity[static_cast<std::size_t>(metering::Validity::missing)], 0);
 }
 
 }  // namespace

@@ -8,8 +8,7 @@
 #include <map>
 #include <set>
 
-#include "adapters/sqlite/sample_table.hpp"
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/stores/open.hpp"
 #include "core/random/rng.hpp"
 #include "tests/support/background_process.hpp"
 #include "tests/support/scripted_device.hpp"
@@ -70,11 +69,10 @@ poll = "1s"
   [[nodiscard]] std::map<Instant, double> committed() const {
     std::map<Instant, double> samples;
     if (!std::filesystem::exists(folder_ / "site.db")) return samples;
-    auto store = sqlite::SqliteStore::open(folder_ / "site.db",
-                                           {.access = sqlite::Database::Access::read_only});
+    const auto store = stores::open_to_read(folder_ / "site.db");
     if (!store) return samples;
-    const auto read = sqlite::for_each_sample(
-        store->database(), 0, "energy",
+    const auto read = (*store)->for_each_sample(
+        0, "energy",
         [&](const metering::RegisterSample& one) { samples[one.time] = one.value_kWh; });
     EXPECT_TRUE(read.has_value()) << read.error().message;
     return samples;
@@ -103,14 +101,14 @@ TEST_F(KillCommand, KillsOfTheRealProgramLoseNothing) {
     EXPECT_TRUE(std::ranges::includes(after, seen)) << "after kill " << kill;
     seen = after;
   }
-  auto store = sqlite::SqliteStore::open(folder_ / "site.db").value();
-  EXPECT_EQ(store.database().quick_check().value(), "");
+  const auto store = stores::open_to_write(folder_ / "site.db").value();
+  EXPECT_EQ(store->check().value().damage, "");
   EXPECT_GE(seen.size(), static_cast<std::size_t>(kills));
   // The register rises with each read, so a sample that stood twice would be seen.
   std::set<double> values;
   for (const auto& [time, value_kWh] : seen) EXPECT_TRUE(values.insert(value_kWh).second);
   std::optional<Instant> last;
-  const auto read = store.for_each_interval(
+  const auto read = store->for_each_interval(
       0, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
         if (last) {
           EXPECT_EQ(interval.reading.start - *last, std::chrono::minutes{1});

@@ -2,6 +2,7 @@
 /// or written in another order; what was acknowledged is there.
 #include <gmock/gmock.h>
 
+#include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/daemon/gateway/run/gateway_rig.hpp"
 #include "tests/daemon/gateway/run/surviving_store.hpp"
 #include "tests/support/failing_store.hpp"
@@ -63,7 +64,7 @@ class PowerCut : public ::testing::Test {
   }
 
   /// A gateway that starts on what is left books all that the meters counted meanwhile.
-  void goes_on(sqlite::SqliteStore& left) {
+  void goes_on(Store& left) {
     VirtualLoop loop{loop_.now().wall + milliseconds{17'000}};
     const GatewayRig rig{site_, left, loop};
     loop.run_for(hours{2});

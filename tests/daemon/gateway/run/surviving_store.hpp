@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/ports/store.hpp"
 
 namespace recald::daemon::testing {
 
@@ -26,15 +26,16 @@ inline void promise(const StoreBatch& batch, std::vector<Promise>& promises) {
 }
 
 /// Looks for promised intervals, for intervals that stand twice or apart, for states that do not
-/// stand with their intervals, and for what SQLite itself finds.
+/// stand with their intervals, and for what the store itself finds.
 /// @param meters    Numbers 0 to meters − 1, each with intervals of a quarter of an hour.
 /// @param promises  None of them superseded.
 /// @return what is wrong; empty: nothing.
-inline std::string what_is_wrong(sqlite::SqliteStore& store, std::uint32_t meters,
+inline std::string what_is_wrong(Store& store, std::uint32_t meters,
                                  std::span<const Promise> promises) {
-  const auto damage = store.database().quick_check();
-  if (!damage) return damage.error().message;
-  if (!damage->empty()) return *damage;
+  const auto checked = store.check();
+  if (!checked) return checked.error().message;
+  if (!checked->damage.empty()) return checked->damage;
+  if (!checked->problems.empty()) return checked->problems.front();
   std::vector<std::vector<metering::Reading>> stored(meters);
   for (std::uint32_t meter = 0; meter < meters; ++meter) {
     auto& readings = stored[meter];
@@ -71,8 +72,7 @@ inline std::string what_is_wrong(sqlite::SqliteStore& store, std::uint32_t meter
 }
 
 /// Energy of a meter's intervals in a span, those without a value left out.
-inline double stored_kWh(sqlite::SqliteStore& store, std::uint32_t meter,
-                         const metering::TimeSpan& span) {
+inline double stored_kWh(Store& store, std::uint32_t meter, const metering::TimeSpan& span) {
   double sum_kWh = 0.0;
   (void)store.for_each_interval(meter, span, [&](const StoredInterval& interval) {
     if (!std::isnan(interval.reading.mean_kW)) sum_kWh += interval.reading.mean_kW * 0.25;

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/sqlite/edit_table.hpp"
-#include "adapters/sqlite/month_table.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/system/file_lock.hpp"
 #include "adapters/system/time_zone_release.hpp"
@@ -24,7 +22,6 @@ using std::chrono::hours;
 using ::testing::HasSubstr;
 using testing::Outcome;
 using testing::run;
-using ::testing::SizeIs;
 
 /// Filled once: five weeks of two meters, an outage over the night, one month closed.
 class Transfer : public ::testing::Test {
@@ -94,7 +91,7 @@ TEST_F(Transfer, ExportThenImportGivesTheSameReadingsAndMonths) {
   // All months of 2024 have ended by now, so the last one closes as well.
   const std::string months_again = run({"export", site(), "--months"}).out;
   auto opened = store();
-  const auto release = sqlite::stored_months(opened.database(), 0)->at(0).time_zone_release;
+  const auto release = opened.months(0)->at(0).time_zone_release;
   std::string expected = months.out;
   for (auto at = expected.find(",2025b\n"); at != std::string::npos;
        at = expected.find(",2025b\n", at + 1)) {
@@ -130,17 +127,20 @@ TEST_F(Transfer, AnImportIsAnEditAndClosesTheMonthAgain) {
   EXPECT_EQ(now.revision, 1);
   {
     auto opened = store();
-    const auto edits = sqlite::stored_edits(opened.database()).value();
-    ASSERT_THAT(edits, SizeIs(1));
-    EXPECT_EQ(edits[0].reason, "the logger's file");
-    EXPECT_EQ(edits[0].sha256.size(), 64u);
-    EXPECT_EQ(opened.months(0)->at(1).revision, 1);
+    auto edits = opened.database().prepare("SELECT reason, sha256 FROM edit").value();
+    ASSERT_TRUE(edits.step().value());
+    EXPECT_EQ(edits.text(0), "the logger's file");
+    EXPECT_EQ(edits.text(1).size(), 64u);
+    EXPECT_FALSE(edits.step().value());
+    EXPECT_EQ(opened.months(0)->at(1).figure.revision, 1);
   }
   // Once more: nothing new, no second edit.
   EXPECT_THAT(import(text).out, HasSubstr("0 taken, 1 known already"));
   auto opened = store();
-  EXPECT_THAT(*sqlite::stored_edits(opened.database()), SizeIs(1));
-  EXPECT_EQ(opened.months(0)->at(1).revision, 1);
+  auto edits = opened.database().prepare("SELECT count(*) FROM edit").value();
+  ASSERT_TRUE(edits.step().value());
+  EXPECT_EQ(edits.integer(0), 1);
+  EXPECT_EQ(opened.months(0)->at(1).figure.revision, 1);
 }
 
 TEST_F(Transfer, GoodReadingsStayUnlessSuperseded) {
@@ -169,7 +169,7 @@ TEST_F(Transfer, EndStampedImport) {
   EXPECT_EQ(stored("2024-02-01T05:45:00Z").reading.mean_kW, 20.0);
   EXPECT_EQ(stored("2024-02-01T06:00:00Z").reading.mean_kW, 30.0);
   auto opened = store();
-  EXPECT_EQ(opened.months(0)->at(0).slots_by_validity[0], 2);  // January has both of its own
+  EXPECT_EQ(opened.months(0)->at(0).figure.slots_by_validity[0], 2);  // January has both of its own
 }
 
 TEST_F(Transfer, NothingIsImportedWithoutReasonOrBesideADaemon) {

@@ -1,0 +1,70 @@
+#include "adapters/sqlite/row_checks.hpp"
+
+#include <fmt/format.h>
+
+namespace recald::sqlite {
+namespace {
+
+/// What can be wrong with rows, each as a query whose rows are the wrong ones, their parts in the
+/// order of the sentence.
+struct RowCheck {
+  const char* sql;
+  const char* sentence;
+};
+constexpr RowCheck kRowChecks[] = {
+    {"SELECT \"table\", count(*) FROM pragma_foreign_key_check GROUP BY 1",
+     "table '{}' has {} rows that refer to a row that is not there"},
+    {"SELECT id, datetime(t_start, 'unixepoch') FROM interval JOIN meter ON number = meter "
+     "GROUP BY meter, t_start HAVING max(revision) <> count(*) - 1",
+     "meter '{}': the revisions of the interval at {} UTC have a gap"},
+    {"SELECT id, month FROM month JOIN meter ON number = meter GROUP BY meter, month "
+     "HAVING max(revision) <> count(*) - 1",
+     "meter '{}': the revisions of month {} have a gap"},
+    {"SELECT id, count(*) FROM interval JOIN meter ON number = meter, (SELECT meter AS m, "
+     "min(t_start) AS first FROM interval GROUP BY meter) ON m = meter "
+     "WHERE (t_start - first) % interval_s <> 0 GROUP BY meter",
+     "meter '{}' has {} intervals off its grid"},
+};
+
+/// No more than this of one kind: a broken table would fill the screen.
+constexpr std::size_t kListedMax = 20;
+
+Result<void> check_rows(Database& database, const RowCheck& check,
+                        std::vector<std::string>& problems) {
+  auto query = database.prepare(check.sql);
+  if (!query) return tl::unexpected(query.error());
+  std::size_t found = 0;
+  for (;;) {
+    const auto row = query->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) break;
+    if (++found > kListedMax) continue;
+    problems.push_back(fmt::format(fmt::runtime(check.sentence), query->text(0), query->text(1)));
+  }
+  if (found > kListedMax) {
+    problems.push_back(fmt::format("… and {} more like the last", found - kListedMax));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> row_problems(Database& database) {
+  std::vector<std::string> problems;
+  for (const RowCheck& check : kRowChecks) {
+    if (auto done = check_rows(database, check, problems); !done) {
+      return tl::unexpected(done.error());
+    }
+  }
+  return problems;
+}
+
+Result<std::uint64_t> count_intervals(Database& database) {
+  auto query = database.prepare("SELECT count(*) FROM interval");
+  if (!query) return tl::unexpected(query.error());
+  const auto row = query->step();
+  if (!row) return tl::unexpected(row.error());
+  return static_cast<std::uint64_t>(query->integer(0));
+}
+
+}  // namespace recald::sqlite
