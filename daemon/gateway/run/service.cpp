@@ -29,7 +29,7 @@
 #include "daemon/gateway/run/recalibration.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
 #include "daemon/gateway/run/watchdog.hpp"
-#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/serve/site_server.hpp"
 #include "daemon/gateway/upkeep/open_store.hpp"
 #include "daemon/gateway/upkeep/upkeep.hpp"
 
@@ -137,33 +137,20 @@ class Service {
   Result<void> listen() {
     const auto& http = site_.config.http;
     if (!http) return {};
-    http::ServerOptions options{.address = http->address, .port = http->port};
-    options.open_paths = {"/healthz", "/readyz"};
-    if (!http->token_file.empty()) {
-      auto token = http::read_token_file(http->token_file);
-      if (!token) return tl::unexpected(token.error());
-      options.token = std::move(*token);
-    }
-    if (!http->certificate_file.empty()) {
-      options.tls = http::TlsFiles{http->certificate_file, http->key_file};
-    }
-    const Served served{
-        .site = site_.config,
-        .calendar = site_.calendar,
-        .store = *store_,
-        .status = [this] { return gateway_->status(); },
-        .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
-        .now = [this] { return loop_.now().instant(); },
-        .started = loop_.now().instant(),
-        .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
-        .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
-        .take_readings =
-            [this](const std::string& meter, auto readings) {
-              return gateway_->take_pushed(meter, std::move(readings));
-            }};
-    auto server = http::Server::listen(context_, options, [served](const http::Request& request) {
-      return answer(served, request);
-    });
+    Served served{.site = site_.config,
+                  .calendar = site_.calendar,
+                  .store = *store_,
+                  .status = [this] { return gateway_->status(); },
+                  .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
+                  .now = [this] { return loop_.now().instant(); },
+                  .started = loop_.now().instant(),
+                  .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
+                  .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
+                  .take_readings =
+                      [this](const std::string& meter, auto readings) {
+                        return gateway_->take_pushed(meter, std::move(readings));
+                      }};
+    auto server = serve_site(context_, *http, std::move(served));
     if (!server) return tl::unexpected(server.error());
     server_ = std::move(*server);
     spdlog::info("event=listening address={} port={}", http->address, server_->port());

@@ -9,9 +9,7 @@ namespace recald::daemon {
 Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
                                                  const HttpConfig& config, Served served) {
   http::ServerOptions options{
-      .address = config.address == "localhost" ? "127.0.0.1" : config.address,
-      .port = config.port,
-      .open_paths = {"/healthz", "/readyz"}};
+      .address = config.address, .port = config.port, .open_paths = {"/healthz", "/readyz"}};
   if (!config.token_file.empty()) {
     auto token = http::read_token_file(config.token_file);
     if (!token) return tl::unexpected(token.error());

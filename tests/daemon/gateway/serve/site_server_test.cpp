@@ -38,7 +38,7 @@ class SiteServer : public ServedSite {
 };
 
 TEST_F(SiteServer, IsReachedAtItsAddress) {
-  const std::uint16_t port = serve({.address = "localhost", .port = 0});
+  const std::uint16_t port = serve({.address = "127.0.0.1", .port = 0});
   const auto response = http::get({.port = port, .path = "/api/v1/sites"});
   ASSERT_TRUE(response.has_value()) << response.error().message;
   EXPECT_THAT(response->body, HasSubstr("\"id\":\"tower\""));
