@@ -108,9 +108,6 @@ void write_store(PrometheusText& text, const Served& served, const GatewayStatus
   text.histogram(status.store.durations);
   text.begin("recald_store_bytes", "gauge", "Size of the store with its write-ahead log.");
   text.sample(store_bytes(served.site.store.file));
-  text.begin("recald_outbox_batches", "gauge",
-             "Batches that wait to be sent on; nothing is sent on yet.");
-  text.sample(0.0);
 }
 
 /// Climbs before an alarm does.
