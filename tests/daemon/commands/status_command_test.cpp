@@ -38,7 +38,7 @@ class StatusCommand : public ServedSite {
   }
   std::string site_with(const std::string& http) {
     const auto file = folder_ / "served.toml";
-    recald::testing::write_text(file, std::string{kServedSite} + http);
+    recald::testing::write_text(file, served_site() + http);
     return file.string();
   }
 };

@@ -2,14 +2,9 @@
 /// changes, days without midnight, years that turn at another time than UTC's, clocks set by a day.
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <map>
+#include <algorithm>
 
-#include "adapters/sqlite/sqlite_store.hpp"
-#include "daemon/gateway/run/gateway.hpp"
-#include "tests/support/counter_bus.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/virtual_loop.hpp"
+#include "tests/daemon/gateway/gateway_rig.hpp"
 
 namespace recald::daemon::clock_changes_test {
 namespace {
@@ -19,10 +14,6 @@ using metering::Month;
 using metering::MonthlyFigure;
 using metering::TimeSpan;
 using metering::Validity;
-using recald::testing::CounterBus;
-using recald::testing::CounterDevice;
-using recald::testing::TemporaryFolder;
-using recald::testing::VirtualLoop;
 using std::chrono::days;
 using std::chrono::hours;
 using std::chrono::milliseconds;
@@ -41,64 +32,22 @@ Instant utc(int year, unsigned month, unsigned day, int hour = 0) {
          hours{hour};
 }
 
-/// 60 kW with a course of 30 kW over 24 hours, since the beginning.
-double counted_kWh(milliseconds t) {
-  const double h = static_cast<double>(t.count()) / 3.6e6;
-  return 5000.0 + 60.0 * h + 30.0 * 24.0 / 6.283185307 * (1.0 - std::cos(h / 24.0 * 6.283185307));
-}
-
 /// A gateway with one meter in some zone, from some time on.
-class GatewayInZone {
+class GatewayInZone : private testing::RigInMemory {
  public:
-  GatewayInZone(const std::string& zone, Instant start)
-      : start_{start},
-        calendar_{metering::LocalCalendar::open(zone).value()},
-        store_{sqlite::SqliteStore::open(":memory:").value()},
-        loop_{start} {
-    recald::testing::write_text(folder_ / "counter.toml", CounterBus::kMap);
-    site_ = parse_site("[site]\nid = \"tower\"\ntimezone = \"" + zone + R"("
-watermark = "2h"
-[bus.plant]
-type = "tcp"
-host = "unused"
-[[meter]]
-id = "main"
-source = "modbus"
-utility = "electricity"
-bus = "plant"
-unit = 1
-map = "counter.toml"
-rated_kW = 400
-poll = "60s"
-)",
-                       folder_ / "site.toml")
-                .value();
-    devices_[1].energy_kWh = counted_kWh;
-    gateway_ =
-        Gateway::open(
-            site_, calendar_,
-            {.loop = loop_,
-             .store = store_,
-             .make_bus =
-                 [this](const BusConfig&) { return std::make_unique<CounterBus>(loop_, devices_); },
-             .time_zone_release = "2025b"},
-            [this](const metering::Meter&, const MonthlyFigure& figure) {
-              closed_[figure.month] = loop_.now().instant();
-              figures_.insert_or_assign(figure.month, figure);
-            })
-            .value();
-    gateway_->start();
+  GatewayInZone(const std::string& zone, Instant start) : RigInMemory{start}, start_{start} {
+    begin(load(testing::site_head(zone, "watermark = \"2h\"\n") + testing::kMainMeter));
   }
 
   void run_until(Instant t) { loop_.run_for(t - loop_.now().wall); }
   void set_clock(milliseconds forward) { loop_.set_wall_clock(forward); }
-  [[nodiscard]] const metering::LocalCalendar& calendar() const { return calendar_; }
-  [[nodiscard]] const MonthlyFigure& figure(Month month) const { return figures_.at(month); }
-  [[nodiscard]] Instant closed_at(Month month) const { return closed_.at(month); }
+  /// The latest of a month.
+  [[nodiscard]] const MonthlyFigure& figure(Month month) const { return last(month).figure; }
+  [[nodiscard]] Instant closed_at(Month month) const { return last(month).at; }
 
   /// What the device counted in a span, as long as nobody has set the clock.
   [[nodiscard]] double true_kWh(const TimeSpan& span) const {
-    return counted_kWh(span.end - start_) - counted_kWh(span.begin - start_);
+    return testing::main_kWh(span.end - start_) - testing::main_kWh(span.begin - start_);
   }
 
   struct Stored {
@@ -109,30 +58,24 @@ poll = "60s"
   };
   Stored stored(const TimeSpan& span) {
     Stored sum;
-    const auto number = store_.meter_number("main", seconds{900}).value();
-    const auto read = store_.for_each_interval(number, span, [&](const StoredInterval& interval) {
+    for (const metering::Reading& reading : RigInMemory::stored("main", span)) {
       ++sum.slots;
-      sum.missing += static_cast<int>(interval.reading.validity == Validity::missing);
-      if (interval.reading.validity != Validity::ok) return;
+      sum.missing += static_cast<int>(reading.validity == Validity::missing);
+      if (reading.validity != Validity::ok) continue;
       ++sum.ok;
-      sum.energy_kWh += interval.reading.mean_kW * 0.25;
-    });
-    EXPECT_TRUE(read.has_value());
+      sum.energy_kWh += reading.mean_kW * 0.25;
+    }
     return sum;
   }
   std::vector<StoreEvent> events() { return store_.events(100).value(); }
 
  private:
+  [[nodiscard]] const ClosedMonth& last(Month month) const {
+    return *std::find_if(closed_.rbegin(), closed_.rend(),
+                         [&](const ClosedMonth& one) { return one.figure.month == month; });
+  }
+
   Instant start_;
-  TemporaryFolder folder_;
-  metering::LocalCalendar calendar_;
-  sqlite::SqliteStore store_;
-  VirtualLoop loop_;
-  SiteConfig site_;
-  std::map<std::uint8_t, CounterDevice> devices_;
-  std::unique_ptr<Gateway> gateway_;
-  std::map<Month, MonthlyFigure> figures_;
-  std::map<Month, Instant> closed_;
 };
 
 struct ChangeMonth {

@@ -9,8 +9,7 @@
 
 #include <cstdlib>
 
-#include "adapters/sqlite/sqlite_store.hpp"
-#include "tests/daemon/gateway/run/gateway_rig.hpp"
+#include "tests/daemon/gateway/gateway_rig.hpp"
 #include "tests/daemon/gateway/run/surviving_store.hpp"
 #include "tests/support/failing_store.hpp"
 #include "tests/support/faulty_disk.hpp"
@@ -101,7 +100,8 @@ class Crash : public ::testing::Test {
         ++witness_->count;
       }
     };
-    const testing::GatewayRig rig{site_, watched, loop};
+    testing::GatewayRig rig{watched, loop, testing::kRigStart};
+    rig.begin(site_);
     loop.run_for(end - witness_->now);
     witness_->now = loop.now().wall;
   }
@@ -124,7 +124,7 @@ class Crash : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  SiteConfig site_ = testing::rig_site(folder_.path());
+  SiteConfig site_ = testing::load_rig_site(folder_.path(), testing::two_meter_site());
   SharedWitness witness_;
 };
 

@@ -4,25 +4,15 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
+#include <algorithm>
 
-#include "adapters/sqlite/sqlite_store.hpp"
-#include "tests/support/counter_bus.hpp"
-#include "tests/support/failing_store.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/virtual_loop.hpp"
+#include "tests/daemon/gateway/gateway_rig.hpp"
 
 namespace recald::daemon::gateway_test {
 namespace {
 
 using metering::Instant;
-using metering::Month;
 using metering::Validity;
-using recald::testing::CounterBus;
-using recald::testing::CounterDevice;
-using recald::testing::FailingStore;
-using recald::testing::TemporaryFolder;
-using recald::testing::VirtualLoop;
 using std::chrono::days;
 using std::chrono::hours;
 using std::chrono::milliseconds;
@@ -30,97 +20,21 @@ using std::chrono::minutes;
 using std::chrono::seconds;
 using ::testing::Contains;
 using ::testing::Field;
+using testing::main_kWh;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-constexpr const char* kSite = R"([site]
-id = "tower"
-timezone = "America/Chicago"
-watermark = "2h"
+const Instant kStart = testing::kRigStart;
 
-[bus.plant]
-type = "tcp"
-host = "unused"
-
-[[meter]]
-id = "main"
-source = "modbus"
-utility = "electricity"
-bus = "plant"
-unit = 1
-map = "counter.toml"
-rated_kW = 400
-poll = "60s"
-
-[[meter]]
-id = "cooling"
-source = "modbus"
-utility = "chilled_water"
-bus = "plant"
-unit = 2
-map = "counter.toml"
-rated_kW = 900
-poll = "60s"
-)";
-
-const Instant kStart = std::chrono::sys_days{std::chrono::year{2024} / 2 / 28};
-
-double hours_of(milliseconds t) { return static_cast<double>(t.count()) / 3.6e6; }
-
-/// 60 kW with a daily course of 30 kW.
-double main_kWh(milliseconds t) {
-  const double h = hours_of(t);
-  return 5000.0 + 60.0 * h + 30.0 * 24.0 / 6.283185307 * (1.0 - std::cos(h / 24.0 * 6.283185307));
-}
-
-class GatewayTest : public ::testing::Test {
+class GatewayTest : public ::testing::Test, protected testing::RigInMemory {
  protected:
-  GatewayTest()
-      : calendar_{metering::LocalCalendar::open("America/Chicago").value()},
-        disk_{sqlite::SqliteStore::open(":memory:").value()},
-        store_{disk_},
-        loop_{kStart} {
-    recald::testing::write_text(folder_ / "counter.toml", CounterBus::kMap);
-    recald::testing::write_text(folder_ / "site.toml", kSite);
-    site_ = load_site(folder_ / "site.toml").value();
-    devices_[1].energy_kWh = main_kWh;
-    devices_[2].energy_kWh = [](milliseconds t) { return 100.0 * hours_of(t); };
-  }
+  GatewayTest() : RigInMemory{kStart} {}
 
-  void begin() {
-    gateway_.reset();
-    auto opened = Gateway::open(
-        site_, calendar_,
-        {.loop = loop_,
-         .store = store_,
-         .make_bus =
-             [this](const BusConfig&) { return std::make_unique<CounterBus>(loop_, devices_); },
-         .time_zone_release = "2025b",
-         .is_clock_settling = is_clock_settling_},
-        [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
-          months_.push_back({meter.id, figure});
-        });
-    ASSERT_TRUE(opened.has_value()) << opened.error().message;
-    gateway_ = std::move(*opened);
-    gateway_->start();
-  }
+  void begin() { RigInMemory::begin(site_); }
 
-  /// Energy of a meter's stored intervals in a span, those without a value left out.
-  double stored_kWh(const std::string& id, const metering::TimeSpan& span) {
-    double sum_kWh = 0.0;
-    const auto number = disk_.meter_number(id, seconds{900}).value();
-    (void)disk_.for_each_interval(number, span, [&](const StoredInterval& stored) {
-      if (!std::isnan(stored.reading.mean_kW)) sum_kWh += stored.reading.mean_kW * 0.25;
-    });
-    return sum_kWh;
-  }
   int count(const std::string& id, Validity validity) {
-    int counted = 0;
-    const auto number = disk_.meter_number(id, seconds{900}).value();
-    (void)disk_.for_each_interval(
-        number, {Instant::min(), Instant::max()},
-        [&](const StoredInterval& stored) { counted += stored.reading.validity == validity; });
-    return counted;
+    const auto readings = stored(id, {Instant::min(), Instant::max()});
+    return static_cast<int>(std::ranges::count(readings, validity, &metering::Reading::validity));
   }
   [[nodiscard]] metering::TimeSpan march() const {
     return calendar_.month_span(std::chrono::year{2024} / 3);
@@ -130,22 +44,14 @@ class GatewayTest : public ::testing::Test {
   }
   [[nodiscard]] std::vector<metering::MonthlyFigure> months_of(const std::string& id) const {
     std::vector<metering::MonthlyFigure> figures;
-    for (const auto& [meter, figure] : months_) {
-      if (meter == id) figures.push_back(figure);
+    for (const ClosedMonth& month : closed_) {
+      if (month.meter == id) figures.push_back(month.figure);
     }
     return figures;
   }
 
-  TemporaryFolder folder_;
-  metering::LocalCalendar calendar_;
-  sqlite::SqliteStore disk_;
-  FailingStore store_;
-  VirtualLoop loop_;
-  SiteConfig site_;
-  std::map<std::uint8_t, CounterDevice> devices_;
-  std::function<bool()> is_clock_settling_;
-  std::unique_ptr<Gateway> gateway_;
-  std::vector<std::pair<std::string, metering::MonthlyFigure>> months_;
+  metering::LocalCalendar calendar_ = metering::LocalCalendar::open("America/Chicago").value();
+  SiteConfig site_ = load(testing::two_meter_site("watermark = \"2h\"\n"));
 };
 
 // Two registers of 0.1 kWh bound an energy, so a sum is known to within that.
@@ -236,11 +142,7 @@ TEST_F(GatewayTest, LateAfterClose) {
   EXPECT_EQ(figures[2].revision, 1);
   // The hole reaches into April; the usual day says how it was shared (evenly it would be 0.7 off).
   EXPECT_NEAR(figures[2].daily_average_kWh, true_kWh(march()) / 31.0, 0.4);
-  int late = 0;
-  const auto number = disk_.meter_number("main", seconds{900}).value();
-  (void)disk_.for_each_interval(number, march(), [&](const StoredInterval& stored) {
-    late += static_cast<int>(stored.reading.late);
-  });
+  const auto late = std::ranges::count(stored("main", march()), true, &metering::Reading::late);
   EXPECT_GE(late, 20);
   EXPECT_THAT(*disk_.reopened(), SizeIs(0));
 }
@@ -339,13 +241,7 @@ TEST_F(GatewayTest, ADeadMeterIsSeenAndItsNeighbourIsNot) {
 
 TEST_F(GatewayTest, AStoreThatCannotBeReadAtTheStartIsToldAtOnce) {
   store_.refuses = true;
-  const auto opened = Gateway::open(
-      site_, calendar_,
-      {.loop = loop_,
-       .store = store_,
-       .make_bus =
-           [this](const BusConfig&) { return std::make_unique<CounterBus>(loop_, devices_); }},
-      {});
+  const auto opened = open(site_);
   ASSERT_FALSE(opened.has_value());
   EXPECT_EQ(opened.error().code, ErrorCode::io_failed);
 }

@@ -2,8 +2,7 @@
 /// or written in another order; what was acknowledged is there.
 #include <gmock/gmock.h>
 
-#include "adapters/sqlite/sqlite_store.hpp"
-#include "tests/daemon/gateway/run/gateway_rig.hpp"
+#include "tests/daemon/gateway/gateway_rig.hpp"
 #include "tests/daemon/gateway/run/surviving_store.hpp"
 #include "tests/support/failing_store.hpp"
 #include "tests/support/faulty_disk.hpp"
@@ -42,7 +41,8 @@ class PowerCut : public ::testing::Test {
       if (!reads && rng_.below(is_sync ? 2 : 8) == 0) cut();
       return 0;
     };
-    const GatewayRig rig{site_, watched, loop_};
+    GatewayRig rig{watched, loop_, kRigStart};
+    rig.begin(site_);
     loop_.run_for(hours{26});
     disk_.before = {};
     return images_;
@@ -66,7 +66,8 @@ class PowerCut : public ::testing::Test {
   /// A gateway that starts on what is left books all that the meters counted meanwhile.
   void goes_on(Store& left) {
     VirtualLoop loop{loop_.now().wall + milliseconds{17'000}};
-    const GatewayRig rig{site_, left, loop};
+    GatewayRig rig{left, loop, kRigStart};
+    rig.begin(site_);
     loop.run_for(hours{2});
     const auto extent = left.interval_extent(0).value();
     ASSERT_TRUE(extent.has_value());
@@ -79,7 +80,7 @@ class PowerCut : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  SiteConfig site_ = testing::rig_site(folder_.path());
+  SiteConfig site_ = testing::load_rig_site(folder_.path(), testing::two_meter_site());
   VirtualLoop loop_{kRigStart};
   FaultyDisk disk_{"power-cut"};
   Rng rng_{1};

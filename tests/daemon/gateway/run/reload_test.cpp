@@ -1,36 +1,21 @@
 /// Another site file under way: what it does not change goes on as if nothing had happened.
 #include <gmock/gmock.h>
 
-#include <cmath>
+#include <algorithm>
 
-#include "adapters/sqlite/sqlite_store.hpp"
-#include "daemon/gateway/run/gateway.hpp"
-#include "tests/support/counter_bus.hpp"
-#include "tests/support/failing_store.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/virtual_loop.hpp"
+#include "tests/daemon/gateway/gateway_rig.hpp"
 
 namespace recald::daemon::reload_test {
 namespace {
 
 using metering::Instant;
 using metering::Validity;
-using recald::testing::CounterBus;
-using recald::testing::CounterDevice;
-using recald::testing::FailingStore;
-using recald::testing::TemporaryFolder;
-using recald::testing::VirtualLoop;
 using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
 using ::testing::ElementsAre;
 using ::testing::SizeIs;
-
-constexpr const char* kSite = R"([site]
-id = "tower"
-timezone = "America/Chicago"
-)";
 
 std::string bus(const std::string& name, const std::string& more = "") {
   return "[bus." + name + "]\ntype = \"tcp\"\nhost = \"" + name + "\"\n" + more;
@@ -43,75 +28,37 @@ std::string meter(const std::string& id, const std::string& bus_name, int unit,
          "\"\nunit = " + std::to_string(unit) + "\nmap = \"counter.toml\"\n" + more;
 }
 
-const Instant kStart = std::chrono::sys_days{std::chrono::year{2024} / 2 / 28};
+const Instant kStart = testing::kRigStart;
 
-class Reload : public ::testing::Test {
+class Reload : public ::testing::Test, protected testing::RigInMemory {
  protected:
-  Reload() {
-    recald::testing::write_text(folder_ / "counter.toml", CounterBus::kMap);
+  Reload() : RigInMemory{kStart} {
     for (std::uint8_t unit = 1; unit <= 3; ++unit) {
       devices_[unit].energy_kWh = [unit](milliseconds t) {
-        return 50.0 * unit * static_cast<double>(t.count()) / 3.6e6;
+        return 50.0 * unit * testing::hours_of(t);
       };
     }
   }
 
   SiteConfig site(const std::string& text) {
-    recald::testing::write_text(folder_ / "site.toml", kSite + text);
-    auto loaded = load_site(folder_ / "site.toml");
-    EXPECT_TRUE(loaded.has_value()) << loaded.error().front();
-    return loaded.value_or(SiteConfig{});
+    return load(testing::site_head("America/Chicago") + text);
   }
-
-  void begin(const std::string& text) {
-    auto opened = Gateway::open(site(text), calendar_,
-                                {.loop = loop_,
-                                 .store = store_,
-                                 .make_bus =
-                                     [this](const BusConfig& config) {
-                                       made_.push_back(config.name);
-                                       return std::make_unique<CounterBus>(loop_, devices_);
-                                     },
-                                 .time_zone_release = "2025b"},
-                                {});
-    ASSERT_TRUE(opened.has_value()) << opened.error().message;
-    gateway_ = std::move(*opened);
-    gateway_->start();
-  }
+  void begin(const std::string& text) { RigInMemory::begin(site(text)); }
 
   /// Readings that are not `ok` from the first whole interval on.
   int flawed(const std::string& id) {
-    int counted = 0;
-    const auto number = disk_.meter_number(id, seconds{900}).value();
-    (void)disk_.for_each_interval(
-        number, {kStart + minutes{15}, Instant::max()},
-        [&](const StoredInterval& stored) { counted += stored.reading.validity != Validity::ok; });
-    return counted;
+    return static_cast<int>(std::ranges::count_if(
+        stored(id, {kStart + minutes{15}, Instant::max()}),
+        [](const metering::Reading& reading) { return reading.validity != Validity::ok; }));
   }
   double stored_kWh(const std::string& id) {
-    double sum_kWh = 0.0;
-    const auto number = disk_.meter_number(id, seconds{900}).value();
-    (void)disk_.for_each_interval(number, {kStart + minutes{15}, kStart + hours{4}},
-                                  [&](const StoredInterval& stored) {
-                                    if (!std::isnan(stored.reading.mean_kW))
-                                      sum_kWh += stored.reading.mean_kW * 0.25;
-                                  });
-    return sum_kWh;
+    return RigInMemory::stored_kWh(id, {kStart + minutes{15}, kStart + hours{4}});
   }
   std::vector<std::string> polled() {
     std::vector<std::string> ids;
     for (const MeterStatus& one : gateway_->status().meters) ids.push_back(one.id);
     return ids;
   }
-
-  TemporaryFolder folder_;
-  metering::LocalCalendar calendar_ = metering::LocalCalendar::open("America/Chicago").value();
-  sqlite::SqliteStore disk_ = sqlite::SqliteStore::open(":memory:").value();
-  FailingStore store_{disk_};
-  VirtualLoop loop_{kStart};
-  std::map<std::uint8_t, CounterDevice> devices_;
-  std::vector<std::string> made_;
-  std::unique_ptr<Gateway> gateway_;
 };
 
 const std::string kTwoBuses =
@@ -126,7 +73,7 @@ TEST_F(Reload, AFileThatSaysTheSameChangesNothing) {
                   ->reload(site("# again\n" + bus("roof") + bus("plant") +
                                 meter("main", "plant", 1) + meter("lift", "roof", 2)))
                   .has_value());
-  EXPECT_THAT(made_, ElementsAre("plant", "roof"));
+  EXPECT_THAT(buses_made_, ElementsAre("plant", "roof"));
   EXPECT_EQ(gateway_->status().meters[0].poll->requests, requests);
   loop_.run_for(hours{3});
   EXPECT_EQ(flawed("main"), 0);
@@ -140,7 +87,7 @@ TEST_F(Reload, AChangedBusIsOpenedAnewAndItsNeighbourGoesOn) {
                   ->reload(site(bus("plant") + bus("roof", "request_gap = \"50ms\"\n") +
                                 meter("main", "plant", 1) + meter("lift", "roof", 2)))
                   .has_value());
-  EXPECT_THAT(made_, ElementsAre("plant", "roof", "roof"));
+  EXPECT_THAT(buses_made_, ElementsAre("plant", "roof", "roof"));
   loop_.run_for(hours{3});
   for (const char* id : {"main", "lift"}) EXPECT_EQ(flawed(id), 0) << id;
   EXPECT_NEAR(stored_kWh("main"), 50.0 * 3.75, 0.11);
@@ -180,11 +127,11 @@ TEST_F(Reload, WhatIsKnownOfASilentDeviceIsNotForgotten) {
 
 TEST_F(Reload, AMapThatSaysSomethingElseIsAChange) {
   begin(kTwoBuses);
-  auto text = std::string{CounterBus::kMap};
+  auto text = std::string{recald::testing::CounterBus::kMap};
   text.replace(text.find("scale = 0.1"), 11, "scale = 0.2");
   recald::testing::write_text(folder_ / "counter.toml", text);
   ASSERT_TRUE(gateway_->reload(site(kTwoBuses)).has_value());
-  EXPECT_THAT(made_, SizeIs(4));
+  EXPECT_THAT(buses_made_, SizeIs(4));
 }
 
 // A counter goes on from what is stored, so a store that refuses means: not now.

@@ -71,13 +71,4 @@ inline std::string what_is_wrong(Store& store, std::uint32_t meters,
   return "";
 }
 
-/// Energy of a meter's intervals in a span, those without a value left out.
-inline double stored_kWh(Store& store, std::uint32_t meter, const metering::TimeSpan& span) {
-  double sum_kWh = 0.0;
-  (void)store.for_each_interval(meter, span, [&](const StoredInterval& interval) {
-    if (!std::isnan(interval.reading.mean_kW)) sum_kWh += interval.reading.mean_kW * 0.25;
-  });
-  return sum_kWh;
-}
-
 }  // namespace recald::daemon::testing

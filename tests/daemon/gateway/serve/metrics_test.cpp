@@ -87,7 +87,7 @@ TEST_F(Metrics, WhatWentWrongIsToldApart) {
 
 TEST_F(Metrics, CounterEventsAreCounted) {
   devices_[1].energy_kWh = [](milliseconds t) {
-    return t < minutes{90} ? 5000.0 + 60.0 * hours_of(t) : 60.0 * hours_of(t);
+    return t < minutes{90} ? 5000.0 + 60.0 * testing::hours_of(t) : 60.0 * testing::hours_of(t);
   };
   begin();
   loop_.run_for(hours{2});

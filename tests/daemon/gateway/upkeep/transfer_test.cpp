@@ -7,7 +7,7 @@
 #include "adapters/system/file_lock.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "tests/daemon/command_line.hpp"
-#include "tests/daemon/gateway/run/gateway_rig.hpp"
+#include "tests/daemon/gateway/gateway_rig.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -28,15 +28,17 @@ class Transfer : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     filled_ = std::make_unique<TemporaryFolder>();
-    const SiteConfig site = testing::rig_site(filled_->path());
+    const SiteConfig site = testing::load_rig_site(filled_->path(), testing::two_meter_site());
     auto store = sqlite::SqliteStore::open(site.store.file).value();
     VirtualLoop loop{testing::kRigStart};
     {
-      const testing::GatewayRig rig{site, store, loop};
+      testing::GatewayRig rig{store, loop, testing::kRigStart};
+      rig.begin(site);
       loop.run_for(days{4} + hours{2});
     }
     loop.run_for(hours{3});
-    const testing::GatewayRig rig{site, store, loop};
+    testing::GatewayRig rig{store, loop, testing::kRigStart};
+    rig.begin(site);
     loop.run_for(days{34});
   }
   static void TearDownTestSuite() { filled_.reset(); }
