@@ -11,9 +11,9 @@ namespace {
 
 Cell coverage_cell(const OutputMonth& month) {
   // Rounded towards the doubt: 99.9 % measured is not 100 %.
-  const int percent = static_cast<int>(month.coverage * 100.0);
-  if (!month.measured_usable) return {fmt::format("✕\u00a0{}\u00a0%", percent), "bad"};
-  return {fmt::format("{}\u00a0%", percent), month.filled_share > 0.0 ? "partly" : "whole"};
+  const int percent = static_cast<int>(month.figure.coverage * 100.0);
+  if (!month.figure.usable) return {fmt::format("✕\u00a0{}\u00a0%", percent), "bad"};
+  return {fmt::format("{}\u00a0%", percent), month.figure.filled_share > 0.0 ? "partly" : "whole"};
 }
 
 /// Years as rows, January to December as columns: three years fit one screen.
@@ -26,8 +26,8 @@ void write_coverage_overview(Html& html, const std::vector<OutputResult>& output
     std::map<int, std::vector<Cell>> years;
     for (const OutputMonth& month : output.months) {
       auto& cells =
-          years.try_emplace(int{month.month.year()}, 13, Cell{"·", "muted"}).first->second;
-      cells[unsigned{month.month.month()}] = coverage_cell(month);
+          years.try_emplace(int{month.figure.month.year()}, 13, Cell{"·", "muted"}).first->second;
+      cells[unsigned{month.figure.month.month()}] = coverage_cell(month);
     }
     table.group(output.label);
     for (auto& [year, cells] : years) {
@@ -49,12 +49,13 @@ void write_coverage_words(Html& html, const std::vector<OutputResult>& outputs) 
   for (const OutputResult& output : outputs) {
     for (const OutputMonth& month : output.months) {
       ++total;
-      if (month.measured_usable) {
+      if (month.figure.usable) {
         ++usable;
       } else if (++named <= 6) {
         unusable += fmt::format(
-            "{}{}, {} ({})", named == 1 ? "" : "; ", output.label, month_text(month.month),
-            month.unusable_because.empty() ? "no reason given" : month.unusable_because);
+            "{}{}, {} ({})", named == 1 ? "" : "; ", output.label, month_text(month.figure.month),
+            month.figure.unusable_because.empty() ? "no reason given"
+                                                  : month.figure.unusable_because);
       }
     }
   }
@@ -70,11 +71,11 @@ void write_coverage_details(Html& html, const std::vector<OutputResult>& outputs
   for (const OutputResult& output : outputs) {
     table.group(output.label);
     for (const OutputMonth& month : output.months) {
-      table.row({{month_text(month.month)},
-                 {percent_text(month.coverage, 2), "number"},
-                 {percent_text(month.filled_share, 2), "number"},
-                 {month.measured_usable ? "yes" : "✕ no", month.measured_usable ? "" : "bad"},
-                 {month.unusable_because}});
+      table.row({{month_text(month.figure.month)},
+                 {percent_text(month.figure.coverage, 2), "number"},
+                 {percent_text(month.figure.filled_share, 2), "number"},
+                 {month.figure.usable ? "yes" : "✕ no", month.figure.usable ? "" : "bad"},
+                 {month.figure.unusable_because}});
     }
   }
   html.markup("<details class=\"data\"><summary>Coverage month by month, with reasons</summary>\n");
@@ -82,19 +83,21 @@ void write_coverage_details(Html& html, const std::vector<OutputResult>& outputs
   html.markup("</details>\n");
 }
 
-void write_findings(Html& html, const std::vector<Finding>& findings) {
+void write_findings(Html& html, const ReportData& data) {
   html.element("h3", "What the readings showed");
-  if (findings.empty()) {
+  if (data.findings.empty()) {
     html.element("p", "Nothing that the checks look for was found in the readings.");
     return;
   }
   Table table("Findings in the readings; local time");
   table.columns({"Meter", "From", "To", "Intervals", "Finding"});
-  for (const Finding& finding : findings) {
+  for (const metering::DataFinding& finding : data.findings) {
+    const auto [begin, end] = finding.span;
+    const bool dated = end > begin;
     table.row({{finding.meter},
-               {finding.from, "nowrap"},
-               {finding.to, "nowrap"},
-               {count_text(static_cast<double>(finding.count)), "number"},
+               {dated ? local_text(begin, data.calendar) : "", "nowrap"},
+               {dated ? local_text(end, data.calendar) : "", "nowrap"},
+               {count_text(finding.slots), "number"},
                {finding.sentence, "words"}});
   }
   table.write(html);
@@ -110,7 +113,7 @@ void write_data_section(Html& html, const ReportData& data) {
     write_coverage_overview(html, data.outputs);
     write_coverage_details(html, data.outputs);
   }
-  write_findings(html, data.findings);
+  write_findings(html, data);
   html.markup("</section>\n");
 }
 

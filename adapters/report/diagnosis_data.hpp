@@ -10,23 +10,13 @@
 
 #include "adapters/report/report_data.hpp"
 #include "core/diagnosis/gap.hpp"
+#include "core/diagnosis/locate.hpp"
+#include "core/diagnosis/model_version.hpp"
+#include "core/diagnosis/monthly_vote.hpp"
+#include "core/diagnosis/naming.hpp"
 #include "core/diagnosis/residual_map.hpp"
 
 namespace recald::report {
-
-enum class DiagnosisVerdict {
-  named,
-  not_confirmed,  ///< Named, then taken back because the months kept back did not agree.
-  confusable,
-  unknown,
-  none,
-};
-
-/// What an effect does to one meter in a mean month.
-struct MeterImpact {
-  std::string meter;
-  double kWh_month;  ///< With the effect minus without.
-};
 
 /// A parameter of an effect with its posterior; a date is text, everything else a number.
 struct EffectParameterRow {
@@ -43,17 +33,8 @@ struct AddedEffectCard {
   std::string physics;
   std::string when;  ///< "At all times of the record", "Since about 12 Mar 2021 (…)".
   double probability;
-  std::vector<MeterImpact> impacts;
+  std::vector<diagnosis::MeterImpact> impacts;  ///< Of a mean month; meters as people say them.
   std::vector<EffectParameterRow> parameters;
-};
-
-/// A place where meters and model disagree.
-struct LocatedRow {
-  std::string meter;
-  std::string where;
-  double share;     ///< Measured minus modelled, of the modelled, there.
-  double share_se;  ///< Its standard error.
-  double kWh_month;
 };
 
 enum class CandidateKind { effect, none, unknown };
@@ -89,19 +70,6 @@ struct GapStep {
   std::vector<diagnosis::MeterGap> gaps;  ///< (m) NaN where the meter has nothing to be judged by.
 };
 
-/// An output of another model than the hourly one, before and after it got the same effects, on the
-/// same months kept back.
-struct OtherGapRow {
-  std::string model;     ///< "epc"
-  std::string output;    ///< As it shall be read.
-  double cvrmse_before;  ///< Of months, as all that follows.
-  double cvrmse_after;
-  double nmbe_before;  ///< Simulated minus measured.
-  double nmbe_after;
-  double log_score_before;
-  double log_score_after;
-};
-
 /// What one addition explains at one meter.
 struct EffectSignature {
   std::string effect;
@@ -122,7 +90,8 @@ struct DiagnosisData {
   SiteLine site;
   Provenance provenance;
 
-  DiagnosisVerdict verdict = DiagnosisVerdict::none;
+  diagnosis::Outcome outcome = diagnosis::Outcome::none;
+  bool not_confirmed = false;  ///< Named, then taken back: the months kept back did not agree.
   std::string headline;
   std::vector<std::string> explanations;
   std::vector<Notice> notices;
@@ -134,12 +103,13 @@ struct DiagnosisData {
   std::vector<double> temperature_limits_C;
   std::vector<MeterMaps> maps;  ///< (m)
 
-  std::vector<LocatedRow> located;
-  std::vector<LocatedRow> located_after;  ///< With what was added.
-  std::vector<CandidateBar> candidates;   ///< Descending in probability.
+  std::vector<diagnosis::Finding> located;
+  std::vector<diagnosis::Finding> located_after;  ///< With what was added.
+  std::vector<CandidateBar> candidates;           ///< Descending in probability.
   std::vector<Separation> separations;
   std::vector<GapStep> steps;  ///< Empty: no month was kept back.
-  std::vector<OtherGapRow> other_gaps;
+  /// Of other models than the hourly one, given the same effects; outputs as people say them.
+  std::vector<diagnosis::ModelGap> other_gaps;
   std::vector<EffectSignature> signatures;
   std::vector<diagnosis::MeterGap> base_fit;  ///< (m) on the fitted months.
   std::vector<NotIdentifiableRow> not_identifiable;

@@ -75,24 +75,21 @@ void write_measures(Html& html, const DiagnosisData& data) {
 }
 
 void write_judgement(Html& html, const DiagnosisData& data) {
-  switch (data.verdict) {
-    case DiagnosisVerdict::named:
-      html.element("p",
-                   "The months kept back confirm it: together the meters are told better by more "
-                   "than three to one, the effect's evidence counted as on this page, and none is "
-                   "told clearly worse.");
-      return;
-    case DiagnosisVerdict::not_confirmed:
-      html.element("p",
-                   "Not confirmed: on the months kept back the model with the additions is not "
-                   "better by three to one, or tells one meter clearly worse, or the monthly "
-                   "model speaks against them. What was tried has been taken back.",
-                   "bad");
-      return;
-    default:
-      html.element("p",
-                   "Nothing was added, so there is nothing to compare: this is how the calibrated "
-                   "model tells the months kept back.");
+  if (data.not_confirmed) {
+    html.element("p",
+                 "Not confirmed: on the months kept back the model with the additions is not "
+                 "better by three to one, or tells one meter clearly worse, or the monthly "
+                 "model speaks against them. What was tried has been taken back.",
+                 "bad");
+  } else if (data.outcome == diagnosis::Outcome::named) {
+    html.element("p",
+                 "The months kept back confirm it: together the meters are told better by more "
+                 "than three to one, the effect's evidence counted as on this page, and none is "
+                 "told clearly worse.");
+  } else {
+    html.element("p",
+                 "Nothing was added, so there is nothing to compare: this is how the calibrated "
+                 "model tells the months kept back.");
   }
 }
 
@@ -102,14 +99,18 @@ void write_other_models(Html& html, const DiagnosisData& data) {
       "The model that the site is calibrated with, given the same effects, on the same months");
   table.columns({"Model and output", "CV(RMSE) before", "after", "Bias, model − meter, before",
                  "after", "Log score a month before", "after"});
-  for (const OtherGapRow& row : data.other_gaps) {
-    table.row({{fmt::format("{}: {}", row.model, row.output)},
-               {percent_text(row.cvrmse_before), "number"},
-               {percent_text(row.cvrmse_after), "number"},
-               {signed_percent_text(row.nmbe_before), "number"},
-               {signed_percent_text(row.nmbe_after), "number"},
-               {number_text(row.log_score_before), "number"},
-               {number_text(row.log_score_after), "number"}});
+  for (const diagnosis::ModelGap& gap : data.other_gaps) {
+    for (std::size_t i = 0; i < gap.outputs.size(); ++i) {
+      const auto& before = gap.before[i];
+      const auto& after = gap.after[i];
+      table.row({{fmt::format("{}: {}", gap.model, gap.outputs[i])},
+                 {percent_text(before.cvrmse), "number"},
+                 {percent_text(after.cvrmse), "number"},
+                 {signed_percent_text(before.nmbe_sim_minus_meas), "number"},
+                 {signed_percent_text(after.nmbe_sim_minus_meas), "number"},
+                 {number_text(before.log_score), "number"},
+                 {number_text(after.log_score), "number"}});
+    }
   }
   table.write(html);
 }

@@ -15,7 +15,7 @@ constexpr std::size_t kRowsShown = 15;
 constexpr double kSharePeopleRead = 2.0;
 
 /// "14.0 % more than the model (± 3.0 %)"
-std::string share_words(const LocatedRow& row) {
+std::string share_words(const diagnosis::Finding& row) {
   if (!std::isfinite(row.share)) return "–";
   if (row.share > kSharePeopleRead) {
     return fmt::format("{} times what the model says", number_text(1.0 + row.share));
@@ -28,7 +28,8 @@ std::string kWh_words(double kWh_month) {
   return kWh_month > 0.0 ? "+" + count_text(kWh_month) : count_text(kWh_month);
 }
 
-void write_rows(Html& html, const std::vector<LocatedRow>& rows, std::string caption) {
+void write_rows(Html& html, const DiagnosisData& data, const std::vector<diagnosis::Finding>& rows,
+                std::string caption) {
   const std::size_t shown = std::min(rows.size(), kRowsShown);
   if (shown < rows.size()) {
     caption += fmt::format(" ({} of {} places; diagnosis.json has more)", shown, rows.size());
@@ -36,9 +37,9 @@ void write_rows(Html& html, const std::vector<LocatedRow>& rows, std::string cap
   Table table(std::move(caption));
   table.columns({"Meter", "When", "The meter reads", "kWh a month"});
   for (std::size_t i = 0; i < shown; ++i) {
-    const LocatedRow& row = rows[i];
-    table.row({{row.meter},
-               {row.where, "words"},
+    const diagnosis::Finding& row = rows[i];
+    table.row({{data.meters[row.meter]},
+               {row.words, "words"},
                {share_words(row), "nowrap"},
                {kWh_words(row.kWh_month), "number"}});
   }
@@ -64,12 +65,12 @@ void write_located_section(Html& html, const DiagnosisData& data) {
                "The model was calibrated first: what is listed here is what is left when its "
                "parameters have done what they can. The clearest places come first; a place that "
                "chance could explain is not listed. The months kept back have no part in it.");
-  write_rows(html, data.located, "Before anything was added");
+  write_rows(html, data, data.located, "Before anything was added");
   if (!data.added.empty()) {
     if (data.located_after.empty()) {
       html.element("p", "With what was added, no place is left that chance could not explain.");
     } else {
-      write_rows(html, data.located_after, "What is left with the additions in the model");
+      write_rows(html, data, data.located_after, "What is left with the additions in the model");
     }
   }
   html.markup("</section>\n");

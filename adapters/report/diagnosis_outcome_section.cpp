@@ -15,17 +15,16 @@ struct Mark {
   std::string_view css_class;
 };
 
-Mark verdict_mark(DiagnosisVerdict verdict) {
-  switch (verdict) {
-    case DiagnosisVerdict::named:
+Mark outcome_mark(const DiagnosisData& data) {
+  if (data.not_confirmed) return {"✕ Not confirmed", "fail"};
+  switch (data.outcome) {
+    case diagnosis::Outcome::named:
       return {"✓ Named", "pass"};
-    case DiagnosisVerdict::not_confirmed:
-      return {"✕ Not confirmed", "fail"};
-    case DiagnosisVerdict::confusable:
+    case diagnosis::Outcome::confusable:
       return {"▲ Cannot be told apart", "warning"};
-    case DiagnosisVerdict::unknown:
+    case diagnosis::Outcome::unknown:
       return {"▲ Not in the catalogue", "warning"};
-    case DiagnosisVerdict::none:
+    case diagnosis::Outcome::none:
       break;
   }
   return {"○ Nothing named", "note"};
@@ -48,8 +47,8 @@ void write_parameters(Html& html, const AddedEffectCard& card) {
 void write_impacts(Html& html, const AddedEffectCard& card) {
   Table table("What it does to the meters");
   table.columns({"Meter", "A month, on average"});
-  for (const MeterImpact& impact : card.impacts) {
-    table.row({{impact.meter}, {kWh_text(impact.kWh_month), "number"}});
+  for (const diagnosis::MeterImpact& impact : card.impacts) {
+    table.row({{impact.meter}, {kWh_text(impact.monthly_kWh), "number"}});
   }
   table.write(html);
 }
@@ -73,17 +72,16 @@ void write_card(Html& html, const AddedEffectCard& card, bool taken_back) {
 }  // namespace
 
 void write_outcome_section(Html& html, const DiagnosisData& data) {
-  const Mark mark = verdict_mark(data.verdict);
-  const bool taken_back = data.verdict == DiagnosisVerdict::not_confirmed;
+  const Mark mark = outcome_mark(data);
   open_section(html, "outcome", "In short");
   html.markup(fmt::format("<p class=\"{}\">", mark.css_class))
       .element("span", mark.word, "badge")
       .markup("</p>\n");
-  html.element("p", data.headline, taken_back ? "headline bad" : "headline");
+  html.element("p", data.headline, data.not_confirmed ? "headline bad" : "headline");
   for (const std::string& sentence : data.explanations) html.element("p", sentence, "lead");
   if (!data.added.empty()) {
     html.markup("<ul class=\"verdicts effects\">\n");
-    for (const AddedEffectCard& card : data.added) write_card(html, card, taken_back);
+    for (const AddedEffectCard& card : data.added) write_card(html, card, data.not_confirmed);
     html.markup("</ul>\n");
   }
   write_notices(html, data.notices);

@@ -11,10 +11,10 @@
 namespace recald::report {
 namespace {
 
+using assessment::MonthRole;
 using nlohmann::json;
 
 json number(double value) { return json_number(value); }
-json number(std::optional<double> value) { return value ? number(*value) : json(nullptr); }
 
 const char* role_text(MonthRole role) {
   switch (role) {
@@ -54,29 +54,30 @@ json curve(const Prior& prior) {
 
 json parameter_json(const ParameterResult& parameter) {
   const Histogram histogram = make_histogram(parameter.draws, kPosteriorBins);
+  const calibration::Summary& summary = parameter.summary;
   return {{"label", parameter.label},
-          {"unit", parameter.unit},
+          {"unit", summary.unit},
           {"prior", curve(parameter.prior)},
           {"binStart", number(histogram.start)},
           {"binWidth", number(histogram.width)},
           {"density", json_numbers(histogram.density())},
-          {"mean", number(parameter.mean)},
-          {"q05", number(parameter.q05)},
-          {"q95", number(parameter.q95)}};
+          {"mean", number(summary.mean)},
+          {"q05", number(summary.q05)},
+          {"q95", number(summary.q95)}};
 }
 
-json box_json(const std::optional<ModelBox>& box) {
+json box_json(const std::optional<assessment::BoxPlot>& box) {
   if (!box) return nullptr;
-  return json_numbers(std::array{box->low_whisker_kWh, box->q25_kWh, box->q50_kWh, box->q75_kWh,
-                                 box->high_whisker_kWh});
+  return json_numbers(
+      std::array{box->low_whisker, box->q25, box->q50, box->q75, box->high_whisker});
 }
 
 json month_json(const OutputMonth& month) {
-  return {{"month", month_key(month.month)},
+  return {{"month", month_key(month.figure.month)},
           {"role", role_text(month.role)},
-          {"measured", number(month.measured_kWh)},
-          {"usable", month.measured_usable},
-          {"filled", json_number(month.filled_share, 4)},
+          {"measured", number(month.figure.daily_average_kWh)},
+          {"usable", month.figure.usable},
+          {"filled", json_number(month.figure.filled_share, 4)},
           {"different", month.flagged_different},
           {"box", box_json(month.box)}};
 }
@@ -91,22 +92,29 @@ json metric_histogram_json(const std::vector<double>& values) {
 json output_json(const OutputResult& output) {
   json months = json::array();
   for (const OutputMonth& month : output.months) months.push_back(month_json(month));
+  const assessment::OutputAssessment fit =
+      output.assessment.value_or(assessment::OutputAssessment{});
   return {{"label", output.label},
           {"months", months},
           {"cvrmse",
-           {{"calibration", metric_histogram_json(output.draw_cvrmse_calibration)},
-            {"validation", metric_histogram_json(output.draw_cvrmse_validation)}}}};
+           {{"calibration", metric_histogram_json(fit.draw_cvrmse_calibration)},
+            {"validation", metric_histogram_json(fit.draw_cvrmse_validation)}}}};
 }
 
-json peak_json(const PeakSeries& series) {
-  json months = json::array();
-  for (const PeakMonth& month : series.months) {
-    months.push_back({{"month", month_key(month.month)},
-                      {"kW", number(month.peak_kW)},
-                      {"start", month.start},
-                      {"exceedable", month.could_be_exceeded}});
+json peaks_json(const ReportData& data) {
+  json peaks = json::array();
+  for (const PeakSeries& series : data.peaks) {
+    json months = json::array();
+    for (const metering::MonthlyFigure& figure : series.months) {
+      const auto& peak = figure.peak;
+      months.push_back({{"month", month_key(figure.month)},
+                        {"kW", peak ? number(peak->kW) : json(nullptr)},
+                        {"start", peak ? local_text(peak->start, data.calendar) : ""},
+                        {"exceedable", peak && peak->could_be_exceeded}});
+    }
+    peaks.push_back({{"label", series.meter}, {"months", months}});
   }
-  return {{"label", series.meter}, {"months", months}};
+  return peaks;
 }
 
 json day_type_json(const DayTypeProfile& day_type) {
@@ -157,7 +165,7 @@ json array_of(const std::vector<Item>& items, json (*convert)(const Item&)) {
 std::string figure_json(const ReportData& data) {
   const json root = {{"parameters", array_of(data.parameters, parameter_json)},
                      {"outputs", array_of(data.outputs, output_json)},
-                     {"peaks", array_of(data.peaks, peak_json)},
+                     {"peaks", peaks_json(data)},
                      {"dayTypes", array_of(data.profile.day_types, day_type_json)},
                      {"loads", array_of(data.loads, load_json)}};
   return script_safe_text(root);

@@ -11,9 +11,10 @@
 namespace recald::report {
 namespace {
 
-// ASHRAE Guideline 14, monthly data.
-constexpr double kNmbeLimit = 0.05;
-constexpr double kCvrmseLimit = 0.15;
+using assessment::FitMetrics;
+using assessment::kMonthlyLimits;
+using assessment::MonthRole;
+using assessment::PredictiveScores;
 
 Cell judged_cell(const std::string& text, double magnitude, double limit) {
   if (!std::isfinite(magnitude)) return {"–", "number"};
@@ -28,9 +29,10 @@ void add_metric_cells(std::vector<Cell>& cells, const std::optional<FitMetrics>&
     return;
   }
   cells.push_back(judged_cell(signed_percent_text(metrics->nmbe_sim_minus_meas),
-                              std::abs(metrics->nmbe_sim_minus_meas), kNmbeLimit));
+                              std::abs(metrics->nmbe_sim_minus_meas), kMonthlyLimits.nmbe));
   cells.push_back({signed_percent_text(metrics->nmbe_g14), "number muted"});
-  cells.push_back(judged_cell(percent_text(metrics->cvrmse), metrics->cvrmse, kCvrmseLimit));
+  cells.push_back(
+      judged_cell(percent_text(metrics->cvrmse), metrics->cvrmse, kMonthlyLimits.cvrmse));
 }
 
 /// Tables 3 and 4 of the seed in one, with the prior mean as the second "before".
@@ -44,14 +46,17 @@ void write_metrics(Html& html, const std::vector<OutputResult>& outputs) {
   table.columns(
       {"Model run at", model_high, meter_high, "CV(RMSE)", model_high, meter_high, "CV(RMSE)"});
   for (const OutputResult& output : outputs) {
-    if (output.metrics.empty()) continue;
+    if (!output.assessment) continue;
     table.group(output.label);
-    for (const MetricsRow& row : output.metrics) {
-      std::vector<Cell> cells{{row.stage}};
-      add_metric_cells(cells, row.calibration);
-      add_metric_cells(cells, row.validation);
+    const auto row = [&table](const char* stage, const assessment::PeriodMetrics& metrics) {
+      std::vector<Cell> cells{{stage}};
+      add_metric_cells(cells, metrics.calibration);
+      add_metric_cells(cells, metrics.validation);
       table.row(std::move(cells));
-    }
+    };
+    row("Before (prior mode)", output.assessment->before);
+    row("Prior mean", output.assessment->prior_mean);
+    row("After", output.assessment->after);
   }
   html.element("h3", "Before and after");
   html.element(
@@ -68,14 +73,16 @@ void add_score_cells(std::vector<Cell>& cells, const std::optional<PredictiveSco
     cells.insert(cells.end(), 3, Cell{"–", "number"});
     return;
   }
-  cells.push_back({percent_text(scores->share_inside_50, 0), "number"});
-  cells.push_back({percent_text(scores->share_inside_90, 0), "number"});
-  cells.push_back({number_text(scores->crps_kWh), "number"});
+  const double months = scores->months;
+  cells.push_back({percent_text(scores->inside_50 / months, 0), "number"});
+  cells.push_back({percent_text(scores->inside_90 / months, 0), "number"});
+  cells.push_back({number_text(scores->crps), "number"});
 }
 
 void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
   const bool any = std::any_of(outputs.begin(), outputs.end(), [](const OutputResult& output) {
-    return output.scores_calibration || output.scores_validation;
+    const auto& fit = output.assessment;
+    return fit && (fit->scores_calibration || fit->scores_validation);
   });
   if (!any) return;
   Table table("Measured months inside the predictive intervals, and the mean CRPS in kWh/day");
@@ -84,8 +91,9 @@ void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
       {"Output", "Inside 50 %", "Inside 90 %", "CRPS", "Inside 50 %", "Inside 90 %", "CRPS"});
   for (const OutputResult& output : outputs) {
     std::vector<Cell> cells{{output.label}};
-    add_score_cells(cells, output.scores_calibration);
-    add_score_cells(cells, output.scores_validation);
+    const auto& fit = output.assessment;
+    add_score_cells(cells, fit ? fit->scores_calibration : std::nullopt);
+    add_score_cells(cells, fit ? fit->scores_validation : std::nullopt);
     table.row(std::move(cells));
   }
   html.element("h3", "Is the stated uncertainty honest?");
@@ -113,17 +121,16 @@ Table month_table(const OutputResult& output) {
   table.columns({"Month", "Role", "Measured", "Remark", "Estimated", "Model: low whisker", "25 %",
                  "Median", "75 %", "High whisker", "Mean"});
   for (const OutputMonth& month : output.months) {
-    std::vector<Cell> cells{{month_text(month.month)},
+    std::vector<Cell> cells{{month_text(month.figure.month)},
                             {role_word(month.role)},
-                            {number_text(month.measured_kWh), "number"}};
-    std::string remark = month.measured_usable ? "" : "✕ not usable";
+                            {number_text(month.figure.daily_average_kWh), "number"}};
+    std::string remark = month.figure.usable ? "" : "✕ not usable";
     if (month.flagged_different) remark += remark.empty() ? "◆ different" : ", ◆ different";
     cells.push_back({remark, "nowrap"});
-    cells.push_back({percent_text(month.filled_share), "number"});
-    const ModelBox none{NAN, NAN, NAN, NAN, NAN, NAN};
-    const ModelBox& box = month.box ? *month.box : none;
-    for (const double value : {box.low_whisker_kWh, box.q25_kWh, box.q50_kWh, box.q75_kWh,
-                               box.high_whisker_kWh, box.mean_kWh}) {
+    cells.push_back({percent_text(month.figure.filled_share), "number"});
+    const auto box = month.box.value_or(assessment::BoxPlot{NAN, NAN, NAN, NAN, NAN, NAN});
+    for (const double value :
+         {box.low_whisker, box.q25, box.q50, box.q75, box.high_whisker, box.mean}) {
       cells.push_back({number_text(value), "number"});
     }
     table.row(std::move(cells));
@@ -137,9 +144,9 @@ bool modelled(const OutputResult& output) {
 }
 
 std::string months_caption(const OutputResult& output) {
-  const bool any_measured =
-      std::any_of(output.months.begin(), output.months.end(),
-                  [](const OutputMonth& month) { return month.measured_kWh.has_value(); });
+  const bool any_measured = std::any_of(
+      output.months.begin(), output.months.end(),
+      [](const OutputMonth& month) { return std::isfinite(month.figure.daily_average_kWh); });
   std::string caption = any_measured ? "" : "Nothing was measured in these months. ";
   caption += modelled(output)
                  ? "Box: the middle half of the posterior draws run through the model; "
@@ -165,7 +172,7 @@ void write_months_figure(Html& html, const OutputResult& output, int index) {
 
 double share_within_limit(const std::vector<double>& draws) {
   const auto within = std::count_if(draws.begin(), draws.end(),
-                                    [](double cvrmse) { return cvrmse <= kCvrmseLimit; });
+                                    [](double cvrmse) { return cvrmse <= kMonthlyLimits.cvrmse; });
   return static_cast<double>(within) / static_cast<double>(draws.size());
 }
 
@@ -194,13 +201,16 @@ void add_bins(Table& table, const std::string& period, const std::vector<double>
 }
 
 void write_cvrmse_figure(Html& html, const OutputResult& output, int index) {
-  if (output.draw_cvrmse_calibration.empty() && output.draw_cvrmse_validation.empty()) return;
+  if (!output.assessment) return;
+  const auto& calibration = output.assessment->draw_cvrmse_calibration;
+  const auto& validation = output.assessment->draw_cvrmse_validation;
+  if (calibration.empty() && validation.empty()) return;
   Table table(output.label + ": CV(RMSE) of the posterior draws");
   table.columns({"CV(RMSE) from", "To", "Draws"});
-  add_bins(table, "Calibration months", output.draw_cvrmse_calibration);
-  add_bins(table, "Validation months", output.draw_cvrmse_validation);
-  const std::string words = scatter_sentence("Calibration months", output.draw_cvrmse_calibration) +
-                            scatter_sentence("Validation months", output.draw_cvrmse_validation);
+  add_bins(table, "Calibration months", calibration);
+  add_bins(table, "Validation months", validation);
+  const std::string words = scatter_sentence("Calibration months", calibration) +
+                            scatter_sentence("Validation months", validation);
   write_figure(html,
                {.kind = "cvrmse",
                 .index = index,
@@ -230,7 +240,7 @@ void write_fit_section(Html& html, const ReportData& data) {
                has_model(data) ? "Does the model follow the meters?" : "How much was used?");
   const bool judged =
       std::any_of(data.outputs.begin(), data.outputs.end(),
-                  [](const OutputResult& output) { return !output.metrics.empty(); });
+                  [](const OutputResult& output) { return output.assessment.has_value(); });
   if (judged) write_metrics(html, data.outputs);
   html.element("h3", "Monthly consumption").markup("<p class=\"key\" aria-hidden=\"true\">");
   if (has_model(data)) {

@@ -88,6 +88,16 @@ std::string part_of_day_text(int part) {
   return fmt::format("{:02}–{:02} h", 4 * part, 4 * part + 4);
 }
 
+std::string local_text(metering::Instant t,
+                       const std::optional<metering::LocalCalendar>& calendar) {
+  const std::chrono::sys_days midnight = std::chrono::floor<std::chrono::days>(t);
+  const metering::LocalTime local =
+      calendar ? calendar->local_time(t)
+               : metering::LocalTime{midnight, static_cast<int>((t - midnight).count() / 60)};
+  return fmt::format("{} {:02}:{:02}", day_key(local.date), local.minute_of_day / 60,
+                     local.minute_of_day % 60);
+}
+
 std::string part_of_week_text(int part) {
   static constexpr std::array<const char*, 7> kDays{"Sun", "Mon", "Tue", "Wed",
                                                     "Thu", "Fri", "Sat"};

@@ -11,25 +11,33 @@
 namespace recald::report {
 namespace {
 
-Table peak_table(const PeakSeries& series) {
+Table peak_table(const ReportData& data, const PeakSeries& series) {
   Table table(series.meter + ": measured peak demand by month");
   table.columns({"Month", "Peak, kW", "Began (local time)", "Measured share", "Remark"});
-  for (const PeakMonth& month : series.months) {
-    table.row({{month_text(month.month)},
-               {number_text(month.peak_kW), "number"},
-               {month.start, "nowrap"},
-               {percent_text(month.coverage), "number"},
-               {month.could_be_exceeded ? "△ the true peak may be higher" : ""}});
+  for (const metering::MonthlyFigure& figure : series.months) {
+    const auto& peak = figure.peak;
+    table.row({{month_text(figure.month)},
+               {number_text(peak ? peak->kW : NAN), "number"},
+               {peak ? local_text(peak->start, data.calendar) : "", "nowrap"},
+               {percent_text(figure.coverage), "number"},
+               {peak && peak->could_be_exceeded ? "△ the true peak may be higher" : ""}});
   }
   return table;
 }
 
+std::string window_words(std::chrono::seconds window) {
+  return window.count() % 3600 == 0
+             ? fmt::format("highest {}-hour mean, fixed blocks", window.count() / 3600)
+             : fmt::format("highest {}-minute mean, fixed blocks", window.count() / 60);
+}
+
 std::string peak_caption(const PeakSeries& series) {
-  const bool any = std::any_of(series.months.begin(), series.months.end(),
-                               [](const PeakMonth& month) { return month.peak_kW.has_value(); });
-  return fmt::format("{}Peak: {}. An estimated interval is never a peak.",
-                     any ? "" : "Nothing was measured in these months. ",
-                     series.window.empty() ? "as measured" : series.window);
+  const bool any = std::ranges::any_of(
+      series.months, [](const metering::MonthlyFigure& figure) { return figure.peak.has_value(); });
+  return fmt::format(
+      "{}Peak: {}. An estimated interval is never a peak.",
+      any ? "" : "Nothing was measured in these months. ",
+      series.months.empty() ? "as measured" : window_words(series.months.back().peak_window));
 }
 
 std::string hour_range(std::size_t hour) { return fmt::format("{:02}–{:02} h", hour, hour + 1); }
@@ -157,7 +165,7 @@ void write_peak_section(Html& html, const ReportData& data) {
   open_section(html, "peaks", "How high were the peaks?");
   if (!has_model(data)) {
     html.element("p", "There is no calibrated model yet: the figures show measurements only.");
-  } else if (!data.model_has_peaks) {
+  } else {
     html.element("p",
                  "This model works on monthly sums and has no peaks: the figures show measurements "
                  "only, and nothing here was calibrated.");
@@ -172,7 +180,7 @@ void write_peak_section(Html& html, const ReportData& data) {
                   .description = "Measured monthly peak demand of " + series.meter + " in kW.",
                   .caption = peak_caption(series),
                   .size = "small"},
-                 peak_table(series));
+                 peak_table(data, series));
   }
   html.markup("</div>\n</section>\n");
 }

@@ -10,22 +10,23 @@ namespace recald::report {
 namespace {
 
 std::string label_with_unit(const ParameterResult& parameter) {
-  return parameter.unit.empty() ? parameter.label
-                                : fmt::format("{} ({})", parameter.label, parameter.unit);
+  const std::string& unit = parameter.summary.unit;
+  return unit.empty() ? parameter.label : fmt::format("{} ({})", parameter.label, unit);
 }
 
 Table parameter_table(const ParameterResult& parameter) {
   Table table(label_with_unit(parameter));
   table.columns({"", "Prior", "Posterior"});
   const Prior& prior = parameter.prior;
+  const calibration::Summary& posterior = parameter.summary;
   const auto row = [&table](const char* name, double before, double after) {
     table.row({{name}, {number_text(before), "number"}, {number_text(after), "number"}});
   };
-  row("Mean", prior.mean(), parameter.mean);
-  row("Standard deviation", std::sqrt(prior.variance()), parameter.sd);
-  row("5 %", prior.quantile(0.05), parameter.q05);
-  row("Median", prior.quantile(0.5), parameter.q50);
-  row("95 %", prior.quantile(0.95), parameter.q95);
+  row("Mean", prior.mean(), posterior.mean);
+  row("Standard deviation", std::sqrt(prior.variance()), posterior.sd);
+  row("5 %", prior.quantile(0.05), posterior.q05);
+  row("Median", prior.quantile(0.5), posterior.q50);
+  row("95 %", prior.quantile(0.95), posterior.q95);
   row("Minimum", prior.min(), NAN);
   row("Mode", prior.mode(), NAN);
   row("Maximum", prior.max(), NAN);
@@ -43,11 +44,12 @@ Table parameter_table(const ParameterResult& parameter) {
 }
 
 void write_parameter_figure(Html& html, const ParameterResult& parameter, int index) {
-  const std::string learnt = contraction_sentence(parameter.contraction);
+  const calibration::Summary& posterior = parameter.summary;
+  const std::string learnt = contraction_sentence(posterior.contraction);
   const std::string interval =
-      fmt::format("Mean {}, 90 % interval {} to {}{}{}. ", number_text(parameter.mean),
-                  number_text(parameter.q05), number_text(parameter.q95),
-                  parameter.unit.empty() ? "" : " ", parameter.unit);
+      fmt::format("Mean {}, 90 % interval {} to {}{}{}. ", number_text(posterior.mean),
+                  number_text(posterior.q05), number_text(posterior.q95),
+                  posterior.unit.empty() ? "" : " ", posterior.unit);
   write_figure(html,
                {.kind = "parameter",
                 .index = index,
@@ -71,19 +73,20 @@ void write_summary(Html& html, const std::vector<ParameterResult>& parameters) {
       return Cell{count_text(ess) + (ess >= 400.0 ? " ✓" : " ✕"),
                   ess >= 400.0 ? "number good" : "number bad"};
     };
-    const bool mixed = parameter.rhat <= 1.01;
+    const calibration::Summary& posterior = parameter.summary;
+    const bool mixed = posterior.rhat <= 1.01;
     table.row({{label_with_unit(parameter)},
-               {parameter.name, "code"},
-               {number_text(parameter.mean), "number"},
-               {number_text(parameter.sd), "number"},
-               {number_text(parameter.q05), "number"},
-               {number_text(parameter.q50), "number"},
-               {number_text(parameter.q95), "number"},
-               {signed_percent_text(parameter.contraction), "number"},
-               {number_text(parameter.rhat) + (mixed ? " ✓" : " ✕"),
+               {posterior.name, "code"},
+               {number_text(posterior.mean), "number"},
+               {number_text(posterior.sd), "number"},
+               {number_text(posterior.q05), "number"},
+               {number_text(posterior.q50), "number"},
+               {number_text(posterior.q95), "number"},
+               {signed_percent_text(posterior.contraction), "number"},
+               {number_text(posterior.rhat) + (mixed ? " ✓" : " ✕"),
                 mixed ? "number good" : "number bad"},
-               ess_cell(parameter.ess_bulk),
-               ess_cell(parameter.ess_tail)});
+               ess_cell(posterior.ess_bulk),
+               ess_cell(posterior.ess_tail)});
   }
   table.write(html);
 }

@@ -10,8 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "core/assessment/output_assessment.hpp"
+#include "core/calibration/summary.hpp"
 #include "core/metering/civil_time.hpp"
-#include "core/model/parameter.hpp"
+#include "core/metering/data_quality.hpp"
+#include "core/metering/monthly_figure.hpp"
+#include "core/model/prior.hpp"
 
 namespace recald::report {
 
@@ -44,108 +48,38 @@ struct Notice {
   std::string sentence;
 };
 
-/// Something that the readings showed, e.g. a run of zeros that means no data.
-struct Finding {
-  std::string meter;
-  std::string sentence;
-  std::string from;  ///< Local time, as it shall be read.
-  std::string to;
-  std::int64_t count;  ///< Slots concerned.
-};
-
 /// ASHRAE Guideline 14 on one output.
 struct OutputVerdict {
   std::string output;
-  bool pass;
-  std::string sentence;  ///< Why, in one sentence.
+  assessment::GuidelineVerdict verdict;
 };
 
-/// A calibration parameter, prior against posterior; all values in `unit`.
+/// A calibration parameter, prior against posterior.
 struct ParameterResult {
-  std::string name;   ///< As in files: "outdoor_air".
   std::string label;  ///< As people say it: "Outdoor airflow rate".
-  std::string unit;
   Prior prior;
+  calibration::Summary summary;
   std::vector<double> draws;  ///< Posterior; 30 bins are made of them.
-  double mean;
-  double sd;
-  double q05;
-  double q50;
-  double q95;
-  double contraction;  ///< 1 − posterior variance / prior variance.
-  double rhat;
-  double ess_bulk;
-  double ess_tail;
-};
-
-enum class MonthRole { calibration, validation, unused };
-
-/// The posterior draws' outputs, kWh/day: box 25–75 %, whiskers 1.5 interquartile ranges.
-struct ModelBox {
-  double low_whisker_kWh;
-  double q25_kWh;
-  double q50_kWh;
-  double q75_kWh;
-  double high_whisker_kWh;
-  double mean_kWh;
 };
 
 /// One month of one output; energies are daily averages in kWh/day.
 struct OutputMonth {
-  metering::Month month;
-  MonthRole role = MonthRole::unused;
-  std::optional<double> measured_kWh;
-  bool measured_usable = false;
-  double coverage = 0.0;      ///< Measured and valid share of the month's slots, 0…1.
-  double filled_share = 0.0;  ///< Estimated share of the slots, 0…1.
-  std::string unusable_because;
-  std::optional<ModelBox> box;
-  bool flagged_different = false;  ///< Measured apart from what the model expects.
-};
-
-/// Fit of one period. Signs as named; Guideline 14 writes measured − simulated.
-struct FitMetrics {
-  double nmbe_sim_minus_meas;
-  double nmbe_g14;
-  double cvrmse;
-};
-
-struct MetricsRow {
-  std::string stage;  ///< "Before (prior mode)", "Prior mean", "After".
-  std::optional<FitMetrics> calibration;
-  std::optional<FitMetrics> validation;
-};
-
-/// Share of measured months inside the predictive intervals, and the score that rewards both.
-struct PredictiveScores {
-  double share_inside_50;
-  double share_inside_90;
-  double crps_kWh;  ///< Mean continuous ranked probability score, kWh/day.
+  metering::MonthlyFigure figure;  ///< Coverage 0 and NaN where the meter has no such month.
+  assessment::MonthRole role = assessment::MonthRole::unused;
+  std::optional<assessment::BoxPlot> box;  ///< Of the posterior draws, kWh/day.
+  bool flagged_different = false;          ///< Measured apart from what the model expects.
 };
 
 /// One meter's monthly consumption, measured and modelled.
 struct OutputResult {
   std::string label;
   std::vector<OutputMonth> months;
-  std::vector<MetricsRow> metrics;
-  std::vector<double> draw_cvrmse_calibration;  ///< One a draw, 0.1 = 10 %.
-  std::vector<double> draw_cvrmse_validation;
-  std::optional<PredictiveScores> scores_calibration;
-  std::optional<PredictiveScores> scores_validation;
-};
-
-struct PeakMonth {
-  metering::Month month;
-  std::optional<double> peak_kW;
-  std::string start;  ///< Local time of the peak interval.
-  double coverage = 0.0;
-  bool could_be_exceeded = false;  ///< Slots are missing: the true peak may be higher.
+  std::optional<assessment::OutputAssessment> assessment;  ///< Its boxes stand in `months`.
 };
 
 struct PeakSeries {
   std::string meter;
-  std::string window;  ///< How a peak is defined: "highest 15-minute mean".
-  std::vector<PeakMonth> months;
+  std::vector<metering::MonthlyFigure> months;
 };
 
 /// One local hour of measured load.
@@ -184,17 +118,18 @@ struct ReportData {
   std::string title;
   std::string generated_at;  ///< Given by the caller; the report has no clock.
   SiteLine site;
+  std::optional<metering::LocalCalendar> calendar;  ///< Of the site; absent: times are in UTC.
   Provenance provenance;
 
   std::vector<std::string> headlines;  ///< The first is the answer; the others explain it.
   std::vector<OutputVerdict> verdicts;
   std::vector<Notice> notices;
-  std::vector<Finding> findings;
+  /// Their `meter` as people say it.
+  std::vector<metering::DataFinding> findings;
 
   std::vector<OutputResult> outputs;
   std::vector<ParameterResult> parameters;
   std::vector<PeakSeries> peaks;
-  bool model_has_peaks = false;
   ElectricityProfile profile;
   std::vector<LoadGrid> loads;
 

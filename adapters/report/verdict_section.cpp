@@ -33,8 +33,9 @@ void write_headlines(Html& html, const ReportData& data) {
 
 void write_verdicts(Html& html, const ReportData& data) {
   if (data.verdicts.empty()) return;
-  const auto passed = std::count_if(data.verdicts.begin(), data.verdicts.end(),
-                                    [](const OutputVerdict& verdict) { return verdict.pass; });
+  const auto passed =
+      std::count_if(data.verdicts.begin(), data.verdicts.end(),
+                    [](const OutputVerdict& output) { return output.verdict.pass; });
   html.element("h3", fmt::format("ASHRAE Guideline 14: {} of {} outputs within the limits", passed,
                                  data.verdicts.size()));
   html.element(
@@ -43,11 +44,11 @@ void write_verdicts(Html& html, const ReportData& data) {
       "scatter, CV(RMSE), of at most 15\u00a0%.",
       "muted");
   html.markup("<ul class=\"verdicts\">\n");
-  for (const OutputVerdict& verdict : data.verdicts) {
+  for (const auto& [output, verdict] : data.verdicts) {
     html.markup(verdict.pass ? "<li class=\"pass\">" : "<li class=\"fail\">")
         .element("span", verdict.pass ? "✓ Within limits" : "✕ Outside limits", "badge")
-        .element("strong", verdict.output)
-        .element("p", verdict.sentence)
+        .element("strong", output)
+        .element("p", verdict.why)
         .markup("</li>\n");
   }
   html.markup("</ul>\n");

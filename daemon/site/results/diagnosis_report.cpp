@@ -20,21 +20,6 @@ using diagnosis::ParameterPosterior;
 using diagnosis::Role;
 using diagnosis::SiteProblem;
 
-report::DiagnosisVerdict verdict_of(const Diagnosis& d) {
-  if (d.not_confirmed) return report::DiagnosisVerdict::not_confirmed;
-  switch (d.outcome) {
-    case diagnosis::Outcome::named:
-      return report::DiagnosisVerdict::named;
-    case diagnosis::Outcome::confusable:
-      return report::DiagnosisVerdict::confusable;
-    case diagnosis::Outcome::unknown:
-      return report::DiagnosisVerdict::unknown;
-    case diagnosis::Outcome::none:
-      break;
-  }
-  return report::DiagnosisVerdict::none;
-}
-
 report::Provenance diagnosis_provenance(const RunFacts& facts) {
   // No computing time: the same data and seed give the same page.
   return {.recald_version = facts.recald_version,
@@ -75,16 +60,6 @@ report::AddedEffectCard card_of(const SiteProblem& site, const Addition& additio
     card.impacts.push_back({meter_label(site.meters[g].id), addition.monthly_kWh[g]});
   }
   return card;
-}
-
-std::vector<report::LocatedRow> located_of(const SiteProblem& site,
-                                           const std::vector<diagnosis::Misfit>& findings) {
-  std::vector<report::LocatedRow> rows;
-  for (const diagnosis::Misfit& f : findings) {
-    rows.push_back(
-        {meter_label(site.meters[f.meter].id), f.words, f.share, f.share_se, f.kWh_month});
-  }
-  return rows;
 }
 
 report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d,
@@ -188,25 +163,6 @@ std::vector<report::EffectSignature> signatures_of(const SiteProblem& site, cons
   return signatures;
 }
 
-std::vector<report::OtherGapRow> other_gaps_of(const std::vector<ModelGap>& gaps) {
-  std::vector<report::OtherGapRow> rows;
-  for (const ModelGap& gap : gaps) {
-    for (std::size_t i = 0; i < gap.outputs.size(); ++i) {
-      const ModelGap::Figures& before = gap.before[i];
-      const ModelGap::Figures& after = gap.after[i];
-      rows.push_back({.model = std::string{name_of(gap.model)},
-                      .output = meter_label(gap.outputs[i]),
-                      .cvrmse_before = before.cvrmse,
-                      .cvrmse_after = after.cvrmse,
-                      .nmbe_before = before.nmbe_sim_minus_meas,
-                      .nmbe_after = after.nmbe_sim_minus_meas,
-                      .log_score_before = before.log_score,
-                      .log_score_after = after.log_score});
-    }
-  }
-  return rows;
-}
-
 }  // namespace
 
 report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagnosis& d,
@@ -218,7 +174,8 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
                              .generated_at = std::move(generated_at),
                              .site = {config.id, config.name, config.timezone},
                              .provenance = diagnosis_provenance(facts),
-                             .verdict = verdict_of(d),
+                             .outcome = d.outcome,
+                             .not_confirmed = d.not_confirmed,
                              .headline = std::move(words.headline),
                              .explanations = std::move(words.sentences)};
   for (const std::string& warning : d.warnings) {
@@ -231,19 +188,18 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
   data.uses = site.month_roles;
   data.temperature_limits_C = diagnosis::temperature_limits_C(site.day_parts);
   data.maps = maps_of(site, d, data.temperature_limits_C);
-  data.located = located_of(site, d.passes.front().located);
+  data.located = d.passes.front().located;
   if (!d.added.empty() && d.passes.size() > 1) {
-    data.located_after = located_of(site, d.passes.back().located);
+    data.located_after = d.passes.back().located;
   }
   for (const auto& p : d.passes.front().naming.probabilities) {
     data.candidates.push_back(bar_of(site, d, p));
   }
-  for (SeparationWords& s : separations_of(d, site)) {
-    data.separations.push_back(
-        {std::move(s.effect), std::move(s.rival), s.probability, std::move(s.measurement)});
-  }
+  data.separations = separations_of(d, site);
   data.steps = steps_of(site, d);
-  data.other_gaps = other_gaps_of(others);
+  data.other_gaps = others;
+  for (ModelGap& gap : data.other_gaps)
+    std::ranges::transform(gap.outputs, gap.outputs.begin(), meter_label);
   data.signatures = signatures_of(site, d, data.temperature_limits_C);
   data.base_fit = d.base_fit;
   for (const NotSeen& n : not_seen_here(d)) {

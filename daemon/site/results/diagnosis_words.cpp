@@ -181,7 +181,7 @@ std::string find_it_words(const Diagnosis& d) {
 
 std::vector<std::string> separation_sentences(const Diagnosis& d, const SiteProblem& site) {
   std::vector<std::string> sentences;
-  for (const SeparationWords& s : separations_of(d, site)) {
+  for (const report::Separation& s : separations_of(d, site)) {
     sentences.push_back(
         fmt::format("To tell \"{}\" from \"{}\": {}", s.effect, s.rival, s.measurement));
   }
@@ -285,9 +285,9 @@ std::string when_words(const SiteProblem& site, const Addition& addition) {
                      day_with_range(last));
 }
 
-std::vector<SeparationWords> separations_of(const Diagnosis& d, const SiteProblem& site) {
+std::vector<report::Separation> separations_of(const Diagnosis& d, const SiteProblem& site) {
   const diagnosis::Naming& naming = d.passes.front().naming;
-  std::vector<SeparationWords> list;
+  std::vector<report::Separation> list;
   for (const auto& [id, meter] : leads_of(d)) {
     const diagnosis::Effect* effect = diagnosis::find_effect(id);
     if (effect == nullptr) continue;
@@ -296,7 +296,7 @@ std::vector<SeparationWords> separations_of(const Diagnosis& d, const SiteProble
       if (d.outcome == Outcome::confusable && !in_set) continue;
       list.push_back({.effect = effect_label(site, id, meter),
                       .rival = effect_label(site, rival.effect, -1),
-                      .probability = probability_of(naming, rival.effect),
+                      .rival_probability = probability_of(naming, rival.effect),
                       .measurement = std::string{rival.separated_by}});
     }
   }

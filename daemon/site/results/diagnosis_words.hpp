@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/report/diagnosis_data.hpp"
 #include "core/diagnosis/diagnose.hpp"
 #include "core/diagnosis/monthly_vote.hpp"
 
@@ -41,17 +42,9 @@ struct OutcomeWords {
 [[nodiscard]] std::string when_words(const diagnosis::SiteProblem& site,
                                      const diagnosis::Addition& addition);
 
-/// Effects that could be mistaken for each other here, and what to measure.
-struct SeparationWords {
-  std::string effect;       ///< Label.
-  std::string rival;        ///< Label.
-  double probability;       ///< Of the rival in the first search; NaN where it was not fitted.
-  std::string measurement;  ///< One sentence.
-};
-
-/// Of each effect that was added, or of the confusable set, or of the likeliest effect: its rivals.
-[[nodiscard]] std::vector<SeparationWords> separations_of(const diagnosis::Diagnosis& diagnosis,
-                                                          const diagnosis::SiteProblem& site);
+/// Rivals of each effect that was added, or of the confusable set, or of the likeliest effect.
+[[nodiscard]] std::vector<report::Separation> separations_of(const diagnosis::Diagnosis& diagnosis,
+                                                             const diagnosis::SiteProblem& site);
 
 /// Effects that cannot be judged at this site, and why; each once.
 struct NotSeen {

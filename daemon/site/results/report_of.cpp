@@ -5,17 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "core/absent.hpp"
 
 namespace recald::daemon {
 namespace {
-
-using assessment::MonthRole;
-
-std::string local_text(metering::Instant t, const metering::LocalCalendar& calendar) {
-  const metering::LocalTime local = calendar.local_time(t);
-  return fmt::format("{} {:02}:{:02}", metering::to_string(local.date), local.minute_of_day / 60,
-                     local.minute_of_day % 60);
-}
 
 /// "chilled_water" as people say it: "Chilled water".
 std::string label_of(const std::string& id) {
@@ -23,12 +18,6 @@ std::string label_of(const std::string& id) {
   std::ranges::replace(label, '_', ' ');
   if (!label.empty() && label.front() >= 'a' && label.front() <= 'z') label.front() -= 'a' - 'A';
   return label;
-}
-
-std::string window_words(std::chrono::seconds window) {
-  return window.count() % 3600 == 0
-             ? fmt::format("highest {}-hour mean, fixed blocks", window.count() / 3600)
-             : fmt::format("highest {}-minute mean, fixed blocks", window.count() / 60);
 }
 
 report::Provenance provenance_of(const RunFacts& facts) {
@@ -45,37 +34,11 @@ report::Provenance provenance_of(const RunFacts& facts) {
           .chains = facts.chains};
 }
 
-std::vector<report::Finding> findings_of(const Recording& recording,
-                                         const metering::LocalCalendar& calendar) {
-  std::vector<report::Finding> findings;
-  for (const MeterRecord& record : recording.meters) {
-    for (const metering::DataFinding& finding : record.findings) {
-      const bool dated = finding.span.end > finding.span.begin;
-      findings.push_back({.meter = label_of(finding.meter),
-                          .sentence = finding.sentence,
-                          .from = dated ? local_text(finding.span.begin, calendar) : "",
-                          .to = dated ? local_text(finding.span.end, calendar) : "",
-                          .count = finding.slots});
-    }
-  }
-  return findings;
-}
-
 report::ParameterResult parameter_of(const SiteCalibration& result, std::size_t j) {
-  const calibration::Summary& s = result.calibration.parameters[j];
-  report::ParameterResult shown{.name = s.name,
-                                .label = std::string{result.definitions[j]->label},
-                                .unit = s.unit,
+  report::ParameterResult shown{.label = std::string{result.definitions[j]->label},
                                 .prior = result.parameters[j].prior,
-                                .mean = s.mean,
-                                .sd = s.sd,
-                                .q05 = s.q05,
-                                .q50 = s.q50,
-                                .q95 = s.q95,
-                                .contraction = s.contraction,
-                                .rhat = s.rhat,
-                                .ess_bulk = s.ess_bulk,
-                                .ess_tail = s.ess_tail};
+                                .summary = result.calibration.parameters[j],
+                                .draws = {}};
   for (const calibration::ChainDraws& chain : result.calibration.chains) {
     const auto column = chain.theta.col(static_cast<Eigen::Index>(j));
     shown.draws.insert(shown.draws.end(), column.begin(), column.end());
@@ -83,103 +46,34 @@ report::ParameterResult parameter_of(const SiteCalibration& result, std::size_t 
   return shown;
 }
 
-report::MonthRole role_of(MonthRole role) {
-  switch (role) {
-    case MonthRole::calibration:
-      return report::MonthRole::calibration;
-    case MonthRole::validation:
-      return report::MonthRole::validation;
-    case MonthRole::unused:
-      return report::MonthRole::unused;
-  }
-  return report::MonthRole::unused;
-}
-
 bool is_peak(const assessment::OutputCalibration& output) { return output.unit == "kW"; }
 
-report::OutputMonth month_of(const Recording& recording, const SiteCalibration& result,
-                             const assessment::OutputCalibration& output, std::size_t i) {
+/// The months of the result, and those that belong to no period: they still show what was measured.
+std::vector<report::OutputMonth> months_of(const Recording& recording,
+                                           const SiteCalibration& result,
+                                           const assessment::OutputCalibration& output) {
   const MeterRecord& record = recording.meters[output.meter];
-  report::OutputMonth shown{.month = result.months[i], .role = role_of(result.roles[i])};
-  const assessment::BoxPlot& box = output.assessment.boxes[i];
-  shown.box =
-      report::ModelBox{box.low_whisker, box.q25, box.q50, box.q75, box.high_whisker, box.mean};
-  shown.flagged_different = is_site_different(recording, shown.month);
-  const auto figure =
-      std::ranges::find(record.figures, shown.month, &metering::MonthlyFigure::month);
-  if (figure == record.figures.end()) return shown;
-  if (std::isfinite(figure->daily_average_kWh)) shown.measured_kWh = figure->daily_average_kWh;
-  shown.measured_usable = figure->usable;
-  shown.coverage = figure->coverage;
-  shown.filled_share = figure->filled_share;
-  shown.unusable_because = figure->unusable_because;
-  return shown;
-}
-
-/// Months that belong to no period still show what was measured.
-void append_other_months(const Recording& recording, const SiteCalibration& result,
-                         const MeterRecord& record, std::vector<report::OutputMonth>& months) {
+  std::vector<report::OutputMonth> months;
+  for (std::size_t i = 0; i < result.months.size(); ++i) {
+    const metering::Month month = result.months[i];
+    const auto figure = std::ranges::find(record.figures, month, &metering::MonthlyFigure::month);
+    months.push_back(
+        {.figure = figure != record.figures.end()
+                       ? *figure
+                       : metering::MonthlyFigure{.month = month, .daily_average_kWh = kAbsent},
+         .role = result.roles[i],
+         .box = output.assessment.boxes[i]});
+  }
   for (const metering::MonthlyFigure& figure : record.figures) {
     if (std::ranges::find(result.months, figure.month) != result.months.end()) continue;
-    report::OutputMonth shown{.month = figure.month, .role = report::MonthRole::unused};
-    if (std::isfinite(figure.daily_average_kWh)) shown.measured_kWh = figure.daily_average_kWh;
-    shown.measured_usable = figure.usable;
-    shown.coverage = figure.coverage;
-    shown.filled_share = figure.filled_share;
-    shown.unusable_because = figure.unusable_because;
-    shown.flagged_different = is_site_different(recording, figure.month);
-    months.push_back(std::move(shown));
+    months.push_back({.figure = figure, .box = {}});
   }
-  std::ranges::sort(months, {}, &report::OutputMonth::month);
-}
-
-std::optional<report::FitMetrics> metrics_of(const std::optional<assessment::FitMetrics>& m) {
-  if (!m) return {};
-  return report::FitMetrics{m->nmbe_sim_minus_meas, m->nmbe_g14, m->cvrmse};
-}
-
-report::MetricsRow row_of(std::string stage, const assessment::PeriodMetrics& metrics) {
-  return {std::move(stage), metrics_of(metrics.calibration), metrics_of(metrics.validation)};
-}
-
-std::optional<report::PredictiveScores> scores_of(
-    const std::optional<assessment::PredictiveScores>& s) {
-  if (!s) return {};
-  const double n = s->months;
-  return report::PredictiveScores{s->inside_50 / n, s->inside_90 / n, s->crps};
-}
-
-report::OutputResult output_of(const Recording& recording, const SiteCalibration& result,
-                               const assessment::OutputCalibration& output) {
-  const MeterRecord& record = recording.meters[output.meter];
-  report::OutputResult shown{.label = label_of(record.meter.id)};
-  for (std::size_t i = 0; i < result.months.size(); ++i) {
-    shown.months.push_back(month_of(recording, result, output, i));
+  for (report::OutputMonth& month : months) {
+    month.flagged_different = is_site_different(recording, month.figure.month);
   }
-  append_other_months(recording, result, record, shown.months);
-  const assessment::OutputAssessment& a = output.assessment;
-  shown.metrics = {row_of("Before (prior mode)", a.before), row_of("Prior mean", a.prior_mean),
-                   row_of("After", a.after)};
-  shown.draw_cvrmse_calibration = a.draw_cvrmse_calibration;
-  shown.draw_cvrmse_validation = a.draw_cvrmse_validation;
-  shown.scores_calibration = scores_of(a.scores_calibration);
-  shown.scores_validation = scores_of(a.scores_validation);
-  return shown;
-}
-
-report::PeakSeries peaks_of(const MeterRecord& record, const metering::LocalCalendar& calendar) {
-  report::PeakSeries series{.meter = label_of(record.meter.id)};
-  for (const metering::MonthlyFigure& figure : record.figures) {
-    series.window = window_words(figure.peak_window);
-    report::PeakMonth month{.month = figure.month, .coverage = figure.coverage};
-    if (figure.peak) {
-      month.peak_kW = figure.peak->kW;
-      month.start = local_text(figure.peak->start, calendar);
-      month.could_be_exceeded = figure.peak->could_be_exceeded;
-    }
-    series.months.push_back(std::move(month));
-  }
-  return series;
+  std::ranges::sort(months, {},
+                    [](const report::OutputMonth& month) { return month.figure.month; });
+  return months;
 }
 
 report::HourStatus status_of(const profile::HourlyLoad& hour) {
@@ -242,8 +136,7 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
     // Electricity that its own profile reproduces is no evidence for the model.
     if (!after || !output.calibrated || is_peak(output)) continue;
     const auto verdict = assessment::guideline14_verdict(*after);
-    data.verdicts.push_back(
-        {label_of(recording.meters[output.meter].meter.id), verdict.pass, verdict.why});
+    data.verdicts.push_back({label_of(recording.meters[output.meter].meter.id), verdict});
     judged += 1;
     passing += verdict.pass ? 1 : 0;
   }
@@ -300,6 +193,7 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
   report::ReportData data{.title = "Calibration of " + site.name,
                           .generated_at = std::move(generated_at),
                           .site = {site.id, site.name, site.timezone},
+                          .calendar = calendar,
                           .provenance = provenance_of(facts)};
   add_headlines(recording, result, data);
   if (!result.calibration.converged) {
@@ -310,16 +204,21 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
   for (const std::string& warning : result.warnings) {
     data.notices.push_back({report::Severity::warning, warning});
   }
-  data.findings = findings_of(recording, calendar);
   for (const assessment::OutputCalibration& output : result.outputs) {
     if (is_peak(output)) continue;  // the page shows peaks as measured, beside each other
-    data.outputs.push_back(output_of(recording, result, output));
+    data.outputs.push_back({.label = label_of(recording.meters[output.meter].meter.id),
+                            .months = months_of(recording, result, output),
+                            .assessment = output.assessment});
   }
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     data.parameters.push_back(parameter_of(result, j));
   }
   for (const MeterRecord& record : recording.meters) {
-    data.peaks.push_back(peaks_of(record, calendar));
+    for (metering::DataFinding finding : record.findings) {
+      finding.meter = label_of(finding.meter);
+      data.findings.push_back(std::move(finding));
+    }
+    data.peaks.push_back({label_of(record.meter.id), record.figures});
     data.loads.push_back(load_of(record));
   }
   using enum model::DayType;

@@ -86,5 +86,13 @@ TEST(NumberText, DoesNotListenToTheLocale) {
   std::locale::global(before);
 }
 
+TEST(LocalText, IsTheClockOnTheWallAndUtcWithoutAPlace) {
+  const metering::Instant t =
+      std::chrono::sys_days{std::chrono::year{2021} / 7 / 1} + std::chrono::minutes{95};
+  EXPECT_EQ(local_text(t, metering::LocalCalendar::open("America/New_York").value()),
+            "2021-06-30 21:35");
+  EXPECT_EQ(local_text(t, std::nullopt), "2021-07-01 01:35");
+}
+
 }  // namespace
 }  // namespace recald::report

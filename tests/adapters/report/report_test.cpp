@@ -70,7 +70,7 @@ TEST(Report, NamesBothSignsOfTheBias) {
   ReportData data;
   data.outputs.resize(1);
   data.outputs[0].label = "Steam";
-  data.outputs[0].metrics = {{"After", FitMetrics{0.062, -0.062, 0.149}, std::nullopt}};
+  data.outputs[0].assessment.emplace().after.calibration = {0.062, -0.062, 0.149, 12};
   const std::string page = render_report(data);
   EXPECT_THAT(page, HasSubstr("<td class=\"number bad\">+6.2\u00a0%\u00a0✕</td>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"number muted\">−6.2\u00a0%</td>"));
@@ -81,7 +81,7 @@ TEST(Report, NamesBothSignsOfTheBias) {
 TEST(Report, CountsTheDrawsWithinTheLimit) {
   ReportData data;
   data.outputs.resize(1);
-  data.outputs[0].draw_cvrmse_calibration = {0.10, 0.12, 0.15, 0.34};
+  data.outputs[0].assessment.emplace().draw_cvrmse_calibration = {0.10, 0.12, 0.15, 0.34};
   const std::string page = render_report(data);
   EXPECT_THAT(page,
               HasSubstr("Calibration months: median 15.0\u00a0%, 75\u00a0% of the draws within "
@@ -99,13 +99,13 @@ TEST(Report, EscapesEveryTextFromOutside) {
   data.site = {hostile, hostile, hostile};
   data.provenance.recald_version = data.provenance.data_revision = hostile;
   data.provenance.model_version = data.provenance.sampler = hostile;
-  data.headlines[0] = data.verdicts[0].output = data.verdicts[0].sentence = hostile;
+  data.headlines[0] = data.verdicts[0].output = data.verdicts[0].verdict.why = hostile;
   data.notices[0].sentence = data.not_known[0] = data.profile.check_sentence = hostile;
-  data.findings[0] = {hostile, hostile, hostile, hostile, 1};
-  data.outputs[0].label = data.outputs[0].metrics[0].stage = hostile;
-  data.outputs[0].months[0].unusable_because = hostile;
-  data.parameters[0].label = data.parameters[0].name = data.parameters[0].unit = hostile;
-  data.peaks[0].meter = data.peaks[0].window = data.peaks[0].months[0].start = hostile;
+  data.findings[0].meter = data.findings[0].sentence = hostile;
+  data.outputs[0].label = data.outputs[0].months[0].figure.unusable_because = hostile;
+  data.parameters[0].label = hostile;
+  data.parameters[0].summary.name = data.parameters[0].summary.unit = hostile;
+  data.peaks[0].meter = hostile;
   data.profile.day_types[0].label = data.profile.day_types[0].parts[0].label = hostile;
   data.loads[0].meter = hostile;
 
@@ -178,10 +178,9 @@ TEST(Report, ShowsMeasurementsWhereThereIsNoModelYet) {
 
 TEST(FigureJson, WritesAbsentAndNonFiniteNumbersAsNull) {
   ReportData data = sample_report();
-  data.outputs[0].months[0].measured_kWh = NAN;
-  data.outputs[0].months[1].measured_kWh.reset();
+  data.outputs[0].months[0].figure.daily_average_kWh = NAN;
   data.outputs[0].months[2].box.reset();
-  data.parameters[0].mean = INFINITY;
+  data.parameters[0].summary.mean = INFINITY;
   data.parameters[0].draws.assign(5, NAN);
   data.loads[0].mean_kW[0] = NAN;
   data.profile.day_types[0].measured_mean_kW[3] = NAN;
@@ -191,7 +190,6 @@ TEST(FigureJson, WritesAbsentAndNonFiniteNumbersAsNull) {
 
   EXPECT_THAT(text, Not(HasSubstr("nan")));
   EXPECT_TRUE(root["outputs"][0]["months"][0]["measured"].is_null());
-  EXPECT_TRUE(root["outputs"][0]["months"][1]["measured"].is_null());
   EXPECT_TRUE(root["outputs"][0]["months"][2]["box"].is_null());
   EXPECT_TRUE(root["parameters"][0]["mean"].is_null());
   EXPECT_TRUE(root["parameters"][0]["density"].empty());

@@ -11,6 +11,7 @@ namespace recald::report {
 namespace {
 
 using diagnosis::MeterGap;
+using diagnosis::Outcome;
 using diagnosis::Role;
 using std::chrono::month;
 using std::chrono::year;
@@ -63,6 +64,15 @@ MeterGap gap(double cvrmse_daily, double log_score) {
           .discrepancy_share = 0.61};
 }
 
+diagnosis::Finding finding(std::size_t meter, std::string words, double share, double share_se,
+                           double kWh_month) {
+  return {.meter = meter,
+          .words = std::move(words),
+          .share = share,
+          .share_se = share_se,
+          .kWh_month = kWh_month};
+}
+
 void add_words(DiagnosisData& data) {
   data.headline = "Missing in the model: \"Night set-back missing\".";
   data.explanations = {
@@ -77,10 +87,10 @@ void add_words(DiagnosisData& data) {
                  .impacts = {{"Chilled water", -310.0}, {"Steam", 4'230.0}, {"Electricity", 85.0}},
                  .parameters = {{"missing share", "0.82", "0.61", "0.97"},
                                 {"first day", "12 Mar 2021", "1 Mar 2021", "20 Mar 2021"}}}};
-  data.located = {{"Steam", "working days 00-04 h", 0.142, 0.03, 2'100.0},
-                  {"Steam", "outdoor temperature below -2.5 degC", 0.118, 0.03, 1'700.0},
-                  {"Chilled water", "Jul 2021", -0.061, 0.02, -420.0}};
-  data.located_after = {{"Chilled water", "Jul 2021", -0.055, 0.02, -390.0}};
+  data.located = {finding(1, "working days 00-04 h", 0.142, 0.03, 2'100.0),
+                  finding(1, "outdoor temperature below -2.5 degC", 0.118, 0.03, 1'700.0),
+                  finding(0, "Jul 2021", -0.061, 0.02, -420.0)};
+  data.located_after = {finding(0, "Jul 2021", -0.055, 0.02, -390.0)};
   data.candidates = {
       {"Night set-back missing", "Rooms are kept warm at night.", CandidateKind::effect, 0.93, 41.2,
        data.added[0].parameters},
@@ -114,7 +124,7 @@ DiagnosisData sample_diagnosis() {
                      .time_zone_data = "2025b",
                      .catalogue = "40 effects, of recald 0.1.0",
                      .seed = 1};
-  data.verdict = DiagnosisVerdict::named;
+  data.outcome = Outcome::named;
   add_words(data);
   data.meters = {"Chilled water", "Steam", "Electricity"};
   for (int i = 0; i < kMonths; ++i) {
@@ -143,14 +153,14 @@ DiagnosisData sample_diagnosis() {
 
 DiagnosisData unconfirmed_diagnosis() {
   DiagnosisData data = sample_diagnosis();
-  data.verdict = DiagnosisVerdict::not_confirmed;
+  data.not_confirmed = true;
   data.headline = "Not confirmed: \"Night set-back missing\" was tried and taken back.";
   const std::string hostile = "</script><script>alert(\"&'\")</script><!--";
   data.title = data.site.name = hostile;
   data.added[0].title = data.added[0].meaning = data.added[0].physics = hostile;
   data.added[0].when = data.added[0].impacts[0].meter = hostile;
   data.added[0].parameters[0] = {hostile, hostile, hostile, hostile};
-  data.explanations[0] = data.located[0].where = data.located[0].meter = hostile;
+  data.explanations[0] = data.located[0].words = hostile;
   data.candidates[1].label = data.candidates[1].meaning = hostile;
   data.separations[0] = {hostile, hostile, kNothing, hostile};
   data.meters[2] = data.maps[2].meter = data.signatures[0].effect = hostile;
@@ -164,7 +174,7 @@ DiagnosisData unconfirmed_diagnosis() {
 
 DiagnosisData empty_handed_diagnosis() {
   DiagnosisData data = sample_diagnosis();
-  data.verdict = DiagnosisVerdict::none;
+  data.outcome = Outcome::none;
   data.headline = "The calibrated model follows the meters within what chance explains.";
   data.explanations = {"No effect is supported strongly enough."};
   data.added.clear();

@@ -9,6 +9,10 @@
 namespace recald::report {
 namespace {
 
+using assessment::BoxPlot;
+using assessment::FitMetrics;
+using assessment::MonthRole;
+using metering::MonthlyFigure;
 using std::chrono::day;
 using std::chrono::month;
 using std::chrono::year;
@@ -33,7 +37,7 @@ constexpr MeterShape kMeters[] = {
 
 MonthRole role_of(int index) { return index < 24 ? MonthRole::calibration : MonthRole::validation; }
 
-ModelBox box_around(double centre, double sd) {
+BoxPlot box_around(double centre, double sd) {
   return {centre - 2.7 * sd,  centre - 0.67 * sd, centre,
           centre + 0.67 * sd, centre + 2.7 * sd,  centre + 0.02 * sd};
 }
@@ -42,31 +46,33 @@ OutputMonth output_month(const MeterShape& meter, int index, Rng& rng) {
   const unsigned number = static_cast<unsigned>(index % 12) + 1;
   const double truth = meter.mean_kWh * (1.0 + meter.swing * season(number));
   OutputMonth result;
-  result.month = metering::Month{year{kFirstYear + index / 12}, month{number}};
+  MonthlyFigure& figure = result.figure;
+  figure.month = metering::Month{year{kFirstYear + index / 12}, month{number}};
   result.role = role_of(index);
-  result.measured_kWh = truth * (1.0 + 0.06 * rng.normal());
-  result.measured_usable = true;
-  result.filled_share = rng.uniform() < 0.4 ? rng.uniform(0.001, 0.06) : 0.0;
-  result.coverage = 1.0 - result.filled_share;
+  figure.daily_average_kWh = truth * (1.0 + 0.06 * rng.normal());
+  figure.peak_window = std::chrono::minutes{15};
+  figure.usable = true;
+  figure.filled_share = rng.uniform() < 0.4 ? rng.uniform(0.001, 0.06) : 0.0;
+  figure.coverage = 1.0 - figure.filled_share;
   result.box = box_around(truth * (1.0 + 0.03 * rng.normal()), 0.035 * meter.mean_kWh);
   return result;
 }
 
 /// The steam meter has a month too thin to use, a month without anything and two odd ones.
 void spoil_steam(OutputResult& steam) {
-  OutputMonth& thin = steam.months[14];
+  MonthlyFigure& thin = steam.months[14].figure;
   thin.coverage = 0.41;
   thin.filled_share = 0.59;
-  thin.measured_usable = false;
+  thin.usable = false;
   thin.unusable_because = "41.0 % of the month is measured, 60 % are needed";
-  OutputMonth& empty = steam.months[15];
+  MonthlyFigure& empty = steam.months[15].figure;
   empty.coverage = 0.0;
   empty.filled_share = 0.0;
-  empty.measured_kWh.reset();
-  empty.measured_usable = false;
+  empty.daily_average_kWh = NAN;
+  empty.usable = false;
   empty.unusable_because = "nothing was measured";
   for (const std::size_t odd : {std::size_t{34}, std::size_t{35}}) {
-    steam.months[odd].measured_kWh = *steam.months[odd].measured_kWh * 0.6;
+    steam.months[odd].figure.daily_average_kWh *= 0.6;
     steam.months[odd].flagged_different = true;
   }
 }
@@ -87,35 +93,31 @@ OutputResult output_result(const MeterShape& meter, Rng& rng) {
   }
   const double scale = meter.swing < 0.0 ? 1.5 : 1.0;
   const auto metrics = [scale](double nmbe, double cvrmse) {
-    return FitMetrics{scale * nmbe, -scale * nmbe, scale * cvrmse};
+    return FitMetrics{scale * nmbe, -scale * nmbe, scale * cvrmse, 12};
   };
-  result.metrics = {{"Before (prior mode)", metrics(0.182, 0.243), metrics(0.203, 0.262)},
-                    {"Prior mean", metrics(-0.034, 0.147), metrics(-0.021, 0.151)},
-                    {"After calibration", metrics(0.012, 0.098), metrics(-0.028, 0.118)}};
-  result.draw_cvrmse_calibration = scatter_draws(0.095 * scale, 0.018, rng);
-  result.draw_cvrmse_validation = scatter_draws(0.112 * scale, 0.024, rng);
-  result.scores_calibration = PredictiveScores{0.54, 0.92, 0.05 * meter.mean_kWh};
-  result.scores_validation = PredictiveScores{0.42, 0.83, 0.07 * meter.mean_kWh};
+  assessment::OutputAssessment& fit = result.assessment.emplace();
+  fit.before = {metrics(0.182, 0.243), metrics(0.203, 0.262)};
+  fit.prior_mean = {metrics(-0.034, 0.147), metrics(-0.021, 0.151)};
+  fit.after = {metrics(0.012, 0.098), metrics(-0.028, 0.118)};
+  fit.draw_cvrmse_calibration = scatter_draws(0.095 * scale, 0.018, rng);
+  fit.draw_cvrmse_validation = scatter_draws(0.112 * scale, 0.024, rng);
+  fit.scores_calibration = {13, 22, 24, 0.05 * meter.mean_kWh};
+  fit.scores_validation = {5, 10, 12, 0.07 * meter.mean_kWh};
   return result;
 }
 
 /// Draws around `mean`, kept inside the prior, and the summary that belongs to them.
 ParameterResult parameter_result(std::string name, std::string label, std::string unit, Prior prior,
                                  double mean, double sd, Rng& rng) {
-  ParameterResult result{.name = std::move(name),
-                         .label = std::move(label),
-                         .unit = std::move(unit),
+  ParameterResult result{.label = std::move(label),
                          .prior = prior,
-                         .draws = {},
-                         .mean = 0.0,
-                         .sd = 0.0,
-                         .q05 = 0.0,
-                         .q50 = 0.0,
-                         .q95 = 0.0,
-                         .contraction = 0.0,
-                         .rhat = 1.003,
-                         .ess_bulk = 1240.0,
-                         .ess_tail = 980.0};
+                         .summary = {.name = std::move(name),
+                                     .unit = std::move(unit),
+                                     .rhat = 1.003,
+                                     .ess_bulk = 1240.0,
+                                     .ess_tail = 980.0},
+                         .draws = {}};
+  calibration::Summary& summary = result.summary;
   while (result.draws.size() < 2700) {
     const double draw = mean + sd * rng.normal();
     if (draw > prior.min() && draw < prior.max()) result.draws.push_back(draw);
@@ -125,26 +127,25 @@ ParameterResult parameter_result(std::string name, std::string label, std::strin
   double sum = 0.0;
   double squares = 0.0;
   for (const double draw : sorted) sum += draw;
-  result.mean = sum / 2700.0;
-  for (const double draw : sorted) squares += (draw - result.mean) * (draw - result.mean);
-  result.sd = std::sqrt(squares / 2699.0);
-  result.q05 = sorted[135];
-  result.q50 = sorted[1350];
-  result.q95 = sorted[2564];
-  result.contraction = 1.0 - result.sd * result.sd / prior.variance();
+  summary.mean = sum / 2700.0;
+  for (const double draw : sorted) squares += (draw - summary.mean) * (draw - summary.mean);
+  summary.sd = std::sqrt(squares / 2699.0);
+  summary.q05 = sorted[135];
+  summary.q50 = sorted[1350];
+  summary.q95 = sorted[2564];
+  summary.contraction = 1.0 - summary.sd * summary.sd / prior.variance();
   return result;
 }
 
-PeakSeries peak_series(const OutputResult& output, Rng& rng) {
-  PeakSeries result{.meter = output.label, .window = "highest 15-minute mean", .months = {}};
+PeakSeries peak_series(const OutputResult& output, const metering::LocalCalendar& calendar,
+                       Rng& rng) {
+  PeakSeries result{.meter = output.label, .months = {}};
   for (const OutputMonth& from : output.months) {
-    PeakMonth peak{.month = from.month, .peak_kW = {}, .start = "", .coverage = from.coverage};
-    if (from.measured_kWh) {
-      peak.peak_kW = *from.measured_kWh / 24.0 * rng.uniform(1.5, 1.9);
-      peak.start = "Tue 14, 15:45 (UTC−05:00)";
-      peak.could_be_exceeded = from.coverage < 0.98;
-    }
-    result.months.push_back(peak);
+    MonthlyFigure& figure = result.months.emplace_back(from.figure);
+    if (std::isnan(figure.daily_average_kWh)) continue;
+    figure.peak = {.kW = figure.daily_average_kWh / 24.0 * rng.uniform(1.5, 1.9),
+                   .start = calendar.first_instant(figure.month / 14, 15 * 60 + 45),
+                   .could_be_exceeded = figure.coverage < 0.98};
   }
   return result;
 }
@@ -201,6 +202,14 @@ LoadGrid load_grid(const MeterShape& meter, Rng& rng) {
   return load;
 }
 
+metering::DataFinding finding(std::string meter, std::string sentence, metering::Instant from,
+                              metering::Instant to, int slots) {
+  return {.meter = std::move(meter),
+          .sentence = std::move(sentence),
+          .span = {from, to},
+          .slots = slots};
+}
+
 void add_words(ReportData& data) {
   data.headlines = {
       "After calibration the model follows chilled water and electricity within Guideline 14, in "
@@ -209,14 +218,18 @@ void add_words(ReportData& data) {
       "The data narrowed two of the three uncertain parameters: the building takes in less outdoor "
       "air and is kept warmer than its design says. About the number of people they say nothing."};
   data.verdicts = {
-      {"Chilled water", true,
-       "Bias +1.2 % and scatter 9.8 % on the calibration months; −2.8 % and 11.8 % on validation."},
-      {"Steam", false,
-       "Scatter of 17.7 % on the validation months exceeds 15 %; two months there are flagged as "
-       "different."},
-      {"Electricity", true,
-       "Bias +1.2 % and scatter 9.8 % on the calibration months; −2.8 % and 11.8 % on "
-       "validation."}};
+      {"Chilled water",
+       {true,
+        "Bias +1.2 % and scatter 9.8 % on the calibration months; −2.8 % and 11.8 % on "
+        "validation."}},
+      {"Steam",
+       {false,
+        "Scatter of 17.7 % on the validation months exceeds 15 %; two months there are flagged as "
+        "different."}},
+      {"Electricity",
+       {true,
+        "Bias +1.2 % and scatter 9.8 % on the calibration months; −2.8 % and 11.8 % on "
+        "validation."}}};
   data.notices = {
       {Severity::info, "These numbers are invented: a sample that shows what a report looks like."},
       {Severity::warning,
@@ -226,13 +239,18 @@ void add_words(ReportData& data) {
        "The variance of the model discrepancy left the range its prior thought likely."},
       {Severity::failure,
        "Steam has no usable figure for March and April 2020; both months were left out."}};
+  const auto at = [&data](int in_year, unsigned in_month, unsigned on, int hour, int minute) {
+    return data.calendar->first_instant(metering::Day{year{in_year}, month{in_month}, day{on}},
+                                        60 * hour + minute);
+  };
   data.findings = {
-      {"Steam", "A run of zeros that means no data, not no steam: kept out.", "2020-03-12 06:00",
-       "2020-04-30 23:45", 4776},
-      {"Electricity", "The same reading 31 times in a row.", "2019-08-03 02:15", "2019-08-03 09:45",
-       31},
-      {"Chilled water", "Single readings more than eight times the usual spread above their hour.",
-       "2021-06-01 13:00", "2021-06-19 15:30", 7}};
+      finding("Steam", "A run of zeros that means no data, not no steam: kept out.",
+              at(2020, 3, 12, 6, 0), at(2020, 4, 30, 23, 45), 4776),
+      finding("Electricity", "The same reading 31 times in a row.", at(2019, 8, 3, 2, 15),
+              at(2019, 8, 3, 9, 45), 31),
+      finding("Chilled water",
+              "Single readings more than eight times the usual spread above their hour.",
+              at(2021, 6, 1, 13, 0), at(2021, 6, 19, 15, 30), 7)};
   data.not_known = {
       "Whether the calibrated values are the building's true values: they are the ones with which "
       "this "
@@ -251,6 +269,7 @@ ReportData sample_report() {
   data.title = "Calibration report (sample, invented numbers)";
   data.generated_at = "2022-01-05 09:30 (UTC−05:00)";
   data.site = {"sample-laboratory", "Sample Laboratory Building", "America/New_York"};
+  data.calendar = metering::LocalCalendar::open(data.site.time_zone).value();
   data.provenance = {.recald_version = "0.1.0",
                      .data_revision = "9f2c51d07e6b4a83",
                      .model_version = "epc 1, three parameters",
@@ -268,15 +287,17 @@ ReportData sample_report() {
     data.loads.push_back(load_grid(meter, rng));
   }
   spoil_steam(data.outputs[1]);
-  for (const OutputResult& output : data.outputs) data.peaks.push_back(peak_series(output, rng));
+  for (const OutputResult& output : data.outputs) {
+    data.peaks.push_back(peak_series(output, *data.calendar, rng));
+  }
   data.parameters = {parameter_result("cooling_setpoint", "Cooling set-point", "°C",
                                       {20.0, 23.9, 27.8}, 25.1, 0.72, rng),
                      parameter_result("occupancy_density", "Occupancy density", "person/m²",
                                       {0.0, 0.05, 0.1}, 0.0493, 0.024, rng),
                      parameter_result("outdoor_air", "Outdoor airflow rate", "m³/s",
                                       {4.2, 14.0, 16.8}, 8.4, 1.3, rng)};
-  data.parameters[1].rhat = 1.034;
-  data.parameters[1].ess_bulk = 212.0;
+  data.parameters[1].summary.rhat = 1.034;
+  data.parameters[1].summary.ess_bulk = 212.0;
   data.profile = {
       {day_type_profile("Working day", 1.0, rng), day_type_profile("Saturday", 0.35, rng),
        day_type_profile("Sunday and holiday", 0.05, rng)},
@@ -304,22 +325,18 @@ ReportData readings_only_report() {
       month.role = MonthRole::unused;
       month.box.reset();
     }
-    output.metrics.clear();
-    output.draw_cvrmse_calibration.clear();
-    output.draw_cvrmse_validation.clear();
-    output.scores_calibration.reset();
-    output.scores_validation.reset();
+    output.assessment.reset();
   }
   for (OutputMonth& month : data.outputs[1].months) {
-    month.measured_kWh.reset();
-    month.measured_usable = false;
-    month.coverage = 0.0;
-    month.unusable_because = "nothing was measured";
+    month.figure.daily_average_kWh = NAN;
+    month.figure.usable = false;
+    month.figure.coverage = 0.0;
+    month.figure.unusable_because = "nothing was measured";
   }
   for (PeakSeries& series : data.peaks) {
     series.months = {series.months.begin() + 10, series.months.begin() + 15};
   }
-  for (PeakMonth& month : data.peaks[1].months) month.peak_kW.reset();
+  for (MonthlyFigure& figure : data.peaks[1].months) figure.peak.reset();
   for (LoadGrid& load : data.loads) {
     load.first_day = metering::Day{year{kFirstYear}, month{11}, day{1}};
     load.mean_kW.resize(24 * 152);

@@ -190,7 +190,7 @@ TEST_F(DiagnosisFiles, WordsNameTheMeasurementThatPartsConfusableEffects) {
   const OutcomeWords words = outcome_words(d, site_);
   EXPECT_THAT(words.headline, StartsWith("Two explanations fit equally well: \"Hot water"));
   EXPECT_THAT(diagnosis_words(d, site_), HasSubstr("Close the hot-water loop's valve"));
-  for (const SeparationWords& s : separations_of(d, site_)) {
+  for (const report::Separation& s : separations_of(d, site_)) {
     EXPECT_THAT(s.rival, Not(HasSubstr("scale"))) << "not in the set";
   }
 }
@@ -233,7 +233,7 @@ TEST_F(DiagnosisFiles, WithoutMonthsKeptBackNothingIsCalledConfirmed) {
 
 TEST_F(DiagnosisFiles, ThePageHasBeforeAndAfterAndTheSteps) {
   const report::DiagnosisData data = page_data(recald::testing::one_named(site_));
-  EXPECT_EQ(data.verdict, report::DiagnosisVerdict::named);
+  EXPECT_EQ(data.outcome, diagnosis::Outcome::named);
   EXPECT_THAT(data.meters, ElementsAre("Chilled water", "Steam"));
   ASSERT_TRUE(data.maps[1].after.has_value());
   EXPECT_NEAR(data.maps[1].before.by_month(0, 0), 0.10, 1e-12);
@@ -257,7 +257,7 @@ TEST_F(DiagnosisFiles, ThePageSurvivesHolesInTheRecord) {
     if (hole) site_.measured_parts_kW(i, 1) = std::nan("");
   }
   const report::DiagnosisData data = page_data(recald::testing::one_taken_back(site_));
-  EXPECT_EQ(data.verdict, report::DiagnosisVerdict::not_confirmed);
+  EXPECT_TRUE(data.not_confirmed);
   EXPECT_TRUE(data.maps[1].before.by_month.col(2).isNaN().all());
   EXPECT_TRUE(std::isnan(data.steps[0].gaps[1].cvrmse_daily));
   EXPECT_EQ(data.steps[0].gaps[0].cvrmse_daily, 0.14);
