@@ -8,7 +8,6 @@
 /// that were all that models get wrong; they vary by `null_score_spread`. So
 ///     d* = d / null_score_spread
 /// is what the same signal would show against noise that is known.
-/// @see discrepancy.md, 2.1, whose d* is this d.
 #pragma once
 
 #include <Eigen/Cholesky>

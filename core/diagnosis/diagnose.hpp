@@ -1,5 +1,4 @@
 /// A diagnosis from beginning to end: locate, name, and show on months that chose nothing.
-/// @see discrepancy.md, 3.
 #pragma once
 
 #include <functional>

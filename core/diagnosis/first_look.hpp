@@ -3,7 +3,6 @@
 /// Linear: one run of the model for each shape that is tried, no refit beyond what integrating the
 /// base parameters out does. Decides who is worth a fit, what cannot be told apart and what cannot
 /// be seen at all.
-/// @see discrepancy.md, 3.2, stage A.
 #pragma once
 
 #include <vector>

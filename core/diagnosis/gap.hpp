@@ -1,5 +1,4 @@
 /// How far a model is from the meters on months that chose nothing, and whether that shrank.
-/// @see discrepancy.md, 3.4
 #pragma once
 
 #include <span>

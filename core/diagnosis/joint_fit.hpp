@@ -5,7 +5,7 @@
 /// white noise: recurring patterns and usual errors could stand in for the building, and would
 /// leave the parameters where no footprint is true. There the model is linearised, and the evidence
 /// is that of the linear model under all that a model may err by, at every node of the noise grid.
-/// @see discrepancy.md, 3.2, stage B (i).
+/// @see Tierney, Kadane (1986), J. Am. Stat. Assoc. 81(393): Laplace's approximation.
 #pragma once
 
 #include <Eigen/Core>

@@ -4,7 +4,7 @@
 /// with every freedom of the base parameters and of the anonymous terms in the null: t = b'Mr /
 /// sqrt(b'Mb). Families of bins are opened by their largest |t| (Holm), their bins judged by
 /// Benjamini-Yekutieli, both at 5 %.
-/// @see discrepancy.md, 3.1.
+/// @see Holm (1979), Scand. J. Stat. 6(2); Benjamini, Yekutieli (2001), Ann. Statist. 29(4).
 #pragma once
 
 #include <string>

@@ -5,7 +5,6 @@
 /// change to its own meters, so that it has the same effect at the same values. Meters are sums of
 /// end uses, so a table by meter holds the numbers that one by end use would. An effect on one
 /// meter's record is no energy: of it the ratio of recorded to unrecorded is kept.
-/// @see discrepancy.md, 3.3, Consumers.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,8 @@
 /// Which effect, how sure, or honestly none of them.
-/// @see discrepancy.md, 3.2, stages B and C and the decision.
+///
+/// Survivors of the first look, no effect and an unknown effect are fitted alike and weighed by
+/// their evidence. A name needs a high probability, evidence beyond what chance gives where nothing
+/// is hidden, and months that did not fit it on its side.
 #pragma once
 
 #include <optional>

@@ -10,7 +10,7 @@ namespace recald::diagnosis {
 /// their usual errors alone. What they otherwise do wrong some effects can mimic (a server room
 /// much, missing holidays not at all), so their evidence counts by so much less.
 /// @return the mean over all effects for one that was not visible when this was learnt.
-/// @see README.md for the population that taught it.
+/// @see tests/results/diagnosis.md for the population that taught it.
 [[nodiscard]] double null_scale(std::string_view effect);
 
 /// Root mean square of the scores of effects in such buildings; 1 if models erred by chance and by

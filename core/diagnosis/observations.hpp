@@ -85,7 +85,8 @@ struct NoiseNode {
 };
 
 /// Common factors on structure_sd, correlation_h and white_sd: 3 x 3 x 3 nodes around the fitted
-/// levels, or only the one in the middle. @see discrepancy.md, 3.0
+/// levels, or only the one in the middle. Noise learnt once, without an effect, would have
+/// the effect in it and hide it.
 [[nodiscard]] std::vector<NoiseNode> noise_grid(const Observations& observations,
                                                 std::span<const NoiseLevel> levels, bool whole);
 

@@ -8,7 +8,7 @@
 /// E holding the footprint of each effect for one learnt standard deviation of its amount. A named
 /// effect is then one that is there in far more than the usual amount, and what two effects share
 /// with the usual errors speaks for neither.
-/// @see discrepancy.md, 2: discrepancy terms stay in every competing model.
+/// @see Brynjarsdottir, O'Hagan (2014), Inverse Problems 30(11): why a model needs its discrepancy.
 #pragma once
 
 #include <Eigen/Core>
@@ -47,7 +47,7 @@ class UsualErrors {
 
 /// Standard deviation of an effect's amount where it is not there, in units of its typical amount.
 /// @return the median of all effects for one that was not there when this was learnt.
-/// @see README.md for the population that taught it.
+/// @see tests/results/diagnosis.md for the population that taught it.
 [[nodiscard]] double usual_amount_sd(std::string_view effect);
 
 }  // namespace recald::diagnosis

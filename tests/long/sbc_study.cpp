@@ -1,4 +1,4 @@
-// The full simulation-based calibration of both ways, as a table for tests/README.md.
+// The full simulation-based calibration of both ways, as a table for tests/results/calibration.md.
 //
 //   sbc_study [replicates] [seed|gaps|epc]
 

@@ -1,7 +1,7 @@
 /// Calibrating a site whose model has effects that a diagnosis added.
 ///
 /// What a diagnosis learnt of an effect's parameters η it learnt from months, and those must not
-/// teach η twice (discrepancy.md, 3.3). All calibration months later than the diagnosis: η is
+/// teach η twice. All calibration months later than the diagnosis: η is
 /// calibrated with θ, its posterior as prior. None later: θ is drawn given each of 50 draws of η,
 /// without feedback. Some later: these alone move η first, and the cut goes on from there.
 #pragma once

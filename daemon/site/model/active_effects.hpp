@@ -1,7 +1,7 @@
 /// The effects that were added to a site's model, as a calibration meets them.
 ///
 /// Their parameters η were learnt from the months of the diagnosis (`months_used`), and those must
-/// not teach them twice (discrepancy.md, 3.3): a month after them takes the posterior of η as prior
+/// not teach them twice: a month after them takes the posterior of η as prior
 /// and calibrates it jointly with θ; a month up to them takes η from its draws, without feedback.
 #pragma once
 

@@ -11,7 +11,7 @@ namespace recald::blind {
 namespace {
 
 constexpr double kLeastLogBayesFactor = 5.0;
-// Prior odds as the diagnosis has them (discrepancy.md, 3.2).
+// Prior odds as the diagnosis has them (core/diagnosis/naming.hpp).
 constexpr double kPriorNone = 0.5;
 constexpr double kPriorUnknown = 0.1;
 

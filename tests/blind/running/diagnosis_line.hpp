@@ -31,7 +31,7 @@ struct CaseRun {
 
 /// Nothing of what was tried and taken back counts: then there is no gap in the line, and the names
 /// tried stand in `extra`.
-/// @param diagnosis  diagnosis.json, as in design.md.
+/// @param diagnosis  diagnosis.json, as `recald diagnose` writes it.
 /// @return malformed if a key is missing, or what it holds makes no line.
 [[nodiscard]] Result<Json> diagnosis_line(const Json& diagnosis, const CaseRun& run);
 

@@ -78,7 +78,7 @@ double worst_error(const SiteProblem& site, const Candidate& candidate) {
   return worst;
 }
 
-// discrepancy.md, 3.3: the monthly model has the same effect at the same values within 1 %.
+// The monthly model has the same effect at the same values within 1 %.
 TEST(MonthlyEffect, IsTheHourlySumForEveryEffectOfTheCatalogue) {
   const SiteProblem site = sample_site(6);
   for (const Candidate& candidate : list_candidates(site).candidates) {
