@@ -191,6 +191,10 @@ class LevelWatch {
   Month first_as_before_{};
 };
 
+bool holds_in(const LevelChange& change, Month month) {
+  return month >= change.since && (!change.back_since || month < *change.back_since);
+}
+
 }  // namespace
 
 LevelChangeOptions level_change_options(Utility utility) {
@@ -213,8 +217,13 @@ std::vector<LevelChange> find_level_changes(std::string_view meter_name,
 }
 
 bool is_different(std::span<const LevelChange> changes, Month month) {
+  return std::any_of(changes.begin(), changes.end(),
+                     [&](const LevelChange& change) { return holds_in(change, month); });
+}
+
+bool is_rescaled(std::span<const LevelChange> changes, Month month) {
   return std::any_of(changes.begin(), changes.end(), [&](const LevelChange& change) {
-    return month >= change.since && (!change.back_since || month < *change.back_since);
+    return change.kind == LevelChangeKind::scale && holds_in(change, month);
   });
 }
 

@@ -72,4 +72,7 @@ struct LevelChangeOptions {
 /// Whether a month lies in a change of the list.
 [[nodiscard]] bool is_different(std::span<const LevelChange> changes, Month month);
 
+/// Whether the meter counts the month in another unit: its figure is not the building's.
+[[nodiscard]] bool is_rescaled(std::span<const LevelChange> changes, Month month);
+
 }  // namespace recald::metering

@@ -1,11 +1,16 @@
 /// What every building model looks like to a calibration.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace recald {
+
+namespace model {
+struct Building;
+}
 
 /// f(x, θ) of eq. (3) of the seed for all months of the model's period at once.
 ///
@@ -37,6 +42,9 @@ class MonthlyModel {
   virtual void evaluate_with_jacobian(std::span<const double> theta, std::span<double> outputs,
                                       std::span<double> jacobian);
 };
+
+/// Makes a site's model of some months for a building that differs from the site's in values.
+using ModelFactory = std::function<std::unique_ptr<MonthlyModel>(const model::Building&)>;
 
 /// One run of the model, outside inner loops. @return (output_count * month_count)
 [[nodiscard]] std::vector<double> evaluate(MonthlyModel& model, std::span<const double> theta);

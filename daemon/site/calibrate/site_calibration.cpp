@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 
-#include "core/absent.hpp"
+#include "core/assessment/common_errors.hpp"
+#include "core/assessment/metered_outputs.hpp"
 #include "core/model/epc/prepare.hpp"
 #include "core/model/hourly/prepare.hpp"
 #include "core/model/model_adaptors.hpp"
@@ -22,14 +22,6 @@ namespace {
 using assessment::MonthRole;
 using metering::Month;
 
-// One standard deviation of the share of lights and plugs that heats the zone, relative.
-constexpr double kHeatShareSd = 0.15;
-// The same of a meter's peaks: schedules are means over many days, and a month's highest quarter
-// hour is not on a mean day. Their own scatter lifts measured peaks by about 8 %.
-constexpr double kPeakSd = 0.08;
-// Of lights and plugs, for how everything else follows them.
-constexpr double kMoreUse = 0.1;
-
 /// A model needs at least one month with weather; without, later steps would blame the meters.
 Result<void> require_months(const SiteMonths& months, const PeriodConfig& period,
                             const SiteWeather& weather) {
@@ -41,81 +33,6 @@ Result<void> require_months(const SiteMonths& months, const PeriodConfig& period
                   "give weather of these months, or change [period]",
                   metering::to_string(first), metering::to_string(period.calibration.last),
                   metering::to_string(first), 100.0 * weather_coverage(weather.filled, first)));
-}
-
-const metering::MonthlyFigure* find_figure(const MeterRecord& record, Month month) {
-  const auto found = std::ranges::find(record.figures, month, &metering::MonthlyFigure::month);
-  return found == record.figures.end() ? nullptr : &*found;
-}
-
-/// Whether the meter counts in another unit since: its figures are not the building's.
-bool is_rescaled(const MeterRecord& record, Month month) {
-  return std::ranges::any_of(record.level_changes, [&](const metering::LevelChange& change) {
-    return change.kind == metering::LevelChangeKind::scale && month >= change.since &&
-           (!change.back_since || month < *change.back_since);
-  });
-}
-
-/// nullptr where the month's figure is missing or must not be calibrated against.
-const metering::MonthlyFigure* usable_figure(const MeterRecord& record, Month month) {
-  const metering::MonthlyFigure* figure = find_figure(record, month);
-  return figure != nullptr && figure->usable && !is_rescaled(record, month) ? figure : nullptr;
-}
-
-assessment::OutputCalibration daily_output(const std::string& id, std::size_t meter,
-                                           const MeterRecord& record,
-                                           const std::vector<Month>& months) {
-  assessment::OutputCalibration output{
-      .name = id + "_daily_kWh", .label = id, .unit = "kWh/day", .meter = meter};
-  for (const Month month : months) {
-    const metering::MonthlyFigure* figure = usable_figure(record, month);
-    output.measured.push_back(figure ? figure->daily_average_kWh : kAbsent);
-    output.extra_variances.push_back(figure ? figure->daily_average_variance_kWh2 : 0.0);
-  }
-  return output;
-}
-
-assessment::OutputCalibration peak_output(const std::string& id, std::size_t meter,
-                                          const MeterRecord& record,
-                                          const std::vector<Month>& months) {
-  assessment::OutputCalibration output{
-      .name = id + "_peak_kW", .label = id + " peak", .unit = "kW", .meter = meter};
-  for (const Month month : months) {
-    const metering::MonthlyFigure* figure = usable_figure(record, month);
-    output.measured.push_back(figure && figure->peak ? figure->peak->kW : kAbsent);
-    output.extra_variances.push_back(0.0);
-  }
-  return output;
-}
-
-/// How all months move together when more or less of the lights and plugs heats the zone: the
-/// profile fixes their power, not where it ends up.
-Eigen::VectorXd heat_share_error(const model::Building& building, const ModelFactory& make,
-                                 std::span<const double> theta) {
-  model::Building less_heat = building;
-  less_heat.use.zone_heat_share *= 1.0 - kHeatShareSd;
-  const std::vector<double> base = evaluate(*make(building), theta);
-  const std::vector<double> moved = evaluate(*make(less_heat), theta);
-  return Eigen::Map<const Eigen::VectorXd>(base.data(), static_cast<Eigen::Index>(base.size())) -
-         Eigen::Map<const Eigen::VectorXd>(moved.data(), static_cast<Eigen::Index>(moved.size()));
-}
-
-/// How all peaks of one meter move together, one error a meter that has them.
-/// @param outputs  In the order of the model's.
-std::vector<Eigen::VectorXd> peak_errors(const std::vector<assessment::OutputCalibration>& outputs,
-                                         MonthlyModel& model, std::span<const double> theta) {
-  const std::vector<double> base = evaluate(model, theta);
-  const auto months = static_cast<Eigen::Index>(model.month_count());
-  std::vector<Eigen::VectorXd> errors;
-  for (std::size_t k = 0; k < outputs.size(); ++k) {
-    if (outputs[k].unit != "kW") continue;
-    Eigen::VectorXd error = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(base.size()));
-    const auto first = static_cast<Eigen::Index>(k) * months;
-    error.segment(first, months) =
-        kPeakSd * Eigen::Map<const Eigen::VectorXd>(base.data() + first, months);
-    errors.push_back(std::move(error));
-  }
-  return errors;
 }
 
 /// The columns whose names are among `names`.
@@ -190,36 +107,12 @@ Result<ModelFactory> whole_model_of(const SiteConfig& site, const SiteModelParts
   };
 }
 
-/// By how much everything moves when lights and plugs take more.
-Result<std::vector<double>> electricity_use_of(const SiteConfig& site, SiteModelParts parts,
-                                               const SiteMonths& months,
-                                               const model::epc::Place& place, MonthlyModel& whole,
-                                               std::span<const Parameter> parameters) {
-  for (double& factor : parts.loads.month_factor) factor *= 1.0 + kMoreUse;
-  const auto make = whole_model_of(site, parts, months, place);
-  if (!make) return tl::unexpected(make.error());
-  const std::vector<double> modes = prior_modes(parameters);
-  const std::vector<double> base = evaluate(whole, modes);
-  std::vector<double> use = evaluate(*(*make)(*site.building), modes);
-  for (std::size_t i = 0; i < use.size(); ++i) use[i] = (use[i] - base[i]) / kMoreUse;
-  return use;
-}
-
 void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weather,
                 const SiteMonths& months, PreparedSite& prepared) {
   const weather::WeatherSeries& series = weather.filled.series;
   const auto inputs = weather::monthly_inputs(series, calendar, months.calibration);
   prepared.problem.inputs = {inputs.names, inputs.values};
   prepared.inputs = also_in(weather::monthly_inputs(series, calendar, months.all), inputs.names);
-}
-
-std::vector<Eigen::VectorXd> common_errors_of(const model::Building& building,
-                                              const ModelFactory& make, const SiteCalibration& site,
-                                              MonthlyModel& model) {
-  const std::vector<double> modes = prior_modes(site.parameters);
-  std::vector<Eigen::VectorXd> errors{heat_share_error(building, make, modes)};
-  std::ranges::move(peak_errors(site.outputs, model, modes), std::back_inserter(errors));
-  return errors;
 }
 
 }  // namespace
@@ -236,8 +129,9 @@ std::vector<assessment::OutputCalibration> collect_outputs(const SiteConfig& sit
       if (weight != site.model->weights.end()) output.weight = weight->second;
       outputs.push_back(std::move(output));
     };
-    add(daily_output(id, meter, record, months));
-    if (is_hourly(site)) add(peak_output(id, meter, record, months));
+    const assessment::MeteredMonths metered{id, meter, record.figures, record.level_changes};
+    add(assessment::daily_output(metered, months));
+    if (is_hourly(site)) add(assessment::peak_output(metered, months));
   }
   return outputs;
 }
@@ -319,15 +213,20 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   if (!whole) return tl::unexpected(whole.error());
   prepared.whole_model = (*whole)(*site.building);
 
-  auto use =
-      electricity_use_of(site, parts, months, place, *prepared.whole_model, result.parameters);
-  if (!use) return tl::unexpected(use.error());
-  prepared.electricity_use = std::move(*use);
+  parts.loads = assessment::more_use(parts.loads);
+  const auto with_more = whole_model_of(site, parts, months, place);
+  if (!with_more) return tl::unexpected(with_more.error());
+  const std::vector<double> modes = prior_modes(result.parameters);
+  prepared.electricity_use =
+      assessment::gain_by_use(*prepared.whole_model, *(*with_more)(*site.building), modes);
 
   prepared.problem = assessment::problem_of(result, months.calibration.size());
   add_inputs(calendar, weather, months, prepared);
-  prepared.problem.common_errors = common_errors_of(*site.building, *make, result, *prepared.model);
-  prepared.common_errors = common_errors_of(*site.building, *whole, result, *prepared.whole_model);
+  const auto errors = [&](const ModelFactory& factory, MonthlyModel& model) {
+    return assessment::common_errors(*site.building, factory, result.outputs, model, modes);
+  };
+  prepared.problem.common_errors = errors(*make, *prepared.model);
+  prepared.common_errors = errors(*whole, *prepared.whole_model);
   return prepared;
 }
 

@@ -2,7 +2,6 @@
 /// effects of the version in force.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,9 +14,6 @@
 namespace recald::daemon {
 
 [[nodiscard]] bool is_hourly(const SiteConfig& site);
-
-/// Makes the site's model of some months for a building that differs from the site's in values.
-using ModelFactory = std::function<std::unique_ptr<MonthlyModel>(const model::Building&)>;
 
 /// What all models of a site have in common, whatever the months.
 struct SiteModelParts {
