@@ -5,6 +5,7 @@
 
 #include "core/absent.hpp"
 #include "core/design/model_runs.hpp"
+#include "core/random/streams.hpp"
 #include "core/text/number_text.hpp"
 
 namespace recald::assessment {
@@ -13,8 +14,6 @@ namespace {
 // An output that the whole design moves by less than this share of its mean tells nothing about the
 // parameters that Guideline 14's tolerance of ±5 % would not also forgive.
 constexpr double kLeastResponse = 0.10;
-// The predictive noise has a random stream of its own, far from those of the chains.
-constexpr std::uint64_t kPredictiveStream = 1'000'000;
 
 /// (draws) sd of discrepancy and error together, in the output's unit.
 Eigen::VectorXd spread_sds(const calibration::Calibration& calibration, std::size_t output,
@@ -116,7 +115,7 @@ Result<void> assess(MonthlyModel& whole_model, const calibration::RunContext& co
   if (!draws) return tl::unexpected(draws.error());
 
   const std::size_t n = result.month_names.size();
-  Rng rng{context.seed, kPredictiveStream};
+  Rng rng{context.seed, streams::kPredictive.first};
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     OutputCalibration& output = result.outputs[k];
     const auto part = [&](const std::vector<double>& all) {

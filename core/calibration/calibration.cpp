@@ -7,14 +7,12 @@
 #include "core/calibration/posterior_findings.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/design/model_runs.hpp"
+#include "core/random/streams.hpp"
 
 namespace recald::calibration {
 namespace {
 
 constexpr int kDesignRunsMin = 20;
-/// Chains draw from streams 0, 1, …; the design's stream lies beyond any number of chains.
-constexpr std::uint64_t kDesignStream = std::uint64_t{1} << 32;
-constexpr std::uint64_t kBridgeStream = std::uint64_t{1} << 35;
 
 Result<void> check_calibration_options(const CalibrationOptions& options) {
   if (options.thinned_draws < 1) {
@@ -54,7 +52,7 @@ void add_posterior_findings(const CalibrationProblem& problem, Calibration& c) {
 void check_model(const Posterior& prototype, const Eigen::MatrixXd& points,
                  const CalibrationProblem& problem, const RunContext& context, Calibration& c) {
   Posterior posterior(prototype);
-  Rng rng(context.seed, kBridgeStream);
+  Rng rng(context.seed, streams::kBridge.first);
   if (auto evidence = bridge_log_evidence(posterior, points, rng)) c.evidence = *evidence;
   append(c.findings, evidence_findings(c.sampling, c.evidence));
   for (const int months : {1, 3}) {
@@ -74,7 +72,7 @@ Result<DesignRuns> run_design(const MonthlyModel& prototype, const CalibrationPr
                                                  std::to_string(kDesignRunsMin) + " runs, but " +
                                                  std::to_string(runs) + " are asked for");
   }
-  Rng rng(context.seed, kDesignStream);
+  Rng rng(context.seed, streams::kDesign.first);
   DesignRuns design;
   design.theta = design::latin_hypercube(problem.parameters, runs, rng);
   const design::RunObserver observer = [&context](int done, int total) {

@@ -5,12 +5,10 @@
 
 #include "core/calibration/dram.hpp"
 #include "core/model/model_adaptors.hpp"
+#include "core/random/streams.hpp"
 
 namespace recald::calibration {
 namespace {
-
-/// Streams of their own, beyond those of chains, pilots, populations and the bridge.
-constexpr std::uint64_t kCutStream = std::uint64_t{1} << 36;
 
 /// Everything that one chain needs.
 struct CutProblem {
@@ -104,7 +102,7 @@ Result<CutDraws> sample_given_eta(const MonthlyModel& model, const Calibration& 
   CutDraws result{std::vector<ChainDraws>(count), std::vector<ChainStatistics>(count)};
   std::vector<Result<void>> done(count);
   context.executor(count, [&](std::size_t k) {
-    Rng rng{context.seed, kCutStream + k};
+    Rng rng{context.seed, streams::kCut[k]};
     done[k] = walk(cut, rng, result.chains[k], result.statistics[k], [&](int values) {
       return !context.observer || context.observer({Progress::Stage::sampling, static_cast<int>(k),
                                                     values, static_cast<int>(eta.rows())});

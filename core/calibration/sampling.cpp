@@ -8,13 +8,10 @@
 #include "core/calibration/mode_jumps.hpp"
 #include "core/calibration/posterior_findings.hpp"
 #include "core/calibration/smc.hpp"
+#include "core/random/streams.hpp"
 
 namespace recald::calibration {
 namespace {
-
-/// Pilots and populations have random streams of their own, beyond any number of chains.
-constexpr std::uint64_t kPilotStream = std::uint64_t{1} << 33;
-constexpr std::uint64_t kPopulationStream = std::uint64_t{1} << 34;
 
 // The pilot is to see hills, to begin chains on them and to give a metric; with these figures it
 // costs an eighth of the chains where gradients are cheap.
@@ -44,14 +41,13 @@ struct Worker {
 /// The chains of one sampler, run side by side and extended side by side.
 class Chains {
  public:
-  Chains(const Posterior& prototype, const Sampler& sampler, int count, std::uint64_t first_stream,
+  Chains(const Posterior& prototype, const Sampler& sampler, int count, const streams::Block& block,
          const RunContext& context)
       : sampler_(sampler), context_(context) {
     workers_.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) {
-      workers_.push_back({Posterior(prototype),
-                          Rng(context.seed, first_stream + static_cast<std::uint64_t>(k)),
-                          {}});
+      workers_.push_back(
+          {Posterior(prototype), Rng(context.seed, block[static_cast<std::uint64_t>(k)]), {}});
     }
   }
 
@@ -246,7 +242,7 @@ class Sampling {
         [](Target& target, const SamplerOptions& own, Rng& rng, const SamplerObserver& observer) {
           return smc(target, own, rng, observer, kPilotMoves);
         }};
-    Chains pilot(posterior_, quick, options_.chains, kPilotStream, context_);
+    Chains pilot(posterior_, quick, options_.chains, streams::kPilots, context_);
     if (auto ran = pilot.run({.iterations = kPilotParticles, .burn_in = 0}, {}); !ran) {
       return tl::unexpected(std::move(ran.error()));
     }
@@ -292,7 +288,7 @@ class Sampling {
     if (options_.burn_in) own.burn_in = *options_.burn_in;
     if (options_.iterations) own.iterations = *options_.iterations;
     if (auto valid = check_options(own); !valid) return valid;
-    Chains chains(posterior_, sampler, options_.chains, 0, context_);
+    Chains chains(posterior_, sampler, options_.chains, streams::kChains, context_);
     if (auto ran = chains.run(own, pilot == nullptr ? std::vector<ChainState>{} : starts(*pilot));
         !ran) {
       return ran;
@@ -314,8 +310,8 @@ class Sampling {
     if (options_.iterations && options_.sampler != nullptr) own.iterations = *options_.iterations;
     own.burn_in = 0;
     for (int doubling = 0;; ++doubling, own.iterations *= 2) {
-      Chains populations(posterior_, sampler, options_.chains,
-                         kPopulationStream * static_cast<std::uint64_t>(doubling + 1), context_);
+      Chains populations(posterior_, sampler, options_.chains, streams::populations_of(doubling),
+                         context_);
       populations.let_jump();
       if (auto ran = populations.run(own, {}); !ran) return ran;
       result_.report.burn_in = 0;

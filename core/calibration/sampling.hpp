@@ -48,7 +48,7 @@ struct SamplingOptions {
   /// then, and a gate that fails is reported.
   std::optional<int> iterations = {};
   std::optional<int> burn_in = {};
-  int chains = 4;         ///< >= 2, or R-hat says little. Chain k draws from Rng{seed, k}.
+  int chains = 4;         ///< >= 2, or R-hat says little. Chain k draws from stream k.
   int doublings_max = 2;  ///< How often the draws are doubled while the gate fails.
   ConvergenceGate gate;
 };

@@ -15,14 +15,13 @@
 #include "core/absent.hpp"
 #include "core/calibration/log_sum.hpp"
 #include "core/random/rng.hpp"
+#include "core/random/streams.hpp"
 
 namespace recald::drift {
 namespace {
 
 using calibration::Posterior;
 using calibration::PosteriorData;
-
-constexpr std::uint64_t kStream = std::uint64_t{1} << 40;
 
 double log_normal(const Eigen::VectorXd& residual, const Eigen::LLT<Eigen::MatrixXd>& factor) {
   const Eigen::VectorXd white = factor.matrixL().solve(residual);
@@ -430,7 +429,7 @@ Result<std::vector<Cause>> weigh_causes(const ChangeCase& change,
   MonthsSinceChange since{*posterior, change.since};
   std::vector<Contest> contests = contests_of(change, options, meters_of(change, since, blocks));
   Trial trial{change, options, since, blocks};
-  Rng rng{seed, kStream};
+  Rng rng{seed, streams::kCauses.first};
   Eigen::VectorXd theta(posterior->parameter_count());
   calibration::Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(posterior->kernel_dimension())};
   for (const Eigen::VectorXd& position : before) {

@@ -1,5 +1,6 @@
 #include <chrono>
 
+#include "core/random/streams.hpp"
 #include "core/screening/screen.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
@@ -11,7 +12,7 @@ int run_screen(const ScreenArguments& arguments, const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
   const auto design = open_design_folder(arguments.design, console);
   if (!design) return design.error();
-  Rng rng{arguments.seed, kScreeningStream};
+  Rng rng{arguments.seed, streams::kScreening.first};
   const auto screening = screening::screen(design_data(*design), {}, rng);
   if (!screening) return console.fail(screening.error());
   auto facts = facts_of_files(design->files, "design");

@@ -10,6 +10,7 @@
 #include "adapters/doe/metamodel_file.hpp"
 #include "core/absent.hpp"
 #include "core/model/model_adaptors.hpp"
+#include "core/random/streams.hpp"
 #include "core/text/nearest.hpp"
 
 namespace recald::daemon {
@@ -211,7 +212,7 @@ Result<std::vector<int>> choose_parameters(const doe::DesignFolder& design,
   if (options.parameters != "screened") {
     return named_parameters(design.parameters, options.parameters);
   }
-  Rng rng{options.metamodel.seed, kScreeningStream};
+  Rng rng{options.metamodel.seed, streams::kScreening.first};
   auto screening = screening::screen(design_data(design), {}, rng);
   if (!screening) return tl::unexpected(screening.error());
   result.screening = std::move(*screening);

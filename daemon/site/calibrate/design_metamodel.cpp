@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/random/rng.hpp"
+#include "core/random/streams.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -78,8 +79,8 @@ model::metamodel::MonthInputs month_inputs(const doe::MonthlyTable& inputs,
 Result<FittedMetamodel> fit_metamodel(const regression::DesignData& design,
                                       const MetamodelOptions& options) {
   // Both forms leave out the same runs, so that their figures compare.
-  Rng seed_rng{options.seed, kFoldStream};
-  Rng monthly_rng{options.seed, kFoldStream};
+  Rng seed_rng{options.seed, streams::kFolds.first};
+  Rng monthly_rng{options.seed, streams::kFolds.first};
   auto seed_form =
       regression::fit_seed_form(design, {.wind_in_degrees = options.wind_in_degrees}, seed_rng);
   auto monthly_form = regression::fit_monthly_form(design, {}, monthly_rng);

@@ -32,10 +32,6 @@ struct MetamodelOptions {
   std::uint64_t seed = 1;             ///< Deals the runs into folds.
 };
 
-/// Streams of a seed that a design uses besides those of chains and Latin hypercube.
-inline constexpr std::uint64_t kFoldStream = 2'000'000;
-inline constexpr std::uint64_t kScreeningStream = 3'000'000;
-
 struct FittedMetamodel {
   std::optional<regression::SeedForm> seed_form;  ///< Absent where it could not be fitted.
   std::optional<regression::MonthlyForm> monthly_form;

@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "core/design/latin_hypercube.hpp"
+#include "core/random/streams.hpp"
 
 namespace recald::daemon {
 namespace {
 
-/// The hypercube's stream, beyond those of any number of chains.
-constexpr std::uint64_t kHypercubeStream = std::uint64_t{1} << 32;
 
 std::vector<doe::DesignMonth> design_months(std::span<const std::string> names) {
   std::vector<doe::DesignMonth> months;
@@ -48,7 +47,7 @@ doe::DesignPlan plan_design(const PreparedSite& site, const SiteDesignOptions& o
   const SiteCalibration& so_far = site.so_far;
   doe::DesignPlan plan;
   plan.parameters = so_far.parameters;
-  Rng rng{options.seed, kHypercubeStream};
+  Rng rng{options.seed, streams::kHypercube.first};
   plan.theta = design::latin_hypercube(plan.parameters, options.runs, rng);
   for (const assessment::OutputCalibration& output : so_far.outputs)
     plan.output_names.push_back(output.name);

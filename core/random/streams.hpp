@@ -1,0 +1,48 @@
+/// Every stream of a run's seed, and who draws from it: no two of them meet.
+#pragma once
+
+#include <array>
+#include <cassert>
+#include <cstdint>
+
+namespace recald::streams {
+
+/// Consecutive streams for one purpose.
+struct Block {
+  std::uint64_t first;
+  std::uint64_t size;
+
+  /// @pre k < size
+  [[nodiscard]] constexpr std::uint64_t operator[](std::uint64_t k) const {
+    assert(k < size);
+    return first + k;
+  }
+};
+
+inline constexpr std::uint64_t kChainsMax = 1'000'000;
+inline constexpr std::uint64_t kPopulationRoundsMax = 10'000;
+
+inline constexpr Block kChains{0, kChainsMax};
+inline constexpr Block kPredictive{1'000'000, 1};  ///< Noise of predicted months.
+inline constexpr Block kFolds{2'000'000, 1};       ///< Of a design's runs, for cross-validation.
+inline constexpr Block kScreening{3'000'000, 1};
+inline constexpr Block kDesign{1ULL << 32, 1};           ///< Of a calibration.
+inline constexpr Block kPilots{1ULL << 33, kChainsMax};  ///< One a chain.
+/// New ones after each doubling.
+inline constexpr Block kPopulations{1ULL << 34, kPopulationRoundsMax* kChainsMax};
+inline constexpr Block kBridge{1ULL << 35, 1};
+inline constexpr Block kCut{1ULL << 36, kChainsMax};  ///< Chains given draws of an effect.
+inline constexpr Block kHypercube{1ULL << 37, 1};     ///< Of `recald doe`.
+inline constexpr Block kCauses{1ULL << 40, 1};        ///< Of an alarm.
+
+inline constexpr std::array kAll{kChains,      kPredictive, kFolds, kScreening, kDesign, kPilots,
+                                 kPopulations, kBridge,     kCut,   kHypercube, kCauses};
+
+/// The populations that are run side by side after so many doublings.
+[[nodiscard]] constexpr Block populations_of(int doublings) {
+  assert(doublings >= 0);
+  const auto round = static_cast<std::uint64_t>(doublings);
+  return {kPopulations[round * kChainsMax], kChainsMax};
+}
+
+}  // namespace recald::streams
