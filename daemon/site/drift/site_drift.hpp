@@ -1,104 +1,24 @@
 /// A site followed from month to month: what was forecast, what came, what has moved.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "core/drift/cause.hpp"
-#include "core/drift/prequential.hpp"
-#include "core/drift/shift.hpp"
-#include "core/model/model_kind.hpp"
+#include "core/drift/follow.hpp"
+#include "core/drift/site_drift.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
-#include "daemon/site/drift/daily_watches.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 
 namespace recald::daemon {
 
-/// The window that shares no month with the same one a year before.
-inline constexpr std::string_view kLastYearWindow = "12 months";
-
-struct DriftOptions {
-  int learning_months = 12;  ///< That the model is made from; the first test is the month after.
-  int design_runs = 200;     ///< That fix the normalisation, as a calibration's.
-  drift::SequentialOptions sequential;
-  /// Of all meters, by months and by days together.
-  drift::WatchOptions watch;
-  drift::CauseOptions causes;
-  /// A cause as likely as this is acted upon: the model begins anew, or the meter is set aside.
-  double act_at = 0.8;
-  /// A season shows one meter alone: causes are weighed again with each month, acted upon after so
-  /// many, and left open after a year.
-  int months_to_act = 4;
-};
-
-/// One output, in the order of the model's.
-struct FollowedOutput {
-  std::string name;   ///< "steam_daily_kWh"
-  std::string meter;  ///< Its id.
-  std::string unit;
-  bool by_level;                 ///< No parameter moves it: forecast by its own months alone.
-  std::vector<double> measured;  ///< (months) NaN: none.
-  drift::WatchState state;       ///< After the last month.
-  std::optional<DailyState> daily = {};  ///< Its days', likewise; absent: not watched.
-};
-
-/// What a window believed of a parameter after each month.
-struct ParameterPath {
-  std::vector<double> mean;  ///< (months) NaN before there is a posterior.
-  std::vector<double> q05;
-  std::vector<double> q95;
-};
-
-struct FollowedWindow {
-  std::string name;
-  double log_score = 0.0;            ///< Of all months after the learning ones; larger is better.
-  std::vector<ParameterPath> paths;  ///< (q)
-  std::vector<drift::MonthTaken> taken;
-};
-
-/// What an alarm may come from, and what was done about it.
-struct ExplainedAlarm {
-  drift::Alarm alarm;
-  std::vector<drift::Cause> causes;  ///< The likeliest first; empty: too little was known before.
-  int explained_until = 0;           ///< The last month that the causes were weighed with.
-  enum class Consequence { none, began_anew, meter_set_aside } consequence = Consequence::none;
-};
-
-/// What is seen in a meter's readings, without any model.
-struct MeterChange {
-  enum class Kind {
-    unit,  ///< It counts in another one: months that are not the building's and have no forecast.
-    readings  ///< It gives usable ones for much less of the time; the others are filled.
-  };
-  Kind kind;
-  std::string meter;
-  std::string since;  ///< "2018-06"
-  std::string seen;   ///< The month that settled it; with a unit its first one.
-  double factor;      ///< Of its figures, or of the time with usable readings.
-  std::string sentence;
-};
-
-struct SiteDrift {
-  ModelKind model;
-  std::vector<std::string> months;  ///< "2019-03", ascending, the learning ones first.
-  int learning_months;
-  std::vector<Parameter> parameters;  ///< (q)
-  std::vector<FollowedOutput> outputs;
-  std::vector<drift::PrequentialMonth> record;  ///< Of the months after the learning ones.
-  std::vector<ExplainedAlarm> alarms;           ///< Of the record, in order of time.
-  std::vector<MeterChange> meter_changes;
-  std::vector<drift::Direction> directions;  ///< That causes speak of.
-  std::vector<FollowedWindow> windows;       ///< Expanding first: it makes the record.
-  /// (q) From the last year but one to the last; empty before there are two years to compare.
-  std::vector<drift::Shift> last_year;
-  std::vector<std::string> warnings;
-
-  [[nodiscard]] const std::string& month_name(int month) const {
-    return months[static_cast<std::size_t>(month)];
-  }
-};
+using drift::DailyState;
+using drift::ExplainedAlarm;
+using drift::FollowedOutput;
+using drift::FollowedWindow;
+using drift::kLastYearWindow;
+using drift::MeterChange;
+using drift::ParameterPath;
+using drift::SiteDrift;
+using DriftOptions = drift::FollowOptions;
 
 /// The months that all modelled meters have in common, the first `learning_months` of them to learn
 /// from. Months without weather are left out later.

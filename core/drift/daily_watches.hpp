@@ -8,7 +8,7 @@
 #include "core/drift/daily_watch.hpp"
 #include "core/drift/watch.hpp"
 
-namespace recald::daemon {
+namespace recald::drift {
 
 /// How a meter's daily watch stands.
 struct DailyState {
@@ -22,7 +22,7 @@ class DailyWatches {
  public:
   struct Output {
     int output;
-    std::vector<drift::WatchedDay> days;
+    std::vector<WatchedDay> days;
   };
   /// @param months_between_false_alarms  Of all meters together.
   DailyWatches(std::vector<Output> outputs, std::vector<std::string> months, int learning_months,
@@ -32,7 +32,7 @@ class DailyWatches {
   [[nodiscard]] bool is_able() const;
 
   /// Alarms of a month's days, in order of output.
-  [[nodiscard]] std::vector<drift::Alarm> look(int month);
+  [[nodiscard]] std::vector<Alarm> look(int month);
 
   /// The building is another one since that month; meters that know of it by their own alarm go on.
   void begin_at(int month);
@@ -45,14 +45,14 @@ class DailyWatches {
  private:
   struct Watched {
     int output;
-    drift::DailyWatch watch;
+    DailyWatch watch;
     std::optional<metering::Day> begun = {};
   };
-  [[nodiscard]] drift::Alarm alarm_of(const Watched& watched, const drift::DailyAlarm& alarm) const;
+  [[nodiscard]] Alarm alarm_of(const Watched& watched, const DailyAlarm& alarm) const;
   [[nodiscard]] int month_of_change(metering::Day day, int latest) const;
 
   std::vector<std::string> months_;
   std::vector<Watched> watched_;
 };
 
-}  // namespace recald::daemon
+}  // namespace recald::drift

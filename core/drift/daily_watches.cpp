@@ -1,10 +1,10 @@
-#include "daemon/site/drift/daily_watches.hpp"
+#include "core/drift/daily_watches.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
-namespace recald::daemon {
+namespace recald::drift {
 namespace {
 
 constexpr double kDaysAMonth = 365.25 / 12.0;
@@ -17,19 +17,19 @@ constexpr double kLevelSd = 0.1;
 DailyWatches::DailyWatches(std::vector<Output> outputs, std::vector<std::string> months,
                            int learning_months, double months_between_false_alarms)
     : months_(std::move(months)) {
-  drift::DailyWatchOptions options;
+  DailyWatchOptions options;
   options.days_between_false_alarms =
       months_between_false_alarms * kDaysAMonth * static_cast<double>(outputs.size());
   for (Output& one : outputs) {
-    drift::DailyWatch watch{std::move(one.days), learning_months, options};
+    DailyWatch watch{std::move(one.days), learning_months, options};
     if (watch.is_able()) watched_.push_back({one.output, std::move(watch)});
   }
 }
 
 bool DailyWatches::is_able() const { return !watched_.empty(); }
 
-std::vector<drift::Alarm> DailyWatches::look(int month) {
-  std::vector<drift::Alarm> alarms;
+std::vector<Alarm> DailyWatches::look(int month) {
+  std::vector<Alarm> alarms;
   for (Watched& watched : watched_) {
     const auto alarm = watched.watch.look(month);
     if (!alarm) continue;
@@ -39,7 +39,7 @@ std::vector<drift::Alarm> DailyWatches::look(int month) {
   return alarms;
 }
 
-drift::Alarm DailyWatches::alarm_of(const Watched& watched, const drift::DailyAlarm& alarm) const {
+Alarm DailyWatches::alarm_of(const Watched& watched, const DailyAlarm& alarm) const {
   return {.month = alarm.month,
           .output = watched.output,
           .direction = alarm.direction,
@@ -48,11 +48,11 @@ drift::Alarm DailyWatches::alarm_of(const Watched& watched, const drift::DailyAl
           .since_earliest = month_of_change(alarm.since_earliest, alarm.month),
           .since_latest = month_of_change(alarm.since_latest, alarm.month),
           .is_calibrated = true,
-          .days = drift::AlarmDays{.raised = alarm.raised,
-                                   .since = alarm.since,
-                                   .since_earliest = alarm.since_earliest,
-                                   .since_latest = alarm.since_latest,
-                                   .excess = alarm.excess}};
+          .days = AlarmDays{.raised = alarm.raised,
+                            .since = alarm.since,
+                            .since_earliest = alarm.since_earliest,
+                            .since_latest = alarm.since_latest,
+                            .excess = alarm.excess}};
 }
 
 /// The first month that is mostly after the day.
@@ -87,4 +87,4 @@ std::optional<DailyState> DailyWatches::state(int output) const {
                     .month_factor = found->watch.month_factor()};
 }
 
-}  // namespace recald::daemon
+}  // namespace recald::drift
