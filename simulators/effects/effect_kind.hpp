@@ -88,7 +88,7 @@ std::unique_ptr<HiddenEffect> make_effect(const EffectSettings& settings,
 /// What `--list-effects` says of one: name, class, sentence, strengths, needs.
 [[nodiscard]] std::string explain(const EffectKind& kind);
 
-/// All kinds, by class and then as listed in `catalogue.cpp`.
+/// All kinds, by class and then by id. Each is defined in the file of its name.
 [[nodiscard]] std::span<const EffectKind> effect_kinds();
 /// @return nullptr where no effect has this id.
 [[nodiscard]] const EffectKind* find_effect_kind(std::string_view id);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 
 #include "tests/blind/population/draw_building.hpp"
 
@@ -30,12 +32,21 @@ std::uint64_t seed_of(std::string_view population, std::uint64_t seed) {
   return hash;
 }
 
+// Populations are dealt from these first, so that a seed goes on giving the buildings it gave
+// before kinds came in order of their names.
+constexpr auto kDealtFirst = std::to_array<std::string_view>(
+    {"night_setback_missing", "weekend_operation", "missing_holidays", "after_hours", "early_start",
+     "round_the_clock_zone", "semester_calendar", "vacancy", "hybrid_work"});
+
 std::vector<const EffectKind*> kinds_in_catalogue(bool in_catalogue) {
   std::vector<const EffectKind*> kinds;
   for (const EffectKind& kind : effect_kinds()) {
     if (kind.group == EffectClass::operators) continue;  // a base parameter's, no effect is missing
     if ((kind.group != EffectClass::outside_catalogue) == in_catalogue) kinds.push_back(&kind);
   }
+  std::ranges::stable_sort(kinds, {}, [](const EffectKind* kind) {
+    return std::ranges::find(kDealtFirst, kind->id) - kDealtFirst.begin();
+  });
   return kinds;
 }
 
