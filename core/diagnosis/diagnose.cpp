@@ -4,6 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "core/random/rng.hpp"
+#include "core/random/streams.hpp"
+
 namespace recald::diagnosis {
 namespace {
 
@@ -225,7 +228,7 @@ class Search {
   /// One pass, and the next model where it named something. @return whether to go on
   Result<bool> turn() {
     const std::size_t count = result_.passes.size();
-    Rng rng{options_.seed, static_cast<std::uint64_t>(count)};
+    Rng rng{options_.seed, streams::kPasses[count]};
     Predictor predictor{site_, accepted_};
     const std::vector<Candidate> open = still_open(list_, result_.added);
     NamingRules rules = options_.rules;

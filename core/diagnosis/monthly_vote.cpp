@@ -9,6 +9,7 @@
 #include "core/absent.hpp"
 #include "core/assessment/fit_metrics.hpp"
 #include "core/random/rng.hpp"
+#include "core/random/streams.hpp"
 #include "core/statistics/quantile.hpp"
 
 namespace recald::diagnosis {
@@ -223,7 +224,7 @@ MonthlyVote compare(const MonthlyFigures& measured, const Fit& before,
   result.figures_shown = 0;
   std::vector<double> by_month(measured.shown.size(), 0.0);
   const std::size_t months = after.size() / measured.outputs.size();
-  Rng rng{seed};
+  Rng rng{seed, streams::kVote.first};
   for (std::size_t k = 0; k < measured.outputs.size(); ++k) {
     const Pairs pairs = pairs_of(measured, k, before, after);
     const double sd = before.error_sd[k];

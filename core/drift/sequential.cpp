@@ -9,6 +9,7 @@
 
 #include "core/calibration/log_sum.hpp"
 #include "core/calibration/smc.hpp"
+#include "core/random/streams.hpp"
 
 namespace recald::drift {
 namespace {
@@ -176,7 +177,7 @@ Result<std::vector<Forecast>> SequentialCalibration::forecast(int month) {
 
 Result<void> SequentialCalibration::begin_anew(Posterior& posterior, MonthTaken& taken,
                                                const std::function<bool()>& proceed) {
-  Rng rng{seed_, 2 * static_cast<std::uint64_t>(taken.month) + 1};
+  Rng rng{seed_, streams::kMonths[2 * static_cast<std::uint64_t>(taken.month) + 1]};
   const auto chain = calibration::smc(posterior, {.iterations = options_.particles, .burn_in = 0},
                                       rng, [&](int, int) { return !proceed || proceed(); });
   if (!chain) return tl::unexpected(chain.error());
@@ -278,7 +279,7 @@ Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bo
     return anew();
   }
   if (taken.effective_share < options_.effective_share) {
-    Rng rng{seed_, 2 * static_cast<std::uint64_t>(month)};
+    Rng rng{seed_, streams::kMonths[2 * static_cast<std::uint64_t>(month)]};
     calibration::ParticleMover mover(*posterior, rng, carried.count(), {});
     const auto shaped = mover.set_shape(covariance(carried));
     if (!shaped) return anew();  // the population has collapsed

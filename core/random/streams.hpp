@@ -21,6 +21,8 @@ struct Block {
 
 inline constexpr std::uint64_t kChainsMax = 1'000'000;
 inline constexpr std::uint64_t kPopulationRoundsMax = 10'000;
+inline constexpr std::uint64_t kMonthsMax = 100'000;
+inline constexpr std::uint64_t kPassesMax = 1'000;
 
 inline constexpr Block kChains{0, kChainsMax};
 inline constexpr Block kPredictive{1'000'000, 1};  ///< Noise of predicted months.
@@ -33,10 +35,16 @@ inline constexpr Block kPopulations{1ULL << 34, kPopulationRoundsMax* kChainsMax
 inline constexpr Block kBridge{1ULL << 35, 1};
 inline constexpr Block kCut{1ULL << 36, kChainsMax};  ///< Chains given draws of an effect.
 inline constexpr Block kHypercube{1ULL << 37, 1};     ///< Of `recald doe`.
-inline constexpr Block kCauses{1ULL << 40, 1};        ///< Of an alarm.
+/// Of a followed site, two a month. All windows share them and differ only in what they believe.
+inline constexpr Block kMonths{1ULL << 38, 2 * kMonthsMax};
+inline constexpr Block kPasses{1ULL << 39, kPassesMax};  ///< Of a diagnosis.
+inline constexpr Block kCauses{1ULL << 40, 1};           ///< Of an alarm.
+inline constexpr Block kVote{1ULL << 41, 1};             ///< Resampled months of a monthly model.
+inline constexpr Block kHops{1ULL << 42, 1};             ///< Starts of a diagnosis's climbs.
 
-inline constexpr std::array kAll{kChains,      kPredictive, kFolds, kScreening, kDesign, kPilots,
-                                 kPopulations, kBridge,     kCut,   kHypercube, kCauses};
+inline constexpr std::array kAll{kChains, kPredictive,  kFolds,  kScreening, kDesign,
+                                 kPilots, kPopulations, kBridge, kCut,       kHypercube,
+                                 kMonths, kPasses,      kCauses, kVote,      kHops};
 
 /// The populations that are run side by side after so many doublings.
 [[nodiscard]] constexpr Block populations_of(int doublings) {
