@@ -99,12 +99,6 @@ void DayParts::average_into(const Eigen::Ref<const Eigen::ArrayXXd>& hourly,
   }
 }
 
-Eigen::ArrayXXd DayParts::average(const Eigen::Ref<const Eigen::ArrayXXd>& hourly) const {
-  Eigen::ArrayXXd means(count(), hourly.cols());
-  average_into(hourly, means);
-  return means;
-}
-
 Eigen::ArrayXXd measured_parts(const DayParts& day_parts,
                                const Eigen::Ref<const Eigen::ArrayXXd>& hourly_kW) {
   Eigen::ArrayXXd means(day_parts.count(), hourly_kW.cols());

@@ -40,8 +40,7 @@ struct DayPart {
 /// The parts of a period, in order of time.
 struct DayParts {
   std::vector<DayPart> parts;
-  /// Means of hourly columns over the parts. @param hourly  (hours x m) @return (parts x m)
-  [[nodiscard]] Eigen::ArrayXXd average(const Eigen::Ref<const Eigen::ArrayXXd>& hourly) const;
+  /// Means of hourly columns over the parts. @param hourly  (hours x m) @param means  (parts x m)
   void average_into(const Eigen::Ref<const Eigen::ArrayXXd>& hourly, Eigen::ArrayXXd& means) const;
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(parts.size()); }
 };

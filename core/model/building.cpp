@@ -18,12 +18,4 @@ double heat_capacity_J_m2K(MassClass mass) {
   return 165e3;
 }
 
-double exterior_area_m2(const Building& building) {
-  double area_m2 = 0.0;
-  for (const Surface& surface : building.surfaces) {
-    if (surface.kind != SurfaceKind::ground) area_m2 += surface.area_m2;
-  }
-  return area_m2;
-}
-
 }  // namespace recald::model

@@ -119,7 +119,4 @@ struct Building {
   double ground_temperature_C = 12.0;
 };
 
-/// Exterior area that leaks: walls, roofs and windows, m².
-[[nodiscard]] double exterior_area_m2(const Building& building);
-
 }  // namespace recald::model

@@ -146,12 +146,6 @@ double StandardisedProducts::largest_penalty() const {
   return covariance.rows() == 0 ? 0.0 : covariance.rowwise().norm().maxCoeff();
 }
 
-int LassoFit::selected_count() const {
-  int count = 0;
-  for (Eigen::Index j = 0; j < coefficients.rows(); ++j) count += selects(j) ? 1 : 0;
-  return count;
-}
-
 Result<LassoFit> fit_lasso(const StandardisedProducts& products, double penalty,
                            const LassoOptions& options) {
   assert(penalty > 0.0);

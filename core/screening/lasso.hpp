@@ -38,7 +38,6 @@ struct LassoFit {
   int sweeps;                    ///< Passes used, over all or the selected columns.
 
   [[nodiscard]] bool selects(Eigen::Index j) const { return !coefficients.row(j).isZero(0.0); }
-  [[nodiscard]] int selected_count() const;
 };
 
 struct LassoPath {

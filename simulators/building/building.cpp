@@ -223,7 +223,6 @@ void Building::add_gains(const Moment& now, const Operation& operation) {
   const double floor_m2 = drawings.floor_area_m2();
   const double special_m2 = static_cast<double>(drawings.storeys) * drawings.zone_m2(special);
   load_.lights_and_plugs_W = load_.other_electricity_W = load_.other_fuel_W = 0.0;
-  people_present_ = 0.0;
   double planned_present = 0.0;
   for (std::size_t zone = 0; zone < zone_loads_.size(); ++zone) {
     const std::size_t side = zone % kZonesPerStorey;
@@ -249,7 +248,6 @@ void Building::add_gains(const Moment& now, const Operation& operation) {
     loads.infiltration_kg_s = effects[zone].infiltration_kg_s;
     loads.outdoor = now.outdoors.air;
     load_.lights_and_plugs_W += weight * (drawn_lights_W + drawn_plugs_W);
-    people_present_ += weight * present;
     planned_present += planned;
   }
   load_.people_share = people_.assigned() > 0 ? planned_present / people_.assigned() : 0.0;

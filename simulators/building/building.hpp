@@ -33,9 +33,7 @@ class Building {
   }
   [[nodiscard]] const HiddenEffects& effects() const { return effects_; }
   [[nodiscard]] const std::vector<Zone>& zones() const { return envelope_.zones(); }
-  [[nodiscard]] const AirHandlerWork& air_handler_work(std::size_t i) const { return work_[i]; }
   [[nodiscard]] const ServiceLoad& load() const { return load_; }
-  [[nodiscard]] double people_present() const { return people_present_; }
   /// What a zone took up in the last step from outside, neighbours, gains and supply air, minus
   /// what its air and constructions stored of it; 0 but for rounding.
   [[nodiscard]] double heat_imbalance_J(std::size_t zone) const { return zone_imbalance_J_[zone]; }
@@ -79,7 +77,6 @@ class Building {
   Timetable timetable_{};
   DayKind day_kind_ = DayKind::workday;  ///< As the calendar has it.
   ServiceLoad load_;
-  double people_present_ = 0.0;
   double heat_imbalance_J_ = 0.0;
 };
 

@@ -45,7 +45,6 @@ class Wall {
   /// Flux into the construction from the outer side during the last step, W/m².
   [[nodiscard]] double outer_flux_W_m2() const;
   [[nodiscard]] double outer_node_C() const { return temperature_C_.front(); }
-  [[nodiscard]] double room_node_C() const { return temperature_C_.back(); }
   [[nodiscard]] double stored_J_m2() const;  ///< Relative to 0 degC.
   [[nodiscard]] double heat_capacity_J_m2K() const;
 

@@ -1,7 +1,5 @@
 #include "simulators/climate/climates.hpp"
 
-#include <algorithm>
-
 namespace recald::simulators {
 namespace {
 
@@ -247,14 +245,6 @@ Climate marine(const Place& place) {
 }  // namespace
 
 std::string_view name_of(ClimateKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
-
-std::array<std::string_view, 5> climate_names() { return kNames; }
-
-std::optional<ClimateKind> climate_named(std::string_view name) {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) return std::nullopt;
-  return kClimateKinds[static_cast<std::size_t>(found - kNames.begin())];
-}
 
 Climate climate_of(ClimateKind kind, const Place& place) {
   switch (kind) {

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
 
 #include "simulators/climate/precipitation.hpp"
@@ -24,12 +23,6 @@ inline constexpr std::array<ClimateKind, 5> kClimateKinds{ClimateKind::hot_humid
 
 /// As written in a scenario: "hot-humid", "hot-dry", "mixed", "cold", "marine".
 [[nodiscard]] std::string_view name_of(ClimateKind kind);
-
-/// All names, in the order of `kClimateKinds`: to list, or to find the one that was meant.
-[[nodiscard]] std::array<std::string_view, 5> climate_names();
-
-/// @return nothing for any other text, upper case included.
-[[nodiscard]] std::optional<ClimateKind> climate_named(std::string_view name);
 
 /// How a day runs.
 struct DailyCycle {
