@@ -158,6 +158,18 @@ std::vector<Role> split_months(const std::vector<metering::Month>& months,
   return roles;
 }
 
+std::vector<Role> split_months(const std::vector<metering::Month>& months,
+                               const std::vector<metering::Month>& read,
+                               const SplitOptions& options) {
+  std::vector<Role> roles(months.size(), Role::fit);
+  const std::vector<Role> of_read = split_months(read, options);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    roles[static_cast<std::size_t>(std::ranges::find(months, read[i]) - months.begin())] =
+        of_read[i];
+  }
+  return roles;
+}
+
 std::vector<Role> part_roles(const DayParts& day_parts, const std::vector<Role>& month_roles,
                              int buffer_days) {
   const auto& parts = day_parts.parts;

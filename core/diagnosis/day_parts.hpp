@@ -66,6 +66,13 @@ struct SplitOptions {
 [[nodiscard]] std::vector<Role> split_months(const std::vector<metering::Month>& months,
                                              const SplitOptions& options);
 
+/// The same of those months that were read. One without readings proves nothing, so it is neither
+/// held nor kept to be shown: it counts as one to fit and adds nothing.
+/// @param read  Some of `months`, in their order.
+[[nodiscard]] std::vector<Role> split_months(const std::vector<metering::Month>& months,
+                                             const std::vector<metering::Month>& read,
+                                             const SplitOptions& options);
+
 /// One role a part: its month's, or buffer within `buffer_days` of a month with another role.
 /// Buffers are taken from the fitted side, so that what is shown stays whole.
 [[nodiscard]] std::vector<Role> part_roles(const DayParts& day_parts,

@@ -9,6 +9,7 @@
 
 #include "core/absent.hpp"
 #include "core/assessment/assessed_calibration.hpp"
+#include "core/diagnosis/day_part_parameters.hpp"
 #include "core/model/hourly/prepare.hpp"
 #include "daemon/site/model/site_parts.hpp"
 
@@ -23,44 +24,6 @@ constexpr double kLeastOkShare = 0.5;
 constexpr double kLeastReadShare = 0.5;  // of the hours of a month that counts as read
 // Positions in `weather::kWeatherVariables` of humidity and wind, without which the model can do.
 constexpr std::array<std::size_t, 2> kAssumable = {1, 2};
-
-/// What day parts can inform besides the parameters that the site file names. Where drawings may be
-/// wrong by a factor the prior is log-normal about them, wider than the library's range: a
-/// diagnosis must not take a misremembered number for an effect.
-struct DayPartParameter {
-  std::string_view name;
-  double log_sd = 0.0;        ///< 0: the library's prior.
-  double median = 0.0;        ///< 0: the drawings' value.
-  double second_start = 0.0;  ///< Score.
-  bool of_own_chiller = false;
-};
-constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
-    {"start_early"},
-    {"stop_late"},
-    {"occupancy_density", 0.5},
-    {"outdoor_airflow", 0.4},
-    {"cooling_setpoint"},
-    {"heating_setpoint"},
-    {"u_factor_scale", 0.3},
-    {"shgc_scale", 0.4},
-    {"specific_heat_scale", 0.6},
-    {"leakage_area", 0.7},
-    {"supply_temperature"},
-    {"minimum_supply_flow", 0.35},
-    {"hot_water_volume", 0.6},
-    {"base_heat", 0.7},
-    {.name = "closet_share", .second_start = -2.0},
-    {"gains_to_core"},
-    {"supply_reset"},
-    {"warm_up"},
-    {"closed_start"},
-    // What no drawing gives: about what the training buildings have.
-    {"mass_coupling", 0.5, 0.5},
-    {.name = "core_mass", .log_sd = 0.9, .median = 0.3, .second_start = -1.0},
-    {"air_capacity", 0.5, 35.0},
-    {"night_fan"},
-    {.name = "chiller_lift", .of_own_chiller = true},
-});
 
 bool is_recorded(const SiteWeather& weather, std::size_t variable) {
   return std::ranges::any_of(weather.filled.coverage, [&](const weather::WeatherCoverage& month) {
@@ -100,20 +63,6 @@ std::vector<Month> months_read(const SiteConfig& site, const Recording& recordin
   return read;
 }
 
-/// A month without readings proves nothing, so none is held or kept to be shown: it counts as one
-/// to fit and adds nothing.
-std::vector<diagnosis::Role> roles_of(const std::vector<Month>& months,
-                                      const std::vector<Month>& read,
-                                      const diagnosis::SplitOptions& split) {
-  std::vector<diagnosis::Role> roles(months.size(), diagnosis::Role::fit);
-  const std::vector<diagnosis::Role> of_read = diagnosis::split_months(read, split);
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    roles[static_cast<std::size_t>(std::ranges::find(months, read[i]) - months.begin())] =
-        of_read[i];
-  }
-  return roles;
-}
-
 /// Measured hours of one meter in the order of the drivers; NaN where not measured. The hour that
 /// the clock repeats in autumn is recorded once and stands twice.
 Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers) {
@@ -131,35 +80,22 @@ Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers
   return values;
 }
 
-/// The prior of a diagnosis; absent: the library's.
-std::optional<Prior> wide_prior(const DayPartParameter& parameter, const model::Building& nominal) {
-  if (parameter.log_sd == 0.0) return std::nullopt;
-  const auto definition = model::find_parameter(parameter.name);
-  const double drawn = definition ? (*definition)->get(nominal) : 0.0;
-  const double median = parameter.median > 0.0 ? parameter.median : drawn;
-  if (!(median > 0.0)) return std::nullopt;
-  return Prior{LogNormalPrior{.median = median, .log_sd = parameter.log_sd}};
-}
-
 /// Those of the site file, and what else day parts can inform. A prior that the file gives stands.
 Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
   ChosenParameters chosen;
+  const auto add = [&](std::string_view name, const std::optional<Prior>& prior) {
+    return chosen.add(name, *site.building,
+                      prior ? prior : diagnosis::wide_prior(name, *site.building));
+  };
   for (const ParameterConfig& config : site.model->parameters) {
-    const auto wide = std::ranges::find(kDayPartParameters, config.name, &DayPartParameter::name);
-    const bool widen = !config.prior && wide != kDayPartParameters.end();
-    const auto prior = widen ? wide_prior(*wide, *site.building) : config.prior;
-    if (auto added = chosen.add(config.name, *site.building, prior); !added) {
-      return tl::unexpected(added.error());
-    }
+    if (auto added = add(config.name, config.prior); !added) return tl::unexpected(added.error());
   }
-  for (const DayPartParameter& parameter : kDayPartParameters) {
-    if (std::ranges::find(chosen.parameters, parameter.name, &Parameter::name) !=
-        chosen.parameters.end()) {
+  for (const std::string_view name : diagnosis::day_part_parameters(*site.building)) {
+    if (std::ranges::find(chosen.parameters, name, &Parameter::name) != chosen.parameters.end()) {
       continue;
     }
-    if (parameter.of_own_chiller && !site.building->chiller_cop) continue;
     // A design value of 0 or outside the library's range: the drawings are taken at their word.
-    (void)chosen.add(parameter.name, *site.building, wide_prior(parameter, *site.building));
+    (void)add(name, {});
   }
   return chosen;
 }
@@ -168,20 +104,6 @@ Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
 std::string span_words(const std::vector<Month>& months) {
   if (months.size() == 1) return metering::to_string(months.front());
   return metering::to_string(months.front()) + " to " + metering::to_string(months.back());
-}
-
-/// Where the middle of the priors leads astray: rooms that are cool at night either have closets or
-/// little mass, and from the one no small step leads to the other.
-Eigen::VectorXd second_start_of(const std::vector<Parameter>& parameters) {
-  Eigen::VectorXd scores = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const auto found =
-        std::ranges::find(kDayPartParameters, parameters[j].name, &DayPartParameter::name);
-    if (found != kDayPartParameters.end()) {
-      scores[static_cast<Eigen::Index>(j)] = found->second_start;
-    }
-  }
-  return scores;
 }
 
 }  // namespace
@@ -251,7 +173,8 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   if (!electricity) return tl::unexpected(electricity.error());
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
   const diagnosis::SplitOptions split;
-  problem.month_roles = roles_of(months, months_read(site, recording, months), split);
+  problem.month_roles =
+      diagnosis::split_months(months, months_read(site, recording, months), split);
   // The months to be shown must not tell their own electricity.
   std::vector<Month> told;
   for (std::size_t i = 0; i < months.size(); ++i) {
@@ -286,7 +209,7 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   if (!chosen) return tl::unexpected(chosen.error());
   problem.definitions = std::move(chosen->definitions);
   problem.parameters = std::move(chosen->parameters);
-  problem.second_start = second_start_of(problem.parameters);
+  problem.second_start = diagnosis::second_start_of(problem.parameters);
   problem.day_parts = diagnosis::make_day_parts(*problem.drivers);
   problem.measured_parts_kW = diagnosis::measured_parts(problem.day_parts, problem.measured_kW);
   problem.roles = diagnosis::part_roles(problem.day_parts, problem.month_roles, split.buffer_days);

@@ -1,0 +1,81 @@
+#include "core/diagnosis/day_part_parameters.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/model/parameter_library.hpp"
+
+namespace recald::diagnosis {
+namespace {
+
+struct DayPartParameter {
+  std::string_view name;
+  double log_sd = 0.0;        ///< 0: the library's prior.
+  double median = 0.0;        ///< 0: the drawings' value.
+  double second_start = 0.0;  ///< Score.
+  bool of_own_chiller = false;
+};
+constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
+    {"start_early"},
+    {"stop_late"},
+    {"occupancy_density", 0.5},
+    {"outdoor_airflow", 0.4},
+    {"cooling_setpoint"},
+    {"heating_setpoint"},
+    {"u_factor_scale", 0.3},
+    {"shgc_scale", 0.4},
+    {"specific_heat_scale", 0.6},
+    {"leakage_area", 0.7},
+    {"supply_temperature"},
+    {"minimum_supply_flow", 0.35},
+    {"hot_water_volume", 0.6},
+    {"base_heat", 0.7},
+    {.name = "closet_share", .second_start = -2.0},
+    {"gains_to_core"},
+    {"supply_reset"},
+    {"warm_up"},
+    {"closed_start"},
+    // What no drawing gives: about what the training buildings have.
+    {"mass_coupling", 0.5, 0.5},
+    {.name = "core_mass", .log_sd = 0.9, .median = 0.3, .second_start = -1.0},
+    {"air_capacity", 0.5, 35.0},
+    {"night_fan"},
+    {.name = "chiller_lift", .of_own_chiller = true},
+});
+
+/// nullptr: none of them.
+const DayPartParameter* find_day_part_parameter(std::string_view name) {
+  const auto found = std::ranges::find(kDayPartParameters, name, &DayPartParameter::name);
+  return found == kDayPartParameters.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<std::string_view> day_part_parameters(const model::Building& nominal) {
+  std::vector<std::string_view> names;
+  for (const DayPartParameter& parameter : kDayPartParameters) {
+    if (!parameter.of_own_chiller || nominal.chiller_cop) names.push_back(parameter.name);
+  }
+  return names;
+}
+
+std::optional<Prior> wide_prior(std::string_view name, const model::Building& nominal) {
+  const DayPartParameter* parameter = find_day_part_parameter(name);
+  if (parameter == nullptr || parameter->log_sd == 0.0) return std::nullopt;
+  const auto definition = model::find_parameter(name);
+  const double drawn = definition ? (*definition)->get(nominal) : 0.0;
+  const double median = parameter->median > 0.0 ? parameter->median : drawn;
+  if (!(median > 0.0)) return std::nullopt;
+  return Prior{LogNormalPrior{.median = median, .log_sd = parameter->log_sd}};
+}
+
+Eigen::VectorXd second_start_of(std::span<const Parameter> parameters) {
+  Eigen::VectorXd scores = Eigen::VectorXd::Zero(std::ssize(parameters));
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const DayPartParameter* found = find_day_part_parameter(parameters[j].name);
+    if (found != nullptr) scores[static_cast<Eigen::Index>(j)] = found->second_start;
+  }
+  return scores;
+}
+
+}  // namespace recald::diagnosis
