@@ -11,6 +11,7 @@
 #include "core/drift/prequential.hpp"
 #include "core/drift/shift.hpp"
 #include "core/drift/watch.hpp"
+#include "core/model/model_kind.hpp"
 #include "core/model/parameter.hpp"
 
 namespace recald::drift {
@@ -63,7 +64,7 @@ struct MeterChange {
 };
 
 struct SiteDrift {
-  std::string model;
+  ModelKind model;
   std::vector<std::string> months;  ///< "2019-03", ascending, the learning ones first.
   int learning_months;
   std::vector<Parameter> parameters;  ///< (q)

@@ -140,7 +140,7 @@ TEST_F(LiveSite, CalibratesOnTheMonthsThatTheStoreHas) {
   {
     auto store = sqlite::SqliteStore::open(folder_ / "live.db").value();
     const std::uint32_t heat = store.find_meter("district_heat").value().value();
-    march = store.months(heat).value()[2];
+    march = store.months(heat).value()[2].figure;
     march.daily_average_kWh = 4321.0;
     ASSERT_EQ(store.put_month(heat, march, "2025b", metering::Instant{}), 1);
   }

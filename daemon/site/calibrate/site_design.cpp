@@ -9,7 +9,6 @@
 namespace recald::daemon {
 namespace {
 
-
 std::vector<doe::DesignMonth> design_months(std::span<const std::string> names) {
   std::vector<doe::DesignMonth> months;
   for (const std::string& name : names) months.push_back(*doe::DesignMonth::parse(name));

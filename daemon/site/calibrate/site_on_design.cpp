@@ -60,8 +60,8 @@ Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
 }
 
 Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
-                                         const std::filesystem::path& folder,
-                                         const calibration::RunContext& context) {
+                                            const std::filesystem::path& folder,
+                                            const calibration::RunContext& context) {
   const auto design = doe::read_design_folder(folder);
   if (!design) return tl::unexpected(design.error());
   auto design_site = check_design_site(*design);

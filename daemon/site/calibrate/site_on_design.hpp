@@ -24,7 +24,7 @@ struct SiteOnDesign {
 /// As `recald calibrate --model metamodel --design` does it, but with the site's own months.
 /// @return or what reading the design, the site and the calibration find.
 [[nodiscard]] Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
-                                                       const std::filesystem::path& design,
-                                                       const calibration::RunContext& context);
+                                                          const std::filesystem::path& design,
+                                                          const calibration::RunContext& context);
 
 }  // namespace recald::daemon

@@ -155,8 +155,8 @@ TEST_F(MonthKeeperTest, AnotherRuleClosesMonthsAnewOnceAndSaysSo) {
   EXPECT_EQ(anew->front().figure.revision, 1);
   EXPECT_THAT(*other.close_due(std::span{&main_, 1}, now + hours{1}), SizeIs(1));
   EXPECT_THAT(*other.close_due(std::span{&main_, 1}, now + hours{2}), IsEmpty());
-  for (const metering::MonthlyFigure& figure : *store_.months(main_.number)) {
-    EXPECT_EQ(figure.revision, 1);
+  for (const StoredMonth& month : *store_.months(main_.number)) {
+    EXPECT_EQ(month.figure.revision, 1);
   }
   const auto events = *store_.events(10);
   ASSERT_THAT(events, SizeIs(1));
