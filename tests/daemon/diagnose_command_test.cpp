@@ -8,7 +8,7 @@
 
 #include "command_line.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/site/model/site_problem.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 #include "depot_year.hpp"
 #include "modelled_readings.hpp"
 

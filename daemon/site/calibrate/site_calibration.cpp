@@ -14,7 +14,7 @@
 #include "daemon/site/calibrate/effects_calibration.hpp"
 #include "daemon/site/model/site_model.hpp"
 #include "daemon/site/model/site_parts.hpp"
-#include "daemon/site/model/site_problem.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 
 namespace recald::daemon {
 namespace {

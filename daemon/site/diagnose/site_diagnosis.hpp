@@ -6,7 +6,7 @@
 #include "core/diagnosis/diagnose.hpp"
 #include "daemon/site/diagnose/epc_gap.hpp"
 #include "daemon/site/model/modelled_site.hpp"
-#include "daemon/site/model/site_problem.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 
 namespace recald::daemon {
 

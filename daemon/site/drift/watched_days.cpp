@@ -5,7 +5,7 @@
 #include "core/assessment/assessed_calibration.hpp"
 #include "core/diagnosis/site_problem.hpp"
 #include "core/drift/watched_days.hpp"
-#include "daemon/site/model/site_problem.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 
 namespace recald::daemon {
 Result<std::vector<std::vector<drift::WatchedDay>>> watched_days(

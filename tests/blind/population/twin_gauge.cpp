@@ -6,7 +6,7 @@
 
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/diagnose/footprint.hpp"
-#include "daemon/site/model/site_problem.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 
 namespace recald::blind {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "daemon/commands/open_site.hpp"
-#include "daemon/site/model/site_problem.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 #include "tests/daemon/depot_year.hpp"
 #include "tests/daemon/modelled_readings.hpp"
 

@@ -1,4 +1,4 @@
-#include "daemon/site/model/site_problem.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 
 #include <fmt/format.h>
 
