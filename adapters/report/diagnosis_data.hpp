@@ -103,8 +103,8 @@ struct DiagnosisData {
   std::vector<double> temperature_limits_C;
   std::vector<MeterMaps> maps;  ///< (m)
 
-  std::vector<diagnosis::Finding> located;
-  std::vector<diagnosis::Finding> located_after;  ///< With what was added.
+  std::vector<diagnosis::Misfit> located;
+  std::vector<diagnosis::Misfit> located_after;  ///< With what was added.
   std::vector<CandidateBar> candidates;           ///< Descending in probability.
   std::vector<Separation> separations;
   std::vector<GapStep> steps;  ///< Empty: no month was kept back.

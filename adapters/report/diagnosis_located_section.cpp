@@ -15,7 +15,7 @@ constexpr std::size_t kRowsShown = 15;
 constexpr double kSharePeopleRead = 2.0;
 
 /// "14.0 % more than the model (± 3.0 %)"
-std::string share_words(const diagnosis::Finding& row) {
+std::string share_words(const diagnosis::Misfit& row) {
   if (!std::isfinite(row.share)) return "–";
   if (row.share > kSharePeopleRead) {
     return fmt::format("{} times what the model says", number_text(1.0 + row.share));
@@ -28,7 +28,7 @@ std::string kWh_words(double kWh_month) {
   return kWh_month > 0.0 ? "+" + count_text(kWh_month) : count_text(kWh_month);
 }
 
-void write_rows(Html& html, const DiagnosisData& data, const std::vector<diagnosis::Finding>& rows,
+void write_rows(Html& html, const DiagnosisData& data, const std::vector<diagnosis::Misfit>& rows,
                 std::string caption) {
   const std::size_t shown = std::min(rows.size(), kRowsShown);
   if (shown < rows.size()) {
@@ -37,7 +37,7 @@ void write_rows(Html& html, const DiagnosisData& data, const std::vector<diagnos
   Table table(std::move(caption));
   table.columns({"Meter", "When", "The meter reads", "kWh a month"});
   for (std::size_t i = 0; i < shown; ++i) {
-    const diagnosis::Finding& row = rows[i];
+    const diagnosis::Misfit& row = rows[i];
     table.row({{data.meters[row.meter]},
                {row.words, "words"},
                {share_words(row), "nowrap"},

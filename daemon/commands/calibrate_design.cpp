@@ -27,7 +27,7 @@ Result<RunFacts> design_facts(const CalibrateArguments& arguments,
   std::vector<std::filesystem::path> files = design.files;
   files.push_back(measurements_file(arguments));
   if (!arguments.metamodel.empty()) files.push_back(arguments.metamodel);
-  return facts_of_files(files, ModelKind::metamodel);
+  return facts_of_files(files, name_of(ModelKind::metamodel));
 }
 
 DesignCalibrationOptions design_options(const CalibrateArguments& arguments,

@@ -93,7 +93,7 @@ Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
   std::vector<std::string>& warnings = done.calibration.warnings;
   warnings.insert(warnings.end(), design_site->notes.begin(), design_site->notes.end());
   warnings.insert(warnings.end(), measured->notes.begin(), measured->notes.end());
-  const auto design_facts = facts_of_files(design->files, ModelKind::metamodel);
+  const auto design_facts = facts_of_files(design->files, name_of(ModelKind::metamodel));
   if (!design_facts) return tl::unexpected(design_facts.error());
   system::Sha256 both;
   both.add(modelled.facts.data_revision);

@@ -31,7 +31,8 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
   return facts;
 }
 
-Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files, ModelKind model) {
+Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
+                                std::string_view model) {
   system::Sha256 digest;
   for (const auto& file : files) {
     if (auto added = digest.add_file(file); !added) return tl::unexpected(added.error());
@@ -39,7 +40,7 @@ Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
   RunFacts facts;
   facts.recald_version = kVersion;
   facts.data_revision = digest.hex();
-  facts.model_version = std::string{name_of(model)} + "-" + facts.data_revision.substr(0, 12);
+  facts.model_version = std::string{model} + "-" + facts.data_revision.substr(0, 12);
   return facts;
 }
 

@@ -36,7 +36,7 @@ struct RunFacts {
 /// The same for a design of experiments, over the files it was read from.
 /// @param model  Kind of model: the version is this and the digest of the files, shortened.
 [[nodiscard]] Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
-                                              ModelKind model);
+                                              std::string_view model);
 
 /// `facts` with the seed and what the sampling took.
 [[nodiscard]] RunFacts with_sampling(RunFacts facts, std::uint64_t seed,

@@ -64,7 +64,7 @@ MeterGap gap(double cvrmse_daily, double log_score) {
           .discrepancy_share = 0.61};
 }
 
-diagnosis::Finding finding(std::size_t meter, std::string words, double share, double share_se,
+diagnosis::Misfit finding(std::size_t meter, std::string words, double share, double share_se,
                            double kWh_month) {
   return {.meter = meter,
           .words = std::move(words),
