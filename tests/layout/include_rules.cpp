@@ -49,6 +49,10 @@ std::size_t rank(std::string_view path) {
 }
 
 bool is_allowed(std::string_view from, std::string_view to) {
+  // What keeps a store is chosen in one room.
+  if (is_below(to, "adapters/sqlite")) {
+    return is_below(from, "adapters/sqlite") || is_below(from, "adapters/stores");
+  }
   if (is_below(from, "simulators")) {
     return is_below(to, "simulators") ||
            std::ranges::any_of(kOfCoreForSimulators,

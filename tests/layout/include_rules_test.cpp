@@ -39,6 +39,16 @@ TEST(IncludeRules, AFolderWithoutAPlaceInTheOrderIsRefused) {
   EXPECT_EQ(forbidden_arrows({{"daemon/site/cellar/a.cpp", {"core/result.hpp"}}}).size(), 1u);
 }
 
+TEST(IncludeRules, OneRoomKnowsWhatKeepsAStore) {
+  EXPECT_THAT(forbidden_arrows({{"adapters/stores/open.cpp", {"adapters/sqlite/sqlite_store.hpp"}},
+                                {"adapters/sqlite/backup.cpp", {"adapters/sqlite/handles.hpp"}}}),
+              IsEmpty());
+  EXPECT_EQ(forbidden_arrows({{"daemon/gateway/run/a.cpp", {"adapters/sqlite/sqlite_store.hpp"}},
+                              {"adapters/models/b.cpp", {"adapters/sqlite/database.hpp"}}})
+                .size(),
+            2u);
+}
+
 TEST(IncludeRules, SimulatorsHaveNothingOfTheModelsTheyTest) {
   EXPECT_THAT(forbidden_arrows({{"simulators/building/a.cpp",
                                  {"core/metering/reading.hpp", "simulators/climate/sky.hpp"}}}),
