@@ -154,11 +154,11 @@ struct CommitCounts {
   std::vector<bool> was_taken;               ///< By interval of the batch.
 };
 
-/// What a store says of itself.
+/// What a store says of itself. In a damaged one nothing else is looked for.
 struct StoreCheck {
   std::string damage;                 ///< In the words of what keeps it; empty: none.
-  std::vector<std::string> problems;  ///< A sentence each; not looked for where there is damage,
-  std::uint64_t intervals = 0;        ///< nor are the rows counted: all revisions.
+  std::vector<std::string> problems;  ///< A sentence each.
+  std::uint64_t intervals = 0;        ///< Rows, all revisions.
 };
 
 /// A consistent copy of a store that goes on being written, made a portion at a time. Given up
