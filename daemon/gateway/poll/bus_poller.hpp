@@ -83,12 +83,8 @@ class BusPoller {
 
   [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }
   [[nodiscard]] UnitState state(std::size_t unit) const { return states_[unit].health.state(); }
-  [[nodiscard]] bool is_off(std::size_t unit, std::size_t read) const {
-    return states_[unit].off[read];
-  }
   /// Polls that were not made because the bus was busy with others.
   [[nodiscard]] std::uint64_t skipped(std::size_t unit) const { return states_[unit].skipped; }
-  [[nodiscard]] bool is_resting(const Moment& now) const { return now.monotonic < rest_until_; }
 
  private:
   struct UnitPolling {
