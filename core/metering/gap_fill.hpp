@@ -4,14 +4,10 @@
 #include <chrono>
 #include <vector>
 
+#include "core/metering/fill_rule.hpp"
 #include "core/metering/month_slots.hpp"
 
 namespace recald::metering {
-
-enum class FillRule : std::uint8_t {
-  same_time,     ///< Mean of the same time of day in the same month, whatever the gap (the seed).
-  linear_short,  ///< A straight line across gaps up to `line_max`, same_time beyond.
-};
 
 struct FillOptions {
   FillRule rule = FillRule::same_time;

@@ -1,6 +1,5 @@
 #include "core/metering/month_slots.hpp"
 
-#include <array>
 #include <cassert>
 
 #include "core/absent.hpp"
@@ -49,12 +48,6 @@ void MonthGrid::find_day_begins() {
 }
 
 int MonthGrid::times_of_day() const { return static_cast<int>(kDay / interval_); }
-
-std::string_view to_string(FillMethod method) {
-  constexpr std::array<std::string_view, 6> names{
-      "", "same_time", "same_time_like_days", "neighbouring_times", "month_mean", "linear_short"};
-  return names.at(static_cast<std::size_t>(method));
-}
 
 MonthSlots::MonthSlots(std::shared_ptr<const MonthGrid> month_grid) : grid{std::move(month_grid)} {
   const auto n = static_cast<std::size_t>(grid->slots());

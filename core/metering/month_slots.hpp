@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "core/metering/civil_time.hpp"
+#include "core/metering/fill_rule.hpp"
 #include "core/metering/reading.hpp"
 
 namespace recald::metering {
@@ -66,19 +66,6 @@ class MonthGrid {
   std::vector<std::uint8_t> day_;
   std::vector<int> day_begins_;
 };
-
-/// How a slot's energy was found.
-enum class FillMethod : std::uint8_t {
-  none,                 ///< Measured, or not known at all.
-  same_time,            ///< Mean of the same time of day in the same month (the seed).
-  same_time_like_days,  ///< … over days of the same type, working or not.
-  neighbouring_times,   ///< Fewer than three such days: one interval before and after as well.
-  month_mean,           ///< Nothing measured near that time of day in the month.
-  line,                 ///< Straight line between the good neighbours of a short gap.
-};
-
-/// "", "same_time", "same_time_like_days", "neighbouring_times", "month_mean", "linear_short".
-[[nodiscard]] std::string_view to_string(FillMethod method);
 
 /// One month of one meter. All arrays have `grid->slots()` entries.
 struct MonthSlots {

@@ -59,8 +59,10 @@ void read_site(TomlReader table, SiteConfig& config) {
   config.interval = read_interval(table, "interval").value_or(config.interval);
 
   auto& fill = config.closing.closing.fill;
-  if (table.word("fill", {"same_time", "linear_short"}) == "linear_short") {
-    fill.rule = metering::FillRule::linear_short;
+  const std::vector<std::string_view> rules{metering::kFillRules.begin(),
+                                            metering::kFillRules.end()};
+  if (const auto rule = table.word("fill", rules)) {
+    fill.rule = static_cast<metering::FillRule>(std::ranges::find(rules, *rule) - rules.begin());
   }
   fill.daytype = table.boolean("daytype").value_or(false);
   config.closing.closing.coverage_min = table.number_or("coverage_min", 0.6, kShare);

@@ -89,6 +89,15 @@ TEST(SiteConfig, MetersAloneAreASite) {
 }
 
 // Electricity that is exactly zero for hours is a dead meter; heat in summer is not.
+TEST(SiteConfig, GapsAreFilledByTheRuleItNames) {
+  const auto rule_of = [](std::string_view more) {
+    return SiteFile{with("watermark = \"72h\"", more)}.config().closing.closing.fill.rule;
+  };
+  EXPECT_EQ(rule_of(""), metering::FillRule::same_time);
+  EXPECT_EQ(rule_of("fill = \"same_time\""), metering::FillRule::same_time);
+  EXPECT_EQ(rule_of("fill = \"linear_short\""), metering::FillRule::linear_short);
+}
+
 TEST(SiteConfig, ZerosOfElectricityAreDoubtedUnlessTheFileSaysOtherwise) {
   const SiteFile file{with("rated_kW = 400", "rated_kW = 400\nstuck_max = \"5d\"")};
   EXPECT_EQ(file.config().meters[0].meter.zero_run_max, std::chrono::hours{2});
