@@ -8,7 +8,7 @@ BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnan
   libspdlog-dev libsqlite3-dev libssl-dev libsystemd-dev zlib1g-dev"
 TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r-cran-posterior
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio
-  clang libclang-rt-14-dev curl systemd"
+  clang clang-format libclang-rt-14-dev curl systemd"
 
 is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q '^install ok installed'

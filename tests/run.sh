@@ -1,8 +1,8 @@
 #!/bin/sh
 # All tests, from nothing: installs what is missing, builds, runs. Ends with ctest's own summary.
 #
-#   sh tests/run.sh              all tests, fuzz targets for ten seconds each, and what leads from
-#                                registers to months under the sanitizers
+#   sh tests/run.sh              the format of all sources, all tests, fuzz targets for ten seconds
+#                                each, and what leads from registers to months under the sanitizers
 #   sh tests/run.sh --plain      all tests alone
 #   sh tests/run.sh --long NAME  one of the longer studies; without NAME: which there are
 #   RECALD_DATA=DIR              measured data of others; tests that need it skip where it is absent
@@ -23,7 +23,7 @@ stage() {
 
 stage "packages"
 long=
-[ "${1:-}" != "--long" ] || long=python3
+[ "${1:-}" != "--long" ] || long="python3 clang-tidy"
 # shellcheck disable=SC2086  # lists of words
 install_packages $BUILD_PACKAGES $TEST_PACKAGES $long
 
@@ -34,7 +34,7 @@ if [ "${1:-}" = "--long" ]; then
     for file in "$root"/tests/long/*.sh; do echo "  $(basename "$file" .sh)" >&2; done
     exit 2
   fi
-  if [ "$2" != fuzz ]; then  # which builds what it needs, with another compiler
+  if [ "$2" != fuzz ] && [ "$2" != tidy ]; then  # which need another compiler, or none
     stage "build (release)"
     cmake --preset release >/dev/null
     cmake --build --preset release --target recald recald-sim --parallel "$(build_jobs)"
@@ -43,6 +43,20 @@ if [ "${1:-}" = "--long" ]; then
   sh "$study" "$root/.build/release"
   stage ""
   exit 0
+fi
+
+if [ "${1:-}" != "--plain" ]; then
+  stage "format"
+  sources=$(find core adapters daemon simulators tests -name '*.cpp' -o -name '*.hpp')
+  # shellcheck disable=SC2086  # a list of words
+  unformatted=$(printf '%s\n' $sources | xargs -P "$(nproc)" -n 50 clang-format --dry-run 2>&1 |
+    sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: .*clang-format.*/\1/p' | sort -u)
+  if [ -n "$unformatted" ]; then
+    for file in $unformatted; do
+      echo "$file is not formatted; run: clang-format -i $file" >&2
+    done
+    exit 1
+  fi
 fi
 
 failed=

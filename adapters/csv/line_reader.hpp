@@ -12,7 +12,7 @@
 
 namespace recald::csv {
 
-inline constexpr std::size_t kLineMax = 64 * 1024;  ///< Bytes; a longer line is a bad line.
+inline constexpr std::size_t kLineMax = 65'536;  ///< Bytes; a longer line is a bad line.
 
 /// Fills the buffer with up to `size` bytes and returns how many; 0 at the end.
 using ByteSource = std::function<Result<std::size_t>(char* buffer, std::size_t size)>;

@@ -450,6 +450,7 @@ MonthlyTable with_inputs(MonthlyTable measured, const MonthlyTable& inputs,
   notes.push_back(
       fmt::format("Measured months without a row in inputs.csv are left out: {}.", texts(unknown)));
   std::vector<DesignMonth> months;
+  months.reserve(kept.size());
   for (const Eigen::Index row : kept) {
     months.push_back(measured.months[static_cast<std::size_t>(row)]);
   }

@@ -1,5 +1,7 @@
 #include "adapters/ports/register_read.hpp"
 
+#include <cassert>
+
 namespace recald::modbus {
 
 std::string_view to_string(ReadFault fault) {

@@ -25,6 +25,7 @@ std::vector<double> nodes_of(const ParameterRange& range, int count) {
   assert(std::isfinite(range.low) && std::isfinite(range.high) && range.low <= range.high);
   if (range.low == range.high) return {range.low};
   std::vector<double> nodes;
+  nodes.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     nodes.push_back(range.low + (range.high - range.low) * i / (count - 1));
   }
