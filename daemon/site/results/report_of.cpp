@@ -8,17 +8,10 @@
 #include <utility>
 
 #include "core/absent.hpp"
+#include "daemon/site/results/diagnosis_words.hpp"
 
 namespace recald::daemon {
 namespace {
-
-/// "chilled_water" as people say it: "Chilled water".
-std::string label_of(const std::string& id) {
-  std::string label = id;
-  std::ranges::replace(label, '_', ' ');
-  if (!label.empty() && label.front() >= 'a' && label.front() <= 'z') label.front() -= 'a' - 'A';
-  return label;
-}
 
 report::Provenance provenance_of(const RunFacts& facts) {
   return {.recald_version = facts.recald_version,
@@ -83,7 +76,7 @@ report::HourStatus status_of(const profile::HourlyLoad& hour) {
 }
 
 report::LoadGrid load_of(const MeterRecord& record) {
-  report::LoadGrid grid{.meter = label_of(record.meter.id)};
+  report::LoadGrid grid{.meter = meter_label(record.meter.id)};
   if (record.hours.empty()) return grid;
   grid.first_day = record.hours.begin()->first / 1;
   const metering::Month last = record.hours.rbegin()->first;
@@ -136,7 +129,7 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
     // Electricity that its own profile reproduces is no evidence for the model.
     if (!after || !output.calibrated || is_peak(output)) continue;
     const auto verdict = assessment::guideline14_verdict(*after);
-    data.verdicts.push_back({label_of(recording.meters[output.meter].meter.id), verdict});
+    data.verdicts.push_back({meter_label(recording.meters[output.meter].meter.id), verdict});
     judged += 1;
     passing += verdict.pass ? 1 : 0;
   }
@@ -155,7 +148,7 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
     }
     std::string line = fmt::format(
         "{}: CV(RMSE) {} before calibration, {} at the prior mean, {} after",
-        label_of(recording.meters[output.meter].meter.id), percent(a.before.calibration->cvrmse),
+        meter_label(recording.meters[output.meter].meter.id), percent(a.before.calibration->cvrmse),
         percent(a.prior_mean.calibration->cvrmse), percent(a.after.calibration->cvrmse));
     if (a.after.validation) {
       line += fmt::format("; on months it has not seen {}", percent(a.after.validation->cvrmse));
@@ -206,7 +199,7 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
   }
   for (const assessment::OutputCalibration& output : result.outputs) {
     if (is_peak(output)) continue;  // the page shows peaks as measured, beside each other
-    data.outputs.push_back({.label = label_of(recording.meters[output.meter].meter.id),
+    data.outputs.push_back({.label = meter_label(recording.meters[output.meter].meter.id),
                             .months = months_of(recording, result, output),
                             .assessment = output.assessment});
   }
@@ -215,10 +208,10 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
   }
   for (const MeterRecord& record : recording.meters) {
     for (metering::DataFinding finding : record.findings) {
-      finding.meter = label_of(finding.meter);
+      finding.meter = meter_label(finding.meter);
       data.findings.push_back(std::move(finding));
     }
-    data.peaks.push_back({label_of(record.meter.id), record.figures});
+    data.peaks.push_back({meter_label(record.meter.id), record.figures});
     data.loads.push_back(load_of(record));
   }
   using enum model::DayType;
