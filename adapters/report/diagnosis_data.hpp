@@ -105,7 +105,7 @@ struct DiagnosisData {
 
   std::vector<diagnosis::Misfit> located;
   std::vector<diagnosis::Misfit> located_after;  ///< With what was added.
-  std::vector<CandidateBar> candidates;           ///< Descending in probability.
+  std::vector<CandidateBar> candidates;          ///< Descending in probability.
   std::vector<Separation> separations;
   std::vector<GapStep> steps;  ///< Empty: no month was kept back.
   /// Of other models than the hourly one, given the same effects; outputs as people say them.

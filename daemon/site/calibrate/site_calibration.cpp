@@ -12,9 +12,9 @@
 #include "core/model/model_adaptors.hpp"
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/effects_calibration.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
 #include "daemon/site/model/site_model.hpp"
 #include "daemon/site/model/site_parts.hpp"
-#include "daemon/site/model/diagnosis_input.hpp"
 
 namespace recald::daemon {
 namespace {

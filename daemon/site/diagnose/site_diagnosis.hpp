@@ -5,8 +5,8 @@
 
 #include "core/diagnosis/diagnose.hpp"
 #include "daemon/site/diagnose/epc_gap.hpp"
-#include "daemon/site/model/modelled_site.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
+#include "daemon/site/model/modelled_site.hpp"
 
 namespace recald::daemon {
 

@@ -65,7 +65,7 @@ MeterGap gap(double cvrmse_daily, double log_score) {
 }
 
 diagnosis::Misfit finding(std::size_t meter, std::string words, double share, double share_se,
-                           double kWh_month) {
+                          double kWh_month) {
   return {.meter = meter,
           .words = std::move(words),
           .share = share,
