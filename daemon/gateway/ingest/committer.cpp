@@ -58,8 +58,8 @@ void Committer::add(StoreBatch batch) {
 }
 
 void Committer::give_up_what_is_too_much() {
-  health_.lost_samples += keep_newest(waiting_.samples, rules_.samples_max);
   health_.lost_intervals += keep_newest(waiting_.intervals, rules_.intervals_max);
+  (void)keep_newest(waiting_.samples, rules_.samples_max);
   (void)keep_newest(waiting_.events, rules_.intervals_max);
 }
 

@@ -30,7 +30,6 @@ struct CommitHealth {
   std::uint64_t commits = 0;
   std::uint64_t failures = 0;
   std::uint64_t lost_intervals = 0;  ///< Given up, because the store refused for too long.
-  std::uint64_t lost_samples = 0;
   std::uint64_t conflicts = 0;
   std::chrono::milliseconds last_duration{0};
   LatencyHistogram durations;  ///< Of all commits, those refused as well.
