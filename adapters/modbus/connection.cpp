@@ -137,7 +137,6 @@ std::optional<ReadFailure> Connection::connect() {
   // Then the response timeout is a deadline for the whole reply.
   modbus_set_byte_timeout(context->modbus, 0, 0);
   context_ = std::move(context);
-  ++connects_;
   if (const auto* tcp = std::get_if<TcpEndpoint>(&endpoint_)) {
     std::this_thread::sleep_for(tcp->connect_delay);
   }

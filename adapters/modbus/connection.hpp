@@ -73,8 +73,6 @@ class Connection {
 
   void close();
   [[nodiscard]] bool is_open() const;
-  /// How often a connection was made: more than once means that the other end is restless.
-  [[nodiscard]] int connects() const { return connects_; }
 
  private:
   struct Context;
@@ -95,7 +93,6 @@ class Connection {
 
   Endpoint endpoint_;
   std::unique_ptr<Context> context_;
-  int connects_ = 0;
   std::chrono::steady_clock::time_point line_free_{};  ///< Serial: silence ends here.
   std::optional<ReadRequest> timed_out_;               ///< Serial: its reply may still come.
 };
