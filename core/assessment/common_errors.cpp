@@ -1,5 +1,7 @@
 #include "core/assessment/common_errors.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace recald::assessment {
@@ -57,6 +59,26 @@ std::vector<double> gain_by_use(MonthlyModel& model, MonthlyModel& with_more,
   std::vector<double> gain = evaluate(with_more, theta);
   for (std::size_t i = 0; i < gain.size(); ++i) gain[i] = (gain[i] - base[i]) / kMoreUse;
   return gain;
+}
+
+std::vector<Eigen::VectorXd> held_parameter_errors(MonthlyModel& model,
+                                                   const std::vector<Parameter>& parameters,
+                                                   const std::vector<int>& free) {
+  const std::vector<double> means = prior_means(parameters);
+  const auto run = [&](std::span<const double> theta) {
+    const std::vector<double> outputs = evaluate(model, theta);
+    return Eigen::VectorXd{Eigen::Map<const Eigen::VectorXd>(
+        outputs.data(), static_cast<Eigen::Index>(outputs.size()))};
+  };
+  const Eigen::VectorXd base = run(means);
+  std::vector<Eigen::VectorXd> moves;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    if (std::ranges::binary_search(free, static_cast<int>(j))) continue;
+    std::vector<double> moved = means;
+    moved[j] += std::sqrt(parameters[j].prior.variance());
+    moves.push_back(run(moved) - base);
+  }
+  return moves;
 }
 
 }  // namespace recald::assessment

@@ -22,6 +22,12 @@ namespace recald::assessment {
     const std::vector<OutputCalibration>& outputs, MonthlyModel& model,
     std::span<const double> theta);
 
+/// f(mean + sd) - f(mean) of each parameter that is held, the others at their means: its exact
+/// marginalisation where f is linear in it.
+/// @param free  Ascending indices of the parameters that are not held.
+[[nodiscard]] std::vector<Eigen::VectorXd> held_parameter_errors(
+    MonthlyModel& model, const std::vector<Parameter>& parameters, const std::vector<int>& free);
+
 /// Lights and plugs that take a tenth more, for how everything else follows them.
 [[nodiscard]] model::ElectricLoads more_use(model::ElectricLoads loads);
 

@@ -55,7 +55,7 @@ class MonthKeeper {
       const std::function<void(const ClosedFigure&)>& on_closed = {},
       std::size_t at_most = std::numeric_limits<std::size_t>::max());
 
-  /// Months that close from now on do so by other rules.
+  /// Months close by these rules from now on; those that were closed by others are closed anew.
   void set_options(metering::CloserOptions options) { options_ = std::move(options); }
 
  private:

@@ -9,6 +9,7 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/doe/metamodel_file.hpp"
 #include "core/absent.hpp"
+#include "core/assessment/common_errors.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "core/random/streams.hpp"
 #include "core/text/nearest.hpp"
@@ -237,27 +238,6 @@ void fix_the_others(const std::vector<Parameter>& parameters, const std::vector<
   }
 }
 
-/// f(mean + sd) - f(mean) of each fixed parameter, the others at their means.
-std::vector<Eigen::VectorXd> directions(MonthlyModel& model,
-                                        const std::vector<Parameter>& parameters,
-                                        const std::vector<int>& free) {
-  const std::vector<double> means = prior_means(parameters);
-  const auto run = [&](std::span<const double> theta) {
-    const std::vector<double> outputs = evaluate(model, theta);
-    return Eigen::VectorXd{Eigen::Map<const Eigen::VectorXd>(
-        outputs.data(), static_cast<Eigen::Index>(outputs.size()))};
-  };
-  const Eigen::VectorXd base = run(means);
-  std::vector<Eigen::VectorXd> moves;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    if (std::ranges::binary_search(free, static_cast<int>(j))) continue;
-    std::vector<double> moved = means;
-    moved[j] += std::sqrt(parameters[j].prior.variance());
-    moves.push_back(run(moved) - base);
-  }
-  return moves;
-}
-
 /// What the model does not know of each output and month besides its discrepancy.
 void add_model_variances(const Metamodel& metamodel, const std::vector<Eigen::VectorXd>& moves,
                          std::size_t calibration_months, DesignCalibration& result) {
@@ -376,9 +356,11 @@ Result<DesignCalibration> calibrate_design(const doe::DesignFolder& whole_design
   auto problem = assessment::problem_of(result, calibration_months);
   problem.inputs = metamodel->inputs;
   problem.model_error_sd = metamodel->sigma_calibration;
-  problem.common_errors = directions(*metamodel->calibration, design.parameters, *free);
-  add_model_variances(*metamodel, directions(*metamodel->whole, design.parameters, *free),
-                      calibration_months, result);
+  problem.common_errors =
+      assessment::held_parameter_errors(*metamodel->calibration, design.parameters, *free);
+  add_model_variances(
+      *metamodel, assessment::held_parameter_errors(*metamodel->whole, design.parameters, *free),
+      calibration_months, result);
   const std::vector<double> means = prior_means(design.parameters);
   const FixedParametersModel model{std::move(metamodel->calibration), means, *free};
   FixedParametersModel whole{std::move(metamodel->whole), means, *free};

@@ -23,11 +23,6 @@ struct EffectParameterLabel {
   model::ParameterDefinition definition;  ///< Of the three above; no building has it.
 };
 
-/// A posterior of joint draws as a prior for later months: margins alone, each in the support of
-/// the original prior and with mean and spread of the draws.
-/// @param draws  At least one.
-[[nodiscard]] Prior prior_from_draws(const Prior& original, std::span<const double> draws);
-
 /// All effects of one version, in the order of addition. η is (r): the parameters of the first
 /// effect, then those of the second …
 struct ModelEffects {
