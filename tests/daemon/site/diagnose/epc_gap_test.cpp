@@ -81,7 +81,7 @@ TEST_F(EpcGapTest, AnEffectThatIsThereClosesTheGap) {
   heat_with(3.0);
   const auto found = gap({trap_leak(3.0)});
   ASSERT_TRUE(found.has_value()) << found.error().message;
-  EXPECT_EQ(found->gap.model, "epc");
+  EXPECT_EQ(found->gap.model, ModelKind::epc);
   EXPECT_EQ(found->gap.outputs,
             (std::vector<std::string>{"electricity_daily_kWh", "district_heat_daily_kWh"}));
   EXPECT_GE(found->months_shown, 3);
