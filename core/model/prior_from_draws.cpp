@@ -11,12 +11,12 @@ namespace {
 /// can vary it.
 constexpr double kLeastShareOfPriorSd = 1e-3;
 constexpr int kMomentRounds = 30;
-struct Moments {
+struct DrawMoments {
   double mean;
   double sd;
 };
 
-Moments moments_of(std::span<const double> values) {
+DrawMoments moments_of_draws(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   double mean = 0.0;
   for (const double value : values) mean += value / n;
@@ -34,7 +34,7 @@ Prior prior_from_draws(const Prior& original, std::span<const double> draws) {
     for (double& value : values) value = std::log(value);
   }
   const double widest = std::sqrt(original.variance());
-  Moments target = moments_of(values);
+  DrawMoments target = moments_of_draws(values);
   const double least = kLeastShareOfPriorSd * (of_logarithm ? 1.0 : widest);
   target.sd = std::max(target.sd, least);
   if (of_logarithm) {
