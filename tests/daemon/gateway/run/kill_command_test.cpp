@@ -10,61 +10,18 @@
 
 #include "adapters/stores/open.hpp"
 #include "core/random/rng.hpp"
+#include "tests/daemon/gateway/run/polled_site.hpp"
 #include "tests/support/background_process.hpp"
-#include "tests/support/scripted_device.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace recald::daemon::kill_command_test {
 namespace {
 
 using metering::Instant;
 using recald::testing::BackgroundProcess;
-using recald::testing::Bytes;
 using recald::testing::eventually;
-using recald::testing::Piece;
-using recald::testing::ScriptedServer;
-using recald::testing::TemporaryFolder;
 
-/// A counter in Wh that rises by one with every read, as a u32 at address 0.
-std::vector<Piece> counting(const Bytes& request, int number) {
-  const auto wh = static_cast<std::uint32_t>(1'000'000 + number);
-  const auto byte = [&](int shift) { return static_cast<std::uint8_t>(wh >> shift & 0xFF); };
-  return {{std::chrono::milliseconds{0},
-           {request[0], request[1], 0, 0, 0, 7, request[6], 0x03, 4, byte(24), byte(16), byte(8),
-            byte(0)}}};
-}
-
-class KillCommand : public ::testing::Test {
+class KillCommand : public recald::testing::PolledSite {
  protected:
-  KillCommand() : server_{counting} {
-    recald::testing::write_text(folder_ / "counter.toml", R"(
-source = "the test"
-base = 0
-energy = ["energy"]
-register.energy = { at = 0, type = "u32", unit = "Wh" }
-)");
-    recald::testing::write_text(folder_ / "site.toml", R"([site]
-id = "tower"
-timezone = "America/Chicago"
-interval = "1m"
-
-[bus.plant]
-type = "tcp"
-host = "127.0.0.1"
-port = )" + std::to_string(server_.port()) + R"(
-
-[[meter]]
-id = "main"
-source = "modbus"
-utility = "electricity"
-bus = "plant"
-unit = 1
-map = "counter.toml"
-rated_kW = 400
-poll = "1s"
-)");
-  }
-
   /// Samples of the register that a reader beside the daemon sees committed.
   [[nodiscard]] std::map<Instant, double> committed() const {
     std::map<Instant, double> samples;
@@ -77,9 +34,6 @@ poll = "1s"
     EXPECT_TRUE(read.has_value()) << read.error().message;
     return samples;
   }
-
-  TemporaryFolder folder_;
-  ScriptedServer server_;
 };
 
 TEST_F(KillCommand, KillsOfTheRealProgramLoseNothing) {
