@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "core/random/rng.hpp"
-#include "core/random/streams.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -172,7 +171,7 @@ class ModeSearch {
   /// From places nearby, in case the hill is not the highest. Days and choices stay.
   /// @return whether one led higher
   Result<bool> hop(int hops) {
-    Rng rng{kHopSeed, streams::kHops.first};
+    Rng rng{kHopSeed};
     bool higher = false;
     for (int i = 0; i < hops; ++i) {
       const Place here = place;

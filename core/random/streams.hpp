@@ -1,4 +1,6 @@
-/// Every stream of a run's seed, and who draws from it: no two of them meet.
+/// Every stream of a run's seed, and who draws from it: no two that one run uses meet. A
+/// calibration, a diagnosis and the following of a site are runs of their own, each with its list
+/// below.
 #pragma once
 
 #include <array>
@@ -35,16 +37,16 @@ inline constexpr Block kPopulations{1ULL << 34, kPopulationRoundsMax* kChainsMax
 inline constexpr Block kBridge{1ULL << 35, 1};
 inline constexpr Block kCut{1ULL << 36, kChainsMax};  ///< Chains given draws of an effect.
 inline constexpr Block kHypercube{1ULL << 37, 1};     ///< Of `recald doe`.
+inline constexpr Block kCauses{1ULL << 40, 1};        ///< Of an alarm.
+inline constexpr Block kVote{1ULL << 41, 1};          ///< Resampled months of a monthly model.
 /// Of a followed site, two a month. All windows share them and differ only in what they believe.
-inline constexpr Block kMonths{1ULL << 38, 2 * kMonthsMax};
-inline constexpr Block kPasses{1ULL << 39, kPassesMax};  ///< Of a diagnosis.
-inline constexpr Block kCauses{1ULL << 40, 1};           ///< Of an alarm.
-inline constexpr Block kVote{1ULL << 41, 1};             ///< Resampled months of a monthly model.
-inline constexpr Block kHops{1ULL << 42, 1};             ///< Starts of a diagnosis's climbs.
+inline constexpr Block kMonths{0, 2 * kMonthsMax};
+inline constexpr Block kPasses{0, kPassesMax};  ///< Of a diagnosis.
 
-inline constexpr std::array kAll{kChains, kPredictive,  kFolds,  kScreening, kDesign,
-                                 kPilots, kPopulations, kBridge, kCut,       kHypercube,
-                                 kMonths, kPasses,      kCauses, kVote,      kHops};
+inline constexpr std::array kOfCalibration{kChains, kPredictive,  kFolds,  kScreening, kDesign,
+                                           kPilots, kPopulations, kBridge, kCut,       kHypercube};
+inline constexpr std::array kOfDiagnosis{kPasses, kVote};
+inline constexpr std::array kOfFollowing{kMonths, kDesign, kCauses};
 
 /// The populations that are run side by side after so many doublings.
 [[nodiscard]] constexpr Block populations_of(int doublings) {
