@@ -64,6 +64,25 @@ class Reload : public ::testing::Test, protected testing::RigInMemory {
 const std::string kTwoBuses =
     bus("plant") + bus("roof") + meter("main", "plant", 1) + meter("lift", "roof", 2);
 
+TEST_F(Reload, AnotherRuleClosesTheClosedMonthsAnewAndOnce) {
+  const std::string meters = bus("plant") + meter("main", "plant", 1);
+  begin(meters);
+  loop_.run_for(hours{24 * 7});
+  ASSERT_THAT(closed_, SizeIs(1)) << "February, two days of it";
+  const auto stricter =
+      load(testing::site_head("America/Chicago", "coverage_min = 0.01\n") + meters);
+  ASSERT_TRUE(gateway_->reload(stricter).has_value());
+  loop_.run_for(seconds{2});
+  ASSERT_THAT(closed_, SizeIs(2));
+  EXPECT_EQ(closed_[1].figure.month, closed_[0].figure.month);
+  EXPECT_EQ(closed_[1].figure.revision, 1);
+  ASSERT_TRUE(gateway_->reload(stricter).has_value());
+  loop_.run_for(hours{2});
+  EXPECT_THAT(closed_, SizeIs(2));
+  const auto events = disk_.events(100).value();
+  EXPECT_EQ(std::ranges::count(events, "rules_changed", &StoreEvent::kind), 1);
+}
+
 TEST_F(Reload, AFileThatSaysTheSameChangesNothing) {
   begin(kTwoBuses);
   loop_.run_for(hours{1} + minutes{7});
