@@ -155,7 +155,9 @@ TEST_F(MonthKeeperTest, AnotherRuleClosesMonthsAnewOnceAndSaysSo) {
   EXPECT_EQ(anew->front().figure.revision, 1);
   EXPECT_THAT(*other.close_due(std::span{&main_, 1}, now + hours{1}), SizeIs(1));
   EXPECT_THAT(*other.close_due(std::span{&main_, 1}, now + hours{2}), IsEmpty());
-  for (const StoredMonth& month : *store_.months(main_.number)) {
+  const auto months = store_.months(main_.number);
+  ASSERT_TRUE(months.has_value());
+  for (const StoredMonth& month : *months) {
     EXPECT_EQ(month.figure.revision, 1);
   }
   const auto events = *store_.events(10);
