@@ -2,12 +2,17 @@
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <memory>
 
 namespace recald::asio {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
+
+namespace {
+
+constexpr std::chrono::minutes kAgainAfterThrow{1};
+
+}  // namespace
 
 AsioLoop::AsioLoop(boost::asio::io_context& context, std::optional<metering::TrialClock> trial)
     : context_(context),
@@ -28,10 +33,20 @@ Moment AsioLoop::now() const {
 
 void AsioLoop::after(milliseconds wait, Call call) {
   const std::chrono::nanoseconds real = trial_ ? trial_->real_wait(wait) : wait;
+  call_after(real, std::make_shared<Call>(std::move(call)));
+}
+
+void AsioLoop::call_after(std::chrono::nanoseconds real_wait, const std::shared_ptr<Call>& call) {
   // The timer lives in its own handler, until it has fired or the context ends.
-  auto timer = std::make_shared<boost::asio::steady_timer>(context_, real);
-  timer->async_wait([timer, call = std::move(call)](const boost::system::error_code& error) {
-    if (!error) call();
+  auto timer = std::make_shared<boost::asio::steady_timer>(context_, real_wait);
+  timer->async_wait([this, timer, call](const boost::system::error_code& error) {
+    if (error) return;
+    try {
+      (*call)();
+    } catch (...) {
+      call_after(kAgainAfterThrow, call);
+      throw;
+    }
   });
 }
 

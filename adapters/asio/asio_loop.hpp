@@ -1,9 +1,11 @@
-/// The loop on Boost.Asio: system clocks, timers, one thread.
+/// The loop on Boost.Asio: system clocks, timers, one thread. What a call throws leaves the
+/// context's run(), which can be called again.
 #pragma once
 
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it
 
 #include <boost/asio/io_context.hpp>
+#include <memory>
 #include <optional>
 
 #include "adapters/ports/loop.hpp"
@@ -23,6 +25,8 @@ class AsioLoop final : public Loop {
   void post(Call call) override;
 
  private:
+  void call_after(std::chrono::nanoseconds real_wait, const std::shared_ptr<Call>& call);
+
   boost::asio::io_context& context_;
   std::optional<metering::TrialClock> trial_;
   /// In a trial both clocks are one: an adjustment of the system's by a millisecond would otherwise

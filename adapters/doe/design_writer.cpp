@@ -73,6 +73,12 @@ std::string state_json(const DesignPlan& plan) {
   return state.dump(2) + "\n";
 }
 
+/// What cannot be looked at is found out when it is read.
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored);
+}
+
 std::optional<std::string> text_of(const fs::path& file) {
   std::ifstream in{file, std::ios::binary};
   if (!in) return {};
@@ -86,7 +92,7 @@ std::optional<std::string> text_of(const fs::path& file) {
 std::string difference(const fs::path& folder, const DesignPlan& plan) {
   const auto state = text_of(folder / kStateFile);
   if (!state) {
-    const bool used = fs::exists(folder / "priors.csv") || fs::exists(folder / "doe_outputs.csv");
+    const bool used = is_there(folder / "priors.csv") || is_there(folder / "doe_outputs.csv");
     return used ? "was not made by recald doe" : "";
   }
   const auto priors = text_of(folder / "priors.csv");
@@ -159,7 +165,7 @@ Result<DesignRunsSoFar> open_design(const fs::path& folder, const DesignPlan& pl
   DesignRunsSoFar so_far{Eigen::MatrixXd::Constant(plan.theta.rows(), values, kAbsent),
                          std::vector<bool>(runs, false)};
   const fs::path outputs = folder / "doe_outputs.csv";
-  if (!fs::exists(outputs)) return so_far;
+  if (!is_there(outputs)) return so_far;
   if (auto read = read_runs(outputs, plan, so_far); !read) return tl::unexpected(read.error());
   return so_far;
 }

@@ -3,16 +3,17 @@
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it
 
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 
 #include <cassert>
 
+#include "adapters/asio/rethrown.hpp"
 #include "adapters/http/session.hpp"
 
 namespace recald::http {
@@ -128,10 +129,10 @@ void receive(const std::shared_ptr<Shared>& shared, tcp::socket socket) {
   const auto executor = shared->acceptor.get_executor();
   if (shared->tls) {
     boost::asio::co_spawn(executor, serve_tls(shared, std::move(socket), is_welcome),
-                          boost::asio::detached);
+                          asio::rethrown);
   } else {
     boost::asio::co_spawn(executor, serve_plain(shared, std::move(socket), is_welcome),
-                          boost::asio::detached);
+                          asio::rethrown);
   }
 }
 
@@ -143,7 +144,11 @@ awaitable<void> accept_all(std::shared_ptr<Shared> shared) {
     tcp::socket socket =
         co_await shared->acceptor.async_accept(redirect_error(use_awaitable, error));
     if (!error) {
-      receive(shared, std::move(socket));
+      // Posted: whatever comes of one client, the next is heard.
+      boost::asio::post(shared->acceptor.get_executor(),
+                        [shared, socket = std::move(socket)]() mutable {
+                          receive(shared, std::move(socket));
+                        });
     } else if (shared->acceptor.is_open()) {
       // Out of descriptors, mostly: the waiting client stays, so asking at once would spin.
       pause.expires_after(kAfterAcceptFailed);
@@ -201,7 +206,7 @@ Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& context,
                    .body_max = options.body_max,
                    .header_max = options.header_max,
                    .slow_client = options.slow_client};
-  boost::asio::co_spawn(context, accept_all(shared), boost::asio::detached);
+  boost::asio::co_spawn(context, accept_all(shared), asio::rethrown);
   return std::unique_ptr<Server>{new Server{std::move(shared)}};
 }
 

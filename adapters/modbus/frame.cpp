@@ -136,4 +136,13 @@ std::string describe_exception(std::uint8_t code) {
   return fmt::format("{} ({})", code, meaning());
 }
 
+bool is_busy(std::uint8_t exception) { return exception == 0x05 || exception == 0x06; }
+
+bool is_from_gateway(std::uint8_t exception) { return exception == 0x0A || exception == 0x0B; }
+
+bool is_refusal(const ReadFailure& failure) {
+  return failure.fault == ReadFault::exception && !is_busy(failure.exception_code) &&
+         !is_from_gateway(failure.exception_code);
+}
+
 }  // namespace recald::modbus

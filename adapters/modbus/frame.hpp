@@ -40,7 +40,16 @@ namespace recald::modbus {
 /// CRC-16 with polynomial 0xA001 (0x8005 reflected) and start value 0xFFFF; low byte goes first.
 [[nodiscard]] std::uint16_t crc16(std::span<const std::uint8_t> bytes);
 
-/// What exception codes mean, for people: "2, illegal data address".
+/// What exception codes mean, for people: "2 (illegal data address)".
 [[nodiscard]] std::string describe_exception(std::uint8_t code);
+
+/// Exceptions 5 and 6: the unit has no time now; the same request may do a moment later.
+[[nodiscard]] bool is_busy(std::uint8_t exception);
+
+/// Exceptions 10 and 11: the unit has said nothing, a gateway speaks for it.
+[[nodiscard]] bool is_from_gateway(std::uint8_t exception);
+
+/// Whether the unit itself said that it does not serve this request.
+[[nodiscard]] bool is_refusal(const ReadFailure& failure);
 
 }  // namespace recald::modbus

@@ -20,7 +20,8 @@ class Loop {
   [[nodiscard]] virtual Moment now() const = 0;
 
   /// Calls once, `wait` from now by the monotonic clock, on the loop's thread. Calls of one time
-  /// are made in the order in which they were asked for.
+  /// are made in the order in which they were asked for. One that throws is made again a minute
+  /// later, so that what goes on by asking for the next call goes on.
   virtual void after(std::chrono::milliseconds wait, Call call) = 0;
 
   /// Calls soon, on the loop's thread. The only member that other threads may use.

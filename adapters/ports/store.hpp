@@ -58,6 +58,11 @@ struct StoreEvent {
   std::string kind;     ///< "counter_reset"
   std::string subject;  ///< Id of a meter, bus or model; empty: the site.
   std::string text;     ///< A sentence.
+  /// What happens again and again is one event: one of the same kind and subject within a day is
+  /// counted, and its sentence takes the place of the last.
+  bool is_counted = false;
+  int count = 1;                          ///< Given by the store, as the next.
+  std::optional<metering::Instant> last;  ///< When it happened last, of several times.
 };
 
 enum class JobKind : std::uint8_t { calibration, diagnosis };
@@ -75,6 +80,7 @@ struct StoredJob {
   bool accepted = false;  ///< Passed its gates: the latest such result is the one in use.
   std::string message;    ///< Why it failed, or was not accepted; else empty.
   std::string folder;     ///< With its files, beside the store; empty: none.
+  int tries = 0;          ///< How often it was begun.
   JobResult result;       ///< Empty until done.
 };
 
@@ -239,6 +245,10 @@ class Store {
   /// are reopened. @return how many were.
   virtual Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) = 0;
 
+  /// Deletes events that happened last before `keep_from`, a bounded number at a time.
+  /// @return how many; fewer than `rows_max` when none are left.
+  virtual Result<int> delete_events(metering::Instant keep_from, int rows_max) = 0;
+
   /// The newest events first.
   virtual Result<std::vector<StoreEvent>> events(int limit) = 0;
 
@@ -252,6 +262,12 @@ class Store {
 
   /// The newest first, without their results.
   virtual Result<std::vector<StoredJob>> jobs(JobKind kind, int limit) = 0;
+
+  /// The oldest that has ended and is neither among the newest `kept` that have, nor in use: the
+  /// newest that was accepted. Without its result.
+  virtual Result<std::optional<StoredJob>> oldest_job_beyond(JobKind kind, int kept) = 0;
+
+  virtual Result<void> delete_job(std::int64_t number) = 0;
 
   /// The newest that was accepted, with its result.
   virtual Result<std::optional<StoredJob>> last_accepted(JobKind kind) = 0;

@@ -6,6 +6,7 @@
 
 #include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/register_json.hpp"
+#include "adapters/sqlite/tables.hpp"
 #include "core/metering/placement.hpp"
 
 namespace recald::sqlite {
@@ -19,6 +20,7 @@ struct BatchWriter::Statements {
   Statement put_register;
   Statement insert_sample;
   Statement insert_event;
+  Statement count_event;
   Statement reopen_month;
 };
 
@@ -34,19 +36,27 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
                                    "ORDER BY revision DESC LIMIT 1",
                                    kIntervalColumns));
   if (!latest) return tl::unexpected(latest.error());
-  auto interval = database.prepare("INSERT INTO interval VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  auto interval = database.prepare(insert_into("interval", 8));
   if (!interval) return tl::unexpected(interval.error());
-  auto state = database.prepare("INSERT OR REPLACE INTO register VALUES (?, ?, ?)");
+  auto state = database.prepare(insert_into("register", 3, "INSERT OR REPLACE"));
   if (!state) return tl::unexpected(state.error());
-  auto sample = database.prepare("INSERT OR IGNORE INTO sample VALUES (?, ?, ?, ?)");
+  auto sample = database.prepare(insert_into("sample", 4, "INSERT OR IGNORE"));
   if (!sample) return tl::unexpected(sample.error());
-  auto event = database.prepare("INSERT INTO event VALUES (NULL, ?, ?, ?, ?, ?)");
+  auto event = database.prepare(
+      "INSERT INTO event VALUES (NULL, ?1, ?2, ?3, ?4, ?5, 1, NULL, "
+      "row_sum('event', ?1, ?2, ?3, ?4, ?5, 1, NULL))");
   if (!event) return tl::unexpected(event.error());
+  auto count = database.prepare(
+      "UPDATE event SET count = count + 1, last = ?1, text = ?2, "
+      "sum = row_sum('event', t, severity, kind, subject, ?2, count + 1, ?1) "
+      "WHERE number = (SELECT max(number) FROM event WHERE kind = ?3 AND subject = ?4 AND t > ?5) "
+      "RETURNING 1");
+  if (!count) return tl::unexpected(count.error());
   auto reopen = database.prepare("INSERT OR IGNORE INTO reopened VALUES (?, ?)");
   if (!reopen) return tl::unexpected(reopen.error());
   return BatchWriter{std::make_unique<Statements>(
       Statements{std::move(*latest), std::move(*interval), std::move(*state), std::move(*sample),
-                 std::move(*event), std::move(*reopen)})};
+                 std::move(*event), std::move(*count), std::move(*reopen)})};
 }
 
 Result<CommitCounts> BatchWriter::write(const StoreBatch& batch) {
@@ -145,8 +155,26 @@ Result<void> BatchWriter::put_samples(const StoreBatch& batch) {
   return {};
 }
 
+/// @return whether it happened within the last day as well.
+Result<bool> BatchWriter::count_event(const StoreEvent& event) {
+  Statement& count = statements_->count_event;
+  const auto row = count.bind(0, seconds_of(event.time))
+                       .bind(1, std::string_view{event.text})
+                       .bind(2, std::string_view{event.kind})
+                       .bind(3, std::string_view{event.subject})
+                       .bind(4, seconds_of(event.time - std::chrono::days{1}))
+                       .step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) return false;
+  if (auto done = count.run(); !done) return tl::unexpected(done.error());
+  return true;
+}
+
 Result<void> BatchWriter::put_events(const StoreBatch& batch) {
   for (const StoreEvent& event : batch.events) {
+    const auto counted = event.is_counted ? count_event(event) : Result<bool>{false};
+    if (!counted) return tl::unexpected(counted.error());
+    if (*counted) continue;
     const auto put = statements_->insert_event.bind(0, seconds_of(event.time))
                          .bind(1, static_cast<std::int64_t>(event.severity))
                          .bind(2, std::string_view{event.kind})

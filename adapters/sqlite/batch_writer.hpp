@@ -34,6 +34,7 @@ class BatchWriter {
                                                              metering::Instant start);
   [[nodiscard]] Result<void> put_registers(const StoreBatch& batch);
   [[nodiscard]] Result<void> put_samples(const StoreBatch& batch);
+  [[nodiscard]] Result<bool> count_event(const StoreEvent& event);
   [[nodiscard]] Result<void> put_events(const StoreBatch& batch);
   [[nodiscard]] Result<void> reopen_months(const StoreBatch& batch);
 

@@ -134,6 +134,7 @@ Result<Database> Database::open(const std::filesystem::path& file, const Options
   Database database{std::make_unique<Impl>(Impl{DatabaseHandle{raw}, file.string()})};
   if (result != SQLITE_OK) return failed(result, raw, file.string());
   sqlite3_busy_timeout(raw, kBusyTimeout_ms);
+  add_row_sum(raw);
   // Reading the first page, so that a file that is no database is told here.
   const std::string pragmas =
       writes ? "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;"
@@ -158,6 +159,18 @@ Result<Statement> Database::prepare(std::string_view sql) {
   if (result != SQLITE_OK) return failed(result, impl_->handle.get(), impl_->file);
   return Statement{
       std::make_unique<Statement::Impl>(Statement::Impl{StatementHandle{raw}, impl_->file})};
+}
+
+void Database::on_progress(std::function<void()> call) {
+  constexpr int kSteps = 200'000;  // of SQLite's machine: some milliseconds
+  impl_->on_progress = std::move(call);
+  sqlite3_progress_handler(
+      impl_->handle.get(), impl_->on_progress ? kSteps : 0,
+      [](void* called) {
+        (*static_cast<std::function<void()>*>(called))();
+        return 0;
+      },
+      &impl_->on_progress);
 }
 
 Result<bool> Database::begin() {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -93,6 +94,9 @@ class Database {
     }
     return result;
   }
+
+  /// Called now and then while a statement runs for long; may be empty.
+  void on_progress(std::function<void()> call);
 
   /// What is damaged, in SQLite's words; empty when nothing is.
   [[nodiscard]] Result<std::string> quick_check();

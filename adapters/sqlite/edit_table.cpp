@@ -1,11 +1,16 @@
 #include "adapters/sqlite/edit_table.hpp"
 
+#include <fmt/format.h>
+
 #include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/tables.hpp"
 
 namespace recald::sqlite {
 
 Result<std::int64_t> insert_edit(Database& database, const StoreEdit& edit) {
-  auto insert = database.prepare("INSERT INTO edit VALUES (NULL, ?, ?, ?, ?, ?) RETURNING number");
+  auto insert = database.prepare(
+      fmt::format("INSERT INTO edit VALUES (NULL, ?1, ?2, ?3, ?4, ?5, {}) RETURNING number",
+                  sum_of("edit", 5)));
   if (!insert) return tl::unexpected(insert.error());
   insert->bind(0, seconds_of(edit.time))
       .bind(1, std::string_view{edit.author})

@@ -12,8 +12,9 @@ namespace {
 /// A forecast that stands already, by the same model of the same figure, is not written again.
 constexpr auto kInsert = R"sql(
 INSERT INTO forecast
-SELECT NULL, ?1, ?2, coalesce((SELECT max(revision) + 1 FROM forecast WHERE output = ?1 AND month = ?2), 0),
-       ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15
+SELECT NULL, ?1, ?2, revision, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15,
+       row_sum('forecast', ?1, ?2, revision, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15)
+FROM (SELECT coalesce(max(revision) + 1, 0) AS revision FROM forecast WHERE output = ?1 AND month = ?2)
 WHERE NOT EXISTS (SELECT 1 FROM forecast WHERE output = ?1 AND month = ?2 AND model_version = ?3
                   AND measured = ?11)
 )sql";

@@ -4,6 +4,7 @@
 
 #include <sqlite3.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,9 +28,13 @@ using StatementHandle = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
 /// @param database  Whose last failure it was, with its words; null: only the code is known.
 [[nodiscard]] tl::unexpected<Error> failed(int result, sqlite3* database, std::string_view file);
 
+/// Gives a connection the function row_sum(table, value, …) of tables.hpp.
+void add_row_sum(sqlite3* database);
+
 struct Database::Impl {
   DatabaseHandle handle;
   std::string file;
+  std::function<void()> on_progress{};
 };
 
 }  // namespace recald::sqlite

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adapters/results/job_result_json.hpp"
+#include "adapters/sqlite/tables.hpp"
 
 namespace recald::sqlite {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 using metering::Instant;
 
 constexpr auto kColumns =
-    "number, kind, state, asked_by, asked, started, ended, accepted, message, folder";
+    "number, kind, state, asked_by, asked, started, ended, accepted, message, folder, tries";
 
 void bind_instant(Statement& statement, int parameter, const std::optional<Instant>& t) {
   if (t) {
@@ -27,7 +28,7 @@ std::optional<Instant> instant_at(const Statement& row, int column) {
   return Instant{std::chrono::seconds{row.integer(column)}};
 }
 
-/// Parameters 0 to 9: all that a job has but its number.
+/// Parameters 0 to 10: all that a job has but its number.
 void bind_job(Statement& statement, const StoredJob& job) {
   statement.bind(0, static_cast<std::int64_t>(job.kind))
       .bind(1, static_cast<std::int64_t>(job.state))
@@ -38,7 +39,8 @@ void bind_job(Statement& statement, const StoredJob& job) {
   statement.bind(6, std::int64_t{job.accepted})
       .bind(7, std::string_view{job.message})
       .bind(8, std::string_view{job.folder})
-      .bind(9, std::string_view{job.result.document});
+      .bind(9, std::string_view{job.result.document})
+      .bind(10, std::int64_t{job.tries});
 }
 
 /// Columns as in `kColumns`.
@@ -53,6 +55,7 @@ StoredJob read_job(const Statement& row) {
   job.accepted = row.integer(7) != 0;
   job.message = row.text(8);
   job.folder = row.text(9);
+  job.tries = static_cast<int>(row.integer(10));
   return job;
 }
 
@@ -72,7 +75,7 @@ Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
   if (!row) return tl::unexpected(row.error());
   if (!*row) return std::optional<StoredJob>{};
   StoredJob job = read_job(query);
-  job.result = results::read_job_result(query.text(10));
+  job.result = results::read_job_result(query.text(11));
   query.reset();
   return std::optional{std::move(job)};
 }
@@ -80,9 +83,10 @@ Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
 }  // namespace
 
 Result<std::int64_t> insert_job(Database& database, const StoredJob& job) {
-  auto insert = database.prepare(
-      "INSERT INTO job (kind, state, asked_by, asked, started, ended, accepted, message, folder, "
-      "result) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING number");
+  auto insert = database.prepare(fmt::format(
+      "INSERT INTO job VALUES (NULL, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, {}) RETURNING "
+      "number",
+      sum_of("job", 11)));
   if (!insert) return tl::unexpected(insert.error());
   bind_job(*insert, job);
   const auto row = insert->step();
@@ -93,12 +97,14 @@ Result<std::int64_t> insert_job(Database& database, const StoredJob& job) {
 }
 
 Result<void> update_job(Database& database, const StoredJob& job) {
-  auto update = database.prepare(
-      "UPDATE job SET kind = ?, state = ?, asked_by = ?, asked = ?, started = ?, ended = ?, "
-      "accepted = ?, message = ?, folder = ?, result = ? WHERE number = ? RETURNING number");
+  auto update = database.prepare(fmt::format(
+      "UPDATE job SET kind = ?1, state = ?2, asked_by = ?3, asked = ?4, started = ?5, ended = ?6, "
+      "accepted = ?7, message = ?8, folder = ?9, result = ?10, tries = ?11, sum = {} "
+      "WHERE number = ?12 RETURNING number",
+      sum_of("job", 11)));
   if (!update) return tl::unexpected(update.error());
   bind_job(*update, job);
-  const auto row = update->bind(10, job.number).step();
+  const auto row = update->bind(11, job.number).step();
   if (!row) return tl::unexpected(row.error());
   if (!*row) {
     return failure(ErrorCode::not_found, fmt::format("there is no job {}", job.number));
@@ -120,6 +126,27 @@ Result<std::vector<StoredJob>> newest_jobs(Database& database, JobKind kind, int
   if (!query) return tl::unexpected(query.error());
   query->bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{limit});
   return read_jobs(*query);
+}
+
+Result<std::optional<StoredJob>> oldest_finished_job_beyond(Database& database, JobKind kind,
+                                                            int kept) {
+  auto query = database.prepare(fmt::format(
+      "SELECT {} FROM job WHERE kind = ?1 AND ended IS NOT NULL AND number < "
+      "(SELECT number FROM job WHERE kind = ?1 AND ended IS NOT NULL ORDER BY number DESC "
+      "LIMIT 1 OFFSET ?2 - 1) AND number <> coalesce((SELECT max(number) FROM job WHERE kind = ?1 "
+      "AND accepted = 1), 0) ORDER BY number LIMIT 1",
+      kColumns));
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{kept});
+  auto jobs = read_jobs(*query);
+  if (!jobs) return tl::unexpected(jobs.error());
+  return jobs->empty() ? std::nullopt : std::optional{std::move(jobs->front())};
+}
+
+Result<void> remove_job(Database& database, std::int64_t number) {
+  auto remove = database.prepare("DELETE FROM job WHERE number = ?");
+  if (!remove) return tl::unexpected(remove.error());
+  return remove->bind(0, number).run();
 }
 
 Result<std::optional<StoredJob>> last_accepted_job(Database& database, JobKind kind) {

@@ -17,6 +17,9 @@ namespace recald::sqlite {
 [[nodiscard]] Result<std::optional<StoredJob>> find_job(Database& database, std::int64_t number);
 [[nodiscard]] Result<std::vector<StoredJob>> newest_jobs(Database& database, JobKind kind,
                                                          int limit);
+[[nodiscard]] Result<std::optional<StoredJob>> oldest_finished_job_beyond(Database& database,
+                                                                          JobKind kind, int kept);
+[[nodiscard]] Result<void> remove_job(Database& database, std::int64_t number);
 [[nodiscard]] Result<std::optional<StoredJob>> last_accepted_job(Database& database, JobKind kind);
 [[nodiscard]] Result<std::vector<StoredJob>> unfinished_jobs(Database& database);
 

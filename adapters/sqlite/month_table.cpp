@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/tables.hpp"
 
 namespace recald::sqlite {
 namespace {
@@ -85,8 +86,7 @@ Result<int> insert_month(Database& database, std::uint32_t meter, const StoredMo
     if (!row) return tl::unexpected(row.error());
     const int revision = static_cast<int>(last->integer(0)) + 1;
     last->reset();
-    auto insert = database.prepare(
-        "INSERT INTO month VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    auto insert = database.prepare(insert_into("month", 21));
     if (!insert) return tl::unexpected(insert.error());
     bind_month(*insert, meter, month, revision);
     if (auto done = insert->run(); !done) return tl::unexpected(done.error());

@@ -3,26 +3,55 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <memory>
 #include <utility>
 
-#include "adapters/sqlite/salvage.hpp"
+#include "adapters/sqlite/refill.hpp"
 #include "adapters/sqlite/schema.hpp"
+#include "adapters/system/durable_names.hpp"
+#include "adapters/system/write_file.hpp"
 
 namespace recald::sqlite {
 namespace {
 
-/// What SQLite finds wrong with a file; empty: nothing, or there is no file. Another program's
-/// database and a newer version are errors, not damage.
-Result<std::string> damage_of(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return std::string{};
+namespace fs = std::filesystem;
+
+/// A store's file with its log, the log first: it says nothing without its file.
+constexpr const char* kParts[] = {"-wal", "-shm", ""};
+
+/// The files of a recovery.
+struct Places {
+  fs::path store;
+  fs::path note;  ///< Says that a recovery has begun, and what it began with.
+  fs::path made;  ///< The new store, until it is whole.
+
+  explicit Places(const fs::path& file)
+      : store(file), note(file.string() + ".recovery"), made(file.string() + ".recovering") {}
+};
+
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored);
+}
+
+/// What is wrong with a file; empty: nothing, or there is no file. Another program's database and a
+/// newer version are errors, not damage.
+Result<std::string> damage_of(const fs::path& file, const OnProgress& on_progress) {
+  if (!is_there(file)) return std::string{};
   auto database = Database::open(file, {});
   if (!database) {
     if (database.error().code == ErrorCode::malformed) return database.error().message;
     return tl::unexpected(database.error());
   }
+  database->on_progress(on_progress);
   // A header that is another program's is a header that can be read.
-  if (auto version = schema_version(*database); !version) return tl::unexpected(version.error());
-  return database->quick_check();
+  if (auto version = schema_version(*database); !version) {
+    if (version.error().code == ErrorCode::malformed) return version.error().message;
+    return tl::unexpected(version.error());
+  }
+  auto damage = database->quick_check();
+  if (!damage || !damage->empty()) return damage;
+  return wrong_sums(*database);
 }
 
 /// "20240301T051500Z", for a file's name.
@@ -32,25 +61,34 @@ std::string stamp_of(metering::Instant t) {
   return stamp;
 }
 
-/// The file and its log, which belong together.
-Result<std::filesystem::path> put_aside(const std::filesystem::path& file, metering::Instant now) {
-  const std::filesystem::path aside = fmt::format("{}.damaged-{}", file.string(), stamp_of(now));
-  for (const char* part : {"-wal", "-shm", ""}) {
-    const std::filesystem::path from = file.string() + part;
-    std::error_code error;
-    if (!std::filesystem::exists(from, error)) continue;
-    std::filesystem::rename(from, aside.string() + part, error);
-    if (!error) continue;
-    return failure(ErrorCode::io_failed,
-                   fmt::format("the damaged store '{}' cannot be put aside as '{}': {}",
-                               from.string(), aside.string(), error.message()));
-  }
-  return aside;
+/// Two lines: where the damaged file is put, and what was wrong with it.
+Result<void> write_note(const Places& places, const Recovery& recovery) {
+  return system::write_file(places.note,
+                            recovery.damaged.filename().string() + "\n" + recovery.damage + "\n");
 }
 
-std::optional<std::filesystem::path> first_sound(
-    const std::vector<std::filesystem::path>& backups) {
-  for (const std::filesystem::path& backup : backups) {
+std::optional<Recovery> read_note(const Places& places) {
+  std::ifstream in{places.note};
+  std::string name;
+  Recovery recovery{.was_interrupted = true};
+  if (!std::getline(in, name) || name.empty()) return {};
+  std::getline(in, recovery.damage);
+  recovery.damaged = places.store.parent_path() / name;
+  return recovery;
+}
+
+/// The file and its log, which belong together. Parts that are there already stay.
+Result<void> put_aside(const Places& places, const fs::path& aside) {
+  for (const char* part : kParts) {
+    const fs::path from = places.store.string() + part;
+    if (!is_there(from)) continue;
+    if (auto moved = system::rename_durably(from, aside.string() + part); !moved) return moved;
+  }
+  return {};
+}
+
+std::optional<fs::path> first_sound(const std::vector<fs::path>& backups) {
+  for (const fs::path& backup : backups) {
     auto database = Database::open(backup, {.access = Database::Access::read_only});
     if (!database) continue;
     const auto damage = database->quick_check();
@@ -61,43 +99,94 @@ std::optional<std::filesystem::path> first_sound(
 }
 
 /// Copies all tables out of one file. @param rows  Where a table's number of rows is entered.
-Result<void> salvage_all(Database& from, Database& to, std::vector<RecoveredTable>& tables,
-                         std::int64_t RecoveredTable::*rows, bool is_damaged) {
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    const auto copied = salvage(from, to, salvaged_tables()[i]);
-    if (!copied) return tl::unexpected(copied.error());
-    tables[i].*rows = copied->rows;
-    if (is_damaged) tables[i].is_whole = copied->is_whole;
+Result<void> take_rows(const fs::path& file, Database& to, Recovery& recovery,
+                       std::int64_t RecoveredTable::*rows, const OnProgress& on_progress) {
+  const auto from = PagedFile::open(file);
+  if (!from) return tl::unexpected(from.error());
+  const auto salvaged = salvage(*from, to, on_progress);
+  if (!salvaged) return tl::unexpected(salvaged.error());
+  for (RecoveredTable& table : recovery.tables) {
+    const auto found = salvaged->rows.find(table.name);
+    if (found != salvaged->rows.end()) table.*rows = found->second;
   }
+  if (rows == &RecoveredTable::from_damaged) recovery.refused = salvaged->refused;
   return {};
 }
 
-Result<void> fill(Database& to, Recovery& recovery) {
-  for (const SalvagedTable& table : salvaged_tables()) recovery.tables.push_back({table.name});
-  auto damaged = Database::open(recovery.damaged, {.access = Database::Access::read_only});
-  auto backup = recovery.backup
-                    ? Database::open(*recovery.backup, {.access = Database::Access::read_only})
-                    : Result<Database>{failure(ErrorCode::not_found, "")};
-  // Meters first, from wherever they can be read: all else belongs to one.
-  const SalvagedTable& meters = salvaged_tables().front();
-  for (Result<Database>* source : {&damaged, &backup}) {
-    if (!*source) continue;
-    if (auto copied = salvage(**source, to, meters); !copied) {
-      return tl::unexpected(copied.error());
+Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
+                  const OnProgress& on_progress) {
+  Database& to = made.database();
+  for (const TableShape& table : table_shapes()) recovery.tables.push_back({table.name});
+  // Rows come in order of their pages, not of what they refer to.
+  if (auto off = to.execute("PRAGMA foreign_keys=OFF"); !off) return off;
+  auto taken =
+      take_rows(recovery.damaged, to, recovery, &RecoveredTable::from_damaged, on_progress);
+  if (!taken) return taken;
+  if (recovery.backup) {
+    taken = take_rows(*recovery.backup, to, recovery, &RecoveredTable::from_backup, on_progress);
+    if (!taken) return taken;
+  }
+  if (auto mended = mend_references(to); !mended) return mended;
+  if (auto on = to.execute("PRAGMA foreign_keys=ON"); !on) return on;
+  const auto refilled = refill_intervals(made);
+  if (!refilled) return tl::unexpected(refilled.error());
+  recovery.from_samples = refilled->from_samples;
+  recovery.lost_intervals = refilled->still_missing;
+  const auto told =
+      made.commit({.events = {{now, Severity::error, "store_recovered", "", recovery.sentence()}}});
+  if (!told) return tl::unexpected(told.error());
+  // All of it into the one file that is renamed.
+  return to.execute("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+void remove_store(const fs::path& file) {
+  std::error_code ignored;
+  for (const char* part : kParts) fs::remove(file.string() + part, ignored);
+}
+
+/// The new store, whole, in the place of the old one.
+Result<void> make_anew(const Places& places, Recovery& recovery,
+                       const std::vector<fs::path>& backups, metering::Instant now,
+                       const OnProgress& on_progress) {
+  remove_store(places.made);  // what an interrupted recovery left
+  recovery.backup = first_sound(backups);
+  {
+    auto made = SqliteStore::open(places.made);
+    if (!made) return tl::unexpected(made.error());
+    if (auto filled = fill(*made, recovery, now, on_progress); !filled) return filled;
+  }
+  return system::rename_durably(places.made, places.store);
+}
+
+Result<std::optional<Recovery>> recover_if_damaged(const Places& places,
+                                                   const std::vector<fs::path>& backups,
+                                                   metering::Instant now,
+                                                   const OnProgress& on_progress) {
+  std::optional<Recovery> recovery = read_note(places);
+  const bool is_put_aside = recovery && is_there(recovery->damaged);
+  if (!recovery) {
+    auto damage = damage_of(places.store, on_progress);
+    if (!damage) return tl::unexpected(damage.error());
+    if (damage->empty()) return std::optional<Recovery>{};
+    recovery =
+        Recovery{.damage = std::move(*damage),
+                 .damaged = fmt::format("{}.damaged-{}", places.store.string(), stamp_of(now))};
+    if (auto noted = write_note(places, *recovery); !noted) return tl::unexpected(noted.error());
+  }
+  if (!is_put_aside) {
+    if (auto put = put_aside(places, recovery->damaged); !put) return tl::unexpected(put.error());
+  }
+  // After the rename only the note was left to be removed; the new store tells of all.
+  const bool is_done = is_put_aside && is_there(places.store);
+  if (!is_done) {
+    if (auto made = make_anew(places, *recovery, backups, now, on_progress); !made) {
+      return tl::unexpected(made.error());
     }
   }
-  if (damaged) {
-    if (auto named = name_unknown_meters(*damaged, to); !named) return named;
-    if (auto copied =
-            salvage_all(*damaged, to, recovery.tables, &RecoveredTable::from_damaged, true);
-        !copied) {
-      return copied;
-    }
-  } else {
-    for (RecoveredTable& table : recovery.tables) table.is_whole = false;
+  if (auto removed = system::remove_durably(places.note); !removed) {
+    return tl::unexpected(removed.error());
   }
-  if (!backup) return {};
-  return salvage_all(*backup, to, recovery.tables, &RecoveredTable::from_backup, false);
+  return is_done ? std::optional<Recovery>{} : recovery;
 }
 
 }  // namespace
@@ -107,37 +196,31 @@ std::string Recovery::sentence() const {
       "the store was damaged ({}); it is kept as '{}' and a new one holds what could be read:",
       damage, damaged.filename().string());
   for (const RecoveredTable& table : tables) {
-    if (table.from_damaged + table.from_backup == 0 && table.is_whole) continue;
+    if (table.from_damaged + table.from_backup == 0) continue;
     text += fmt::format(" {} {}", table.from_damaged, table.name);
     if (table.from_backup > 0) text += fmt::format(" + {} of a backup", table.from_backup);
-    text += table.is_whole ? "," : " (not all),";
+    text += ',';
   }
   text.back() = ';';
+  if (refused > 0) text += fmt::format(" {} rows had a wrong check sum;", refused);
+  if (from_samples > 0) {
+    text += fmt::format(" {} intervals were made again from samples;", from_samples);
+  }
+  text += lost_intervals > 0 ? fmt::format(" {} intervals are lost;", lost_intervals)
+                             : std::string{" no interval is lost;"};
   text += backup ? fmt::format(" the backup was '{}'", backup->filename().string())
                  : std::string{" there was no sound backup"};
-  return text;
+  if (was_interrupted) text += "; it was interrupted and has been done again";
+  return text + ". Delete the damaged file when you need it no more";
 }
 
-Result<CheckedStore> open_checked(const std::filesystem::path& file,
-                                  const std::vector<std::filesystem::path>& backups,
-                                  metering::Instant now) {
-  auto damage = damage_of(file);
-  if (!damage) return tl::unexpected(damage.error());
-  std::optional<Recovery> recovery;
-  if (!damage->empty()) {
-    auto aside = put_aside(file, now);
-    if (!aside) return tl::unexpected(aside.error());
-    recovery = Recovery{.damage = std::move(*damage), .damaged = std::move(*aside)};
-    recovery->backup = first_sound(backups);
-  }
+Result<CheckedStore> open_checked(const fs::path& file, const std::vector<fs::path>& backups,
+                                  metering::Instant now, const OnProgress& on_progress) {
+  auto recovery = recover_if_damaged(Places{file}, backups, now, on_progress);
+  if (!recovery) return tl::unexpected(recovery.error());
   auto store = SqliteStore::open(file);
   if (!store) return tl::unexpected(store.error());
-  if (recovery) {
-    if (auto filled = fill(store->database(), *recovery); !filled) {
-      return tl::unexpected(filled.error());
-    }
-  }
-  return CheckedStore{std::move(*store), std::move(recovery)};
+  return CheckedStore{std::move(*store), std::move(*recovery)};
 }
 
 }  // namespace recald::sqlite

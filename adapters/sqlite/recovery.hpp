@@ -1,9 +1,13 @@
-/// A store that is damaged: put aside, and what can still be read of it in a new one.
+/// A store that is damaged: kept aside, and all that can still be read of it in a new one.
 ///
-/// Row by row through SQL, and not by the `.recover` of the sqlite3 program: Debian's library does
-/// not contain that, and a daemon should not depend on a program beside it. What lies on a page
-/// that cannot be read is skipped by narrowing down the keys; the rest of the table is not lost
-/// with it. A backup fills what it knows of the hole.
+/// Page by page, and not by the `.recover` of the sqlite3 program: Debian's library does not
+/// contain that, and a daemon should not depend on a program beside it. What lies on a page that
+/// cannot be read, or has a wrong check sum, comes from a backup where one has it, and intervals
+/// else from samples of their register.
+///
+/// The process may end at any step. "FILE.recovery" says that a recovery has begun; the new store
+/// is made as "FILE.recovering" and takes its place by one rename. Who opens the store next goes
+/// on.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/sqlite/salvage.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 
 namespace recald::sqlite {
@@ -20,7 +25,6 @@ struct RecoveredTable {
   std::string name;
   std::int64_t from_damaged = 0;  ///< Rows.
   std::int64_t from_backup = 0;
-  bool is_whole = true;  ///< Every row of the damaged file's table could be read.
 };
 
 struct Recovery {
@@ -28,6 +32,10 @@ struct Recovery {
   std::filesystem::path damaged;  ///< The file as it was, under its new name.
   std::optional<std::filesystem::path> backup;
   std::vector<RecoveredTable> tables;
+  std::int64_t refused = 0;         ///< Rows of the damaged file whose check sum is wrong.
+  std::int64_t from_samples = 0;    ///< Intervals.
+  std::int64_t lost_intervals = 0;  ///< That lie between others and are in no source.
+  bool was_interrupted = false;     ///< An earlier process had begun it.
 
   /// What happened, for a log and for people.
   [[nodiscard]] std::string sentence() const;
@@ -38,15 +46,18 @@ struct CheckedStore {
   std::optional<Recovery> recovery;  ///< Absent: the file was sound, or new.
 };
 
-/// Opens a store to write after looking it through (`quick_check`). A damaged file becomes
-/// "FILE.damaged-<time>", with its log, and a new one takes its place.
+/// Opens a store to write after looking it through: its structure (`quick_check`) and its rows'
+/// check sums. A damaged file becomes "FILE.damaged-<time>", with its log, and a new one takes its
+/// place, in which an event "store_recovered" tells of it.
 ///
 /// @param backups  The newest first; the first that is sound is used, and only for what is damaged.
 /// @pre  nobody else has the store open.
-/// @return or as SqliteStore::open; malformed when the file is another program's database, which is
-///         left alone; io_failed when it cannot be put aside.
+/// @return or as SqliteStore::open; unsupported when the file is another program's database, which
+///         is left alone; io_failed when it cannot be put aside or the new one not be written:
+///         nothing is lost, and the next call goes on.
 [[nodiscard]] Result<CheckedStore> open_checked(const std::filesystem::path& file,
                                                 const std::vector<std::filesystem::path>& backups,
-                                                metering::Instant now);
+                                                metering::Instant now,
+                                                const OnProgress& on_progress = {});
 
 }  // namespace recald::sqlite

@@ -1,198 +1,226 @@
 #include "adapters/sqlite/salvage.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <deque>
 #include <optional>
-#include <string>
+#include <span>
+#include <string_view>
 #include <utility>
-
-#include "adapters/sqlite/schema.hpp"
+#include <vector>
 
 namespace recald::sqlite {
 namespace {
 
-constexpr std::int64_t kMetersMax = 1000;
-constexpr int kHolesMax = 3000;  // of one table, or of one meter in it
+constexpr std::uint32_t kPagesAtOnce = 2000;  // of one transaction
 
-struct KeyRange {
-  std::int64_t first;
-  std::int64_t last;
-};
-
-Result<std::vector<std::string>> columns_of(Database& database, const char* table) {
-  auto query = database.prepare("SELECT name FROM pragma_table_info(?)");
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, std::string_view{table});
-  std::vector<std::string> columns;
-  for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return columns;
-    columns.push_back(query->text(0));
+/// Makes a value what a column of this type gives back. @return whether it can be.
+bool takes(char type, Value& value) {
+  using Kind = Value::Kind;
+  switch (type) {
+    case 'i':
+      return value.kind == Kind::integer;
+    case 'n':
+      return value.kind == Kind::integer || value.kind == Kind::null;
+    case 't':
+      return value.kind == Kind::text;
+    case 'u':
+      return value.kind == Kind::text || value.kind == Kind::null;
+    default:
+      break;
   }
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
-
-Result<std::vector<std::int64_t>> meters_of(Database& database) {
-  auto query = database.prepare("SELECT number FROM meter ORDER BY number");
-  if (!query) return tl::unexpected(query.error());
-  std::vector<std::int64_t> meters;
-  for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return meters;
-    meters.push_back(query->integer(0));
+  // SQLite keeps a whole number of a real column as an integer.
+  if (value.kind == Kind::integer) {
+    value = {.kind = Kind::real, .real = static_cast<double>(value.integer)};
   }
+  return value.kind == Kind::real || value.kind == Kind::null;
 }
 
-/// Copies one table. Failures of `from` make holes, failures of `to` end it.
-class TableSalvage {
+/// The row as one of this table, or nothing: it cannot be one.
+std::optional<std::vector<Value>> as_row_of(const TableShape& table, const PageRow& row) {
+  const std::size_t count = row.values.size();
+  const std::size_t most = table.columns() + (table.has_sum() ? 1 : 0);
+  if (row.rowid.has_value() != table.has_rowid || count < table.columns_first || count > most) {
+    return {};
+  }
+  std::vector<Value> values = row.values;
+  if (row.rowid) {
+    if (values[0].kind != Value::Kind::null) return {};
+    values[0] = {.kind = Value::Kind::integer, .integer = *row.rowid};
+  }
+  const std::string types = std::string{table.types} + 'n';
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!takes(types[i], values[i])) return {};
+  }
+  return values;
+}
+
+/// Rows from before there were sums have none, and are right as far as anybody knows.
+bool has_right_sum(const TableShape& table, std::span<const Value> values) {
+  if (values.size() <= table.columns() || values.back().kind == Value::Kind::null) return true;
+  const auto summed = values.subspan(static_cast<std::size_t>(table.summed_from),
+                                     table.columns() - static_cast<std::size_t>(table.summed_from));
+  return values.back().integer == row_sum(table.name, summed);
+}
+
+/// Writes rows of a table, of any schema that recald has had.
+class RowWriter {
  public:
-  TableSalvage(Database& from, const SalvagedTable& table, Statement insert,
-               std::vector<std::string> columns)
-      : from_(from), table_(table), insert_(std::move(insert)), columns_(std::move(columns)) {}
+  RowWriter(Database& to, const TableShape& table) : to_(to), table_(table) {}
 
-  [[nodiscard]] Result<SalvagedRows> run(const std::vector<std::int64_t>& meters) {
-    if (!table_.by_meter) {
-      if (auto copied = copy({}, whole()); !copied) return tl::unexpected(copied.error());
+  /// @return whether the row was taken; invalid_value for one that the schema refuses.
+  [[nodiscard]] Result<bool> put(std::span<const Value> values) {
+    auto statement = statement_for(values.size());
+    if (!statement) return tl::unexpected(statement.error());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      bind(**statement, static_cast<int>(i), values[i]);
     }
-    for (const std::int64_t meter : table_.by_meter ? meters : std::vector<std::int64_t>{}) {
-      if (auto copied = copy(meter, whole()); !copied) return tl::unexpected(copied.error());
-    }
-    return done_;
+    const auto row = (*statement)->step();
+    if (!row) return tl::unexpected(row.error());
+    (*statement)->reset();
+    return *row;
   }
 
  private:
-  [[nodiscard]] KeyRange whole() const {
-    // Times end with 2037, numbers long before that.
-    return {0, table_.key == nullptr ? 0 : std::int64_t{1} << 31};
-  }
-
-  [[nodiscard]] std::string select() const {
-    std::vector<std::string> conditions;
-    if (table_.by_meter) conditions.emplace_back("meter = ?1");
-    if (table_.key != nullptr)
-      conditions.push_back(fmt::format("{} BETWEEN ?2 AND ?3", table_.key));
-    std::string sql = fmt::format("SELECT {} FROM {}", joined(columns_), table_.name);
-    if (!conditions.empty()) sql += fmt::format(" WHERE {}", fmt::join(conditions, " AND "));
-    if (table_.key != nullptr) sql += fmt::format(" ORDER BY {}", table_.key);
-    return sql;
-  }
-
-  /// The large ranges first: where one ends in a hole, what lies behind it is halved, and the
-  /// halves wait for their turn. So a hole costs little more than itself, and many holes cost
-  /// bounded time.
-  Result<void> copy(std::optional<std::int64_t> meter, KeyRange whole_range) {
-    std::deque<KeyRange> ranges{whole_range};
-    for (int holes = 0; !ranges.empty() && holes < kHolesMax;) {
-      const KeyRange range = ranges.front();
-      ranges.pop_front();
-      const auto hole = copy_range(meter, range);
-      if (!hole) return tl::unexpected(hole.error());
-      if (!*hole) continue;
-      ++holes;
-      done_.is_whole = false;
-      if (table_.key == nullptr || range.last - **hole < table_.narrow_down) continue;
-      const std::int64_t middle = **hole + (range.last - **hole) / 2;
-      ranges.push_back({**hole, middle});
-      ranges.push_back({middle + 1, range.last});
+  static void bind(Statement& statement, int parameter, const Value& value) {
+    switch (value.kind) {
+      case Value::Kind::null:
+        statement.bind_null(parameter);
+        return;
+      case Value::Kind::integer:
+        statement.bind(parameter, value.integer);
+        return;
+      case Value::Kind::real:
+        statement.bind(parameter, value.real);
+        return;
+      case Value::Kind::text:
+        statement.bind(parameter, std::string_view{value.text});
+        return;
     }
+  }
+
+  Result<Statement*> statement_for(std::size_t count) {
+    if (const auto known = statements_.find(count); known != statements_.end()) {
+      return &known->second;
+    }
+    auto names = columns_of(to_, table_.name);
+    if (!names) return tl::unexpected(names.error());
+    names->resize(count);
+    const auto list = fmt::format("{}", fmt::join(*names, ", "));
+    std::string sql = fmt::format("INTO {} ({}) VALUES (?{})", table_.name, list,
+                                  fmt::join(std::vector<std::string>(count, ""), ", ?"));
+    if (table_.newer == nullptr) {
+      sql = "INSERT OR IGNORE " + sql;
+    } else {
+      std::vector<std::string> updates;
+      for (const std::string& name : *names) {
+        updates.push_back(fmt::format("{0} = excluded.{0}", name));
+      }
+      sql = fmt::format("INSERT {} ON CONFLICT DO UPDATE SET {} WHERE {}", sql,
+                        fmt::join(updates, ", "), table_.newer);
+    }
+    auto statement = to_.prepare(sql + " RETURNING 1");
+    if (!statement) return tl::unexpected(statement.error());
+    return &statements_.emplace(count, std::move(*statement)).first->second;
+  }
+
+  Database& to_;
+  const TableShape& table_;
+  std::map<std::size_t, Statement> statements_;  ///< By number of columns.
+};
+
+/// Puts each row where it belongs.
+class Sorting {
+ public:
+  explicit Sorting(Database& to) {
+    for (const TableShape& table : table_shapes()) writers_.emplace_back(to, table);
+  }
+
+  Result<void> put(const PageRow& row) {
+    bool was_close = false;
+    for (std::size_t i = 0; i < writers_.size(); ++i) {
+      const TableShape& table = table_shapes()[i];
+      const auto values = as_row_of(table, row);
+      if (!values) continue;
+      was_close = true;
+      if (!has_right_sum(table, *values)) continue;
+      const auto taken = writers_[i].put(*values);
+      if (!taken && taken.error().code == ErrorCode::invalid_value) continue;
+      if (!taken) return tl::unexpected(taken.error());
+      done_.rows[table.name] += static_cast<int>(*taken);
+      return {};
+    }
+    done_.refused += static_cast<int>(was_close);
     return {};
   }
 
-  /// @return the last key before a hole, or none when all of the range could be read.
-  Result<std::optional<std::int64_t>> copy_range(std::optional<std::int64_t> meter,
-                                                 KeyRange range) {
-    std::optional<std::int64_t> read_until = range.first;
-    auto query = from_.prepare(select());
-    if (!query) return read_until;
-    if (meter) query->bind(0, *meter);
-    if (table_.key != nullptr) query->bind(1, range.first).bind(2, range.last);
-    for (;;) {
-      const auto row = query->step();
-      if (!row) return read_until;
-      if (!*row) return std::optional<std::int64_t>{};
-      if (table_.key != nullptr) read_until = query->integer(key_column());
-      if (auto put = put_row(*query); !put) return tl::unexpected(put.error());
-    }
-  }
+  [[nodiscard]] SalvagedRows done() && { return std::move(done_); }
 
-  [[nodiscard]] int key_column() const {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i] == table_.key) return static_cast<int>(i);
-    }
-    return 0;
-  }
-
-  Result<void> put_row(const Statement& row) {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      insert_.bind_column(static_cast<int>(i), row, static_cast<int>(i));
-    }
-    const auto put = insert_.step();
-    if (put) {
-      if (*put) ++done_.rows;
-      insert_.reset();
-      return {};
-    }
-    // What no row may be was damaged without looking so.
-    done_.is_whole = false;
-    if (put.error().code == ErrorCode::invalid_value) return {};
-    return tl::unexpected(put.error());
-  }
-
-  Database& from_;
-  const SalvagedTable& table_;
-  Statement insert_;
-  std::vector<std::string> columns_;
+ private:
+  std::vector<RowWriter> writers_;  ///< By table.
   SalvagedRows done_;
 };
 
+/// Runs a statement until it changes nothing more. @pre it ends with RETURNING.
+Result<void> run_while_it_changes(Database& database, std::string_view sql) {
+  auto statement = database.prepare(sql);
+  if (!statement) return tl::unexpected(statement.error());
+  for (;;) {
+    const auto row = statement->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return {};
+    if (auto done = statement->run(); !done) return done;
+  }
+}
+
 }  // namespace
 
-const std::vector<SalvagedTable>& salvaged_tables() {
-  static const std::vector<SalvagedTable> tables{
-      {"meter", false, "number", 1},      {"edit", false, "number", 1},
-      {"interval", true, "t_start", 900}, {"register", true, nullptr, 0},
-      {"sample", true, "t", 900},         {"month", true, nullptr, 0},
-      {"reopened", true, nullptr, 0},     {"closing", true, nullptr, 0},
-      {"event", false, "number", 1},      {"job", false, "number", 1},
-      {"forecast", false, "number", 1}};
-  return tables;
-}
-
-Result<SalvagedRows> salvage(Database& from, Database& to, const SalvagedTable& table) {
-  const auto columns = columns_of(from, table.name);
-  // A table that the file's version did not have, or a schema that cannot be read.
-  if (!columns || columns->empty()) return SalvagedRows{.is_whole = columns.has_value()};
-  const auto meters = meters_of(to);
-  if (!meters) return tl::unexpected(meters.error());
-  auto insert = to.prepare(fmt::format("INSERT OR IGNORE INTO {} ({}) VALUES ({}) RETURNING 1",
-                                       table.name, joined(*columns),
-                                       joined(std::vector<std::string>(columns->size(), "?"))));
-  if (!insert) return tl::unexpected(insert.error());
-  return to.transaction([&] {
-    return TableSalvage{from, table, std::move(*insert), *columns}.run(*meters);
-  });
-}
-
-Result<void> name_unknown_meters(Database& from, Database& to) {
-  auto has_rows = from.prepare("SELECT 1 FROM interval WHERE meter = ? LIMIT 1");
-  if (!has_rows) return {};  // then there is nothing to read
-  auto add = to.prepare("INSERT OR IGNORE INTO meter VALUES (?, ?, 900)");
-  if (!add) return tl::unexpected(add.error());
-  for (std::int64_t number = 0; number < kMetersMax; ++number) {
-    const auto row = has_rows->bind(0, number).step();
-    const bool has_any = row && *row;
-    has_rows->reset();
-    if (!has_any) continue;
-    const std::string id = fmt::format("unknown-{}", number);
-    if (auto added = add->bind(0, number).bind(1, std::string_view{id}).run(); !added) return added;
+Result<SalvagedRows> salvage(const PagedFile& from, Database& to, const OnProgress& on_progress) {
+  const PageOf page_of = [&](std::uint32_t number) { return from.page(number); };
+  Sorting sorting{to};
+  for (std::uint32_t first = 1; first <= from.pages(); first += kPagesAtOnce) {
+    const auto copied = to.transaction([&]() -> Result<void> {
+      for (std::uint32_t n = first; n < first + kPagesAtOnce && n <= from.pages(); ++n) {
+        for (const PageRow& row : rows_on_page(from.page(n), n == 1, page_of)) {
+          if (auto put = sorting.put(row); !put) return put;
+        }
+      }
+      return {};
+    });
+    if (!copied) return tl::unexpected(copied.error());
+    if (on_progress) on_progress();
   }
-  return {};
+  return std::move(sorting).done();
+}
+
+Result<void> mend_references(Database& database) {
+  auto mended = database.execute(R"sql(
+INSERT INTO edit SELECT DISTINCT edit, 0, '', 'its reason was lost with a damaged page', '', '', NULL
+FROM interval WHERE edit NOT IN (SELECT number FROM edit);
+DELETE FROM interval WHERE meter NOT IN (SELECT number FROM meter)
+  AND meter IN (SELECT meter FROM interval GROUP BY meter HAVING count(*) < 4);
+INSERT INTO meter SELECT DISTINCT meter, 'unknown-' || meter, 900, NULL
+FROM interval WHERE meter NOT IN (SELECT number FROM meter);
+DELETE FROM register WHERE meter NOT IN (SELECT number FROM meter);
+DELETE FROM sample WHERE meter NOT IN (SELECT number FROM meter);
+DELETE FROM month WHERE meter NOT IN (SELECT number FROM meter);
+DELETE FROM reopened WHERE meter NOT IN (SELECT number FROM meter);
+DELETE FROM closing WHERE meter NOT IN (SELECT number FROM meter);
+)sql");
+  if (!mended) return mended;
+  // A revision steps down only where the one below is free, hence in rounds.
+  mended = run_while_it_changes(database, R"sql(
+UPDATE OR IGNORE interval SET revision = revision - 1, sum = row_sum('interval', meter, t_start,
+  revision - 1, mean_kW, validity, late, reasons, edit)
+WHERE revision > 0 AND NOT EXISTS (SELECT 1 FROM interval AS below WHERE below.meter = interval.meter
+  AND below.t_start = interval.t_start AND below.revision = interval.revision - 1)
+RETURNING 1)sql");
+  if (!mended) return mended;
+  return run_while_it_changes(database, R"sql(
+UPDATE OR IGNORE month SET revision = revision - 1, sum = NULL
+WHERE revision > 0 AND NOT EXISTS (SELECT 1 FROM month AS below WHERE below.meter = month.meter
+  AND below.month = month.month AND below.revision = month.revision - 1)
+RETURNING 1)sql");
 }
 
 }  // namespace recald::sqlite

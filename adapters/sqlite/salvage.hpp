@@ -1,35 +1,34 @@
-/// Rows out of a database that cannot be read everywhere.
+/// Rows out of a database file that is damaged somewhere.
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <functional>
+#include <map>
+#include <string>
 
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/page_rows.hpp"
 
 namespace recald::sqlite {
 
-/// A table of the store, and by which of its keys a hole in it can be narrowed down.
-struct SalvagedTable {
-  const char* name;
-  bool by_meter;             ///< Its key begins with the meter.
-  const char* key;           ///< An integer column, the next part of its key; null: none.
-  std::int64_t narrow_down;  ///< To so much of it: 1 for numbers, seconds for times.
-};
-
-/// In an order in which rows come after those that they refer to; `meter` is the first.
-[[nodiscard]] const std::vector<SalvagedTable>& salvaged_tables();
+/// Told now and then that long work goes on.
+using OnProgress = std::function<void()>;
 
 struct SalvagedRows {
-  std::int64_t rows = 0;  ///< That `to` did not have.
-  bool is_whole = true;   ///< Nothing of the table was unreadable, nor any row implausible.
+  std::map<std::string, std::int64_t> rows;  ///< By table: those that `to` did not have.
+  std::int64_t refused = 0;  ///< Their check sum, or the schema, spoke against them.
 };
 
-/// Copies what can be read and `to` does not have.
+/// Copies every row that stands on a page of `from` that can be read, whatever of the tree above it
+/// is damaged. What lies there twice, as an old copy of a page, is taken once; of what changes, the
+/// newest.
+/// @pre `to` has the current schema and its foreign keys are off: rows come in order of their
+/// pages.
 /// @return or as Database::execute when `to` cannot be written.
-[[nodiscard]] Result<SalvagedRows> salvage(Database& from, Database& to,
-                                           const SalvagedTable& table);
+[[nodiscard]] Result<SalvagedRows> salvage(const PagedFile& from, Database& to,
+                                           const OnProgress& on_progress);
 
-/// Gives numbers whose meter could not be read an id, "unknown-3", so that its rows have a place.
-[[nodiscard]] Result<void> name_unknown_meters(Database& from, Database& to);
+/// Makes whole what rows refer to: meters and edits that are lost get a place holder, revisions
+/// close up. Rows of a meter that hardly has any are dropped.
+[[nodiscard]] Result<void> mend_references(Database& database);
 
 }  // namespace recald::sqlite

@@ -138,6 +138,20 @@ CREATE TABLE closing (
   meter INTEGER PRIMARY KEY REFERENCES meter (number),
   rules TEXT    NOT NULL
 ) STRICT;
+)sql",
+    R"sql(
+ALTER TABLE event ADD COLUMN count INTEGER NOT NULL DEFAULT 1 CHECK (count > 0);
+ALTER TABLE event ADD COLUMN last INTEGER;
+ALTER TABLE job ADD COLUMN tries INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE meter ADD COLUMN sum INTEGER;
+ALTER TABLE edit ADD COLUMN sum INTEGER;
+ALTER TABLE interval ADD COLUMN sum INTEGER;
+ALTER TABLE register ADD COLUMN sum INTEGER;
+ALTER TABLE sample ADD COLUMN sum INTEGER;
+ALTER TABLE month ADD COLUMN sum INTEGER;
+ALTER TABLE event ADD COLUMN sum INTEGER;
+ALTER TABLE job ADD COLUMN sum INTEGER;
+ALTER TABLE forecast ADD COLUMN sum INTEGER;
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {
@@ -159,8 +173,12 @@ Result<int> schema_version(Database& database) {
   if (!application) return tl::unexpected(application.error());
   const auto tables = ask(database, "SELECT count(*) FROM sqlite_schema");
   if (!tables) return tl::unexpected(tables.error());
-  if (*tables > 0 && *application != kApplicationId) {
-    return failure(ErrorCode::malformed,
+  // With our tables in it the mark was damaged.
+  const auto ours =
+      ask(database, "SELECT count(*) FROM sqlite_schema WHERE name IN ('interval', 'sample')");
+  if (!ours) return tl::unexpected(ours.error());
+  if (*tables > 0 && *application != kApplicationId && *ours < 2) {
+    return failure(ErrorCode::unsupported,
                    "the store file is a database of another program; name another file");
   }
   if (*version > kSchemaVersion) {

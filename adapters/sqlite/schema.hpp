@@ -5,12 +5,11 @@
 
 namespace recald::sqlite {
 
-inline constexpr int kSchemaVersion = 4;
+inline constexpr int kSchemaVersion = 5;
 
 /// The version of a file's tables; 0: it has none yet.
-/// @return or unsupported when the file was written by a newer version; malformed when it is
-/// another
-///         program's database; or as Database::execute.
+/// @return or unsupported when the file was written by a newer version, or is another program's
+///         database; or as Database::execute.
 [[nodiscard]] Result<int> schema_version(Database& database);
 
 /// Creates the tables in a new file, upgrades an older one, each version in a transaction.

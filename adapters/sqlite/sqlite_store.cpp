@@ -15,6 +15,7 @@
 #include "adapters/sqlite/row_checks.hpp"
 #include "adapters/sqlite/sample_table.hpp"
 #include "adapters/sqlite/schema.hpp"
+#include "adapters/sqlite/tables.hpp"
 
 namespace recald::sqlite {
 
@@ -54,15 +55,16 @@ Result<std::uint32_t> SqliteStore::meter_number(const std::string& id,
       }
       return static_cast<std::uint32_t>(find->integer(0));
     }
-    auto insert = database_.prepare(
-        "INSERT INTO meter VALUES ((SELECT coalesce(max(number), -1) + 1 FROM meter), ?, ?) "
-        "RETURNING number");
+    auto next = database_.prepare("SELECT coalesce(max(number), -1) + 1 FROM meter");
+    if (!next) return tl::unexpected(next.error());
+    if (auto found = next->step(); !found) return tl::unexpected(found.error());
+    const std::int64_t number = next->integer(0);
+    next->reset();
+    auto insert = database_.prepare(insert_into("meter", 3));
     if (!insert) return tl::unexpected(insert.error());
-    const auto made = insert->bind(0, std::string_view{id}).bind(1, interval.count()).step();
-    if (!made) return tl::unexpected(made.error());
-    const auto number = static_cast<std::uint32_t>(insert->integer(0));
+    insert->bind(0, number).bind(1, std::string_view{id}).bind(2, interval.count());
     if (auto done = insert->run(); !done) return tl::unexpected(done.error());
-    return number;
+    return static_cast<std::uint32_t>(number);
   });
 }
 
@@ -181,9 +183,29 @@ Result<int> SqliteStore::put_closing_rules(std::uint32_t meter, const std::strin
   return replace_closing_rules(database_, meter, rules);
 }
 
+Result<int> SqliteStore::delete_events(Instant keep_from, int rows_max) {
+  auto remove = database_.prepare(
+      "DELETE FROM event WHERE number IN (SELECT number FROM event WHERE t < ?1 AND "
+      "coalesce(last, t) < ?1 ORDER BY t LIMIT ?2) RETURNING 1");
+  if (!remove) return tl::unexpected(remove.error());
+  remove->bind(0, seconds_of(keep_from)).bind(1, std::int64_t{rows_max});
+  for (int removed = 0;; ++removed) {
+    const auto row = remove->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return removed;
+  }
+}
+
+Result<std::optional<StoredJob>> SqliteStore::oldest_job_beyond(JobKind kind, int kept) {
+  return oldest_finished_job_beyond(database_, kind, kept);
+}
+
+Result<void> SqliteStore::delete_job(std::int64_t number) { return remove_job(database_, number); }
+
 Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
   auto query = database_.prepare(
-      "SELECT t, severity, kind, subject, text FROM event ORDER BY t DESC, number DESC LIMIT ?");
+      "SELECT t, severity, kind, subject, text, count, last FROM event "
+      "ORDER BY t DESC, number DESC LIMIT ?");
   if (!query) return tl::unexpected(query.error());
   query->bind(0, std::int64_t{limit});
   std::vector<StoreEvent> events;
@@ -191,8 +213,14 @@ Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
     const auto row = query->step();
     if (!row) return tl::unexpected(row.error());
     if (!*row) return events;
-    events.push_back({instant_of(query->integer(0)), static_cast<Severity>(query->integer(1)),
-                      query->text(2), query->text(3), query->text(4)});
+    events.push_back(
+        {.time = instant_of(query->integer(0)),
+         .severity = static_cast<Severity>(query->integer(1)),
+         .kind = query->text(2),
+         .subject = query->text(3),
+         .text = query->text(4),
+         .count = static_cast<int>(query->integer(5)),
+         .last = query->is_null(6) ? std::nullopt : std::optional{instant_of(query->integer(6))}});
   }
 }
 
@@ -230,6 +258,9 @@ Result<StoreCheck> SqliteStore::check() {
   if (!damage->empty()) return StoreCheck{.damage = std::move(*damage)};
   auto problems = row_problems(database_);
   if (!problems) return tl::unexpected(problems.error());
+  auto sums = wrong_sums(database_);
+  if (!sums) return tl::unexpected(sums.error());
+  if (!sums->empty()) problems->push_back(std::move(*sums));
   const auto intervals = count_intervals(database_);
   if (!intervals) return tl::unexpected(intervals.error());
   return StoreCheck{.problems = std::move(*problems), .intervals = *intervals};

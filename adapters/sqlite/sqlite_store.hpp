@@ -43,11 +43,14 @@ class SqliteStore final : public Store {
   Result<std::vector<StoredMonth>> months(std::uint32_t meter) override;
   Result<std::string> closing_rules(std::uint32_t meter) override;
   Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) override;
+  Result<int> delete_events(metering::Instant keep_from, int rows_max) override;
   Result<std::vector<StoreEvent>> events(int limit) override;
   Result<std::int64_t> add_job(const StoredJob& job) override;
   Result<void> put_job(const StoredJob& job) override;
   Result<std::optional<StoredJob>> job(std::int64_t number) override;
   Result<std::vector<StoredJob>> jobs(JobKind kind, int limit) override;
+  Result<std::optional<StoredJob>> oldest_job_beyond(JobKind kind, int kept) override;
+  Result<void> delete_job(std::int64_t number) override;
   Result<std::optional<StoredJob>> last_accepted(JobKind kind) override;
   Result<std::vector<StoredJob>> unfinished_jobs() override;
   Result<void> add_forecasts(std::span<const StoredForecast> forecasts) override;

@@ -27,8 +27,8 @@ Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& file) {
 
 Result<CheckedStore> open_checked(const std::filesystem::path& file,
                                   const std::vector<std::filesystem::path>& backups,
-                                  metering::Instant now) {
-  auto opened = sqlite::open_checked(file, backups, now);
+                                  metering::Instant now, const std::function<void()>& on_progress) {
+  auto opened = sqlite::open_checked(file, backups, now, on_progress);
   if (!opened) return tl::unexpected(opened.error());
   return CheckedStore{std::make_unique<sqlite::SqliteStore>(std::move(opened->store)),
                       opened->recovery ? opened->recovery->sentence() : std::string{}};

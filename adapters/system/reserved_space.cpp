@@ -26,7 +26,8 @@ bool ReservedSpace::is_held() const {
 Result<void> ReservedSpace::hold() {
   if (is_held()) return {};
   std::error_code error;
-  const auto space = std::filesystem::space(std::filesystem::absolute(file_).parent_path(), error);
+  const auto folder = std::filesystem::absolute(file_, error).parent_path();
+  const auto space = std::filesystem::space(folder, error);
   if (!error && space.available < 2 * bytes_) {
     return failure(ErrorCode::io_failed,
                    fmt::format("'{}' cannot be made: only {} MiB are free, twice its {} MiB are "

@@ -115,6 +115,18 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.jobs(kind, limit);
   }
+  Result<int> delete_events(metering::Instant keep_from, int rows_max) override {
+    if (refuses) return refusal();
+    return behind_.delete_events(keep_from, rows_max);
+  }
+  Result<std::optional<StoredJob>> oldest_job_beyond(JobKind kind, int kept) override {
+    if (refuses) return refusal();
+    return behind_.oldest_job_beyond(kind, kept);
+  }
+  Result<void> delete_job(std::int64_t number) override {
+    if (refuses) return refusal();
+    return behind_.delete_job(number);
+  }
   Result<std::optional<StoredJob>> last_accepted(JobKind kind) override {
     if (refuses) return refusal();
     return behind_.last_accepted(kind);

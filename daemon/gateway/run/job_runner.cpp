@@ -3,12 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
+#include <new>
+#include <set>
 #include <utility>
 
 namespace recald::daemon {
 namespace {
 
 constexpr std::chrono::seconds kTryAgain{10};
+constexpr int kTriesMax = 3;
+
+/// What the work throws is why it failed.
+Result<JobOutcome> done_safely(const DoJob& work, const StoredJob& job, const GoesOn& goes_on) {
+  try {
+    return work(job, *job.started, goes_on);
+  } catch (const std::bad_alloc&) {
+    return failure(ErrorCode::io_failed, "there is not enough memory for it");
+  } catch (const std::exception& thrown) {
+    return failure(ErrorCode::unsupported,
+                   fmt::format("it stopped on something that recald did not foresee ({}); please "
+                               "report it",
+                               thrown.what()));
+  }
+}
 
 }  // namespace
 
@@ -19,18 +37,52 @@ JobRunner::JobRunner(Ports ports, DoJob work, OnJob on_job)
       running_goes_on_(std::make_shared<std::atomic<bool>>(true)),
       self_(std::make_shared<JobRunner*>(this)) {}
 
-JobRunner::~JobRunner() { interrupt(); }
+JobRunner::~JobRunner() { running_goes_on_->store(false); }
 
-Result<void> JobRunner::resume() {
+void JobRunner::interrupt() {
+  running_goes_on_->store(false);
+  if (stage_ != Stage::running) return;
+  StoredJob job = current_;
+  job.state = JobState::waiting;
+  job.started.reset();
+  --job.tries;  // it was not its fault
+  // Refused, it is a job that a killed process left.
+  (void)ports_.store.put_job(job);
+}
+
+void JobRunner::resume() {
+  if (!take_up_unfinished()) return try_later(&JobRunner::resume);
+  begin_next();
+}
+
+Result<void> JobRunner::take_up_unfinished() {
   auto unfinished = ports_.store.unfinished_jobs();
   if (!unfinished) return tl::unexpected(unfinished.error());
+  std::set<JobKind> waiting;
   for (StoredJob& job : *unfinished) {
-    if (job.state != JobState::running) continue;
-    job.state = JobState::waiting;
-    job.started.reset();
-    if (auto put = ports_.store.put_job(job); !put) return put;
+    if (job.state == JobState::running && job.tries >= kTriesMax) {
+      job.message = fmt::format(
+          "recald was ended {} times while it ran, by the system for want of memory perhaps; make "
+          "more memory available, and ask for it again",
+          job.tries);
+      if (auto put = end(std::move(job), JobState::failed); !put) return put;
+    } else if (!waiting.insert(job.kind).second) {
+      job.message = "one that was asked for before waits already, and will see the same readings";
+      if (auto put = end(std::move(job), JobState::cancelled); !put) return put;
+    } else if (job.state == JobState::running) {
+      job.state = JobState::waiting;
+      job.started.reset();
+      if (auto put = ports_.store.put_job(job); !put) return put;
+    }
   }
-  begin_next();
+  return {};
+}
+
+Result<void> JobRunner::end(StoredJob job, JobState state) {
+  job.state = state;
+  job.ended = ports_.loop.now().instant();
+  if (auto put = ports_.store.put_job(job); !put) return put;
+  if (on_job_) on_job_(job);
   return {};
 }
 
@@ -61,12 +113,7 @@ Result<void> JobRunner::cancel(std::int64_t number) {
   if (!*found || (*found)->state != JobState::waiting) {
     return failure(ErrorCode::not_found, fmt::format("no job {} waits or runs", number));
   }
-  StoredJob job = std::move(**found);
-  job.state = JobState::cancelled;
-  job.ended = ports_.loop.now().instant();
-  if (auto put = ports_.store.put_job(job); !put) return put;
-  if (on_job_) on_job_(job);
-  return {};
+  return end(std::move(**found), JobState::cancelled);
 }
 
 void JobRunner::begin_next() {
@@ -77,6 +124,7 @@ void JobRunner::begin_next() {
   current_ = unfinished->front();
   current_.state = JobState::running;
   current_.started = ports_.loop.now().instant();
+  ++current_.tries;
   if (!ports_.store.put_job(current_)) return try_later(&JobRunner::begin_next);
   if (on_job_) on_job_(current_);
   stage_ = Stage::running;
@@ -87,7 +135,7 @@ void JobRunner::begin_next() {
   const auto outcome = std::make_shared<Result<JobOutcome>>();
   ports_.worker.run(
       [work = work_, job = current_, outcome, goes_on = running_goes_on_] {
-        *outcome = work(job, *job.started, [goes_on] { return goes_on->load(); });
+        *outcome = done_safely(work, job, [goes_on] { return goes_on->load(); });
       },
       [weak = std::weak_ptr{self_}, outcome] {
         if (const auto self = weak.lock()) (*self)->finish(std::move(*outcome));

@@ -38,7 +38,8 @@ using DoJob = std::function<Result<JobOutcome>(const StoredJob& job, metering::I
 using OnJob = std::function<void(const StoredJob&)>;
 
 /// A job is stored before anyone hears of its number, and its outcome before the next one begins: a
-/// kill at any moment loses nothing that was asked for. What ran then runs again.
+/// kill at any moment loses nothing that was asked for. What ran then runs again, up to three times
+/// in all: a job that has the process killed, for its memory perhaps, would do so for ever.
 class JobRunner {
  public:
   struct Ports {
@@ -54,8 +55,8 @@ class JobRunner {
   /// Jobs that begin from now on are done so; what runs goes on as it began.
   void set_work(DoJob work) { work_ = std::move(work); }
 
-  /// Takes up what an earlier process was asked for.
-  [[nodiscard]] Result<void> resume();
+  /// Takes up what an earlier process was asked for; later, while the store refuses.
+  void resume();
 
   /// One that waits already serves: it will see the same readings.
   /// @return the job's number, or the store's failure.
@@ -66,11 +67,13 @@ class JobRunner {
   [[nodiscard]] Result<void> cancel(std::int64_t number);
 
   /// The process ends: what runs is interrupted, and runs again in the next one.
-  void interrupt() { running_goes_on_->store(false); }
+  void interrupt();
 
  private:
   enum class Stage { idle, running, keeping };
 
+  [[nodiscard]] Result<void> take_up_unfinished();
+  [[nodiscard]] Result<void> end(StoredJob job, JobState state);
   void begin_next();
   void finish(Result<JobOutcome> outcome);
   void keep();

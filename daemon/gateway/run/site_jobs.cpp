@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "adapters/system/write_file.hpp"
+#include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/calibrate/site_on_design.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
@@ -24,10 +25,6 @@ namespace {
 
 constexpr int kDriftParticles = 256;
 constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
-
-std::filesystem::path folder_of(const SiteConfig& site, const StoredJob& job) {
-  return results_folder(site) / fmt::format("{}-{}", name_of(job.kind), job.number);
-}
 
 JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const RunFacts& facts,
                       const std::filesystem::path& folder) {
@@ -118,7 +115,7 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
 
 Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
                              const GoesOn& goes_on) {
-  const auto folder = folder_of(site.config, job);
+  const auto folder = job_folder(site.config.store, job.kind, job.number);
   const OpenSite whole = site;
   auto modelled = load_modelled_site(std::move(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
@@ -144,7 +141,7 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
 
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
                             const GoesOn& goes_on) {
-  const auto folder = folder_of(site.config, job);
+  const auto folder = job_folder(site.config.store, job.kind, job.number);
   site.config.model->kind = ModelKind::hourly;
   auto modelled = load_modelled_site(std::move(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
@@ -166,10 +163,6 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
 }
 
 }  // namespace
-
-std::filesystem::path results_folder(const SiteConfig& site) {
-  return site.store.file.parent_path() / (site.store.file.stem().string() + "-results");
-}
 
 DoJob make_site_work(OpenSite site) {
   return [site = std::move(site)](const StoredJob& job, metering::Instant now,

@@ -2,15 +2,10 @@
 /// months.
 #pragma once
 
-#include <filesystem>
-
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 
 namespace recald::daemon {
-
-/// Where jobs leave their files: beside the store, "tower-3-results".
-[[nodiscard]] std::filesystem::path results_folder(const SiteConfig& site);
 
 /// Readings, weather and versions of the model are read afresh by each job, from a connection of
 /// its own, so that it may run on any thread. Same readings, same bytes.

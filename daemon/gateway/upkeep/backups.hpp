@@ -18,7 +18,9 @@ inline constexpr std::size_t kBackupsKept = 7;
 /// Whole backups of this store, the newest first; other files of the folder are none of ours.
 [[nodiscard]] std::vector<std::filesystem::path> backups_of(const StoreConfig& store);
 
-/// Deletes all but the newest. @return what could not be deleted.
+/// Deletes all but the newest kBackupsKept. As long as a damaged store lies beside this one, those
+/// from before the damage stay as well: they may have what was lost.
+/// @return what could not be deleted.
 std::vector<std::filesystem::path> prune_backups(const StoreConfig& store);
 
 }  // namespace recald::daemon

@@ -6,10 +6,15 @@
 
 namespace recald::daemon {
 
+/// What Upkeep keeps in reserve beside the store.
+[[nodiscard]] std::filesystem::path reserve_file(const StoreConfig& config);
+
 /// Opens the store; a damaged one is recovered with the help of the daily backups, and an event
-/// "store_recovered" tells of it.
+/// "store_recovered" tells of it. On a full disk the reserve is given up.
+/// @param on_progress  Told now and then that it goes on; may be empty.
 /// @return or as stores::open_checked.
-[[nodiscard]] Result<stores::CheckedStore> open_store(const StoreConfig& config,
-                                                      metering::Instant now);
+[[nodiscard]] Result<stores::CheckedStore> open_store(
+    const StoreConfig& config, metering::Instant now,
+    const std::function<void()>& on_progress = {});
 
 }  // namespace recald::daemon

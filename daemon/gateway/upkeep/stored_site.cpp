@@ -23,7 +23,7 @@ Result<std::vector<StoredMeter>> stored_meters(Store& store, const SiteConfig& s
 }
 
 Result<std::unique_ptr<Store>> open_to_read(const SiteConfig& site) {
-  if (!std::filesystem::exists(site.store.file)) {
+  if (std::error_code ignored; !std::filesystem::exists(site.store.file, ignored)) {
     return failure(ErrorCode::not_found,
                    fmt::format("there is no store '{}' yet; recald run or recald import make one",
                                site.store.file.string()));

@@ -5,6 +5,8 @@
 
 #include "adapters/system/write_file.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
+#include "daemon/gateway/upkeep/job_folder.hpp"
+#include "daemon/gateway/upkeep/open_store.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -17,12 +19,13 @@ constexpr milliseconds kRest = std::chrono::hours{1};
 }  // namespace
 
 Upkeep::Upkeep(Store& store, StoreConfig config, metering::LocalCalendar calendar,
-               const UpkeepRules& rules)
+               std::function<void(StoreEvent)> tell, const UpkeepRules& rules)
     : store_(store),
       config_(std::move(config)),
       calendar_(std::move(calendar)),
+      tell_(std::move(tell)),
       rules_(rules),
-      reserve_(std::make_shared<system::ReservedSpace>(config_.file.string() + ".reserve",
+      reserve_(std::make_shared<system::ReservedSpace>(reserve_file(config_),
                                                        rules.reserve_bytes)) {
   store_.on_refusal([reserve = reserve_] { return reserve->give_up(); });
 }
@@ -36,9 +39,9 @@ milliseconds Upkeep::maintain(Instant now) {
   } else if (*backed_up == Progress::more) {
     return rules_.pause;
   }
-  const auto deleted = delete_samples(now);
+  const auto deleted = delete_old(now);
   if (!deleted) {
-    tell(now, samples_failure_, "samples_not_deleted", deleted.error().message);
+    tell(now, deleting_failure_, "old_not_deleted", deleted.error().message);
   } else if (*deleted == Progress::more) {
     return rules_.pause;
   }
@@ -74,7 +77,7 @@ Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
     return Progress::done;
   }
   const std::filesystem::path file = backup_file(config_, today);
-  if (std::filesystem::exists(file)) return Progress::done;
+  if (std::error_code unreadable; std::filesystem::exists(file, unreadable)) return Progress::done;
   if (auto made = system::make_folder(config_.backup_folder); !made) {
     return tl::unexpected(made.error());
   }
@@ -84,11 +87,37 @@ Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
   return Progress::more;
 }
 
-Result<Upkeep::Progress> Upkeep::delete_samples(Instant now) {
-  const auto deleted = store_.delete_samples(now - config_.raw_kept, rules_.samples_rows);
-  if (!deleted) return tl::unexpected(deleted.error());
-  samples_failure_.clear();
-  return *deleted < rules_.samples_rows ? Progress::done : Progress::more;
+Result<Upkeep::Progress> Upkeep::delete_old(Instant now) {
+  const auto samples = store_.delete_samples(now - config_.raw_kept, rules_.rows);
+  if (!samples) return tl::unexpected(samples.error());
+  if (*samples == rules_.rows) return Progress::more;
+  const auto events = store_.delete_events(now - config_.events_kept, rules_.rows);
+  if (!events) return tl::unexpected(events.error());
+  if (*events == rules_.rows) return Progress::more;
+  for (const JobKind kind : {JobKind::calibration, JobKind::diagnosis}) {
+    const auto results = delete_results(kind);
+    if (!results || *results == Progress::more) return results;
+  }
+  deleting_failure_.clear();
+  return Progress::done;
+}
+
+/// One at a time, its files first: killed in between, it is still known and its turn comes again.
+Result<Upkeep::Progress> Upkeep::delete_results(JobKind kind) {
+  const auto job = store_.oldest_job_beyond(kind, config_.results_kept);
+  if (!job) return tl::unexpected(job.error());
+  if (!*job) return Progress::done;
+  const std::filesystem::path folder = job_folder(config_, kind, (*job)->number);
+  std::error_code error;
+  std::filesystem::remove_all(folder, error);
+  if (error) {
+    return failure(ErrorCode::io_failed,
+                   "folder '" + folder.string() + "' cannot be deleted: " + error.message());
+  }
+  if (auto deleted = store_.delete_job((*job)->number); !deleted) {
+    return tl::unexpected(deleted.error());
+  }
+  return Progress::more;
 }
 
 milliseconds Upkeep::until_next(Instant now) const {
@@ -99,9 +128,10 @@ milliseconds Upkeep::until_next(Instant now) const {
 }
 
 /// The same failure hour after hour is one event.
-void Upkeep::tell(Instant now, std::string& known, const char* kind, const std::string& sentence) {
+void Upkeep::tell(Instant now, std::string& known, const char* kind,
+                  const std::string& sentence) const {
   if (std::exchange(known, sentence) == sentence) return;
-  (void)store_.commit({.events = {{now, Severity::warning, kind, "", sentence}}});
+  tell_({now, Severity::warning, kind, "", sentence});
 }
 
 }  // namespace recald::daemon

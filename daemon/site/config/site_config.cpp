@@ -409,8 +409,13 @@ tl::expected<SiteConfig, std::vector<std::string>> load_site(const std::filesyst
   const auto refused = [&](std::string_view why) {
     return tl::unexpected(Problems{fmt::format("site file '{}' {}", file.string(), why)});
   };
-  if (!std::filesystem::exists(file)) return refused("does not exist");
-  if (std::filesystem::is_directory(file)) return refused("is a folder; name the TOML file in it");
+  std::error_code error;
+  const auto kind = std::filesystem::status(file, error).type();
+  if (kind == std::filesystem::file_type::not_found) return refused("does not exist");
+  if (error) return refused("cannot be looked at: " + error.message());
+  if (kind == std::filesystem::file_type::directory) {
+    return refused("is a folder; name the TOML file in it");
+  }
   std::ifstream in{file, std::ios::binary};
   if (!in) return refused("cannot be read; give recald the right to read it");
   return parse_site(std::string{std::istreambuf_iterator<char>{in}, {}}, file);

@@ -54,6 +54,8 @@ StoreConfig read_store(TomlReader& table, const std::filesystem::path& site_file
     }
   }
   config.raw_kept = std::chrono::days{table.whole_number_or("raw_days", 400, {1, 36'500})};
+  config.events_kept = std::chrono::days{table.whole_number_or("event_days", 730, {1, 36'500})};
+  config.results_kept = static_cast<int>(table.whole_number_or("results_kept", 24, {1, 10'000}));
   table.finish();
   return config;
 }

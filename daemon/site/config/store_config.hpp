@@ -14,7 +14,9 @@ struct StoreConfig {
   std::filesystem::path backup_folder;  ///< Default: the folder "backups" beside the store.
   /// Local time of day of the daily backup; absent: never.
   std::optional<std::chrono::minutes> backup_at = std::chrono::minutes{3 * 60 + 15};
-  std::chrono::days raw_kept{400};  ///< Samples older than this are deleted.
+  std::chrono::days raw_kept{400};     ///< Samples older than this are deleted.
+  std::chrono::days events_kept{730};  ///< Events likewise.
+  int results_kept = 24;               ///< Calibrations, and diagnoses, besides those in use.
 };
 
 /// Without a [store].

@@ -141,6 +141,10 @@ TEST_F(JobTable, AStoreFromBeforeJobsIsUpgraded) {
   const auto made_old = store_->database().execute(
       "ALTER TABLE interval DROP COLUMN edit; DROP TABLE edit; DROP TABLE job;"
       "DROP TABLE forecast; DROP TABLE closing;"
+      "ALTER TABLE event DROP COLUMN count; ALTER TABLE event DROP COLUMN last;"
+      "ALTER TABLE event DROP COLUMN sum; ALTER TABLE meter DROP COLUMN sum;"
+      "ALTER TABLE interval DROP COLUMN sum; ALTER TABLE register DROP COLUMN sum;"
+      "ALTER TABLE sample DROP COLUMN sum; ALTER TABLE month DROP COLUMN sum;"
       "PRAGMA user_version = 1");
   ASSERT_TRUE(made_old.has_value()) << made_old.error().message;
   reopen();

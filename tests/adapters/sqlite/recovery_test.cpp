@@ -1,8 +1,11 @@
 /// Damaged stores: put aside, and all that can be read is in the new one.
 #include "adapters/sqlite/recovery.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "adapters/sqlite/tables.hpp"
+#include "core/random/rng.hpp"
 #include "tests/support/damage.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -11,6 +14,7 @@ namespace {
 
 using metering::Instant;
 using recald::testing::TemporaryFolder;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
@@ -26,13 +30,16 @@ class RecoveryTest : public ::testing::Test {
     for (const char* id : {"main", "cooling"}) {
       const std::uint32_t meter = store.meter_number(id, kQuarter).value();
       StoreBatch batch;
+      double register_kWh = 0.0;
       batch.edit = store.add_edit({.time = kStart, .reason = "began"}).value();
       for (int i = 0; i < kQuarters; ++i) {
         batch.intervals.push_back({{meter, kStart + i * kQuarter, 100.0 * meter + i}});
-        batch.samples.push_back({meter, "energy", kStart + i * kQuarter, 25.0 * i});
+        batch.samples.push_back({meter, "energy", kStart + i * kQuarter, register_kWh});
+        register_kWh += (100.0 * meter + i) / 4.0;
         if (i % 100 == 0) batch.events.push_back({kStart, Severity::info, "test", id, "x"});
       }
-      batch.registers.push_back({meter, {.field = "energy", .identity = id}});
+      batch.registers.push_back(
+          {meter, {.field = "energy", .settings = {.rated_kW = 10'000.0}, .identity = id}});
       EXPECT_TRUE(store.commit(batch).has_value());
     }
     metering::MonthlyFigure march{.month = std::chrono::year{2024} / 3};
@@ -57,14 +64,16 @@ class RecoveryTest : public ::testing::Test {
                                                    const std::string& name) {
     return *std::ranges::find(recovery.tables, name, &RecoveredTable::name);
   }
-  /// Values of a meter's intervals, each as it was written. @return how many there are.
+  /// Values of a meter's intervals, each as it was written, or of a known sum where neither it nor
+  /// the samples around it were left. @return how many there are.
   static int right_intervals(SqliteStore& store, std::uint32_t meter) {
     int count = 0;
     (void)store.for_each_interval(
         meter, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
-          const auto i = (interval.reading.start - kStart) / kQuarter;
-          EXPECT_EQ(interval.reading.mean_kW, 100.0 * meter + static_cast<double>(i));
           ++count;
+          if (interval.reading.validity == metering::Validity::scaled) return;
+          const auto i = (interval.reading.start - kStart) / kQuarter;
+          EXPECT_NEAR(interval.reading.mean_kW, 100.0 * meter + static_cast<double>(i), 1e-6);
         });
     return count;
   }
@@ -87,22 +96,24 @@ TEST_F(RecoveryTest, APageOfReadingsCostsThatPage) {
   EXPECT_EQ(recovery.damaged.filename(), "site.db.damaged-20240410T050000Z");
   EXPECT_TRUE(std::filesystem::exists(recovery.damaged));
   const RecoveredTable& intervals = table(recovery, "interval");
-  EXPECT_FALSE(intervals.is_whole);
   // A page of 4 KiB holds some 150 rows.
   EXPECT_GE(intervals.from_damaged, 2 * kQuarters - 250);
   EXPECT_LT(intervals.from_damaged, 2 * kQuarters);
-  EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1),
-            intervals.from_damaged);
-  EXPECT_TRUE(table(recovery, "sample").is_whole);
+  // The samples of the register know what was lost.
+  EXPECT_EQ(recovery.from_samples, 2 * kQuarters - intervals.from_damaged);
+  EXPECT_EQ(recovery.lost_intervals, 0);
+  EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
   EXPECT_EQ(table(recovery, "sample").from_damaged, 2 * kQuarters);
   EXPECT_EQ(opened.store.registers(1)->at(0).identity, "cooling");
   EXPECT_THAT(*opened.store.months(0), SizeIs(1));
-  EXPECT_THAT(*opened.store.events(1000), SizeIs(60));
+  EXPECT_THAT(*opened.store.events(1000), SizeIs(60 + 1));
+  EXPECT_EQ(opened.store.events(1)->at(0).kind, "store_recovered");
+  EXPECT_EQ(opened.store.events(1)->at(0).text, recovery.sentence());
   EXPECT_TRUE(opened.store.job(1)->has_value());
   EXPECT_EQ(table(recovery, "edit").from_damaged, 2);
   EXPECT_EQ(opened.store.database().quick_check().value(), "");
   EXPECT_THAT(recovery.sentence(), HasSubstr("it is kept as 'site.db.damaged-20240410T050000Z'"));
-  EXPECT_THAT(recovery.sentence(), HasSubstr(" interval (not all),"));
+  EXPECT_THAT(recovery.sentence(), HasSubstr("intervals were made again from samples"));
   EXPECT_THAT(recovery.sentence(), HasSubstr("there was no sound backup"));
 }
 
@@ -137,7 +148,6 @@ TEST_F(RecoveryTest, NothingReadableIsANewStoreAndABackupFillsIt) {
   recald::testing::damage_page(file(), 1);
   CheckedStore opened = open(file(), {backup});
   ASSERT_TRUE(opened.recovery.has_value());
-  EXPECT_FALSE(table(*opened.recovery, "interval").is_whole);
   EXPECT_EQ(right_intervals(opened.store, 0), kQuarters);
   EXPECT_EQ(opened.store.find_meter("cooling").value(), 1u);
 }
@@ -162,6 +172,104 @@ TEST_F(RecoveryTest, WhicheverPageIsDamaged) {
     }
   }
   EXPECT_GE(recovered, 15);
+}
+
+// A file system that lost the end of a file.
+TEST_F(RecoveryTest, AFileThatWasCutKeepsWhatIsLeft) {
+  const auto size = std::filesystem::file_size(file());
+  for (const double share : {0.96, 0.6, 0.3}) {
+    SCOPED_TRACE(share);
+    const TemporaryFolder here;
+    std::filesystem::copy(file(), here / "site.db");
+    std::filesystem::resize_file(here / "site.db",
+                                 static_cast<std::uintmax_t>(share * static_cast<double>(size)));
+    CheckedStore opened = open(here / "site.db");
+    ASSERT_TRUE(opened.recovery.has_value());
+    EXPECT_EQ(opened.store.database().quick_check().value(), "");
+    const int found = right_intervals(opened.store, 0) + right_intervals(opened.store, 1);
+    EXPECT_GE(found, static_cast<int>((share - 0.05) * 2 * kQuarters));
+  }
+}
+
+// Bits that flip anywhere, in values too: what is there afterwards is what was written.
+TEST_F(RecoveryTest, FlippedBitsCostTheirPagesAtMost) {
+  const std::string whole = recald::testing::read_text(file());
+  const auto pages = static_cast<std::int64_t>(whole.size()) / recald::testing::kPageBytes;
+  Rng rng{1};
+  for (int round = 0; round < 20; ++round) {
+    SCOPED_TRACE(round);
+    const TemporaryFolder here;
+    std::string flipped = whole;
+    constexpr int kFlips = 4;
+    for (int i = 0; i < kFlips; ++i) {
+      const std::size_t at = rng.below(flipped.size());
+      flipped[at] = static_cast<char>(flipped[at] ^ (1 << rng.below(8)));
+    }
+    recald::testing::write_text(here / "site.db", flipped);
+    CheckedStore opened = open(here / "site.db");
+    const int found = right_intervals(opened.store, 0) + right_intervals(opened.store, 1);
+    EXPECT_GE(found, 2 * kQuarters - kFlips * 2 * kQuarters / static_cast<int>(pages) * 4);
+  }
+}
+
+TEST_F(RecoveryTest, AFlippedValueIsFoundByItsSum) {
+  {
+    auto store = SqliteStore::open(file()).value();
+    ASSERT_TRUE(store.database()
+                    .execute("UPDATE interval SET mean_kW = mean_kW + 1 WHERE meter = 0 AND "
+                             "t_start % 86400 = 0")
+                    .has_value());
+    EXPECT_THAT(store.check()->problems,
+                ElementsAre("rows whose check sum is wrong: 32 of interval"));
+  }
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(opened.recovery->refused, 32);
+  EXPECT_EQ(opened.recovery->from_samples, 31);  // nothing lies before the first
+  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters - 1);
+}
+
+// The newest commits are in the log when a daemon is killed.
+TEST_F(RecoveryTest, WhatTheLogHasIsNotLost) {
+  const TemporaryFolder here;
+  {
+    auto store = SqliteStore::open(file()).value();
+    StoreBatch batch;
+    for (int i = kQuarters; i < kQuarters + 50; ++i) {
+      batch.intervals.push_back({{0, kStart + i * kQuarter, 1.0 * i}});
+    }
+    ASSERT_TRUE(store.commit(batch).has_value());
+    std::filesystem::copy(file(), here / "site.db");
+    std::filesystem::copy(file().string() + "-wal", here / "site.db-wal");
+  }
+  recald::testing::damage_page(here / "site.db", 1);
+  CheckedStore opened = open(here / "site.db");
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters + 50);
+}
+
+// An older file has rows without sums; all of them count.
+TEST_F(RecoveryTest, RowsFromBeforeThereWereSumsAreTaken) {
+  {
+    auto database = Database::open(file(), {}).value();
+    for (const TableShape& table : table_shapes()) {
+      if (!table.has_sum()) continue;
+      ASSERT_TRUE(
+          database.execute(fmt::format("ALTER TABLE {} DROP COLUMN sum", table.name)).has_value());
+    }
+    ASSERT_TRUE(database
+                    .execute("ALTER TABLE event DROP COLUMN count; ALTER TABLE event DROP COLUMN "
+                             "last; ALTER TABLE job DROP COLUMN tries; PRAGMA user_version = 4")
+                    .has_value());
+  }
+  recald::testing::damage_leaf(file(), "interval", 20);
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
+  EXPECT_EQ(opened.store.registers(1)->at(0).identity, "cooling");
+  EXPECT_THAT(*opened.store.months(0), SizeIs(1));
+  EXPECT_THAT(*opened.store.events(1000), SizeIs(60 + 1));
+  EXPECT_TRUE(opened.store.job(1)->has_value());
 }
 
 TEST_F(RecoveryTest, AnotherProgramsDatabaseIsLeftAlone) {

@@ -51,6 +51,7 @@ class JobRunnerTest : public ::testing::Test {
 
   Result<JobOutcome> work(const StoredJob& job, const GoesOn& goes_on) {
     ++runs_;
+    if (!throws_.empty()) throw std::runtime_error(throws_);
     if (!goes_on()) return failure(ErrorCode::cancelled, "told to stop");
     if (fails_) return failure(ErrorCode::not_enough_data, "no month has closed yet");
     return JobOutcome{.accepted = accepts_,
@@ -75,6 +76,7 @@ class JobRunnerTest : public ::testing::Test {
   int processes_ = 0;
   int runs_ = 0;
   bool fails_ = false;
+  std::string throws_;
   bool accepts_ = true;
   std::vector<StoredForecast> forecasts_;
   std::optional<JobKind> next_;
@@ -198,12 +200,66 @@ TEST_F(JobRunnerTest, AKilledProcessLosesNoJobAndRepeatsNone) {
     const int done_before = (stored(first).state == JobState::done ? 1 : 0) +
                             (stored(second).state == JobState::done ? 1 : 0);
     kill_process();
-    ASSERT_TRUE(runner_->resume().has_value());
+    runner_->resume();
     loop_->run_for(minutes{5});
     EXPECT_EQ(stored(first).state, JobState::done);
     EXPECT_EQ(stored(second).state, JobState::done);
     EXPECT_EQ(runs_ - runs_before, 2 - done_before);
   }
+}
+
+// A job that has the whole process killed would do so for ever.
+TEST_F(JobRunnerTest, AfterThreeKillsAJobIsGivenUp) {
+  const std::int64_t number = ask();
+  for (int kill = 1; kill <= 3; ++kill) {
+    loop_->run_for(seconds{30});
+    EXPECT_EQ(stored(number).state, JobState::running);
+    kill_process();
+    runner_->resume();
+  }
+  loop_->run_for(hours{1});
+  EXPECT_EQ(stored(number).state, JobState::failed);
+  EXPECT_THAT(stored(number).message, HasSubstr("was ended 3 times while it ran"));
+  EXPECT_EQ(told_.back(), "1 failed");
+  EXPECT_EQ(runs_, 0);
+}
+
+TEST_F(JobRunnerTest, EndingTheProcessInGoodOrderCountsAgainstNoJob) {
+  const std::int64_t number = ask();
+  for (int end = 1; end <= 5; ++end) {
+    loop_->run_for(seconds{30});
+    runner_->interrupt();
+    EXPECT_EQ(stored(number).state, JobState::waiting);
+    kill_process();
+    runner_->resume();
+  }
+  loop_->run_for(hours{1});
+  EXPECT_EQ(stored(number).state, JobState::done);
+}
+
+TEST_F(JobRunnerTest, WhatAJobThrowsIsWhyItFailed) {
+  throws_ = "a matrix that nobody expected";
+  const std::int64_t number = ask();
+  const std::int64_t next = ask(JobKind::diagnosis);
+  loop_->run_for(seconds{90});
+  EXPECT_EQ(stored(number).state, JobState::failed);
+  EXPECT_THAT(stored(number).message, HasSubstr("a matrix that nobody expected"));
+  throws_.clear();
+  loop_->run_for(minutes{5});
+  EXPECT_EQ(stored(next).state, JobState::done);
+}
+
+TEST_F(JobRunnerTest, OfAKindOneWaitsAtMost) {
+  const std::int64_t first = ask();
+  loop_->run_for(seconds{30});
+  const std::int64_t second = ask();
+  EXPECT_EQ(ask(), second);
+  kill_process();  // the first has to run again, and the second would see nothing else
+  runner_->resume();
+  loop_->run_for(hours{1});
+  EXPECT_EQ(stored(first).state, JobState::done);
+  EXPECT_EQ(stored(second).state, JobState::cancelled);
+  EXPECT_THAT(stored(second).message, HasSubstr("waits already"));
 }
 
 TEST_F(JobRunnerTest, AFullDiskDelaysAResultAndLosesNone) {
@@ -226,9 +282,9 @@ TEST_F(JobRunnerTest, AJobThatCannotBeginWaitsForTheStore) {
   ask(JobKind::diagnosis);
   kill_process();
   failing_->refuses = true;
-  EXPECT_FALSE(runner_->resume().has_value());
+  runner_->resume();
   failing_->refuses = false;
-  ASSERT_TRUE(runner_->resume().has_value());
+  loop_->run_for(seconds{10});
   loop_->run_for(minutes{5});
   EXPECT_EQ(stored(1).state, JobState::done);
   EXPECT_EQ(stored(2).state, JobState::done);

@@ -213,7 +213,7 @@ constexpr Fault kFaults[] = {
      "meter 'main': the revisions of the interval at 2024-03-10 12:00:00 UTC have a gap"},
     {"MonthGap", "UPDATE month SET revision = 1 WHERE meter = 1 AND month = '2024-03'",
      "meter 'cooling': the revisions of month 2024-03 have a gap"},
-    {"Orphan", "PRAGMA foreign_keys = OFF; INSERT INTO sample VALUES (9, 0, 'energy', 1.0)",
+    {"Orphan", "PRAGMA foreign_keys = OFF; INSERT INTO sample VALUES (9, 0, 'energy', 1.0, NULL)",
      "table 'sample' has 1 rows that refer to a row that is not there"},
     {"OffGrid",
      "UPDATE interval SET t_start = t_start + 60 WHERE meter = 0 AND t_start = 1710072000",

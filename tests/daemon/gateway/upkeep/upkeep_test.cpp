@@ -6,6 +6,7 @@
 
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
+#include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/gateway/upkeep/open_store.hpp"
 #include "tests/support/damage.hpp"
 #include "tests/support/faulty_disk.hpp"
@@ -35,7 +36,7 @@ class UpkeepTest : public ::testing::Test {
     config_ = default_store(folder_ / "site.toml");
     rules_.reserve_bytes = kReserve;
     rules_.backup_pages = 8;
-    rules_.samples_rows = 100;
+    rules_.rows = 100;
   }
   void commit_samples(Store& store, Instant first, int count) {
     StoreBatch batch;
@@ -43,6 +44,12 @@ class UpkeepTest : public ::testing::Test {
       batch.samples.push_back({0, "energy", first + i * minutes{15}, 1.0 * i});
     }
     ASSERT_TRUE(store.commit(batch).has_value());
+  }
+  /// Where events go to.
+  static std::function<void(StoreEvent)> into(Store& store) {
+    return [&store](StoreEvent event) {
+      EXPECT_TRUE(store.commit({.events = {std::move(event)}}).has_value());
+    };
   }
   /// Until there is no more to do. @return how many portions it took.
   int maintain(Upkeep& upkeep, Instant now) {
@@ -71,7 +78,7 @@ class UpkeepTest : public ::testing::Test {
 TEST_F(UpkeepTest, ABackupADayAtItsTimeAndSevenAreKept) {
   auto store = open();
   commit_samples(store, kMidnight, 2000);
-  Upkeep upkeep{store, config_, calendar_, rules_};
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
   EXPECT_EQ(maintain(upkeep, kMidnight + hours{3}), 1);
   EXPECT_EQ(rest_, minutes{15});  // until 3:15
   EXPECT_THAT(backups_of(config_), IsEmpty());
@@ -93,7 +100,7 @@ TEST_F(UpkeepTest, ABackupADayAtItsTimeAndSevenAreKept) {
 TEST_F(UpkeepTest, ABackupThatFailsIsOneEventAndTriedAgain) {
   auto store = open();
   recald::testing::write_text(folder_ / "backups", "in the way");
-  Upkeep upkeep{store, config_, calendar_, rules_};
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
   for (int hour = 4; hour < 8; ++hour) maintain(upkeep, kMidnight + hours{hour});
   const auto events = store.events(10).value();
   ASSERT_THAT(events, SizeIs(1));
@@ -106,7 +113,7 @@ TEST_F(UpkeepTest, ABackupThatFailsIsOneEventAndTriedAgain) {
 TEST_F(UpkeepTest, WithoutABackupTimeThereIsNone) {
   config_.backup_at.reset();
   auto store = open();
-  Upkeep upkeep{store, config_, calendar_, rules_};
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
   maintain(upkeep, kMidnight + hours{12});
   EXPECT_EQ(rest_, hours{1});
   EXPECT_THAT(backups_of(config_), IsEmpty());
@@ -117,9 +124,64 @@ TEST_F(UpkeepTest, OldSamplesAreDeletedInPortions) {
   config_.raw_kept = days{2};
   auto store = open();
   commit_samples(store, kMidnight, 3 * 96);
-  Upkeep upkeep{store, config_, calendar_, rules_};
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
   EXPECT_GE(maintain(upkeep, kMidnight + days{4}), 2);
   EXPECT_EQ(samples(store), 96);
+}
+
+TEST_F(UpkeepTest, OldEventsAreDeleted) {
+  config_.backup_at.reset();
+  config_.events_kept = days{10};
+  auto store = open();
+  for (int day = 0; day < 30; ++day) {
+    StoreBatch batch;
+    for (int i = 0; i < 40; ++i) {
+      batch.events.push_back({kMidnight + days{day}, Severity::info, "test", "main", "x"});
+    }
+    ASSERT_TRUE(store.commit(batch).has_value());
+  }
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
+  EXPECT_GE(maintain(upkeep, kMidnight + days{29}), 5);
+  EXPECT_THAT(store.events(10'000).value(), SizeIs(11 * 40));
+}
+
+TEST_F(UpkeepTest, OldResultsGoWithTheirFilesButNotTheOneInUse) {
+  config_.backup_at.reset();
+  config_.results_kept = 3;
+  auto store = open();
+  for (int i = 1; i <= 10; ++i) {
+    const auto number = store.add_job({.state = JobState::done,
+                                       .asked_by = "api",
+                                       .asked = kMidnight,
+                                       .ended = kMidnight,
+                                       .accepted = i <= 2});
+    std::filesystem::create_directories(job_folder(config_, JobKind::calibration, *number));
+  }
+  ASSERT_TRUE(store.add_job({.asked_by = "api", .asked = kMidnight}).has_value());
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
+  maintain(upkeep, kMidnight);
+  std::vector<std::int64_t> kept;
+  const auto jobs = store.jobs(JobKind::calibration, 100).value();
+  for (const StoredJob& job : jobs) kept.push_back(job.number);
+  EXPECT_THAT(kept, ElementsAre(11, 10, 9, 8, 2));
+  for (std::int64_t number = 1; number <= 10; ++number) {
+    EXPECT_EQ(std::filesystem::exists(job_folder(config_, JobKind::calibration, number)),
+              number >= 8 || number == 2)
+        << number;
+  }
+}
+
+// A poor store is backed up each day; the good copies from before may have what it lost.
+TEST_F(UpkeepTest, BackupsFromBeforeADamageStayUntilItIsCleared) {
+  auto store = open();
+  recald::testing::write_text(folder_ / "site.db.damaged-20240304T120000Z", "");
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
+  for (int day = 0; day < 20; ++day) maintain(upkeep, kMidnight + days{day} + hours{4});
+  EXPECT_THAT(backups_of(config_), SizeIs(7 + 4));
+  EXPECT_EQ(backups_of(config_).back().filename(), "site-2024-03-01.db");
+  std::filesystem::remove(folder_ / "site.db.damaged-20240304T120000Z");
+  maintain(upkeep, kMidnight + days{20} + hours{4});
+  EXPECT_THAT(backups_of(config_), SizeIs(7));
 }
 
 TEST_F(UpkeepTest, AFullDiskTakesTheReserveAndTheCommitIsThere) {
@@ -127,7 +189,7 @@ TEST_F(UpkeepTest, AFullDiskTakesTheReserveAndTheCommitIsThere) {
   FaultyDisk disk{"full"};
   auto store = sqlite::SqliteStore::open(config_.file, {.vfs = disk.name()}).value();
   (void)store.meter_number("main", minutes{15});
-  Upkeep upkeep{store, config_, calendar_, rules_};
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
   maintain(upkeep, kMidnight);
   EXPECT_EQ(std::filesystem::file_size(reserve), kReserve);
   int refused = 0;
@@ -153,7 +215,7 @@ TEST_F(UpkeepTest, AFullDiskTakesTheReserveAndTheCommitIsThere) {
 TEST_F(UpkeepTest, AReserveThatWouldFillTheDiskIsNotTaken) {
   rules_.reserve_bytes = std::filesystem::space(folder_.path()).available;
   auto store = open();
-  Upkeep upkeep{store, config_, calendar_, rules_};
+  Upkeep upkeep{store, config_, calendar_, into(store), rules_};
   maintain(upkeep, kMidnight);
   maintain(upkeep, kMidnight + hours{1});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "site.db.reserve"));
@@ -164,7 +226,7 @@ TEST_F(UpkeepTest, ADamagedStoreIsRecoveredWithTheBackupsHelp) {
   {
     auto store = open();
     commit_samples(store, kMidnight, 2000);
-    Upkeep upkeep{store, config_, calendar_, rules_};
+    Upkeep upkeep{store, config_, calendar_, into(store), rules_};
     maintain(upkeep, kMidnight + hours{4});
   }
   recald::testing::damage_leaf(config_.file, "sample", 5);

@@ -25,6 +25,8 @@ TEST(StoreConfig, HasDefaults) {
   EXPECT_EQ(store.backup_folder, "/srv/backups");
   EXPECT_EQ(store.backup_at, std::chrono::minutes{195});
   EXPECT_EQ(store.raw_kept, std::chrono::days{400});
+  EXPECT_EQ(store.events_kept, std::chrono::days{730});
+  EXPECT_EQ(store.results_kept, 24);
 }
 
 TEST(StoreConfig, SaysWhereAndWhen) {
