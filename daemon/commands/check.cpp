@@ -93,7 +93,7 @@ std::vector<std::string> check_model(const SiteConfig& site, const Console& cons
 std::vector<std::string> check_files(const SiteConfig& site) {
   std::vector<std::string> problems;
   const auto require = [&](const std::filesystem::path& file, std::string_view what) {
-    if (std::filesystem::is_regular_file(file)) return;
+    if (std::error_code ignored; std::filesystem::is_regular_file(file, ignored)) return;
     problems.push_back(fmt::format("{}: {} '{}' does not exist", site.file.filename().string(),
                                    what, file.string()));
   };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adapters/modbus/frame.hpp"
 #include "adapters/modbus/sunspec.hpp"
 #include "core/metering/units.hpp"
 #include "daemon/commands/register_doubts.hpp"
@@ -22,9 +23,9 @@ constexpr double kUsualShare = 0.25;
 /// … and so is one below this: at night nobody can say what is usual.
 constexpr double kIdleShare = 0.01;
 
-bool is_refusal(const modbus::ReadFailure& failure) {
-  const bool is_from_gateway = failure.exception_code == 0x0A || failure.exception_code == 0x0B;
-  return failure.fault == ReadFault::exception && !is_from_gateway;
+/// The unit answers, but not with these registers.
+bool is_no(const modbus::ReadFailure& failure) {
+  return failure.fault == ReadFault::exception && !modbus::is_from_gateway(failure.exception_code);
 }
 
 class Attempt {
@@ -81,7 +82,7 @@ class Attempt {
       return true;
     }
     const modbus::ReadFailure& failure = outcome.result.error();
-    if (!is_refusal(failure)) {
+    if (!is_no(failure)) {
       fail_with(failure);
       return false;
     }

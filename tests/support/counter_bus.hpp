@@ -18,6 +18,10 @@ struct CounterDevice {
   std::function<bool(std::chrono::milliseconds)> is_silent = [](std::chrono::milliseconds) {
     return false;
   };
+  /// With which Modbus exception it answers; 0: none.
+  std::function<int(std::chrono::milliseconds)> exception = [](std::chrono::milliseconds) {
+    return 0;
+  };
 };
 
 class CounterBus final : public Bus {
@@ -33,6 +37,12 @@ class CounterBus final : public Bus {
       loop_.after(timeout, [=] {
         done(tl::unexpected(modbus::ReadFailure{modbus::ReadFault::timeout}), timeout);
       });
+      return;
+    }
+    if (const int code = device->second.exception(now)) {
+      const modbus::ReadFailure refusal{modbus::ReadFault::exception,
+                                        static_cast<std::uint8_t>(code)};
+      loop_.after(kLatency, [=] { done(tl::unexpected(refusal), kLatency); });
       return;
     }
     const auto raw = static_cast<std::uint32_t>(std::floor(10.0 * device->second.energy_kWh(now)));

@@ -11,6 +11,7 @@
 #include "daemon/gateway/ingest/committer.hpp"
 #include "daemon/gateway/ingest/meter_progress.hpp"
 #include "daemon/gateway/ingest/meter_track.hpp"
+#include "daemon/gateway/ingest/refusal_watch.hpp"
 #include "daemon/gateway/poll/bus_counters.hpp"
 #include "daemon/gateway/poll/latency_histogram.hpp"
 #include "daemon/gateway/poll/unit_health.hpp"
@@ -23,6 +24,7 @@ struct PollStatus {
   UnitState state = UnitState::up;
   std::uint64_t skipped = 0;
   RequestCounts requests{};
+  std::vector<RefusedRegisters> refused;  ///< At present.
 };
 
 /// One meter whose readings the store keeps, as people see it.

@@ -96,7 +96,8 @@ MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
                        const std::optional<RegisterState>& restored)
     : meter_(std::move(meter)),
       fields_(metered_fields(meter_.map)),
-      usual_(std::move(calendar), meter_.booking.interval) {
+      usual_(std::move(calendar), meter_.booking.interval),
+      refusals_(meter_.id) {
   if (restored) state_ = *restored;
   state_.field = meter_.map.energy.empty() ? "power" : "energy";
   // What the site file says now holds; the state was reached under what it said then.
@@ -127,6 +128,7 @@ void MeterTrack::note_fault(const RegisterField& field, modbus::ValueFault fault
 StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                             PollTime poll, Instant at) {
   StoreBatch batch;
+  if (auto told = refusals_.take(read, result, at)) batch.events.push_back(std::move(*told));
   if (!result) {
     note_failure(result.error());
     // What was not read is not what it was.

@@ -13,6 +13,7 @@
 #include "adapters/ports/store.hpp"
 #include "core/metering/usual_day.hpp"
 #include "daemon/gateway/ingest/power_watch.hpp"
+#include "daemon/gateway/ingest/refusal_watch.hpp"
 
 namespace recald::daemon {
 
@@ -54,6 +55,7 @@ class MeterTrack {
 
   [[nodiscard]] const TrackedMeter& meter() const { return meter_; }
   [[nodiscard]] const LiveValues& live() const { return live_; }
+  [[nodiscard]] std::vector<RefusedRegisters> refused() const { return refusals_.refused(); }
   [[nodiscard]] const RegisterState& state() const { return state_; }
 
  private:
@@ -89,6 +91,7 @@ class MeterTrack {
   RegisterState state_;
   LiveValues live_;
   std::map<std::string, FieldReading> latest_;
+  RefusalWatch refusals_;
   std::optional<PowerWatch> watch_;  ///< Where the meter has both a counter and a power.
   metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads failed since.
   bool clock_was_set_ = false;

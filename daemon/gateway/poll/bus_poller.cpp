@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "adapters/modbus/frame.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -21,9 +23,6 @@ WallTime next_multiple(WallTime t, milliseconds step) {
   return t - past + step;
 }
 
-bool is_busy(std::uint8_t exception) { return exception == 0x05 || exception == 0x06; }
-bool is_from_gateway(std::uint8_t exception) { return exception == 0x0A || exception == 0x0B; }
-
 }  // namespace
 
 BusPoller::BusPoller(std::vector<PolledUnit> units, const BusRules& rules, Rng rng)
@@ -32,7 +31,7 @@ BusPoller::BusPoller(std::vector<PolledUnit> units, const BusRules& rules, Rng r
     assert(!unit.reads.empty() && unit.period > milliseconds{0});
     states_.push_back({.health = UnitHealth{rules_.health},
                        .timeout = LearnedTimeout{unit.timeout},
-                       .off = std::vector<bool>(unit.reads.size())});
+                       .refusals = std::vector<Refusal>(unit.reads.size())});
   }
 }
 
@@ -71,7 +70,7 @@ void BusPoller::begin_due_polls(const Moment& now) {
     }
     if (is_waiting) continue;
     for (std::size_t read = units_[i].reads.size(); read-- > 0;) {
-      if (!polling.off[read]) polling.to_read.push_back(read);
+      if (polling.refusals[read].until <= now.monotonic) polling.to_read.push_back(read);
     }
     if (polling.to_read.empty()) end_poll(i);
   }
@@ -196,16 +195,22 @@ void BusPoller::end_poll(std::size_t unit) {
   polling.due = due_after(unit, polling.due);
 }
 
-void BusPoller::take_exception(const BusOrder& order, std::uint8_t code, const Moment& now) {
+void BusPoller::take_exception(const BusOrder& order, const modbus::ReadFailure& failure,
+                               const Moment& now) {
   UnitPolling& polling = states_[order.unit];
-  if (is_busy(code) && polling.busy < rules_.busy_retries) {
+  if (modbus::is_busy(failure.exception_code) && polling.busy < rules_.busy_retries) {
     ++polling.busy;
     polling.not_before = now.monotonic + rules_.busy_wait;
     return;
   }
-  if (code == 0x02) polling.off[order.read] = true;
+  if (modbus::is_refusal(failure)) {
+    Refusal& refusal = polling.refusals[order.read];
+    refusal.wait = refusal.wait == milliseconds{0} ? rules_.refused_min
+                                                   : std::min(2 * refusal.wait, rules_.refused_max);
+    refusal.until = now.monotonic + refusal.wait;
+  }
   polling.busy = 0;
-  if (!order.is_probe) polling.to_read.pop_back();
+  polling.to_read.pop_back();
 }
 
 void BusPoller::take_silence(const BusOrder& order, const Moment& now) {
@@ -240,7 +245,7 @@ void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result
   if (is_lost && (result.error().fault == ReadFault::refused || lost_connections_ > 1)) rest(now);
 
   const bool lives = result || (result.error().fault == ReadFault::exception &&
-                                !is_from_gateway(result.error().exception_code));
+                                !modbus::is_from_gateway(result.error().exception_code));
   if (!lives) {
     if (is_stale) {
       polling.health.missed(now.monotonic, rng_);
@@ -261,12 +266,30 @@ void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result
   }
   if (is_stale) return;
   if (!result) {
-    take_exception(order, result.error().exception_code, now);
+    take_exception(order, result.error(), now);
   } else {
     polling.busy = 0;
+    polling.refusals[order.read] = {};
     polling.to_read.pop_back();
   }
   if (polling.to_read.empty()) end_poll(order.unit);
+}
+
+UnitState BusPoller::state(std::size_t unit) const {
+  const UnitPolling& polling = states_[unit];
+  const UnitState health = polling.health.state();
+  const bool refuses = std::ranges::any_of(
+      polling.refusals, [](const Refusal& one) { return one.wait > milliseconds{0}; });
+  return health == UnitState::up && refuses ? UnitState::degraded : health;
+}
+
+void BusPoller::try_all_again() {
+  rest_until_ = milliseconds{0};
+  rest_length_ = milliseconds{0};
+  for (UnitPolling& polling : states_) {
+    polling.health.probe_now();
+    for (Refusal& refusal : polling.refusals) refusal.until = milliseconds{0};
+  }
 }
 
 }  // namespace recald::daemon

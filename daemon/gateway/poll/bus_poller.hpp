@@ -39,6 +39,9 @@ struct BusRules {
   int busy_retries = 3;
   std::chrono::milliseconds reconnect_min{1'000};  ///< Doubles, jittered.
   std::chrono::milliseconds reconnect_max{60'000};
+  std::chrono::milliseconds refused_min{
+      10'000};  ///< Before a refused read is asked again; doubles.
+  std::chrono::milliseconds refused_max{300'000};
 };
 
 /// One read to make.
@@ -75,22 +78,33 @@ class BusPoller {
   /// - An answer, even an exception, shows that the unit lives. Gateway exceptions 10 and 11 do
   /// not.
   /// - Busy (5, 6): the same read again after 100 ms, three times.
-  /// - Illegal address (2): that read is off until the configuration is loaded anew.
+  /// - Any other exception is a refusal of that read: it is left out of the polls for 10 s, then
+  /// for twice as long, up to 5 minutes. A gateway that has just started says "illegal address" of
+  /// registers that it has a moment later.
   /// - A silent unit loses the rest of its poll: one time-out a poll is enough.
   /// - No connection: the whole bus rests, 1 s to 60 s.
   void answered(const BusOrder& order, const modbus::ReadResult& result,
                 std::chrono::milliseconds duration, const Moment& now);
 
+  /// Whatever waits for a later try, silent units, refused reads, a bus at rest, is tried now.
+  void try_all_again();
+
   [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }
-  [[nodiscard]] UnitState state(std::size_t unit) const { return states_[unit].health.state(); }
+  /// A unit that answers but refuses a read is degraded.
+  [[nodiscard]] UnitState state(std::size_t unit) const;
   /// Polls that were not made because the bus was busy with others.
   [[nodiscard]] std::uint64_t skipped(std::size_t unit) const { return states_[unit].skipped; }
 
  private:
+  /// Of a read.
+  struct Refusal {
+    std::chrono::milliseconds wait{0};  ///< Zero: it is not refused.
+    std::chrono::milliseconds until{0};
+  };
   struct UnitPolling {
     UnitHealth health;
     LearnedTimeout timeout;
-    std::vector<bool> off;
+    std::vector<Refusal> refusals;     ///< By read.
     WallTime due{};                    ///< Of the poll under way, else of the next one.
     WallTime since{};                  ///< First due time that was not served.
     std::vector<std::size_t> to_read;  ///< What the poll under way has left, last first.
@@ -112,7 +126,7 @@ class BusPoller {
   [[nodiscard]] BusOrder order_for(std::size_t unit, bool is_probe, const Moment& now);
   [[nodiscard]] std::optional<BusOrder> probe(const Moment& now);
   void end_poll(std::size_t unit);
-  void take_exception(const BusOrder& order, std::uint8_t code, const Moment& now);
+  void take_exception(const BusOrder& order, const modbus::ReadFailure& failure, const Moment& now);
   void take_silence(const BusOrder& order, const Moment& now);
   void rest(const Moment& now);
 

@@ -40,14 +40,27 @@ void BusRunner::step() {
                if (!self) return;
                BusRunner& runner = **self;
                const Moment at = runner.loop_.now();
-               runner.poller_.answered(order, result, duration, at);
-               const PolledRead read{order, std::move(result), lateness, duration, at};
-               runner.count(read);
-               // Whoever is told may end this bus, and with it what it was told by.
-               const OnRead tell = runner.on_read_;
-               tell(read);
+               runner.finish({order, std::move(result), lateness, duration, at});
+               // Whoever was told may have ended this bus, and with it what it was told by.
                if (self.use_count() > 1) runner.step();
              });
+}
+
+/// The caller makes the next step, unless something is thrown.
+void BusRunner::finish(const PolledRead& read) {
+  poller_.answered(read.order, read.result, read.duration, read.at);
+  count(read);
+  const std::weak_ptr<BusRunner*> weak = self_;
+  const OnRead tell = on_read_;
+  Loop& loop = loop_;
+  try {
+    tell(read);
+  } catch (...) {
+    loop.post([weak] {
+      if (const auto self = weak.lock()) (*self)->step();
+    });
+    throw;
+  }
 }
 
 }  // namespace recald::daemon

@@ -20,7 +20,8 @@ struct PolledRead {
   Moment at;  ///< When the outcome was known: what its values are stamped with.
 };
 
-/// Lives on the loop's thread. May be destroyed at any time; what is under way is then not told.
+/// Whatever whoever is told throws, the bus is polled on. Lives on the loop's thread. May be
+/// destroyed at any time; what is under way is then not told.
 class BusRunner {
  public:
   using OnRead = std::function<void(const PolledRead&)>;
@@ -28,11 +29,14 @@ class BusRunner {
   BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnRead on_read);
 
   void start();
+  /// BusPoller::try_all_again; the bus hears of it within a second.
+  void try_all_again() { poller_.try_all_again(); }
   [[nodiscard]] const BusPoller& poller() const { return poller_; }
   [[nodiscard]] const BusCounters& counters() const { return counters_; }
 
  private:
   void step();
+  void finish(const PolledRead& read);
   void count(const PolledRead& read);
 
   Loop& loop_;

@@ -107,6 +107,14 @@ void Gateway::start(LiveBus& bus) {
   bus.start(
       {ports_.loop, ports_.make_bus, ports_.seed + std::hash<std::string>{}(bus.config().name)},
       [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
+  for (LiveMeter& meter : bus.meters()) {
+    if (meter.doubt.empty()) continue;
+    const std::string& id = meter.progress.stored.meter.id;
+    note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", id,
+          fmt::format("meter '{}': {}; its counter starts anew, and what it counted since the last "
+                      "interval is not known",
+                      id, std::exchange(meter.doubt, {}))});
+  }
 }
 
 Result<void> Gateway::reload(const SiteConfig& site) {
@@ -119,6 +127,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   if (!opened) return tl::unexpected(opened.error());
   if (auto pushed = open_pushed(site); !pushed) return pushed;
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
+  for (const auto& bus : buses_) bus->try_all_again();
   // Reads that are held were planned by a description that may be another now.
   std::erase_if(held_, [&](const HeldRead& held) { return find_meter(held.meter) == nullptr; });
   for (auto& bus : *opened) {
@@ -175,12 +184,10 @@ void Gateway::watch_clock(const Moment& now) {
   for (const auto& bus : buses_) {
     for (LiveMeter& meter : bus->meters()) meter.track.clock_was_set();
   }
-  committer_.add(
-      {.events = {{now.instant(), Severity::warning, "clock_set", "",
-                   fmt::format("the system clock was set {} by {} s; the time between is "
-                               "missing from all meters",
-                               moved > milliseconds{0} ? "forward" : "back",
-                               std::abs(moved.count()) / 1000)}}});
+  note({now.instant(), Severity::warning, "clock_set", "",
+        fmt::format("the system clock was set {} by {} s; the time between is missing from all "
+                    "meters",
+                    moved > milliseconds{0} ? "forward" : "back", std::abs(moved.count()) / 1000)});
 }
 
 /// Reads from before the first right time are stamped by how long ago they were.
@@ -190,6 +197,11 @@ void Gateway::release_held(const Moment& now) {
     LiveMeter* const meter = find_meter(held.meter);
     if (meter != nullptr) take_at(*meter, held.read, std::chrono::floor<seconds>(wall));
   }
+}
+
+void Gateway::hand_in(StoreBatch batch) {
+  if (ports_.on_event) std::ranges::for_each(batch.events, ports_.on_event);
+  committer_.add(std::move(batch));
 }
 
 void Gateway::take(LiveMeter& meter, const PolledRead& read) {
@@ -206,7 +218,7 @@ void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
   StoreBatch batch =
       meter.track.take(meter.reads[read.order.read], read.result, read.order.due, at);
   meter.progress.mark_late(batch, calendar_);
-  committer_.add(std::move(batch));
+  hand_in(std::move(batch));
 }
 
 Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
@@ -349,7 +361,8 @@ MeterStatus Gateway::status_of(const LiveBus& bus, std::size_t unit,
           .poll = PollStatus{.bus = bus.config().name,
                              .state = runner.poller().state(unit),
                              .skipped = runner.poller().skipped(unit),
-                             .requests = runner.counters().requests[unit]},
+                             .requests = runner.counters().requests[unit],
+                             .refused = meter.track.refused()},
           .live = meter.track.live(),
           .last_interval = meter.progress.last_interval,
           .counters = meter.progress.counters,

@@ -26,6 +26,9 @@
 
 namespace recald::daemon {
 
+/// Told of each event as it happens, whether the store takes it or not.
+using OnEvent = std::function<void(const StoreEvent&)>;
+
 /// What the gateway needs of the outside. All of it outlives the gateway.
 struct GatewayPorts {
   Loop& loop;
@@ -35,6 +38,7 @@ struct GatewayPorts {
   std::uint64_t seed = 1;
   /// The clock is about to be set; not asked any more once it has said no. Absent: never.
   std::function<bool()> is_clock_settling = {};
+  OnEvent on_event = {};
 };
 
 /// A month has closed, or closed again.
@@ -55,8 +59,8 @@ class Gateway {
   void start();
 
   /// Goes on by another site file. Buses of which it says what the old one said, with all their
-  /// meters, stay as they are: connected, with their counters and what is known of silent devices.
-  /// The others are opened anew, from where the store has their counters.
+  /// meters, stay as they are: connected, with their counters. Whatever of them waits for a later
+  /// try is tried at once. The others are opened anew, from where the store has their counters.
   /// @return or why not, as `open`; then everything is as it was.
   /// @pre the site's time zone is the same
   Result<void> reload(const SiteConfig& site);
@@ -68,7 +72,7 @@ class Gateway {
                                                  std::vector<metering::Reading> readings);
 
   /// For people to find it among the events.
-  void note(StoreEvent event) { committer_.add({.events = {std::move(event)}}); }
+  void note(StoreEvent event) { hand_in({.events = {std::move(event)}}); }
 
   /// Commits what is still on its way. Call it before the end.
   Result<void> flush() { return committer_.flush(); }
@@ -103,6 +107,8 @@ class Gateway {
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
+  /// To be committed soon.
+  void hand_in(StoreBatch batch);
   void take(LiveMeter& meter, const PolledRead& read);
   void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);

@@ -48,7 +48,12 @@ Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::Local
                                       [&](const metering::Reading& one) { recent.push_back(one); });
   if (!progress) return tl::unexpected(progress.error());
   const std::uint32_t number = progress->stored.number;
-  const auto states = store.registers(number);
+  auto states = store.registers(number);
+  std::string doubt;
+  if (!states && states.error().code == ErrorCode::malformed) {
+    doubt = states.error().message;
+    states = std::vector<RegisterState>{};
+  }
   if (!states) return tl::unexpected(states.error());
 
   TrackedMeter tracked{
@@ -68,7 +73,8 @@ Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::Local
                   .config = live,
                   .text = config.text,
                   .track = MeterTrack{std::move(tracked), calendar, state},
-                  .reads = std::move(*reads)};
+                  .reads = std::move(*reads),
+                  .doubt = std::move(doubt)};
   for (const metering::Reading& one : recent) meter.track.remember(one);
   meters_.push_back(std::move(meter));
   return {};
@@ -112,6 +118,10 @@ void LiveBus::start(const Ports& ports, OnRead on_read) {
         on_read(meters_[read.order.unit], read);
       });
   runner_->start();
+}
+
+void LiveBus::try_all_again() {
+  if (runner_) runner_->try_all_again();
 }
 
 bool LiveBus::is_described_by(const SiteConfig& site) const {

@@ -23,6 +23,7 @@ struct LiveMeter {
   std::string text;  ///< As MeterConfig's.
   MeterTrack track;
   std::vector<modbus::PlannedRead> reads;
+  std::string doubt;  ///< What was wrong with what the store had of its counter; empty: nothing.
 };
 
 class LiveBus {
@@ -42,6 +43,9 @@ class LiveBus {
 
   /// The device behind it is opened and polls begin; nothing happens for a bus without meters.
   void start(const Ports& ports, OnRead on_read);
+
+  /// Silent devices, refused registers and a bus at rest are tried at once.
+  void try_all_again();
 
   /// Whether the site file says of this bus and its meters what it said when it was opened.
   [[nodiscard]] bool is_described_by(const SiteConfig& site) const;

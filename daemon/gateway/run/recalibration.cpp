@@ -62,8 +62,8 @@ Result<void> Recalibration::catch_up(Store& store, const SiteConfig& site) {
 void Recalibration::wait_for(metering::Instant next) {
   const auto left = next - loop_.now().wall;
   if (left.count() <= 0) {
-    ask_("schedule");
-    return start();
+    start();  // first: whatever asking throws, the next time comes
+    return ask_("schedule");
   }
   loop_.after(std::min(std::chrono::ceil<std::chrono::milliseconds>(left), kLookAgain),
               [weak = std::weak_ptr{self_}, next] {

@@ -7,9 +7,9 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -17,6 +17,7 @@
 #include <random>
 
 #include "adapters/asio/asio_loop.hpp"
+#include "adapters/asio/rethrown.hpp"
 #include "adapters/http/credentials.hpp"
 #include "adapters/http/server.hpp"
 #include "adapters/modbus/bus_thread.hpp"
@@ -89,7 +90,8 @@ class Service {
         options_(options),
         jobs_({loop_, *store_, worker_}, make_site_work(site_),
               [](const StoredJob& job) { log_job(job); }),
-        upkeep_(*store_, site_.config.store, site_.calendar),
+        upkeep_(*store_, site_.config.store, site_.calendar,
+                [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }) {}
 
   Result<void> open() {
@@ -104,7 +106,8 @@ class Service {
                            },
                        .time_zone_release = system::time_zone_release(),
                        .seed = std::random_device{}(),  // for jitter only: no result has it
-                       .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling},
+                       .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling,
+                       .on_event = log_event},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
                         recalibration_->month_closed(meter.id);
@@ -115,16 +118,16 @@ class Service {
   }
 
   Result<void> run() {
-    boost::asio::co_spawn(context_, heed_signals(), boost::asio::detached);
+    boost::asio::co_spawn(context_, heed_signals(), asio::rethrown);
     spdlog::info("event=started site={} store={}", site_.config.id,
                  site_.config.store.file.string());
-    if (auto resumed = jobs_.resume(); !resumed) return resumed;
+    jobs_.resume();
     schedule();
-    if (auto asked = recalibration_->catch_up(*store_, site_.config); !asked) return asked;
+    catch_up();
     gateway_->start();
     keep_up();
     loop_.post([this] { watchdog_.ready(); });
-    context_.run();
+    run_loop();
     watchdog_.ending();
     server_.reset();
     jobs_.interrupt();
@@ -157,13 +160,37 @@ class Service {
     return {};
   }
 
+  /// Until it is stopped. What one call throws, the others do not suffer from.
+  void run_loop() {
+    while (!context_.stopped()) {
+      try {
+        context_.run();
+      } catch (const std::exception& thrown) {
+        tell_of_throw(thrown.what());
+      }
+    }
+  }
+
+  /// The same minute after minute is one event an hour.
+  void tell_of_throw(const std::string& what) {
+    const Moment now = loop_.now();
+    if (what == last_thrown_ && now.monotonic - last_thrown_at_ < std::chrono::hours{1}) return;
+    last_thrown_ = what;
+    last_thrown_at_ = now.monotonic;
+    gateway_->note({now.instant(), Severity::error, "unforeseen", "",
+                    "something happened that recald did not foresee; it goes on, and tries again "
+                    "what can be: " +
+                        what});
+  }
+
   boost::asio::awaitable<void> heed_signals() {
     for (;;) {
       const int signal = co_await signals_.async_wait(boost::asio::use_awaitable);
+      // Posted: whatever comes of it, the next signal is heeded.
       if (signal == SIGHUP) {
-        reload();
+        loop_.post([this] { reload(); });
       } else if (signal == SIGUSR1) {
-        calibrate("signal");
+        loop_.post([this] { calibrate("signal"); });
       } else {
         spdlog::info("event=ending signal={}", signal);
         break;
@@ -190,7 +217,6 @@ class Service {
       spdlog::info("event=reloaded file={}", site_.config.file.string());
       return;
     }
-    spdlog::error("event=not_reloaded why=\"{}\"", changed.error().message);
     gateway_->note({loop_.now().instant(), Severity::error, "not_reloaded", "",
                     "the site file was not taken: " + changed.error().message});
   }
@@ -219,10 +245,14 @@ class Service {
     jobs_.set_work(make_site_work(site_));
     schedule();
     // A month that closed within the last minute was to be asked for by the old schedule.
+    catch_up();
+    return {};
+  }
+
+  void catch_up() {
     if (const auto asked = recalibration_->catch_up(*store_, site_.config); !asked) {
       spdlog::warn("event=not_caught_up why=\"{}\"", asked.error().message);
     }
-    return {};
   }
 
   Result<std::int64_t> ask(JobKind kind, const std::string& asked_by) {
@@ -246,6 +276,12 @@ class Service {
         figure.coverage);
   }
 
+  static void log_event(const StoreEvent& event) {
+    constexpr std::array kLevels{spdlog::level::info, spdlog::level::warn, spdlog::level::err};
+    spdlog::log(kLevels.at(static_cast<std::size_t>(event.severity)),
+                "event={} subject={} what=\"{}\"", event.kind, event.subject, event.text);
+  }
+
   static void log_job(const StoredJob& job) {
     const auto level = job.state == JobState::failed ? spdlog::level::warn : spdlog::level::info;
     spdlog::log(
@@ -266,6 +302,8 @@ class Service {
   Watchdog watchdog_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<http::Server> server_;
+  std::string last_thrown_;
+  std::chrono::milliseconds last_thrown_at_{0};
 };
 
 }  // namespace

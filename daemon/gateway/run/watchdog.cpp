@@ -24,10 +24,10 @@ void Watchdog::ready() {
 void Watchdog::ending() { sd_notify(0, "STOPPING=1"); }
 
 void Watchdog::feed() {
-  if (is_well_()) sd_notify(0, "WATCHDOG=1");
   loop_.after(period_, [weak = std::weak_ptr{self_}] {
     if (const auto self = weak.lock()) (*self)->feed();
   });
+  if (is_well_()) sd_notify(0, "WATCHDOG=1");
 }
 
 }  // namespace recald::daemon

@@ -23,13 +23,26 @@ std::vector<std::string> reasons_not_ready(const GatewayStatus& status) {
   return reasons;
 }
 
+std::vector<std::string> reasons_to_look(const GatewayStatus& status) {
+  std::vector<std::string> reasons;
+  for (const MeterStatus& meter : status.meters) {
+    if (!meter.poll) continue;
+    for (const RefusedRegisters& refused : meter.poll->refused) {
+      reasons.push_back(fmt::format("meter '{}' refuses {}", meter.id, to_string(refused)));
+    }
+  }
+  return reasons;
+}
+
 http::Response health() { return http::json_response("{\"status\":\"alive\"}\n"); }
 
 http::Response readiness(const Served& served) {
-  const auto reasons = reasons_not_ready(served.status());
+  const GatewayStatus status = served.status();
+  const auto reasons = reasons_not_ready(status);
   const Json json = {{"status", reasons.empty() ? "ready" : "not ready"},
                      {"site", served.site.id},  // its configuration is loaded, or nobody answered
-                     {"reasons", reasons}};
+                     {"reasons", reasons},
+                     {"look_at", reasons_to_look(status)}};
   return http::json_response(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
                              reasons.empty() ? 200 : 503);
 }

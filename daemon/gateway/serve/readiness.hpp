@@ -12,10 +12,14 @@ namespace recald::daemon {
 /// served, and restarting the daemon would not wake it.
 [[nodiscard]] std::vector<std::string> reasons_not_ready(const GatewayStatus& status);
 
+/// What deserves a look without making the daemon unready, in sentences: registers that a device
+/// refuses.
+[[nodiscard]] std::vector<std::string> reasons_to_look(const GatewayStatus& status);
+
 /// /healthz: 200 as long as the loop turns.
 [[nodiscard]] http::Response health();
 
-/// /readyz: 200, or 503 with the reasons.
+/// /readyz: 200, or 503 with the reasons; with what deserves a look in both cases.
 [[nodiscard]] http::Response readiness(const Served& served);
 
 }  // namespace recald::daemon

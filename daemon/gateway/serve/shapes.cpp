@@ -38,6 +38,17 @@ std::string reasons_list(metering::Reason reasons) {
   return "[\"" + list + "\"]";
 }
 
+Json refused_json(const std::vector<RefusedRegisters>& all) {
+  Json list = Json::array();
+  for (const RefusedRegisters& one : all) {
+    list.push_back({{"address", one.address},
+                    {"count", one.count},
+                    {"exception", one.exception},
+                    {"since", to_string(one.since)}});
+  }
+  return list;
+}
+
 Json status_json(const MeterStatus& status, std::chrono::seconds length) {
   Json last;
   if (status.last_interval) {
@@ -49,7 +60,8 @@ Json status_json(const MeterStatus& status, std::chrono::seconds length) {
     json = {{"state", name_of(status.poll->state)},
             {"power_kW", or_null(status.live.power_kW)},
             {"register_kWh", or_null(status.live.register_kWh)},
-            {"skipped_polls", status.poll->skipped}};
+            {"skipped_polls", status.poll->skipped},
+            {"refused", refused_json(status.poll->refused)}};
   }
   json["read_at"] = or_null(status.live.read_at);
   json["open_month_coverage"] = or_null(status.open_month_coverage);
@@ -126,7 +138,9 @@ Json event_json(const StoreEvent& event) {
           {"severity", name_of(event.severity)},
           {"kind", event.kind},
           {"subject", event.subject},
-          {"text", event.text}};
+          {"text", event.text},
+          {"count", event.count},
+          {"last_time", or_null(event.last)}};
 }
 
 Json job_json(const StoredJob& job) {

@@ -96,6 +96,9 @@ void write_verdict(Html& html, const Served& served, const GatewayStatus& status
     html.element("li", fmt::format("✔ The store takes what it is given ({} commits).",
                                    status.store.commits));
   }
+  for (const std::string& reason : reasons_to_look(status)) {
+    html.element("li", "▲ " + reason + ".", "warn");
+  }
   if (silent == 0) {
     html.element("li", fmt::format("✔ All {} polled meters answer.", polled));
   } else {

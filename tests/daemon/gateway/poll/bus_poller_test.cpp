@@ -232,22 +232,57 @@ TEST(BusPoller, ABusyDeviceIsAskedAgainThreeTimes) {
   EXPECT_EQ(bus.poller.state(0), UnitState::up);
 }
 
-TEST(BusPoller, AnIllegalAddressIsOffUntilReload) {
-  VirtualBus bus{{unit(1, seconds{60}, 2)}, [](const BusOrder& order, const Moment&) {
-                   return order.read == 1 ? exception(0x02) : Reply{};
-                 }};
-  bus.run(minutes{10});
-  EXPECT_EQ(std::ranges::count(bus.made, 1u, [](const auto& one) { return one.order.read; }), 1);
-  EXPECT_THAT(bus.made, SizeIs(12));
+// Whatever it refuses with, it is asked again, ever more rarely, and its other registers as usual.
+TEST(BusPoller, ARefusedReadIsAskedForEver) {
+  for (const int code : {0x01, 0x02, 0x03, 0x04, 0x08, 0x63}) {
+    SCOPED_TRACE(code);
+    VirtualBus bus{{unit(1, seconds{60}, 2)}, [&](const BusOrder& order, const Moment&) {
+                     return order.read == 1 ? exception(code) : Reply{};
+                   }};
+    bus.run(hours{2});
+    std::vector<WallTime> asked;
+    for (const auto& one : bus.made) {
+      if (one.order.read == 1) asked.push_back(one.at);
+    }
+    ASSERT_THAT(asked, SizeIs(Ge(20u)));
+    for (std::size_t i = 1; i < asked.size(); ++i) {
+      EXPECT_LE(asked[i] - asked[i - 1], minutes{6}) << i;
+      if (i > 6) {
+        EXPECT_GE(asked[i] - asked[i - 1], minutes{5}) << i;
+      }
+    }
+    EXPECT_EQ(bus.poller.state(0), UnitState::degraded);
+    EXPECT_EQ(bus.made.size() - asked.size(), 121u);
+  }
 }
 
-TEST(BusPoller, OtherExceptionsAreAnAnswer) {
-  for (const int code : {0x01, 0x03, 0x04, 0x08, 0x63}) {
-    VirtualBus bus{{unit(1)}, [&](const BusOrder&, const Moment&) { return exception(code); }};
-    bus.run(minutes{10});
-    EXPECT_EQ(bus.poller.state(0), UnitState::up) << code;
-    EXPECT_THAT(bus.made, SizeIs(11)) << code;
-  }
+TEST(BusPoller, AReadThatIsServedAgainIsOrdinaryAgain) {
+  bool refuses = true;
+  VirtualBus bus{{unit(1)}, [&](const BusOrder&, const Moment&) {
+                   return refuses ? exception(0x02) : Reply{};
+                 }};
+  bus.run(minutes{10} + seconds{30});
+  refuses = false;
+  bus.run(minutes{6});
+  EXPECT_EQ(bus.poller.state(0), UnitState::up);
+  const std::size_t before = bus.made.size();
+  bus.run(minutes{10});
+  EXPECT_EQ(bus.made.size() - before, 10u);
+}
+
+TEST(BusPoller, ToldToItTriesAllAgainAtOnce) {
+  bool works = false;
+  VirtualBus bus{{unit(1), unit(2)}, [&](const BusOrder& order, const Moment&) {
+                   if (works) return Reply{};
+                   return order.unit == 0 ? exception(0x02) : silence();
+                 }};
+  bus.run(hours{1} + seconds{1});
+  ASSERT_EQ(bus.poller.state(1), UnitState::down);
+  works = true;
+  bus.poller.try_all_again();
+  bus.run(minutes{1});
+  EXPECT_EQ(bus.poller.state(0), UnitState::up);
+  EXPECT_EQ(bus.poller.state(1), UnitState::up);
 }
 
 TEST(BusPoller, AGatewayMayAnswerForADeadUnit) {

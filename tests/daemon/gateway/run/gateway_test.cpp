@@ -19,6 +19,7 @@ using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::Field;
 using testing::main_kWh;
 using ::testing::Not;
@@ -237,6 +238,29 @@ TEST_F(GatewayTest, ADeadMeterIsSeenAndItsNeighbourIsNot) {
   EXPECT_EQ(status.meters[1].poll->state, UnitState::up);
   // Its first poll waited for a time-out, and the last interval is under way.
   EXPECT_EQ(count("cooling", Validity::ok), 24 - 2);
+}
+
+// A gateway in the field answers "illegal data address" while it starts.
+TEST_F(GatewayTest, RegistersRefusedForAWhileCostNoEnergy) {
+  devices_[1].exception = [](milliseconds t) {
+    return t > minutes{100} && t < minutes{100} + seconds{40} ? 0x02 : 0;
+  };
+  devices_[2].exception = [](milliseconds t) { return t > hours{3} && t < hours{5} ? 0x04 : 0; };
+  begin();
+  loop_.run_for(minutes{100} + seconds{30});
+  EXPECT_EQ(gateway_->status().meters[0].poll->state, UnitState::up);  // not asked meanwhile
+  loop_.run_for(hours{4} - minutes{100});
+  const GatewayStatus status = gateway_->status();
+  EXPECT_EQ(status.meters[1].poll->state, UnitState::degraded);
+  EXPECT_THAT(status.meters[1].poll->refused,
+              ElementsAre(Field(&RefusedRegisters::exception, 0x04)));
+  loop_.run_for(hours{4});
+  EXPECT_THAT(gateway_->status().meters[1].poll->refused, SizeIs(0));
+  EXPECT_NEAR(stored_kWh("cooling", {kStart, kStart + hours{7}}), 700.0, kTick);
+  EXPECT_EQ(count("main", Validity::scaled), 0);
+  const auto events = disk_.events(10);
+  EXPECT_THAT(*events, Contains(Field(&StoreEvent::kind, "registers_refused")).Times(1));
+  EXPECT_THAT(*events, Contains(Field(&StoreEvent::kind, "registers_answer")).Times(1));
 }
 
 TEST_F(GatewayTest, AStoreThatCannotBeReadAtTheStartIsToldAtOnce) {

@@ -144,6 +144,18 @@ TEST_F(Reload, WhatIsKnownOfASilentDeviceIsNotForgotten) {
   }
 }
 
+TEST_F(Reload, WhatWaitsOnABusThatStaysIsTriedAtOnce) {
+  bool works = false;
+  devices_[2].exception = [&](milliseconds) { return works ? 0 : 0x02; };
+  begin(kTwoBuses);
+  loop_.run_for(hours{2});
+  ASSERT_EQ(gateway_->status().meters[1].poll->state, UnitState::degraded);
+  works = true;
+  ASSERT_TRUE(gateway_->reload(site(kTwoBuses)).has_value());
+  loop_.run_for(minutes{1} + seconds{1});  // with its next poll
+  EXPECT_EQ(gateway_->status().meters[1].poll->state, UnitState::up);
+}
+
 TEST_F(Reload, AMapThatSaysSomethingElseIsAChange) {
   begin(kTwoBuses);
   auto text = std::string{recald::testing::CounterBus::kMap};

@@ -111,6 +111,18 @@ TEST_F(Readiness, AClockThatIsNotSet) {
   EXPECT_EQ(get("/metrics").status, 200);
 }
 
+TEST_F(Readiness, RefusedRegistersDeserveALook) {
+  devices_[1].exception = [](auto) { return 2; };
+  begin();
+  loop_.run_for(minutes{5});
+  const Json json = get_json("/readyz");
+  EXPECT_THAT(json["look_at"].dump(), HasSubstr("meter 'main' refuses registers 0 to 3 with "
+                                                "exception 2 (illegal data address) since 2024"));
+  EXPECT_EQ(get_json("/api/v1/meters/main")["refused"].at(0)["exception"], 2);
+  EXPECT_EQ(get_json("/api/v1/meters/main")["state"], "degraded");
+  EXPECT_THAT(get("/").body, HasSubstr("exception 2 (illegal data address)"));
+}
+
 TEST_F(Readiness, ASilentMeterIsNoReason) {
   devices_.clear();
   begin();

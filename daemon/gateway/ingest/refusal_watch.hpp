@@ -1,0 +1,57 @@
+/// Registers that a device answers for with an exception: since when, and what people are told.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/modbus/register_map.hpp"
+#include "adapters/ports/store.hpp"
+
+namespace recald::daemon {
+
+/// Registers that are asked for together and that their device refuses at present.
+struct RefusedRegisters {
+  std::uint16_t address;  ///< On the wire: base 0.
+  std::uint16_t count;
+  std::uint8_t exception;
+  metering::Instant since;
+
+  bool operator==(const RefusedRegisters&) const = default;
+};
+
+/// "registers 0 to 3 with exception 2 (illegal data address) since 2024-03-01T12:00:00Z".
+[[nodiscard]] std::string to_string(const RefusedRegisters& refused);
+
+/// Of one meter. That registers are refused, and that they answer again, is an event each; a device
+/// that changes its mind at every poll gives no more than a pair of them an hour.
+class RefusalWatch {
+ public:
+  explicit RefusalWatch(std::string meter) : meter_(std::move(meter)) {}
+
+  /// The outcome of one read. What a gateway says for a silent device, and "busy", refuse nothing.
+  /// @return what people are to be told.
+  [[nodiscard]] std::optional<StoreEvent> take(const modbus::PlannedRead& read,
+                                               const modbus::ReadResult& result,
+                                               metering::Instant at);
+
+  [[nodiscard]] std::vector<RefusedRegisters> refused() const;
+
+ private:
+  struct Read {
+    std::optional<RefusedRegisters> refused;
+    bool is_told = false;  ///< Of this refusal.
+    metering::Instant told = metering::Instant::min();
+  };
+
+  [[nodiscard]] std::optional<StoreEvent> refuse(Read& read, const RefusedRegisters& refused,
+                                                 metering::Instant at) const;
+  [[nodiscard]] std::optional<StoreEvent> answer(Read& read, metering::Instant at) const;
+
+  std::string meter_;
+  std::map<std::uint16_t, Read> reads_;  ///< By address.
+};
+
+}  // namespace recald::daemon
