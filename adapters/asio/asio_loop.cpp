@@ -32,11 +32,11 @@ Moment AsioLoop::now() const {
 }
 
 void AsioLoop::after(milliseconds wait, Call call) {
-  const std::chrono::nanoseconds real = trial_ ? trial_->real_wait(wait) : wait;
-  call_after(real, std::make_shared<Call>(std::move(call)));
+  call_after(wait, std::make_shared<Call>(std::move(call)));
 }
 
-void AsioLoop::call_after(std::chrono::nanoseconds real_wait, const std::shared_ptr<Call>& call) {
+void AsioLoop::call_after(milliseconds wait, const std::shared_ptr<Call>& call) {
+  const std::chrono::nanoseconds real_wait = trial_ ? trial_->real_wait(wait) : wait;
   // The timer lives in its own handler, until it has fired or the context ends.
   auto timer = std::make_shared<boost::asio::steady_timer>(context_, real_wait);
   timer->async_wait([this, timer, call](const boost::system::error_code& error) {

@@ -25,7 +25,7 @@ class AsioLoop final : public Loop {
   void post(Call call) override;
 
  private:
-  void call_after(std::chrono::nanoseconds real_wait, const std::shared_ptr<Call>& call);
+  void call_after(std::chrono::milliseconds wait, const std::shared_ptr<Call>& call);
 
   boost::asio::io_context& context_;
   std::optional<metering::TrialClock> trial_;

@@ -117,6 +117,7 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
                   const OnProgress& on_progress) {
   Database& to = made.database();
   for (const TableShape& table : table_shapes()) recovery.tables.push_back({table.name});
+  to.on_progress(on_progress);
   // Rows come in order of their pages, not of what they refer to.
   if (auto off = to.execute("PRAGMA foreign_keys=OFF"); !off) return off;
   auto taken =

@@ -41,7 +41,7 @@ Result<SqliteStore> SqliteStore::open(const std::filesystem::path& file,
 
 Result<std::uint32_t> SqliteStore::meter_number(const std::string& id,
                                                 std::chrono::seconds interval) {
-  return database_.transaction([&]() -> Result<std::uint32_t> {
+  return write([&]() -> Result<std::uint32_t> {
     auto find = database_.prepare("SELECT number, interval_s FROM meter WHERE id = ?");
     if (!find) return tl::unexpected(find.error());
     const auto row = find->bind(0, std::string_view{id}).step();
@@ -79,13 +79,7 @@ Result<std::optional<std::uint32_t>> SqliteStore::find_meter(const std::string& 
 
 Result<CommitCounts> SqliteStore::commit(const StoreBatch& batch) {
   assert(writer_ && "a reader does not write");
-  const auto commit_once = [&] {
-    return database_.transaction([&] { return writer_->write(batch); });
-  };
-  auto counts = commit_once();
-  const bool refused = !counts && counts.error().code == ErrorCode::io_failed;
-  if (refused && make_room_ && make_room_()) counts = commit_once();
-  return counts;
+  return write([&] { return writer_->write(batch); });
 }
 
 Result<void> SqliteStore::as_one(const std::function<Result<void>()>& work) {
@@ -153,7 +147,7 @@ Result<int> SqliteStore::delete_samples(Instant keep_from, int rows_max) {
 }
 
 Result<std::int64_t> SqliteStore::add_edit(const StoreEdit& edit) {
-  return insert_edit(database_, edit);
+  return write([&] { return insert_edit(database_, edit); });
 }
 
 Result<void> SqliteStore::remove_edit(std::int64_t number) {
@@ -168,7 +162,7 @@ Result<std::vector<MeterMonth>> SqliteStore::reopened() { return reopened_months
 
 Result<int> SqliteStore::put_month(std::uint32_t meter, const MonthlyFigure& figure,
                                    const std::string& time_zone_release, Instant now) {
-  return insert_month(database_, meter, {figure, now, time_zone_release});
+  return write([&] { return insert_month(database_, meter, {figure, now, time_zone_release}); });
 }
 
 Result<std::vector<StoredMonth>> SqliteStore::months(std::uint32_t meter) {
@@ -180,7 +174,7 @@ Result<std::string> SqliteStore::closing_rules(std::uint32_t meter) {
 }
 
 Result<int> SqliteStore::put_closing_rules(std::uint32_t meter, const std::string& rules) {
-  return replace_closing_rules(database_, meter, rules);
+  return write([&] { return replace_closing_rules(database_, meter, rules); });
 }
 
 Result<int> SqliteStore::delete_events(Instant keep_from, int rows_max) {
@@ -225,10 +219,12 @@ Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
 }
 
 Result<std::int64_t> SqliteStore::add_job(const StoredJob& job) {
-  return insert_job(database_, job);
+  return write([&] { return insert_job(database_, job); });
 }
 
-Result<void> SqliteStore::put_job(const StoredJob& job) { return update_job(database_, job); }
+Result<void> SqliteStore::put_job(const StoredJob& job) {
+  return write([&] { return update_job(database_, job); });
+}
 
 Result<std::optional<StoredJob>> SqliteStore::job(std::int64_t number) {
   return find_job(database_, number);
@@ -247,7 +243,7 @@ Result<std::vector<StoredJob>> SqliteStore::unfinished_jobs() {
 }
 
 Result<void> SqliteStore::add_forecasts(std::span<const StoredForecast> forecasts) {
-  return database_.transaction([&] { return insert_forecasts(database_, forecasts); });
+  return write([&] { return insert_forecasts(database_, forecasts); });
 }
 
 Result<std::vector<StoredForecast>> SqliteStore::forecasts() { return stored_forecasts(database_); }

@@ -63,6 +63,15 @@ class SqliteStore final : public Store {
  private:
   SqliteStore(Database database, std::optional<BatchWriter> writer);
 
+  /// One transaction; refused by the disk it is tried once more where room can be made.
+  template <class Work>
+  [[nodiscard]] auto write(const Work& work) -> decltype(work()) {
+    auto done = database_.transaction(work);
+    const bool is_refused = !done && done.error().code == ErrorCode::io_failed;
+    if (is_refused && make_room_ && make_room_()) done = database_.transaction(work);
+    return done;
+  }
+
   Database database_;
   std::optional<BatchWriter> writer_;  ///< After the database: its statements end first.
   std::function<bool()> make_room_;

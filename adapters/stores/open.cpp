@@ -25,6 +25,10 @@ Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& file) {
   return open(file, sqlite::Database::Access::read_only);
 }
 
+Result<std::unique_ptr<Store>> open_in_memory() {
+  return open(":memory:", sqlite::Database::Access::read_write);
+}
+
 Result<CheckedStore> open_checked(const std::filesystem::path& file,
                                   const std::vector<std::filesystem::path>& backups,
                                   metering::Instant now, const std::function<void()>& on_progress) {

@@ -22,6 +22,9 @@ namespace recald::stores {
 /// @return or as open_to_write; unsupported for one that an older recald wrote, as well.
 [[nodiscard]] Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& file);
 
+/// A store that lives as long as the value: for a time without a disk.
+[[nodiscard]] Result<std::unique_ptr<Store>> open_in_memory();
+
 struct CheckedStore {
   std::unique_ptr<Store> store;
   std::string recovery;  ///< What was damaged and what could be read of it; empty: it was sound.

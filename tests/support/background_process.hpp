@@ -38,6 +38,7 @@ class BackgroundProcess {
   BackgroundProcess& operator=(const BackgroundProcess&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  [[nodiscard]] pid_t id() const { return pid_; }
 
   /// Sends the signal and waits for the end. @return the exit code, or minus the signal's number.
   int end(int signal) {

@@ -46,6 +46,7 @@ struct BusStatus {
 struct GatewayStatus {
   bool clock_ok = false;
   CommitHealth store;
+  std::string no_store;                   ///< Why readings are kept in memory; empty: they are not.
   std::size_t waiting_intervals = 0;      ///< For the store.
   std::array<std::uint64_t, 3> events{};  ///< Committed, by Severity.
   std::vector<BusStatus> buses;           ///< That have meters.

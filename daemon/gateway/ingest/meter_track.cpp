@@ -161,6 +161,13 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   return batch;
 }
 
+StoreBatch MeterTrack::take_kept(const RegisterSample& sample) {
+  StoreBatch batch;
+  take_sample(batch, sample);
+  batch.registers.push_back({meter_.number, state_});
+  return batch;
+}
+
 void MeterTrack::update_power() {
   live_.power_kW.reset();
   if (!meter_.map.power) return;

@@ -50,6 +50,9 @@ class MeterTrack {
                                 std::chrono::sys_time<std::chrono::milliseconds> poll,
                                 metering::Instant at);
 
+  /// A sample of the counter from while there was no store to go on from, in order of time.
+  [[nodiscard]] StoreBatch take_kept(const metering::RegisterSample& sample);
+
   /// Somebody set the clock: what the register did meanwhile belongs to no interval.
   void clock_was_set();
 

@@ -21,6 +21,7 @@ using std::chrono::seconds;
 constexpr milliseconds kClockSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
+constexpr int kEventsTakenOver = 10'000;
 constexpr std::size_t kMonthsAtATime = 12;  // of one meter, in one step of the loop
 
 /// A day of all meters, and no less than usual, is kept while the store refuses.
@@ -94,6 +95,53 @@ Result<void> Gateway::open_pushed(const SiteConfig& site) {
     opened.push_back(std::move(meter));
   }
   pushed_ = std::move(opened);
+  return {};
+}
+
+Result<void> Gateway::take_over(Store& memory) {
+  auto events = memory.events(kEventsTakenOver);
+  if (!events) return tl::unexpected(events.error());
+  std::ranges::reverse(*events);
+  committer_.add({.events = std::move(*events)});
+  for (MeterProgress* const progress : all_progress()) {
+    const auto number = memory.find_meter(progress->stored.meter.id);
+    if (!number) return tl::unexpected(number.error());
+    if (!*number) continue;
+    std::vector<metering::RegisterSample> samples;
+    const auto read = memory.for_each_sample(
+        **number, "energy",
+        [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
+    if (!read) return read;
+    LiveMeter* const meter = find_meter(progress->stored.number);
+    if (meter != nullptr && !samples.empty()) {
+      take_over_samples(*meter, samples);
+    } else if (auto taken = take_over_intervals(*progress, memory, **number); !taken) {
+      return taken;
+    }
+  }
+  return committer_.flush();
+}
+
+void Gateway::take_over_samples(LiveMeter& meter,
+                                std::span<const metering::RegisterSample> samples) {
+  for (const metering::RegisterSample& sample : samples) {
+    StoreBatch batch = meter.track.take_kept(sample);
+    meter.progress.mark_late(batch, calendar_);
+    committer_.add(std::move(batch));
+  }
+}
+
+Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory,
+                                          std::uint32_t number) {
+  StoreBatch batch;
+  const auto read = memory.for_each_interval(
+      number, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
+        batch.intervals.push_back({interval.reading});
+        batch.intervals.back().reading.meter = progress.stored.number;
+      });
+  if (!read) return read;
+  progress.mark_late(batch, calendar_);
+  committer_.add(std::move(batch));
   return {};
 }
 

@@ -55,6 +55,11 @@ class Gateway {
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
+  /// Takes in what a gateway has kept in memory while this one's store could not be opened:
+  /// counters go on through its samples, and other meters' intervals are added. Call it before the
+  /// start.
+  [[nodiscard]] Result<void> take_over(Store& memory);
+
   /// Polls begin, and months that fell due while nobody ran are closed.
   void start();
 
@@ -107,6 +112,9 @@ class Gateway {
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
+  void take_over_samples(LiveMeter& meter, std::span<const metering::RegisterSample> samples);
+  [[nodiscard]] Result<void> take_over_intervals(MeterProgress& progress, Store& memory,
+                                                 std::uint32_t number);
   /// To be committed soon.
   void hand_in(StoreBatch batch);
   void take(LiveMeter& meter, const PolledRead& read);

@@ -57,6 +57,8 @@ class HeldSignals {
   sigset_t before_;
 };
 
+constexpr std::chrono::seconds kLookForStore{10};
+
 /// What a process cannot change under way. @return or a sentence that names it.
 Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   const auto needs_restart = [](const char* what) {
@@ -78,23 +80,58 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   return {};
 }
 
+/// A store to run on.
+struct RunningStore {
+  std::unique_ptr<Store> store;
+  std::string missing;  ///< Why it only lives in memory; empty: it is the site's.
+};
+
+/// The site's store; where the disk does not let us have it, one in memory: meters are polled at
+/// any rate, and what they say can be taken over later.
+Result<RunningStore> open_running_store(const StoreConfig& config, metering::Instant now) {
+  auto opened = open_store(config, now, extend_start);
+  if (opened) {
+    if (!opened->recovery.empty()) {
+      spdlog::error("event=store_recovered what=\"{}\"", opened->recovery);
+    }
+    return RunningStore{std::move(opened->store), ""};
+  }
+  std::error_code ignored;
+  const bool is_of_the_disk = opened.error().code == ErrorCode::io_failed &&
+                              !std::filesystem::is_directory(config.file, ignored);
+  if (!is_of_the_disk) return tl::unexpected(opened.error());
+  auto memory = stores::open_in_memory();
+  if (!memory) return tl::unexpected(memory.error());
+  return RunningStore{std::move(*memory), opened.error().message};
+}
+
+/// Of a store in memory: nothing to copy, and no more of it than memory has.
+StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
+  if (running.missing.empty()) return config;
+  config.backup_at.reset();
+  config.raw_kept = std::chrono::days{7};
+  return config;
+}
+
 /// All parts of the process. Members end in the reverse of their order: whoever calls another one
 /// ends before it.
 class Service {
  public:
-  Service(OpenSite site, const ServiceOptions& options, std::unique_ptr<Store> store)
+  Service(OpenSite site, const ServiceOptions& options, RunningStore store)
       : site_(std::move(site)),
-        store_(std::move(store)),
+        running_(std::move(store)),
+        store_(running_.store.get()),
         loop_(context_, options.trial),
         worker_(loop_),
         options_(options),
         jobs_({loop_, *store_, worker_}, make_site_work(site_),
               [](const StoredJob& job) { log_job(job); }),
-        upkeep_(*store_, site_.config.store, site_.calendar,
+        upkeep_(*store_, upkeep_of(site_.config.store, running_), site_.calendar,
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }) {}
 
-  Result<void> open() {
+  /// @param memory  What a service before this one has kept there; may be null.
+  Result<void> open(Store* memory) {
     signals_.add(SIGUSR1);
     auto gateway =
         Gateway::open(site_.config, site_.calendar,
@@ -114,6 +151,9 @@ class Service {
                       });
     if (!gateway) return tl::unexpected(gateway.error());
     gateway_ = std::move(*gateway);
+    if (memory != nullptr) {
+      if (auto taken = gateway_->take_over(*memory); !taken) return taken;
+    }
     return listen();
   }
 
@@ -126,9 +166,10 @@ class Service {
     catch_up();
     gateway_->start();
     keep_up();
+    if (!running_.missing.empty()) stand_in();
     loop_.post([this] { watchdog_.ready(); });
     run_loop();
-    watchdog_.ending();
+    if (!found_) watchdog_.ending();
     server_.reset();
     jobs_.interrupt();
     const auto flushed = gateway_->flush();
@@ -136,14 +177,43 @@ class Service {
     return flushed;
   }
 
+  /// After a run that ended because the site's store can be opened: that store.
+  [[nodiscard]] std::optional<RunningStore> take_found() { return std::exchange(found_, {}); }
+  /// With what it has kept in memory.
+  [[nodiscard]] std::unique_ptr<Store> take_store() { return std::move(running_.store); }
+  [[nodiscard]] const OpenSite& site() const { return site_; }
+
  private:
+  void stand_in() {
+    gateway_->note(
+        {loop_.now().instant(), Severity::error, "no_store", "",
+         "the store cannot be opened, and readings are kept in memory until it can be: " +
+             running_.missing});
+    look_for_store();
+  }
+
+  void look_for_store() {
+    loop_.after(kLookForStore, [this] {
+      auto opened = open_running_store(site_.config.store, loop_.now().instant());
+      if (!opened || !opened->missing.empty()) return look_for_store();
+      spdlog::info("event=store_opened what=\"what was kept in memory is taken over\"");
+      found_ = std::move(*opened);
+      context_.stop();
+    });
+  }
+
   Result<void> listen() {
     const auto& http = site_.config.http;
     if (!http) return {};
     Served served{.site = site_.config,
                   .calendar = site_.calendar,
                   .store = *store_,
-                  .status = [this] { return gateway_->status(); },
+                  .status =
+                      [this] {
+                        GatewayStatus status = gateway_->status();
+                        status.no_store = running_.missing;
+                        return status;
+                      },
                   .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
                   .now = [this] { return loop_.now().instant(); },
                   .started = loop_.now().instant(),
@@ -240,7 +310,7 @@ class Service {
     if (auto reloaded = gateway_->reload(*config); !reloaded) return reloaded;
     if (server_) server_->set_token(std::move(token));
     if (*tls) server_->set_tls(std::move(*tls));
-    upkeep_.set_config(config->store);
+    upkeep_.set_config(upkeep_of(config->store, running_));
     site_.config = std::move(*config);
     jobs_.set_work(make_site_work(site_));
     schedule();
@@ -290,7 +360,9 @@ class Service {
   }
 
   OpenSite site_;
-  std::unique_ptr<Store> store_;
+  RunningStore running_;
+  Store* store_;  ///< Of `running_`.
+  std::optional<RunningStore> found_;
   boost::asio::io_context context_{1};
   boost::asio::signal_set signals_{context_, SIGINT, SIGTERM, SIGHUP};
   asio::AsioLoop loop_;
@@ -314,17 +386,20 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   HeldSignals held;
   const auto lock = system::FileLock::take(site.config.store.file.string() + ".lock");
   if (!lock) return tl::unexpected(lock.error());
-  auto opened_store =
-      open_store(site.config.store,
-                 std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
-  if (!opened_store) return tl::unexpected(opened_store.error());
-  if (const std::string& recovery = opened_store->recovery; !recovery.empty()) {
-    spdlog::error("event=store_recovered what=\"{}\"", recovery);
+  auto store = open_running_store(site.config.store, std::chrono::floor<std::chrono::seconds>(
+                                                         std::chrono::system_clock::now()));
+  if (!store) return tl::unexpected(store.error());
+  for (std::unique_ptr<Store> memory;;) {
+    auto service = std::make_unique<Service>(site, options, std::move(*store));
+    if (auto opened = service->open(memory.get()); !opened) return opened;
+    held.release();
+    auto ended = service->run();
+    auto found = service->take_found();
+    if (!found) return ended;
+    site = service->site();
+    memory = service->take_store();
+    store = std::move(*found);
   }
-  Service service{std::move(site), options, std::move(opened_store->store)};
-  if (auto opened = service.open(); !opened) return opened;
-  held.release();
-  return service.run();
 }
 
 }  // namespace recald::daemon

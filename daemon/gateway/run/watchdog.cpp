@@ -2,10 +2,20 @@
 
 #include <systemd/sd-daemon.h>
 
+#include <chrono>
 #include <cstdint>
 #include <utility>
 
 namespace recald::daemon {
+
+void extend_start() {
+  using Clock = std::chrono::steady_clock;
+  static Clock::time_point last{};
+  const auto now = Clock::now();
+  if (last != Clock::time_point{} && now - last < std::chrono::seconds{10}) return;
+  last = now;
+  sd_notify(0, "EXTEND_TIMEOUT_USEC=120000000");  // by two minutes from now
+}
 
 Watchdog::Watchdog(Loop& loop, std::function<bool()> is_well)
     : loop_(loop), is_well_(std::move(is_well)), self_(std::make_shared<Watchdog*>(this)) {

@@ -8,6 +8,10 @@
 
 namespace recald::daemon {
 
+/// Whoever starts us waits longer: a start that looks through a large store, or recovers one, takes
+/// minutes. Tells systemd at most every ten seconds, however often it is called.
+void extend_start();
+
 /// Feeds the watchdog of the unit file for as long as the loop turns and the store answers. Where
 /// nobody watches it does nothing.
 class Watchdog {

@@ -15,6 +15,12 @@ std::vector<std::string> reasons_not_ready(const GatewayStatus& status) {
         "the system clock is not set yet; readings are held until it is, since they cannot be "
         "stamped");
   }
+  if (!status.no_store.empty()) {
+    reasons.push_back(fmt::format(
+        "the store cannot be opened: {}; readings are kept in memory, and are lost if recald ends "
+        "before it can be",
+        status.no_store));
+  }
   if (status.store.is_degraded) {
     reasons.push_back(
         fmt::format("the store refuses: {}; {} intervals wait for it and {} were given up",

@@ -41,6 +41,19 @@ TEST_F(AsioLoopTest, ACallIsNotMadeBeforeItsTime) {
   EXPECT_GE(end.monotonic - begin.monotonic, 49ms);  // both are cut to whole milliseconds
 }
 
+// What goes on by asking for the next call would stand still for ever.
+TEST_F(AsioLoopTest, ACallThatThrowsIsMadeAgain) {
+  AsioLoop fast{context_, metering::TrialClock{.start = {}, .anchor = {}, .speed = 6000.0}};
+  int calls = 0;
+  fast.after(1ms, [&] {
+    if (++calls < 3) throw std::runtime_error("unforeseen");
+  });
+  EXPECT_THROW(context_.run(), std::runtime_error);
+  EXPECT_THROW(context_.run(), std::runtime_error);
+  context_.run();
+  EXPECT_EQ(calls, 3);
+}
+
 TEST_F(AsioLoopTest, OtherThreadsPostToIt) {
   const auto keep = boost::asio::make_work_guard(context_);
   std::thread::id called_on;

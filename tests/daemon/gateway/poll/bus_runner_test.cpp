@@ -48,6 +48,18 @@ BusPoller poller() {
       Rng{1}};
 }
 
+TEST(BusRunner, WhateverItsListenerThrowsItGoesOn) {
+  VirtualLoop loop{kNoon};
+  int reads = 0;
+  BusRunner runner{loop, std::make_unique<TestBus>(loop, milliseconds{30}, reads), poller(),
+                   [](const PolledRead&) { throw std::runtime_error("unforeseen"); }};
+  runner.start();
+  for (int thrown = 1; thrown <= 5; ++thrown) {
+    EXPECT_THROW(loop.run_for(minutes{2}), std::runtime_error);
+    EXPECT_EQ(reads, thrown);
+  }
+}
+
 TEST(BusRunner, HandsOnEveryReadWithItsTimes) {
   VirtualLoop loop{kNoon};
   int reads = 0;

@@ -1,12 +1,19 @@
 /// The real program against real sockets: it polls, is killed, goes on, and ends when it is told
 /// to.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 
 #include <cmath>
 
 #include "adapters/sqlite/database.hpp"
+#include "adapters/stores/open.hpp"
 #include "tests/daemon/gateway/run/polled_site.hpp"
 #include "tests/support/background_process.hpp"
+#include "tests/support/damage.hpp"
 
 namespace recald::daemon::run_command_test {
 namespace {
@@ -74,6 +81,104 @@ TEST_F(RunCommand, ReloadBadFile) {
   ASSERT_TRUE(eventually([&] { return said_so("event=reloaded"); })) << what_was_said();
   EXPECT_TRUE(eventually([&] { return server_.connections() == 2; })) << what_was_said();
   EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
+}
+
+// A path that cannot even be looked at: here one that leads to itself.
+TEST_F(RunCommand, AFolderThatCannotBeLookedAtEndsNothing) {
+  const std::filesystem::path loop = folder_ / "loop";
+  std::filesystem::create_symlink(loop, loop);
+  const std::string good = recald::testing::read_text(folder_ / "site.toml");
+  recald::testing::write_text(folder_ / "site.toml",
+                              good + "\n[store]\nbackup = \"00:00\"\nbackup_folder = \"loop/b\"\n");
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return samples() >= 1; }));
+  ASSERT_TRUE(eventually([&] { return said_so("event=backup_failed"); })) << what_was_said();
+  std::filesystem::remove(folder_ / "site.toml");
+  std::filesystem::create_symlink(loop, folder_ / "site.toml");
+  daemon.signal(SIGHUP);
+  ASSERT_TRUE(eventually([&] { return said_so("event=not_reloaded"); })) << what_was_said();
+  EXPECT_THAT(what_was_said(), HasSubstr("cannot be looked at"));
+  const std::int64_t before = samples();
+  EXPECT_TRUE(eventually([&] { return samples() >= before + 2; })) << what_was_said();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
+}
+
+/// What a program says, through a pipe: its files may not grow.
+class SaidThroughPipe {
+ public:
+  explicit SaidThroughPipe(std::filesystem::path path) : path_(std::move(path)) {
+    ::mkfifo(path_.c_str(), 0600);
+    file_ = ::open(path_.c_str(), O_RDWR | O_NONBLOCK);
+  }
+  ~SaidThroughPipe() { ::close(file_); }
+  SaidThroughPipe(const SaidThroughPipe&) = delete;
+  SaidThroughPipe& operator=(const SaidThroughPipe&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  const std::string& text() {
+    char bytes[4096];
+    for (ssize_t size = 0; (size = ::read(file_, bytes, sizeof bytes)) > 0;) {
+      text_.append(bytes, static_cast<std::size_t>(size));
+    }
+    return text_;
+  }
+  bool has(const std::string& words) { return text().find(words) != std::string::npos; }
+
+ private:
+  std::filesystem::path path_;
+  int file_ = -1;
+  std::string text_;
+};
+
+// Files that may not grow are what a full disk is.
+TEST_F(RunCommand, OnAFullDiskItStartsInMemoryAndHandsOverLater) {
+  SaidThroughPipe said{folder_ / "said"};
+  BackgroundProcess daemon{{"/bin/sh", "-c", "trap '' XFSZ; ulimit -S -f 0; exec \"$@\"", "sh",
+                            RECALD_PROGRAM, "run", (folder_ / "site.toml").string()},
+                           said.path()};
+  ASSERT_TRUE(eventually([&] { return said.has("event=no_store"); })) << said.text();
+  const int asked = server_.requests() + 3;
+  ASSERT_TRUE(eventually([&] { return server_.requests() >= asked; })) << said.text();
+  EXPECT_EQ(samples(), 0);
+  const rlimit unlimited{RLIM_INFINITY, RLIM_INFINITY};
+  ASSERT_EQ(::prlimit(daemon.id(), RLIMIT_FSIZE, &unlimited, nullptr), 0);
+  ASSERT_TRUE(eventually([&] { return said.has("event=store_opened"); })) << said.text();
+  const int polled = server_.requests() + 2;
+  EXPECT_TRUE(eventually([&] { return samples() >= polled; })) << samples() << said.text();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << said.text();
+  const auto store = stores::open_to_read(folder_ / "site.db").value();
+  const auto events = store->events(10).value();
+  EXPECT_THAT(events, ::testing::Contains(::testing::Field(&StoreEvent::kind, "no_store")));
+}
+
+// Who starts us waits for a recovery only if it hears that it goes on.
+TEST_F(RunCommand, ARecoveryAsksForTime) {
+  {
+    BackgroundProcess daemon{command("run"), said()};
+    ASSERT_TRUE(eventually([&] { return samples() >= 3; })) << what_was_said();
+    EXPECT_EQ(daemon.end(SIGTERM), 0);
+  }
+  recald::testing::damage_leaf(folder_ / "site.db", "sample", 0);
+  const std::string socket = (folder_ / "notify").string();
+  sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+  socket.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int file = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  ASSERT_EQ(::bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ::setenv("NOTIFY_SOCKET", socket.c_str(), 1);
+  BackgroundProcess daemon{command("run"), said()};
+  ::unsetenv("NOTIFY_SOCKET");
+  std::string notified;
+  EXPECT_TRUE(eventually([&] {
+    char bytes[1024];
+    for (ssize_t size = 0; (size = ::read(file, bytes, sizeof bytes)) > 0;) {
+      notified.append(bytes, static_cast<std::size_t>(size)).append("\n");
+    }
+    return notified.find("READY=1") != std::string::npos;
+  })) << notified;
+  EXPECT_EQ(notified.find("EXTEND_TIMEOUT_USEC="), 0u) << notified;
+  EXPECT_TRUE(said_so("event=store_recovered"));
+  EXPECT_EQ(daemon.end(SIGTERM), 0);
+  ::close(file);
 }
 
 TEST_F(RunCommand, WhatNeedsARestartIsNotReloaded) {

@@ -1,0 +1,277 @@
+/// A gateway's life where it begins, changes and ends, with a fault at each step: whatever call
+/// that changes a file fails, or ends the process, nothing that was stored is lost.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "daemon/gateway/run/job_runner.hpp"
+#include "daemon/gateway/upkeep/backups.hpp"
+#include "daemon/gateway/upkeep/open_store.hpp"
+#include "daemon/gateway/upkeep/upkeep.hpp"
+#include "tests/daemon/gateway/gateway_rig.hpp"
+#include "tests/support/damage.hpp"
+#include "tests/support/file_faults.hpp"
+#include "tests/support/virtual_worker.hpp"
+
+namespace recald::daemon::edges_test {
+namespace {
+
+using metering::Instant;
+using recald::testing::FailingChanges;
+using recald::testing::TemporaryFolder;
+using recald::testing::VirtualLoop;
+using recald::testing::VirtualWorker;
+using std::chrono::hours;
+using std::chrono::minutes;
+using std::chrono::seconds;
+using testing::kRigStart;
+
+constexpr seconds kQuarter{900};
+constexpr int kKilled = 9;
+constexpr int kDone = 0;
+
+/// Does the work in a process of its own that ends before its n-th change of a file.
+/// @return whether it came to its end before that.
+template <class Work>
+bool ends_before(int nth, const Work& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    recald::testing::end_process_before_change(nth, kKilled);
+    work();
+    ::_exit(kDone);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
+  return WIFEXITED(status) && WEXITSTATUS(status) == kDone;
+}
+
+/// A damaged store with two hundred intervals and their samples, of which one page is gone.
+class RecoveryEdges : public ::testing::Test {
+ protected:
+  static constexpr int kQuarters = 400;
+
+  RecoveryEdges() {
+    std::filesystem::create_directory(folder_ / "before");
+    auto store = sqlite::SqliteStore::open(folder_ / "before" / "site.db").value();
+    const std::uint32_t meter = store.meter_number("main", kQuarter).value();
+    StoreBatch batch;
+    double register_kWh = 0.0;
+    for (int i = 0; i <= kQuarters; ++i) {
+      batch.samples.push_back({meter, "energy", kRigStart + i * kQuarter, register_kWh});
+      if (i == kQuarters) break;
+      batch.intervals.push_back({{meter, kRigStart + i * kQuarter, 4.0 * i}});
+      register_kWh += i;
+    }
+    RegisterState state{.field = "energy", .settings = {.rated_kW = 10'000.0}};
+    state.book.next = kRigStart + kQuarters * kQuarter;
+    batch.registers.push_back({meter, state});
+    EXPECT_TRUE(store.commit(batch).has_value());
+    config_.backup_folder = folder_ / "backups";
+  }
+
+  void begin_anew() {
+    std::filesystem::remove_all(folder_ / "work");
+    std::filesystem::copy(folder_ / "before", folder_ / "work");
+    recald::testing::damage_leaf(folder_ / "work" / "site.db", "interval", 1);
+    config_.file = folder_ / "work" / "site.db";
+  }
+
+  /// Opens it undisturbed: nothing may be missing, and it says what happened.
+  void expect_whole() {
+    auto opened = open_store(config_, kRigStart + hours{200});
+    ASSERT_TRUE(opened.has_value()) << opened.error().message;
+    Store& store = *opened->store;
+    int count = 0;
+    double sum_kWh = 0.0;
+    const auto read = store.for_each_interval(0, {Instant::min(), Instant::max()},
+                                              [&](const StoredInterval& interval) {
+                                                ++count;
+                                                sum_kWh += interval.reading.mean_kW / 4.0;
+                                              });
+    ASSERT_TRUE(read.has_value());
+    EXPECT_EQ(count, kQuarters);
+    EXPECT_NEAR(sum_kWh, kQuarters * (kQuarters - 1) / 2.0, 1e-6);
+    EXPECT_EQ(store.registers(0)->size(), 1u);
+    const auto events = store.events(10).value();
+    EXPECT_THAT(events, ::testing::SizeIs(1));
+    EXPECT_EQ(events.front().kind, "store_recovered");
+    const auto checked = store.check().value();
+    EXPECT_EQ(checked.damage, "");
+    EXPECT_THAT(checked.problems, ::testing::IsEmpty());
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator{folder_ / "work"}) {
+      names.insert(entry.path().filename().string());
+    }
+    EXPECT_FALSE(names.contains("site.db.recovery"));
+    EXPECT_FALSE(names.contains("site.db.recovering"));
+    EXPECT_TRUE(std::ranges::any_of(
+        names, [](const auto& name) { return name.starts_with("site.db.damaged-"); }));
+  }
+
+  TemporaryFolder folder_;
+  StoreConfig config_;
+};
+
+TEST_F(RecoveryEdges, KilledAtAnyStepItGoesOn) {
+  int steps = 0;
+  for (bool is_done = false; !is_done;) {
+    SCOPED_TRACE(++steps);
+    begin_anew();
+    is_done = ends_before(steps, [&] { (void)open_store(config_, kRigStart + hours{100}); });
+    expect_whole();
+    if (HasFailure()) return;
+  }
+  EXPECT_GE(steps, 30);
+}
+
+TEST_F(RecoveryEdges, AnyStepMayFailOnceOrForGood) {
+  for (const int error : {EIO, ENOSPC}) {
+    for (const bool lasting : {false, true}) {
+      bool has_failed = true;
+      for (int nth = 1; has_failed; ++nth) {
+        SCOPED_TRACE(fmt::format("errno {}, change {}, lasting {}", error, nth, lasting));
+        begin_anew();
+        {
+          const FailingChanges faults{nth, error, lasting};
+          (void)open_store(config_, kRigStart + hours{100});
+          has_failed = faults.has_failed();
+        }
+        expect_whole();
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+TEST_F(RecoveryEdges, AnInterruptedOneSaysSo) {
+  for (int nth = 1; !std::filesystem::exists(folder_ / "work" / "site.db.recovering"); ++nth) {
+    begin_anew();
+    ASSERT_FALSE(ends_before(nth, [&] { (void)open_store(config_, kRigStart + hours{100}); }));
+  }
+  const auto opened = open_store(config_, kRigStart + hours{101}).value();
+  EXPECT_THAT(opened.recovery, ::testing::HasSubstr("it was interrupted and has been done again"));
+}
+
+/// A gateway with its jobs and upkeep on a store on disk.
+class Life {
+ public:
+  Life(const std::filesystem::path& folder, VirtualLoop& loop)
+      : site_(testing::load_rig_site(folder, testing::two_meter_site())), loop_(loop) {
+    site_.store.backup_at = minutes{0};
+  }
+
+  /// Begins a process: as the daemon does, again after a while where it cannot.
+  void begin() {
+    end();
+    auto opened = open_store(site_.store, loop_.now().instant());
+    if (!opened) return;
+    store_ = std::move(opened->store);
+    worker_ = std::make_unique<VirtualWorker>(loop_, minutes{3});
+    jobs_ = std::make_unique<JobRunner>(
+        JobRunner::Ports{loop_, *store_, *worker_},
+        [](const StoredJob&, Instant, const GoesOn&) -> Result<JobOutcome> {
+          return JobOutcome{.accepted = true, .result = {.document = "{}"}};
+        },
+        OnJob{});
+    rig_ = std::make_unique<Rig>(*store_, loop_);
+    if (!rig_->open(site_)) return end();
+    upkeep_ = std::make_unique<Upkeep>(
+        *store_, site_.store, metering::LocalCalendar::open(site_.timezone).value(),
+        [this](StoreEvent event) { rig_->note(std::move(event)); },
+        UpkeepRules{.reserve_bytes = 64 * 1024});
+    jobs_->resume();
+  }
+  void end() {
+    jobs_.reset();
+    upkeep_.reset();
+    rig_.reset();
+    worker_.reset();
+    store_.reset();
+  }
+  [[nodiscard]] bool runs() const { return upkeep_ != nullptr; }
+
+  /// Half an hour with all that a daemon does in one.
+  void live() {
+    loop_.run_for(minutes{4});
+    (void)jobs_->ask(JobKind::calibration, "api");
+    loop_.run_for(minutes{4});
+    for (int i = 0; i < 100 && upkeep_->maintain(loop_.now().instant()) < seconds{1}; ++i) {
+    }
+    (void)rig_->reload(site_);
+    loop_.run_for(minutes{22});
+  }
+
+  [[nodiscard]] Store& store() { return *store_; }
+  [[nodiscard]] const SiteConfig& site() const { return site_; }
+
+ private:
+  class Rig : public testing::GatewayRig {
+   public:
+    Rig(Store& store, VirtualLoop& loop) : GatewayRig{store, loop, kRigStart} {}
+    void note(StoreEvent event) { gateway_->note(std::move(event)); }
+    Result<void> reload(const SiteConfig& site) { return gateway_->reload(site); }
+  };
+
+  SiteConfig site_;
+  VirtualLoop& loop_;
+  std::unique_ptr<Store> store_;
+  std::unique_ptr<VirtualWorker> worker_;
+  std::unique_ptr<JobRunner> jobs_;
+  std::unique_ptr<Rig> rig_;
+  std::unique_ptr<Upkeep> upkeep_;
+};
+
+/// What a store must hold after a life: the energy of both meters, its jobs ended, nothing damaged.
+void expect_all_there(Life& life, VirtualLoop& loop) {
+  Store& store = life.store();
+  const auto checked = store.check().value();
+  EXPECT_EQ(checked.damage, "");
+  EXPECT_THAT(checked.problems, ::testing::IsEmpty());
+  for (std::uint32_t meter = 0; meter < 2; ++meter) {
+    const auto extent = store.interval_extent(meter).value();
+    ASSERT_TRUE(extent.has_value());
+    const metering::TimeSpan span{extent->begin, extent->end + kQuarter};
+    EXPECT_LE(span.begin, kRigStart + minutes{45});
+    EXPECT_GE(span.end + minutes{16}, loop.now().instant());
+    const auto counted = [&](Instant t) {
+      return meter == 0 ? testing::main_kWh(t - kRigStart) : testing::cooling_kWh(t - kRigStart);
+    };
+    EXPECT_NEAR(testing::stored_kWh(store, meter, span), counted(span.end) - counted(span.begin),
+                0.1 + 1e-6);
+  }
+  const auto jobs = store.jobs(JobKind::calibration, 10).value();
+  for (const StoredJob& job : jobs) EXPECT_EQ(job.state, JobState::done) << job.message;
+}
+
+// The n-th change of a file fails, n raised until a life passes without any.
+TEST(LifeEdges, AnyStepMayFail) {
+  for (const int error : {EIO, ENOSPC}) {
+    bool has_failed = true;
+    int nth = 1;
+    for (; has_failed; nth += nth < 60 ? 1 : 7) {
+      SCOPED_TRACE(fmt::format("errno {}, change {}", error, nth));
+      const TemporaryFolder folder;
+      VirtualLoop loop{kRigStart};
+      Life life{folder.path(), loop};
+      {
+        const FailingChanges faults{nth, error, false};
+        life.begin();
+        if (life.runs()) life.live();
+        has_failed = faults.has_failed();
+      }
+      if (!life.runs()) life.begin();
+      ASSERT_TRUE(life.runs());
+      life.live();
+      life.live();
+      expect_all_there(life, loop);
+      if (::testing::Test::HasFailure()) return;
+    }
+    EXPECT_GE(nth, 100);
+  }
+}
+
+}  // namespace
+}  // namespace recald::daemon::edges_test
