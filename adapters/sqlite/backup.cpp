@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adapters/sqlite/handles.hpp"
+#include "adapters/system/regular_file.hpp"
 
 namespace recald::sqlite {
 namespace {
@@ -49,6 +50,7 @@ Result<Backup> Backup::begin(Database& database, const std::filesystem::path& fi
   impl->part = file.string() + ".part";
   std::error_code ignored;
   std::filesystem::remove(impl->part, ignored);
+  system::make_private_file(impl->part);
   sqlite3* raw = nullptr;
   const int opened = sqlite3_open_v2(impl->part.c_str(), &raw,
                                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);

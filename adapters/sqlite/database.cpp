@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adapters/sqlite/handles.hpp"
+#include "adapters/system/regular_file.hpp"
 #include "core/absent.hpp"
 
 namespace recald::sqlite {
@@ -128,6 +129,8 @@ Result<Database> Database::open(const std::filesystem::path& file, const Options
   const bool writes = options.access == Access::read_write;
   const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
                     (writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
+  const bool is_on_disk = options.vfs.empty() && file != ":memory:";
+  if (writes && is_on_disk) system::make_private_file(file);  // log and index follow suit
   sqlite3* raw = nullptr;
   const int result = sqlite3_open_v2(file.c_str(), &raw, flags,
                                      options.vfs.empty() ? nullptr : options.vfs.c_str());

@@ -9,10 +9,12 @@
 #include <system_error>
 #include <utility>
 
+#include "adapters/system/regular_file.hpp"
+
 namespace recald::system {
 
 Result<FileLock> FileLock::take(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kPrivateMode);
   if (descriptor < 0) {
     return failure(ErrorCode::io_failed, fmt::format("'{}' cannot be made: {}", file.string(),
                                                      std::generic_category().message(errno)));

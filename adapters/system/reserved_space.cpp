@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "adapters/system/regular_file.hpp"
+
 namespace recald::system {
 namespace {
 
@@ -34,7 +36,7 @@ Result<void> ReservedSpace::hold() {
                                "needed; make room on the disk",
                                file_.string(), space.available / kMebibyte, bytes_ / kMebibyte));
   }
-  const int descriptor = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  const int descriptor = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kPrivateMode);
   int reason = errno;
   if (descriptor >= 0) {
     reason = ::posix_fallocate(descriptor, 0, static_cast<off_t>(bytes_));

@@ -8,6 +8,8 @@
 #include <string>
 #include <system_error>
 
+#include "adapters/system/durable_names.hpp"
+
 namespace recald::system {
 namespace {
 
@@ -41,7 +43,7 @@ Result<void> write_file(const std::filesystem::path& file, std::string_view byte
     ::unlink(part.c_str());
     return cannot_write(file, reason);
   }
-  return {};
+  return flush_folder_of(file);
 }
 
 Result<void> make_folder(const std::filesystem::path& folder) {

@@ -2,6 +2,7 @@
 #include "adapters/sqlite/sqlite_store.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <cmath>
 
@@ -419,6 +420,49 @@ TEST(StoreOpening, WhatIsNoStoreIsLeftAlone) {
   const auto nowhere = SqliteStore::open(folder / "no" / "folder.db");
   ASSERT_FALSE(nowhere.has_value());
   EXPECT_EQ(nowhere.error().code, ErrorCode::io_failed);
+}
+
+/// While it lives, this process makes files with this umask.
+class Umask {
+ public:
+  explicit Umask(mode_t mask) : before_(::umask(mask)) {}
+  ~Umask() { ::umask(before_); }
+  Umask(const Umask&) = delete;
+  Umask& operator=(const Umask&) = delete;
+
+ private:
+  mode_t before_;
+};
+
+unsigned mode_of(const std::filesystem::path& file) {
+  return static_cast<unsigned>(std::filesystem::status(file).permissions());
+}
+
+// When people are in and when they are out can be read from a meter: that is not for everybody.
+TEST(StoreOpening, OthersMayNotReadTheStoreNorItsBackups) {
+  for (const auto& [mask, mode] : {std::pair{0000u, 0640u}, {0022u, 0640u}, {0077u, 0600u}}) {
+    SCOPED_TRACE(mask);
+    const Umask umask{mask};
+    const TemporaryFolder folder;
+    auto store = SqliteStore::open(folder / "site.db");
+    ASSERT_TRUE(store.has_value()) << store.error().message;
+    ASSERT_TRUE(store->meter_number("main", kQuarter).has_value());
+    EXPECT_EQ(mode_of(folder / "site.db"), mode);
+    EXPECT_EQ(mode_of(folder / "site.db-wal"), mode);
+    auto backup = store->begin_backup(folder / "backup.db");
+    ASSERT_TRUE(backup.has_value()) << backup.error().message;
+    ASSERT_TRUE((*backup)->step(1000).value());
+    EXPECT_EQ(mode_of(folder / "backup.db"), mode);
+  }
+}
+
+TEST(StoreOpening, AStoreKeepsTheRightsThatItHas) {
+  using std::filesystem::perms;
+  const TemporaryFolder folder;
+  { ASSERT_TRUE(SqliteStore::open(folder / "site.db").has_value()); }
+  std::filesystem::permissions(folder / "site.db", perms{0664});
+  { ASSERT_TRUE(SqliteStore::open(folder / "site.db").has_value()); }
+  EXPECT_EQ(mode_of(folder / "site.db"), 0664u);
 }
 
 TEST(StoreOpening, AFileOfANewerRecaldIsNotTouched) {

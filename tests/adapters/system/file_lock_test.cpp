@@ -1,6 +1,7 @@
 #include "adapters/system/file_lock.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -20,6 +21,15 @@ TEST(FileLock, OneHolderAtATime) {
     EXPECT_TRUE(FileLock::take(folder / "b.lock").has_value());
   }
   EXPECT_TRUE(FileLock::take(folder / "a.lock").has_value());
+}
+
+TEST(FileLock, OthersMayNotReadIt) {
+  const recald::testing::TemporaryFolder folder;
+  const mode_t before = ::umask(0);
+  const auto lock = FileLock::take(folder / "a.lock");
+  ::umask(before);
+  ASSERT_TRUE(lock.has_value()) << lock.error().message;
+  EXPECT_EQ(std::filesystem::status(folder / "a.lock").permissions(), std::filesystem::perms{0640});
 }
 
 TEST(FileLock, NowhereToMakeIt) {

@@ -2,10 +2,29 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <vector>
 
 #include "tests/support/temporary_folder.hpp"
+
+namespace {
+
+/// What was flushed to the disk, in order: "file" or "folder".
+std::vector<std::string> flushed;
+
+}  // namespace
+
+/// In the place of the C library's, so that a test sees what is flushed.
+extern "C" int fsync(int descriptor) {
+  struct stat what {};
+  ::fstat(descriptor, &what);
+  flushed.emplace_back(S_ISDIR(what.st_mode) ? "folder" : "file");
+  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
 
 namespace recald::system {
 namespace {
@@ -46,6 +65,18 @@ TEST(WriteFile, WritesTheBytesAndLeavesNothingElse) {
   ASSERT_TRUE(write_file(folder / "result.json", bytes).has_value());
   EXPECT_EQ(read_text(folder / "result.json"), bytes);
   EXPECT_EQ(files_in(folder.path()), 1u);
+}
+
+// A rename that is not flushed is undone by a power cut.
+TEST(WriteFile, FlushesTheFileAndThenTheFolderThatNamesIt) {
+  const TemporaryFolder folder;
+  flushed.clear();
+  ASSERT_TRUE(write_file(folder / "result.json", "text").has_value());
+  EXPECT_EQ(flushed, (std::vector<std::string>{"file", "folder"}));
+  fs::current_path(folder.path());
+  ASSERT_TRUE(write_file("beside.json", "text").has_value());
+  EXPECT_EQ(flushed.size(), 4u);
+  fs::current_path("/");
 }
 
 TEST(WriteFile, ReplacesALongerFileWhole) {
