@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "adapters/http/ascii.hpp"
+#include "adapters/system/regular_file.hpp"
 #include "adapters/system/sha256.hpp"
 
 namespace recald::http {
@@ -64,6 +65,7 @@ Result<void> check_permissions(const std::filesystem::path& file) {
         "token file '" + file.string() +
             "' cannot be found; make one with: (umask 077; openssl rand -hex 32 > FILE)");
   }
+  if (auto is_file = system::require_file(file, "token file"); !is_file) return is_file;
   const perms others = perms::group_all | perms::others_all;
   if ((status.permissions() & others) != perms::none) {
     return failure(ErrorCode::invalid_value, "token file '" + file.string() +

@@ -12,6 +12,9 @@
 #include <boost/beast/ssl/ssl_stream.hpp>
 
 #include <cassert>
+#include <chrono>
+#include <map>
+#include <optional>
 
 #include "adapters/asio/rethrown.hpp"
 #include "adapters/http/session.hpp"
@@ -56,6 +59,9 @@ Result<tcp::endpoint> endpoint_of(const ServerOptions& options) {
 
 }  // namespace
 
+/// Since when a session has waited for a request; absent while it answers one.
+using WaitingSince = std::optional<std::chrono::steady_clock::time_point>;
+
 struct Server::Shared {
   Shared(boost::asio::io_context& context, Handler given)
       : acceptor(context), handler(std::move(given)) {}
@@ -65,7 +71,7 @@ struct Server::Shared {
   tcp::acceptor acceptor;
   Tls tls;  ///< Of the next connection.
   Handler handler;
-  std::set<tcp_stream*> open;  ///< Of the sessions that run.
+  std::map<tcp_stream*, const WaitingSince*> open;  ///< Of the sessions that run.
 };
 
 namespace {
@@ -74,9 +80,9 @@ namespace {
 template <class Shared>
 class Known {
  public:
-  Known(std::shared_ptr<Shared> shared, tcp_stream& stream)
+  Known(std::shared_ptr<Shared> shared, tcp_stream& stream, const WaitingSince& waiting_since)
       : shared_(std::move(shared)), stream_(stream) {
-    shared_->open.insert(&stream_);
+    shared_->open.emplace(&stream_, &waiting_since);
   }
   ~Known() { shared_->open.erase(&stream_); }
   Known(const Known&) = delete;
@@ -90,8 +96,8 @@ class Known {
 template <class Shared>
 awaitable<void> serve_plain(std::shared_ptr<Shared> shared, tcp::socket socket, bool is_welcome) {
   tcp_stream stream{std::move(socket)};
-  const Known<Shared> known{shared, stream};
   Session<tcp_stream> session{stream, shared->rules, shared->handler};
+  const Known<Shared> known{shared, stream, session.waiting_since()};
   if (is_welcome) {
     co_await session.run();
   } else {
@@ -104,13 +110,14 @@ template <class Shared>
 awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bool is_welcome) {
   const auto tls = shared->tls;
   TlsStream stream{std::move(socket), *tls};
-  const Known<Shared> known{shared, boost::beast::get_lowest_layer(stream)};
+  Session<TlsStream> session{stream, shared->rules, shared->handler};
+  const Known<Shared> known{shared, boost::beast::get_lowest_layer(stream),
+                            session.waiting_since()};
   set_deadline(stream, shared->rules.slow_client);
   boost::system::error_code error;
   co_await stream.async_handshake(boost::asio::ssl::stream_base::server,
                                   redirect_error(use_awaitable, error));
   if (error) co_return;
-  Session<TlsStream> session{stream, shared->rules, shared->handler};
   if (is_welcome) {
     co_await session.run();
   } else {
@@ -119,13 +126,29 @@ awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bo
   }
 }
 
+/// Closes the connection that has waited longest for a request: idle clients must not keep others
+/// out, least of all a supervisor's probe. Whoever lost it connects anew.
+/// @return false when all are being answered.
+template <class Shared>
+bool close_longest_idle(Shared& shared) {
+  auto longest = shared.open.end();
+  for (auto one = shared.open.begin(); one != shared.open.end(); ++one) {
+    const WaitingSince& since = *one->second;
+    if (since && (longest == shared.open.end() || *since < **longest->second)) longest = one;
+  }
+  if (longest == shared.open.end()) return false;
+  longest->first->close();
+  shared.open.erase(longest);
+  return true;
+}
+
 /// As many again as are served are told that they are too many; more than that just find the door
 /// shut.
 template <class Shared>
 void receive(const std::shared_ptr<Shared>& shared, tcp::socket socket) {
   const auto limit = static_cast<std::size_t>(shared->connections_max);
+  const bool is_welcome = shared->open.size() < limit || close_longest_idle(*shared);
   if (shared->open.size() >= 2 * limit) return;
-  const bool is_welcome = shared->open.size() < limit;
   const auto executor = shared->acceptor.get_executor();
   if (shared->tls) {
     boost::asio::co_spawn(executor, serve_tls(shared, std::move(socket), is_welcome),
@@ -230,7 +253,7 @@ void Server::stop() {
   shared_->rules.is_stopping = true;
   boost::system::error_code ignored;
   shared_->acceptor.close(ignored);
-  for (tcp_stream* stream : shared_->open) stream->close();
+  for (const auto& [stream, waiting_since] : shared_->open) stream->close();
 }
 
 }  // namespace recald::http

@@ -40,7 +40,7 @@ struct ServerOptions {
   std::optional<TlsFiles> tls;
   std::size_t body_max = 1024 * 1024;
   std::size_t header_max = 16 * 1024;  ///< Request line included.
-  int connections_max = 64;            ///< Whoever comes then gets a 503.
+  int connections_max = 64;  ///< Whoever comes then takes an idle one's place, or gets a 503.
   /// For a whole request to arrive, for an answer to leave, and between two requests.
   std::chrono::milliseconds slow_client{10'000};
 };
@@ -50,7 +50,8 @@ class Server {
   /// Listens from now on; connections are served while the context runs.
   ///
   /// What clients do wrong is answered here: 400 malformed, 401 without the token (before the body
-  /// is read), 413 and 431 too large, 503 too many connections. Who is slow is cut off.
+  /// is read), 413 and 431 too large, 503 too many connections. Who is slow is cut off, and
+  /// of too many connections the one that has waited longest for a request.
   /// @param context  Run by one thread; outlives this.
   /// @param handler  Called on that thread, with whole requests only. What it throws is a 500.
   /// @return or invalid_value: not a numeric address, or one that others can reach without both a

@@ -39,6 +39,12 @@ class Session {
   Session(Stream& stream, const SessionRules& rules, const Handler& handler)
       : stream_(stream), rules_(rules), handler_(handler) {}
 
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// Since when nothing is under way: a request, or the rest of its head, has yet to come. Absent
+  /// while one is answered.
+  [[nodiscard]] const std::optional<Time>& waiting_since() const { return waiting_since_; }
+
   /// Until the client goes, is too slow, asks for the end, or sent what cannot be read on after.
   boost::asio::awaitable<void> run() {
     bool goes_on = true;
@@ -65,7 +71,9 @@ class Session {
     parser.body_limit(rules_.body_max);
     set_deadline(stream_, rules_.slow_client);
     Error error;
+    waiting_since_ = std::chrono::steady_clock::now();
     co_await boost::beast::http::async_read_header(stream_, buffer_, parser, into(error));
+    waiting_since_.reset();
     Result<Request> request;
     std::optional<Response> refusal;
     if (error) {
@@ -153,6 +161,7 @@ class Session {
   Stream& stream_;
   const SessionRules& rules_;
   const Handler& handler_;
+  std::optional<Time> waiting_since_ = std::chrono::steady_clock::now();
   boost::beast::flat_buffer buffer_;
 };
 

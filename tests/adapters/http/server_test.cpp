@@ -5,8 +5,11 @@
 
 #include <atomic>
 
+#include "adapters/http/client.hpp"
 #include "tests/adapters/http/raw_client.hpp"
+#include "tests/adapters/http/self_signed.hpp"
 #include "tests/support/background_process.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace recald::http {
 namespace {
@@ -156,23 +159,56 @@ TEST_F(ServerTest, WhoIsSlowIsCutOff) {
 
 TEST_F(ServerTest, SoManyConnectionsAndNoMore) {
   RunningServer server{echo(), {.connections_max = 2}};
+  const std::string half =
+      std::string{kPostHead} + "Content-Length: 2\r\n" + "Expect: 100-continue\r\n\r\n";
   RawClient first{server.port()};
   auto second = std::make_unique<RawClient>(server.port());
-  const char* request = "GET /a HTTP/1.1\r\nHost: a\r\n\r\n";
-  first.send(request);
-  second->send(request);
-  EXPECT_THAT(first.answer(), StartsWith("HTTP/1.1 200 "));
-  EXPECT_THAT(second->answer(), StartsWith("HTTP/1.1 200 "));
+  first.send(half);
+  second->send(half);
+  EXPECT_THAT(first.answer(), StartsWith("HTTP/1.1 100 "));
+  EXPECT_THAT(second->answer(), StartsWith("HTTP/1.1 100 "));
   RawClient third{server.port()};
   EXPECT_THAT(third.answer(), AllOf(StartsWith("HTTP/1.1 503 "), HasSubstr("Retry-After: 1\r\n")));
-  first.send(request);  // whoever was there stays
+  first.send("{}");  // whoever is being served stays
   EXPECT_THAT(first.answer(), StartsWith("HTTP/1.1 200 "));
   second.reset();
   EXPECT_TRUE(recald::testing::eventually([&] {
     RawClient next{server.port()};
-    next.send(request);
+    next.send("GET /a HTTP/1.1\r\nHost: a\r\n\r\n");
     return next.answer().starts_with("HTTP/1.1 200 ");
   }));
+}
+
+// A proxy or a browser keeps connections open and asks nothing; a supervisor's probe must get in.
+TEST_F(ServerTest, IdleConnectionsDoNotShutOutAProbe) {
+  RunningServer server{echo(), {.connections_max = 64}};
+  const char* request = "GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n";
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 64; ++i) idle.push_back(std::make_unique<RawClient>(server.port()));
+  for (const int asked : {0, 1}) {  // these have been answered since, so they wait less long
+    idle[asked]->send(request);
+    EXPECT_THAT(idle[asked]->answer(), StartsWith("HTTP/1.1 200 "));
+  }
+  RawClient probe{server.port()};
+  probe.send(request);
+  EXPECT_THAT(probe.answer(), StartsWith("HTTP/1.1 200 "));
+  EXPECT_THAT(idle[2]->everything(), IsEmpty());  // the one that had waited longest
+  for (const int asked : {0, 1, 3}) {
+    idle[asked]->send(request);
+    EXPECT_THAT(idle[asked]->answer(), StartsWith("HTTP/1.1 200 ")) << asked;
+  }
+}
+
+TEST_F(ServerTest, SilentTlsClientsDoNotShutOutAProbe) {
+  const recald::testing::TemporaryFolder folder;
+  const auto tls = recald::testing::write_self_signed(folder.path(), "tower");
+  RunningServer server{echo(), {.tls = TlsFiles{tls.certificate, tls.key}, .connections_max = 4}};
+  std::vector<std::unique_ptr<RawClient>> silent;
+  for (int i = 0; i < 8; ++i) silent.push_back(std::make_unique<RawClient>(server.port()));
+  const auto probe = get({.is_tls = true, .port = server.port(), .path = "/healthz"},
+                         {.trusted_certificate = tls.certificate});
+  ASSERT_TRUE(probe.has_value()) << probe.error().message;
+  EXPECT_EQ(probe->status, 200);
 }
 
 TEST_F(ServerTest, TheTokenIsAskedForBeforeTheBody) {
