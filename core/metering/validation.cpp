@@ -292,6 +292,13 @@ class RunCheck {
 
 }  // namespace
 
+Reason doubt_of(double mean_kW, const Meter& meter, const ValidationOptions& options) {
+  if (mean_kW < 0.0 && !meter.negative_is_valid) return Reason::negative;
+  const bool is_beyond =
+      meter.rated_kW && std::abs(mean_kW) > options.range_factor * *meter.rated_kW;
+  return is_beyond ? Reason::range : Reason::none;
+}
+
 void validate(MonthSlots& month, const Meter& meter, const ValidationContext& context,
               const ValidationOptions& options) {
   const bool both_ways = meter.negative_is_valid;

@@ -35,6 +35,10 @@ struct ValidationContext {
   std::optional<double> largest_believed_kW;  ///< Over earlier months.
 };
 
+/// Why a reading is doubted whatever stands beside it: `range` beyond the rating, `negative` below
+/// zero where the meter cannot run backwards; `none` for one that only its month can judge.
+[[nodiscard]] Reason doubt_of(double mean_kW, const Meter& meter, const ValidationOptions& options);
+
 /// Turns `ok` slots into `suspect` where a check fails; other slots are left alone.
 ///
 /// - range: above 1.2 × rated_kW; without a rating above both `unrated_` limits.

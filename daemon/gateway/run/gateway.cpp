@@ -270,7 +270,8 @@ void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
 }
 
 Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
-                                          std::vector<metering::Reading> readings) {
+                                          std::vector<metering::Reading> readings,
+                                          const std::optional<Correction>& correction) {
   const auto pushed = std::ranges::find(
       pushed_, meter, [](const PushedMeter& one) { return one.progress.stored.meter.id; });
   if (pushed == pushed_.end()) {
@@ -279,23 +280,55 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   StoreBatch batch;
   for (metering::Reading& reading : readings) {
     reading.meter = pushed->progress.stored.number;
-    batch.intervals.push_back({reading});
+    batch.intervals.push_back({.reading = reading, .supersedes = correction.has_value()});
   }
   pushed->progress.mark_late(batch, calendar_);
   watch_clock(ports_.loop.now());
   const Instant now = ports_.loop.now().instant();
-  auto counts = ports_.store.commit(batch);
+  auto counts = commit_pushed(batch, correction, now);
   if (!counts) return counts;
   pushed->heard_at = now;
   note_committed(batch, *counts);
-  if (!counts->conflicts.empty()) {
+  tell_of_pushed(meter, *counts, correction, now);
+  return counts;
+}
+
+Result<CommitCounts> Gateway::commit_pushed(StoreBatch& batch,
+                                            const std::optional<Correction>& correction,
+                                            Instant now) {
+  if (!correction) return ports_.store.commit(batch);
+  CommitCounts counts;
+  const auto kept = ports_.store.as_one([&]() -> Result<void> {
+    const auto edit = ports_.store.add_edit({.time = now,
+                                             .author = correction->author,
+                                             .reason = correction->reason,
+                                             .file = "POST /api/v1/readings",
+                                             .sha256 = correction->sha256});
+    if (!edit) return tl::unexpected(edit.error());
+    batch.edit = *edit;
+    auto committed = ports_.store.commit(batch);
+    if (!committed) return tl::unexpected(committed.error());
+    counts = std::move(*committed);
+    return counts.taken > 0 ? Result<void>{} : ports_.store.remove_edit(*edit);
+  });
+  if (!kept) return tl::unexpected(kept.error());
+  return counts;
+}
+
+void Gateway::tell_of_pushed(const std::string& meter, const CommitCounts& counts,
+                             const std::optional<Correction>& correction, Instant now) {
+  if (!counts.conflicts.empty()) {
     note({now, Severity::warning, "reading_conflict", meter,
           fmt::format("{} readings were sent again with another value, the first of {}; what was "
                       "there stays",
-                      counts->conflicts.size(),
-                      metering::to_string(counts->conflicts.front().start))});
+                      counts.conflicts.size(),
+                      metering::to_string(counts.conflicts.front().start))});
   }
-  return counts;
+  if (correction && counts.taken > 0) {
+    note({now, Severity::info, "readings_corrected", meter,
+          fmt::format("{} readings were put right by {}: {}", counts.taken, correction->author,
+                      correction->reason)});
+  }
 }
 
 void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts) {

@@ -19,6 +19,7 @@
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "daemon/gateway/ingest/committer.hpp"
+#include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 #include "daemon/gateway/run/live_bus.hpp"
@@ -71,10 +72,12 @@ class Gateway {
   Result<void> reload(const SiteConfig& site);
 
   /// Pushed readings, of a meter with source = "http". They are stored when it answers.
-  /// @param readings  Their `meter` is not looked at.
+  /// @param readings    Their `meter` is not looked at.
+  /// @param correction  With one they take the place of good readings too, as an edit.
   /// @return not_found for a meter that takes none, or the store's failure; then nothing is stored.
   [[nodiscard]] Result<CommitCounts> take_pushed(const std::string& meter,
-                                                 std::vector<metering::Reading> readings);
+                                                 std::vector<metering::Reading> readings,
+                                                 const std::optional<Correction>& correction = {});
 
   /// For people to find it among the events.
   void note(StoreEvent event) { hand_in({.events = {std::move(event)}}); }
@@ -121,6 +124,12 @@ class Gateway {
   void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
+  /// As one commit: the batch, and the edit that it belongs to if it changes anything.
+  [[nodiscard]] Result<CommitCounts> commit_pushed(StoreBatch& batch,
+                                                   const std::optional<Correction>& correction,
+                                                   metering::Instant now);
+  void tell_of_pushed(const std::string& meter, const CommitCounts& counts,
+                      const std::optional<Correction>& correction, metering::Instant now);
   void note_committed(const StoreBatch& batch, const CommitCounts& counts);
   [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
                                       const BusRunner& runner) const;

@@ -220,8 +220,8 @@ class Service {
                   .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
                   .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
                   .take_readings =
-                      [this](const std::string& meter, auto readings) {
-                        return gateway_->take_pushed(meter, std::move(readings));
+                      [this](const std::string& meter, auto readings, const auto& correction) {
+                        return gateway_->take_pushed(meter, std::move(readings), correction);
                       }};
     auto server = serve_site(context_, *http, std::move(served));
     if (!server) return tl::unexpected(server.error());

@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "adapters/csv/fields.hpp"
+#include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
+#include "core/metering/validation.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -17,10 +22,29 @@ using std::chrono::seconds;
 
 constexpr std::string_view kExample =
     R"({"meter":"chw","unit":"kWh","readings":[{"time":"2026-03-01T00:00:00Z","value":1.5}]})";
+constexpr std::array<std::string_view, 6> kKeys{"meter",  "unit",   "stamps",
+                                                "reason", "author", "readings"};
+constexpr int kDepthMax = 8;        // a body has three
 constexpr double kValueMax = 1e18;  // so that no unit and no multiplier makes it infinite
 constexpr seconds kClocksDiffer{300};
 /// A sender whose clock was reset must not give a site months of the year 2000.
 constexpr std::chrono::days kOldest{400};
+
+/// Whether JSON has more brackets open at once than that. It is asked before the text is parsed: a
+/// megabyte of brackets would become a hundred times as much of nested values.
+bool is_nested_deeper(std::string_view json, int depth_max) {
+  int depth = 0;
+  bool is_text = false;
+  for (std::size_t i = 0; i < json.size() && depth <= depth_max; ++i) {
+    const char c = json[i];
+    if (c == '"') is_text = !is_text;
+    if (is_text && c == '\\') ++i;
+    if (is_text) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+  }
+  return depth > depth_max;
+}
 
 tl::unexpected<http::Response> malformed(std::string_view what, std::string_view field) {
   return refusal(400, "malformed", fmt::format("{}; the body is JSON such as {}", what, kExample),
@@ -54,12 +78,43 @@ Checked<metering::UnitConversion> unit_of(const nlohmann::json& body, const Mete
   return *conversion;
 }
 
+/// Absent without a reason.
+Checked<std::optional<Correction>> correction_in(const nlohmann::json& body,
+                                                 std::string_view bytes) {
+  const auto is_text = [&](const char* key) {
+    const auto text = text_in(body, key);
+    return text && text->find_first_not_of(" \t\r\n") != std::string::npos;
+  };
+  if (!body.contains("reason")) {
+    if (!body.contains("author")) return std::optional<Correction>{};
+    return refusal(400, "invalid_value", "'author' goes with a 'reason'", "author");
+  }
+  if (!is_text("reason")) {
+    return refusal(400, "invalid_value",
+                   "'reason' is empty; say why the stored readings are put right, for those who "
+                   "find them later",
+                   "reason");
+  }
+  if (body.contains("author") && !is_text("author")) {
+    return refusal(400, "invalid_value", "'author' is empty; say who puts them right", "author");
+  }
+  system::Sha256 hash;
+  hash.add(bytes);
+  return Correction{.author = text_in(body, "author").value_or("api"),
+                    .reason = *text_in(body, "reason"),
+                    .sha256 = hash.hex()};
+}
+
 /// Reads one element of `readings` after the other.
 class Elements {
  public:
-  Elements(const MeterConfig& meter, metering::UnitConversion unit, bool is_end_stamped,
-           Instant now)
-      : meter_(meter), unit_(unit), is_end_stamped_(is_end_stamped), now_(now) {}
+  Elements(const MeterConfig& meter, const metering::ValidationOptions& validation,
+           metering::UnitConversion unit, bool is_end_stamped, Instant now)
+      : meter_(meter),
+        validation_(validation),
+        unit_(unit),
+        is_end_stamped_(is_end_stamped),
+        now_(now) {}
 
   [[nodiscard]] Checked<Reading> read(const nlohmann::json& element, std::size_t index) const {
     const std::string place = fmt::format("readings[{}]", index);
@@ -75,7 +130,12 @@ class Elements {
     const auto mean_kW = mean_of(element, place + ".value");
     if (!mean_kW) return tl::unexpected(mean_kW.error());
     Reading reading{.meter = 0, .start = *start, .mean_kW = *mean_kW};
-    if (std::isnan(*mean_kW)) reading.validity = metering::Validity::missing;
+    if (std::isnan(*mean_kW)) {
+      reading.validity = metering::Validity::missing;
+      return reading;
+    }
+    reading.reasons = metering::doubt_of(*mean_kW, meter_.meter, validation_);
+    if (reading.reasons != metering::Reason::none) reading.validity = metering::Validity::suspect;
     return reading;
   }
 
@@ -132,6 +192,7 @@ class Elements {
   }
 
   const MeterConfig& meter_;
+  const metering::ValidationOptions& validation_;
   metering::UnitConversion unit_;
   bool is_end_stamped_;
   Instant now_;
@@ -140,10 +201,13 @@ class Elements {
 }  // namespace
 
 Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& site, Instant now) {
+  if (is_nested_deeper(body, kDepthMax)) {
+    return malformed(fmt::format("the body is nested deeper than {} levels", kDepthMax), "body");
+  }
   const auto json = nlohmann::json::parse(body, nullptr, false);
   if (!json.is_object()) return malformed("the body is no JSON object", "body");
   for (const auto& [key, value] : json.items()) {
-    if (key != "meter" && key != "unit" && key != "stamps" && key != "readings") {
+    if (std::ranges::find(kKeys, key) == kKeys.end()) {
       return malformed(fmt::format("{} is not known here", csv::in_quotes(key)), key);
     }
   }
@@ -160,8 +224,10 @@ Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& si
   if (list == json.end() || !list->is_array() || list->empty()) {
     return malformed("'readings' is needed, with at least one", "readings");
   }
-  const Elements elements{**meter, *unit, stamps == "end", now};
-  PushedReadings pushed{.meter = *meter, .readings = {}};
+  auto correction = correction_in(json, body);
+  if (!correction) return tl::unexpected(correction.error());
+  const Elements elements{**meter, site.closing.closing.validation, *unit, stamps == "end", now};
+  PushedReadings pushed{.meter = *meter, .readings = {}, .correction = std::move(*correction)};
   pushed.readings.reserve(list->size());
   for (std::size_t i = 0; i < list->size(); ++i) {
     auto reading = elements.read((*list)[i], i);

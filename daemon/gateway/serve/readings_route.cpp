@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/metering/validation.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/gateway/ingest/plausible_time.hpp"
 #include "daemon/gateway/serve/api.hpp"
 #include "daemon/gateway/serve/json_answer.hpp"
@@ -9,6 +11,33 @@
 #include "daemon/gateway/serve/pushed_readings.hpp"
 
 namespace recald::daemon {
+namespace {
+
+std::string why_doubted(const metering::Reading& reading, const metering::Meter& meter,
+                        const metering::ValidationOptions& options) {
+  const std::string value_kW = number_text(reading.mean_kW, 6);
+  if (metering::has(reading.reasons, metering::Reason::negative)) {
+    return fmt::format(
+        "{} kW is negative, and the meter has no negative_is_valid = true; check the sign",
+        value_kW);
+  }
+  return fmt::format("{} kW is more than {} times rated_kW = {}; check the unit, or rated_kW",
+                     value_kW, options.range_factor, *meter.rated_kW);
+}
+
+nlohmann::ordered_json suspect_json(const std::vector<metering::Reading>& readings,
+                                    const metering::Meter& meter,
+                                    const metering::ValidationOptions& options) {
+  auto suspect = nlohmann::ordered_json::array();
+  for (const metering::Reading& reading : readings) {
+    if (reading.validity != metering::Validity::suspect) continue;
+    suspect.push_back({{"start", metering::to_string(reading.start)},
+                       {"why", why_doubted(reading, meter, options)}});
+  }
+  return suspect;
+}
+
+}  // namespace
 
 http::Response post_readings(const Served& served, const http::Request& request) {
   if (const auto checked = has_only(request, {}); !checked) return checked.error();
@@ -23,7 +52,9 @@ http::Response post_readings(const Served& served, const http::Request& request)
     return http::error_response(
         409, "not_possible", fmt::format("no readings of meter '{}' are taken here", id), "meter");
   }
-  const auto counts = served.take_readings(id, std::move(pushed->readings));
+  const auto suspect =
+      suspect_json(pushed->readings, pushed->meter->meter, served.site.closing.closing.validation);
+  const auto counts = served.take_readings(id, std::move(pushed->readings), pushed->correction);
   if (!counts) {
     return http::error_response(503, "store_unavailable",
                                 "nothing was stored, send it again: " + counts.error().message);
@@ -36,7 +67,8 @@ http::Response post_readings(const Served& served, const http::Request& request)
                       {"stored", counts->taken},
                       {"known", counts->duplicates},
                       {"weaker", counts->weaker},
-                      {"conflicts", conflicts}});
+                      {"conflicts", conflicts},
+                      {"suspect", suspect}});
 }
 
 }  // namespace recald::daemon

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "adapters/http/message.hpp"
 #include "adapters/ports/store.hpp"
+#include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -28,7 +30,8 @@ struct Served {
   std::function<Result<void>(std::int64_t number)> cancel_job = {};
   /// Gateway::take_pushed. Absent: nothing is taken here.
   std::function<Result<CommitCounts>(const std::string& meter,
-                                     std::vector<metering::Reading> readings)>
+                                     std::vector<metering::Reading> readings,
+                                     const std::optional<Correction>& correction)>
       take_readings = {};
 };
 

@@ -55,6 +55,19 @@ TEST(Validation, RangeIsOneAndAFifthOfTheRating) {
   EXPECT_EQ(slots.measured_kW[3 * 24 + 2], 121.0);  // kept
 }
 
+TEST(Validation, OneReadingIsDoubtedByTheRatingAndTheSignAlone) {
+  Meter meter = hourly_meter();
+  EXPECT_EQ(doubt_of(1e9, meter, {}), Reason::none);
+  EXPECT_EQ(doubt_of(-1.0, meter, {}), Reason::negative);
+  meter.rated_kW = 100.0;
+  EXPECT_EQ(doubt_of(119.0, meter, {}), Reason::none);
+  EXPECT_EQ(doubt_of(121.0, meter, {}), Reason::range);
+  EXPECT_EQ(doubt_of(kBlank, meter, {}), Reason::none);
+  meter.negative_is_valid = true;
+  EXPECT_EQ(doubt_of(-119.0, meter, {}), Reason::none);
+  EXPECT_EQ(doubt_of(-121.0, meter, {}), Reason::range);
+}
+
 // Without a rating a factor of 1000 (a unit slip for a whole day) stands out from the month itself.
 TEST(Validation, WithoutARatingTheMonthIsItsOwnMeasure) {
   MonthSlots slots =

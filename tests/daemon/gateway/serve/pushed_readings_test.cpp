@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "tests/daemon/gateway/serve/served_site.hpp"
+#include "tests/support/allocations.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -83,6 +84,98 @@ TEST_F(PushedMeterSite, AnotherValueIsNotTakenAndTold) {
   const Json events = get_json("/api/v1/events")["events"];
   ASSERT_THAT(events, ::testing::Not(IsEmpty()));
   EXPECT_EQ(events[0]["kind"], "reading_conflict");
+}
+
+// 500 kW rated: 1.2 times that is the most that is believed, as of any other meter.
+TEST_F(PushedMeterSite, WhatTheMeterCannotReadIsSuspect) {
+  const Json said = taken(R"({"meter":"chw","unit":"kW","readings":[
+      {"time":"2024-03-30T10:00:00Z","value":300},{"time":"2024-03-30T10:15:00Z","value":301},
+      {"time":"2024-03-30T10:30:00Z","value":-1}]})");
+  EXPECT_EQ(said["stored"], 3);
+  ASSERT_THAT(said["suspect"], SizeIs(2));
+  EXPECT_EQ(said["suspect"][0]["start"], "2024-03-30T10:15:00Z");
+  EXPECT_EQ(said["suspect"][0]["why"],
+            "602 kW is more than 1.2 times rated_kW = 500; check the unit, or rated_kW");
+  EXPECT_EQ(said["suspect"][1]["why"],
+            "-2 kW is negative, and the meter has no negative_is_valid = true; check the sign");
+  const Json stored = intervals();
+  EXPECT_EQ(stored[0]["validity"], "ok");
+  EXPECT_EQ(stored[1]["validity"], "suspect");
+  EXPECT_EQ(stored[1]["reasons"], Json::array({"range"}));
+  EXPECT_EQ(stored[2]["reasons"], Json::array({"negative"}));
+}
+
+TEST_F(PushedMeterSite, ASuspectReadingGivesWayToAGoodOne) {
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":9000}]})");
+  const Json said = taken(
+      R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":9}]})");
+  EXPECT_EQ(said["stored"], 1);
+  EXPECT_THAT(said["suspect"], IsEmpty());
+  EXPECT_EQ(intervals()[0]["mean_kW"], 18.0);
+  EXPECT_EQ(intervals()[0]["validity"], "ok");
+}
+
+TEST_F(PushedMeterSite, AReasonPutsAStoredValueRightAsAnEdit) {
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})");
+  const Json said = taken(
+      R"({"meter":"chw","unit":"kW","reason":"wrong channel","author":"Ada","readings":[
+          {"time":"2024-03-30T10:00:00Z","value":9}]})");
+  EXPECT_EQ(said["stored"], 1);
+  EXPECT_THAT(said["conflicts"], IsEmpty());
+  const Json stored = intervals();
+  ASSERT_THAT(stored, SizeIs(1));
+  EXPECT_EQ(stored[0]["mean_kW"], 18.0);
+  EXPECT_EQ(stored[0]["revision"], 1);
+  const auto number = store_.find_meter("chw").value().value();
+  EXPECT_THAT(store_.edited_days(number).value(), SizeIs(1));
+  auto edit = disk_.database().prepare("SELECT author, reason, length(sha256) FROM edit");
+  ASSERT_TRUE(edit && edit->step().value());
+  EXPECT_EQ(edit->text(0), "Ada");
+  EXPECT_EQ(edit->text(1), "wrong channel");
+  EXPECT_EQ(edit->integer(2), 64);
+  loop_.run_for(minutes{1});
+  const Json events = get_json("/api/v1/events")["events"];
+  ASSERT_THAT(events, ::testing::Not(IsEmpty()));
+  EXPECT_EQ(events[0]["kind"], "readings_corrected");
+  EXPECT_THAT(events[0]["text"].get<std::string>(), HasSubstr("Ada: wrong channel"));
+}
+
+TEST_F(PushedMeterSite, ACorrectionThatChangesNothingLeavesNoEdit) {
+  const std::string body =
+      R"({"meter":"chw","unit":"kW","reason":"again","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})";
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})");
+  EXPECT_EQ(taken(body)["known"], 1);
+  auto edits = disk_.database().prepare("SELECT count(*) FROM edit");
+  ASSERT_TRUE(edits && edits->step().value());
+  EXPECT_EQ(edits->integer(0), 0);
+}
+
+TEST_F(PushedMeterSite, ACorrectedMonthIsClosedAgain) {
+  const metering::Instant march{calendar_.month_span(std::chrono::year{2024} / 3).begin};
+  for (int day = 0; day < 29; ++day) taken(body_of(march + days{day}, 96, 6.0));
+  loop_.run_for(days{3});
+  std::string corrected = body_of(march + days{3}, 96, 7.0);
+  corrected.insert(1, R"("reason":"the multiplier was wrong that day",)");
+  EXPECT_EQ(taken(corrected)["stored"], 96);
+  loop_.run_for(hours{2});
+  const Json months = get_json("/api/v1/months", {{"meter", "chw"}})["months"];
+  ASSERT_THAT(months, SizeIs(1));
+  EXPECT_EQ(months[0]["revision"], 1);
+}
+
+TEST_F(PushedMeterSite, ADeeplyNestedBodyIsRefusedBeforeItIsRead) {
+  const std::string deep(1024 * 1024, '[');
+  const long before = recald::testing::allocation_count();
+  const http::Response response = post(deep);
+  EXPECT_LT(recald::testing::allocation_count() - before, 1000);
+  EXPECT_EQ(response.status, 400);
+  EXPECT_THAT(response.body, HasSubstr("nested deeper than"));
+  EXPECT_EQ(in_short(post(R"({"meter":"chw","unit":")" + std::string(64, '[') + R"("})")),
+            "400 invalid_value unit");  // within a text they are text
+  const http::Response job =
+      answer(served_, {.method = http::Method::post, .path = "/api/v1/calibrations", .body = deep});
+  EXPECT_EQ(job.status, 400) << job.body;
+  EXPECT_LT(recald::testing::allocation_count() - before, 2000);
 }
 
 TEST_F(PushedMeterSite, EndStampsAndRates) {
@@ -179,6 +272,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongBody{R"({"meter":"chw","unit":"kWh","reading":[]})", "400 malformed reading"},
         WrongBody{R"({"meter":"chw","unit":"kWh","stamps":"middle","readings":[1]})",
                   "400 invalid_value stamps"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","reason":" ","readings":[1]})",
+                  "400 invalid_value reason"},
+        WrongBody{R"({"meter":"chw","unit":"kWh","author":"Ada","readings":[1]})",
+                  "400 invalid_value author"},
         WrongBody{R"({"meter":"chw","unit":"kWh","readings":[1]})", "400 malformed readings[0]"},
         WrongBody{R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z"}]})",
                   "400 invalid_value readings[0].value"},

@@ -72,8 +72,8 @@ class ServedSite : public ::testing::Test, protected testing::RigInMemory {
                  .now = [this] { return loop_.now().instant(); },
                  .started = kStart,
                  .take_readings =
-                     [this](const std::string& meter, auto readings) {
-                       return gateway_->take_pushed(meter, std::move(readings));
+                     [this](const std::string& meter, auto readings, const auto& correction) {
+                       return gateway_->take_pushed(meter, std::move(readings), correction);
                      }};
 };
 
