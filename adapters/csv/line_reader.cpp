@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "adapters/system/regular_file.hpp"
+
 namespace recald::csv {
 namespace {
 
@@ -86,14 +88,10 @@ bool LineReader::skip_long_line(Line& line) {
 }
 
 Result<ByteSource> open_file(const std::filesystem::path& file, std::string_view what) {
+  if (auto is_file = system::require_file(file, what); !is_file) {
+    return tl::unexpected(is_file.error());
+  }
   const std::string named = std::string{what} + " '" + file.string() + "'";
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    return failure(ErrorCode::not_found, named + " does not exist");
-  }
-  if (std::filesystem::is_directory(file, error)) {
-    return failure(ErrorCode::io_failed, named + " is a folder, not a file");
-  }
   std::shared_ptr<std::FILE> handle{std::fopen(file.c_str(), "rb"), CloseFile{}};
   if (!handle) {
     return failure(ErrorCode::io_failed, named + " cannot be opened: " + std::strerror(errno));

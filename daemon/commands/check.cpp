@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "adapters/system/regular_file.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/commands/check_meters.hpp"
 #include "daemon/commands/commands.hpp"
@@ -45,12 +48,15 @@ void print_meters(const SiteConfig& site, const Console& console) {
 std::vector<std::string> check_buses(const SiteConfig& site, const Console& console, bool json) {
   constexpr double kCrowded = 0.7;
   std::vector<std::string> problems;
+  std::map<std::string_view, std::vector<const LiveMeterConfig*>> meters;  // by bus
+  for (const MeterConfig& meter : site.meters) {
+    if (meter.live) meters[meter.live->bus].push_back(&*meter.live);
+  }
   for (const BusConfig& bus : site.buses) {
     double busy = 0.0;
-    for (const MeterConfig& meter : site.meters) {
-      if (!meter.live || meter.live->bus != bus.name) continue;
-      const std::chrono::duration<double> length = poll_time(bus, *meter.live);
-      busy += length / meter.live->poll;
+    for (const LiveMeterConfig* meter : meters[bus.name]) {
+      const std::chrono::duration<double> length = poll_time(bus, *meter);
+      busy += length / meter->poll;
     }
     if (!json) {
       console.out << fmt::format("  bus {:<18} {}, busy {:.0f} % of its time\n", bus.name,
@@ -90,12 +96,20 @@ std::vector<std::string> check_model(const SiteConfig& site, const Console& cons
   return problems;
 }
 
+/// Pushed meters come in by HTTP alone.
+std::vector<std::string> check_pushed(const SiteConfig& site) {
+  const auto pushed = std::ranges::find(site.meters, MeterSource::http, &MeterConfig::source);
+  if (site.http || pushed == site.meters.end()) return {};
+  return {nowhere_to_push(site, *pushed)};
+}
+
 std::vector<std::string> check_files(const SiteConfig& site) {
   std::vector<std::string> problems;
   const auto require = [&](const std::filesystem::path& file, std::string_view what) {
-    if (std::error_code ignored; std::filesystem::is_regular_file(file, ignored)) return;
-    problems.push_back(fmt::format("{}: {} '{}' does not exist", site.file.filename().string(),
-                                   what, file.string()));
+    const auto is_file = system::require_file(file, what);
+    if (is_file) return;
+    problems.push_back(
+        fmt::format("{}: {}", site.file.filename().string(), is_file.error().message));
   };
   for (const MeterConfig& config : site.meters) {
     if (config.is_stored()) continue;
@@ -113,6 +127,10 @@ int run_check(const CheckArguments& arguments, const Console& console) {
   if (site && !arguments.json) {
     console.out << fmt::format("{} ({}), {}\n", site->name, site->id, site->timezone);
     print_meters(*site, console);
+  }
+  if (site) {
+    const auto more = check_pushed(*site);
+    problems.insert(problems.end(), more.begin(), more.end());
   }
   if (site) {
     const auto more = check_buses(*site, console, arguments.json);

@@ -19,6 +19,13 @@ tl::expected<OpenSite, std::vector<std::string>> open_site(const std::filesystem
   return OpenSite{std::move(*config), std::move(*calendar)};
 }
 
+std::string nowhere_to_push(const SiteConfig& site, const MeterConfig& meter) {
+  return fmt::format(
+      "{}: meter '{}' has source = \"http\", but there is no [http] to send its readings to; add "
+      "[http] with listen = \"127.0.0.1:8080\"",
+      site.file.filename().string(), meter.meter.id);
+}
+
 void print_data_words(const Recording& recording, const Console& console) {
   for (const FileIssues& file : recording.files) {
     if (file.issues.total == 0) continue;

@@ -10,6 +10,9 @@ namespace recald::daemon {
 [[nodiscard]] tl::expected<OpenSite, std::vector<std::string>> open_site(
     const std::filesystem::path& file);
 
+/// What is said of a meter with source = "http" at a site without [http].
+[[nodiscard]] std::string nowhere_to_push(const SiteConfig& site, const MeterConfig& meter);
+
 /// Bad lines of the files and what the meters' data show, in words on err.
 void print_data_words(const Recording& recording, const Console& console);
 

@@ -12,13 +12,18 @@ namespace recald::daemon {
 int run_run(const RunArguments& arguments, const Console& console) {
   auto site = open_site(arguments.site);
   if (!site) return console.fail(site.error());
-  const bool reads_anything = std::ranges::any_of(
-      site->config.meters, [](const MeterConfig& meter) { return meter.live.has_value(); });
-  if (!reads_anything) {
+  const auto& meters = site->config.meters;
+  if (std::ranges::none_of(meters, &MeterConfig::is_stored)) {
     return console.fail(
-        fmt::format("{}: no [[meter]] has source = \"modbus\", so there is nothing to poll; use "
-                    "recald replay for recorded readings",
+        fmt::format("{}: no [[meter]] has source = \"modbus\" or \"http\", so there is nothing to "
+                    "poll or to receive; use recald replay for recorded readings",
                     arguments.site.filename().string()));
+  }
+  const bool polls =
+      std::ranges::any_of(meters, [](const MeterConfig& meter) { return meter.live.has_value(); });
+  if (!polls && !site->config.http) {
+    const auto pushed = std::ranges::find(meters, MeterSource::http, &MeterConfig::source);
+    return console.fail(nowhere_to_push(site->config, *pushed));
   }
   ServiceOptions options;
   if (!arguments.clock.empty()) {

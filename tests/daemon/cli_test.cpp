@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -157,6 +158,37 @@ TEST_F(Cli, CheckNamesDataFilesThatAreNotThere) {
                                      path("readings.csv") + "' does not exist\n"));
   EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml: the weather file '" + path("weather.csv") +
                                      "' does not exist\n"));
+}
+
+// A pipe that nobody writes to would keep a command waiting for ever.
+TEST_F(Cli, InputThatIsNoFileIsRefusedAtOnce) {
+  std::filesystem::remove(path("readings.csv"));
+  ASSERT_EQ(::mkfifo(path("readings.csv").c_str(), 0600), 0);
+  const std::string sentence =
+      "'" + path("readings.csv") + "' is a pipe, not a file; save its content to a file first\n";
+  EXPECT_THAT(run({"check", site()}).err, HasSubstr(sentence));
+  EXPECT_EQ(run({"replay", site()}).err, "recald: readings file " + sentence);
+  EXPECT_EQ(run({"import", site(), path("readings.csv"), "--reason", "old"}).err,
+            "recald: readings file " + sentence);
+  std::filesystem::remove(path("readings.csv"));
+  std::filesystem::create_directory(path("readings.csv"));
+  EXPECT_EQ(run({"replay", site()}).err,
+            "recald: readings file '" + path("readings.csv") + "' is a folder, not a file\n");
+  EXPECT_THAT(run({"check", site()}).err, HasSubstr("is a folder, not a file\n"));
+}
+
+TEST_F(Cli, CheckNamesPushedMetersThatNobodyCanPushTo) {
+  const std::string pushed =
+      "[site]\nid = \"x\"\ntimezone = \"UTC\"\n[[meter]]\nid = \"chw\"\nsource = \"http\"\n"
+      "utility = \"chilled_water\"\n";
+  write("site.toml", pushed);
+  const Outcome outcome = run({"check", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_EQ(outcome.err,
+            "recald: site.toml: meter 'chw' has source = \"http\", but there is no [http] to send "
+            "its readings to; add [http] with listen = \"127.0.0.1:8080\"\n");
+  write("site.toml", pushed + "[http]\nlisten = \"127.0.0.1:8080\"\n");
+  EXPECT_EQ(run({"check", site()}).exit_code, kSuccess);
 }
 
 TEST_F(Cli, CheckFindsAPriorThatTheBuildingDoesNotHave) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "adapters/system/regular_file.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/time_zone_release.hpp"
 
@@ -56,6 +57,7 @@ class Import {
   };
 
   Result<void> begin(const std::filesystem::path& file, metering::Instant now) {
+    if (auto is_file = system::require_file(file, "readings file"); !is_file) return is_file;
     system::Sha256 hash;
     if (auto added = hash.add_file(file); !added) return added;
     const auto edit = store_.add_edit({.time = now,

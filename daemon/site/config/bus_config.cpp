@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 
-#include "daemon/site/config/register_map_file.hpp"
-
 namespace recald::daemon {
 namespace {
 
@@ -110,14 +108,14 @@ BusConfig read_bus(TomlReader& table, const std::string& name) {
   return bus;
 }
 
-LiveMeterConfig read_live_meter(TomlReader& table, const std::filesystem::path& folder) {
+LiveMeterConfig read_live_meter(TomlReader& table, RegisterMaps& maps) {
   LiveMeterConfig meter;
   meter.bus = table.required_text("bus");
   if (!table.has("unit")) table.problem("'unit' is missing: the device's Modbus address");
   meter.unit = static_cast<std::uint8_t>(table.whole_number_or("unit", 1, kUnits));
   if (const std::string name = table.required_text("map"); !name.empty()) {
-    if (auto map = find_register_map(name, folder)) {
-      meter.map = std::move(*map);
+    if (const auto& map = maps.find(name)) {
+      meter.map = *map;
     } else {
       for (const std::string& problem : map.error()) table.problem_at("map", problem);
     }

@@ -3,11 +3,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include "adapters/modbus/connection.hpp"
 #include "adapters/modbus/register_map.hpp"
+#include "daemon/site/config/register_map_file.hpp"
 #include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
@@ -38,9 +38,7 @@ struct LiveMeterConfig {
 [[nodiscard]] BusConfig read_bus(TomlReader& table, const std::string& name);
 
 /// Asks for the keys of a live meter; problems are recorded at the table.
-/// @param folder  Where a map of one's own lies: that of the site file.
-[[nodiscard]] LiveMeterConfig read_live_meter(TomlReader& table,
-                                              const std::filesystem::path& folder);
+[[nodiscard]] LiveMeterConfig read_live_meter(TomlReader& table, RegisterMaps& maps);
 
 /// Bus time that a poll of the meter takes if all goes well, for the budget that `recald check`
 /// shows: line time of requests and replies, 3.5 silent characters each, 60 ms until the device

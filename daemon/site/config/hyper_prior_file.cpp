@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "adapters/system/regular_file.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -37,10 +39,8 @@ BetaPrior read_rho(TomlReader& root) {
 
 tl::expected<HyperPrior, Problems> load_hyper_prior(const std::filesystem::path& file) {
   Problems problems;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    problems.push_back(fmt::format("hyper-prior file '{}' does not exist", file.string()));
-    return tl::unexpected(problems);
+  if (const auto is_file = system::require_file(file, "hyper-prior file"); !is_file) {
+    return tl::unexpected(Problems{is_file.error().message});
   }
   try {
     const toml::table table = toml::parse_file(file.string());

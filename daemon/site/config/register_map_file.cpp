@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "adapters/system/regular_file.hpp"
 #include "core/metering/units.hpp"
 #include "core/text/nearest.hpp"
 #include "daemon/site/config/shipped_register_maps.hpp"
@@ -337,8 +338,9 @@ tl::expected<RegisterMap, Problems> find_register_map(const std::string& name,
   if (name.ends_with(".toml")) {
     const std::filesystem::path given{name};
     const std::filesystem::path path = given.is_absolute() ? given : folder / given;
-    std::ifstream in{path, std::ios::binary};
-    if (!in) {
+    std::ifstream in;
+    if (system::require_file(path, "register map")) in.open(path, std::ios::binary);
+    if (!in.is_open()) {
       return tl::unexpected(
           Problems{fmt::format("register map '{}' cannot be read; name a file beside the site file "
                                "or a shipped map: {}",
@@ -353,6 +355,12 @@ tl::expected<RegisterMap, Problems> find_register_map(const std::string& name,
   auto file = parse_register_map(text, name);
   if (!file) return tl::unexpected(file.error());
   return std::move(file->map);
+}
+
+const tl::expected<RegisterMap, Problems>& RegisterMaps::find(const std::string& name) {
+  auto known = read_.find(name);
+  if (known == read_.end()) known = read_.emplace(name, find_register_map(name, folder_)).first;
+  return known->second;
 }
 
 }  // namespace recald::daemon

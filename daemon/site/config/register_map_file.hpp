@@ -43,4 +43,18 @@ struct RegisterMapFile {
 [[nodiscard]] tl::expected<modbus::RegisterMap, Problems> find_register_map(
     const std::string& name, const std::filesystem::path& folder);
 
+/// The maps of one site file, each read once, however many meters have it.
+class RegisterMaps {
+ public:
+  /// @param folder  Where a map of one's own lies: that of the site file.
+  explicit RegisterMaps(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// As find_register_map.
+  [[nodiscard]] const tl::expected<modbus::RegisterMap, Problems>& find(const std::string& name);
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, tl::expected<modbus::RegisterMap, Problems>> read_;
+};
+
 }  // namespace recald::daemon

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <set>
+#include <utility>
 
+#include "adapters/system/regular_file.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/site/config/building_config.hpp"
 #include "daemon/site/config/site_path.hpp"
@@ -138,7 +141,7 @@ MeterSource read_source(TomlReader& table) {
   return word == "http" ? MeterSource::http : MeterSource::csv;
 }
 
-MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
+MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& maps) {
   MeterConfig config;
   metering::Meter& meter = config.meter;
   meter.id = table.required_text("id");
@@ -155,7 +158,7 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
     table.problem_at("utility", utility.error().message);
   }
   if (is_live) {
-    config.live = read_live_meter(table, site.file.parent_path());
+    config.live = read_live_meter(table, maps);
   } else if (config.source == MeterSource::csv) {
     config.file = resolve(site.file, table.required_text("file"), "file", table);
     config.name_in_file = table.text_or("name_in_file", meter.id);
@@ -195,21 +198,33 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site) {
   return config;
 }
 
-/// A live meter's bus is described, and no other meter answers to its address there.
-void require_bus(TomlReader& table, const SiteConfig& site) {
-  const MeterConfig& meter = site.meters.back();
-  if (!meter.live || meter.live->bus.empty()) return;
-  const auto known = std::ranges::find(site.buses, meter.live->bus, &BusConfig::name);
-  if (known == site.buses.end()) {
-    table.problem_at("bus",
-                     fmt::format("'bus' names '{0}', but there is no [bus.{0}]", meter.live->bus));
+/// The live meters of a site by what they answer to, so that each is compared with few others.
+class BusAddresses {
+ public:
+  explicit BusAddresses(const std::vector<BusConfig>& buses) {
+    for (const BusConfig& bus : buses) buses_.insert(bus.name);
   }
-  for (const MeterConfig& other : site.meters) {
-    const bool is_same_unit = &other != &meter && other.live &&
-                              other.live->bus == meter.live->bus &&
-                              other.live->unit == meter.live->unit;
-    if (!is_same_unit) continue;
+
+  /// A live meter's bus is described, and no other meter answers to its address there.
+  void add(const MeterConfig& meter, const SiteConfig& site, TomlReader& table) {
+    if (!meter.live || meter.live->bus.empty()) return;
+    if (!buses_.contains(meter.live->bus)) {
+      table.problem_at(
+          "bus", fmt::format("'bus' names '{0}', but there is no [bus.{0}]", meter.live->bus));
+    }
+    std::vector<std::size_t>& others = meters_[{meter.live->bus, meter.live->unit}];
+    for (const std::size_t other : others) {
+      if (!can_share(site.meters[other], meter, table)) break;  // one of them says it
+    }
+    others.push_back(site.meters.size() - 1);
+  }
+
+ private:
+  /// @pre both have the same unit of the same bus
+  static bool can_share(const MeterConfig& other, const MeterConfig& meter, TomlReader& table) {
+    bool can = true;
     if (other.live->map.sunspec_models != meter.live->map.sunspec_models) {
+      can = false;
       table.problem_at(
           "map", fmt::format("meters '{}' and '{}' are unit {} on bus '{}' with SunSpec models of "
                              "their own; give both maps the same 'sunspec_models'",
@@ -218,13 +233,17 @@ void require_bus(TomlReader& table, const SiteConfig& site) {
     const bool is_same =
         other.live->map.energy == meter.live->map.energy &&
         (!meter.live->map.energy.empty() || other.live->map.power == meter.live->map.power);
-    if (!is_same) continue;
+    if (!is_same) return can;
     table.problem_at(
         "unit", fmt::format("meters '{}' and '{}' are the same registers of unit {} "
                             "on bus '{}'",
                             other.meter.id, meter.meter.id, meter.live->unit, meter.live->bus));
+    return false;
   }
-}
+
+  std::set<std::string> buses_;
+  std::map<std::pair<std::string, std::uint8_t>, std::vector<std::size_t>> meters_;
+};
 
 std::optional<metering::MonthRange> read_range(TomlReader table) {
   const auto from = table.month("from");
@@ -337,9 +356,11 @@ void read_root(TomlReader root, SiteConfig& config) {
     }
   }
   std::set<std::string> ids;
+  BusAddresses addresses{config.buses};
+  RegisterMaps maps{config.file.parent_path()};
   for (TomlReader& meter : root.tables("meter")) {
-    config.meters.push_back(read_meter(meter, config));
-    require_bus(meter, config);
+    config.meters.push_back(read_meter(meter, config, maps));
+    addresses.add(config.meters.back(), config, meter);
     const std::string& id = config.meters.back().meter.id;
     if (!id.empty() && !ids.insert(id).second)
       meter.problem(fmt::format("a second meter has the id '{}'", id));
@@ -411,10 +432,14 @@ tl::expected<SiteConfig, std::vector<std::string>> load_site(const std::filesyst
   };
   std::error_code error;
   const auto kind = std::filesystem::status(file, error).type();
-  if (kind == std::filesystem::file_type::not_found) return refused("does not exist");
-  if (error) return refused("cannot be looked at: " + error.message());
   if (kind == std::filesystem::file_type::directory) {
     return refused("is a folder; name the TOML file in it");
+  }
+  if (error && kind != std::filesystem::file_type::not_found) {
+    return refused("cannot be looked at: " + error.message());
+  }
+  if (const auto is_file = system::require_file(file, "site file"); !is_file) {
+    return tl::unexpected(Problems{is_file.error().message});
   }
   std::ifstream in{file, std::ios::binary};
   if (!in) return refused("cannot be read; give recald the right to read it");

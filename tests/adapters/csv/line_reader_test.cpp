@@ -1,9 +1,12 @@
 #include "adapters/csv/line_reader.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <string>
 #include <vector>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace recald::csv::line_reader_test {
 namespace {
@@ -83,7 +86,19 @@ TEST(OpenFile, SaysWhatIsWrong) {
   ASSERT_FALSE(missing.has_value());
   EXPECT_EQ(missing.error().code, ErrorCode::not_found);
   EXPECT_EQ(missing.error().message, "readings file '/no/such/file.csv' does not exist");
-  EXPECT_EQ(open_file("/", "readings file").error().code, ErrorCode::io_failed);
+  EXPECT_EQ(open_file("/", "readings file").error().message,
+            "readings file '/' is a folder, not a file");
+}
+
+// Opening a pipe that nobody writes to would wait for ever.
+TEST(OpenFile, APipeIsRefusedAtOnce) {
+  const recald::testing::TemporaryFolder folder;
+  const std::string pipe = (folder / "readings.csv").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(open_file(pipe, "readings file").error().message,
+            "readings file '" + pipe + "' is a pipe, not a file; save its content to a file first");
+  EXPECT_EQ(open_file("/dev/null", "readings file").error().message,
+            "readings file '/dev/null' is a device, not a file; save its content to a file first");
 }
 
 }  // namespace

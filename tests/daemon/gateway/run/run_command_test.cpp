@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "adapters/http/client.hpp"
 #include "adapters/sqlite/database.hpp"
 #include "adapters/stores/open.hpp"
 #include "tests/daemon/gateway/run/polled_site.hpp"
@@ -217,13 +218,34 @@ TEST_F(RunCommand, OneAtATimeRunsOnAStore) {
   EXPECT_EQ(first.end(SIGINT), 0);
 }
 
-TEST_F(RunCommand, ASiteWithNothingToPollIsTold) {
+TEST_F(RunCommand, ASiteWithNothingToDoIsTold) {
+  const std::string site =
+      "[site]\nid = \"x\"\ntimezone = \"UTC\"\n[[meter]]\nid = \"m\"\n"
+      "utility = \"electricity\"\n";
+  recald::testing::write_text(folder_ / "site.toml", site + "file = \"m.csv\"\n");
+  EXPECT_EQ((BackgroundProcess{command("run"), said()}.wait()), 1);
+  EXPECT_THAT(what_was_said(), HasSubstr("no [[meter]] has source = \"modbus\" or \"http\""));
+  recald::testing::write_text(folder_ / "site.toml", site + "source = \"http\"\n");
+  EXPECT_EQ((BackgroundProcess{command("run"), said()}.wait()), 1);
+  EXPECT_THAT(what_was_said(), HasSubstr("no [http] to send its readings to"));
+}
+
+// A gateway without a bus: another program reads the meters and sends what it read.
+TEST_F(RunCommand, ASiteOfPushedMetersAlone) {
   recald::testing::write_text(folder_ / "site.toml",
-                              "[site]\nid = \"x\"\ntimezone = \"UTC\"\n[[meter]]\nid = \"m\"\n"
-                              "utility = \"electricity\"\nfile = \"m.csv\"\n");
+                              "[site]\nid = \"x\"\ntimezone = \"UTC\"\n"
+                              "[http]\nlisten = \"127.0.0.1:0\"\n[[meter]]\nid = \"m\"\n"
+                              "utility = \"electricity\"\nsource = \"http\"\n");
+  recald::testing::write_text(said(), "");
   BackgroundProcess daemon{command("run"), said()};
-  EXPECT_EQ(daemon.wait(), 1);
-  EXPECT_THAT(what_was_said(), HasSubstr("no [[meter]] has source = \"modbus\""));
+  ASSERT_TRUE(eventually([&] { return said_so("event=listening"); })) << what_was_said();
+  const std::string text = what_was_said();
+  const auto port = static_cast<std::uint16_t>(std::stoi(text.substr(text.find(" port=") + 6)));
+  EXPECT_TRUE(eventually([&] {
+    const auto health = http::get({.port = port, .path = "/healthz"});
+    return health && health->status == 200;
+  })) << what_was_said();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
 }
 
 TEST_F(RunCommand, CheckTellsHowBusyTheBusIs) {

@@ -1,15 +1,18 @@
 /// Site files: what a right one says, and one sentence for each mistake people make.
 #include "daemon/site/config/site_config.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <locale>
 #include <sstream>
 
 #include <cstdlib>
 
 #include "core/model/parameter_library.hpp"
+#include "tests/support/allocations.hpp"
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -406,6 +409,58 @@ TEST(SiteConfig, MissingFileAndFolderAreOneSentence) {
   ASSERT_FALSE(directory.has_value());
   EXPECT_THAT(directory.error(), ElementsAre("site file '" + folder.path().string() +
                                              "' is a folder; name the TOML file in it"));
+}
+
+/// Modbus meters, two hundred a bus.
+std::string portfolio(int meters) {
+  constexpr int kMetersABus = 200;
+  std::string text = "[site]\nid = \"x\"\ntimezone = \"UTC\"\n";
+  for (int i = 0; i < meters; ++i) {
+    const int bus = i / kMetersABus;
+    if (i % kMetersABus == 0) {
+      text += fmt::format("[bus.b{0}]\ntype = \"tcp\"\nhost = \"10.0.0.1\"\nport = {1}\n", bus,
+                          bus + 1);
+    }
+    text += fmt::format(
+        "[[meter]]\nid = \"m{}\"\nutility = \"electricity\"\nsource = \"modbus\"\n"
+        "bus = \"b{}\"\nunit = {}\nmap = \"abb-b23\"\nrated_kW = 5\n",
+        i, bus, i % kMetersABus + 1);
+  }
+  return text;
+}
+
+// Each meter is compared with those of its address alone, and a map is read once.
+TEST(SiteConfig, ALargePortfolioIsReadOnceAndComparedLittle) {
+  const auto allocations_for = [](int meters) {
+    const std::string text = portfolio(meters);
+    const long before = recald::testing::allocation_count();
+    const auto site = parse_site(text, "site.toml");
+    EXPECT_TRUE(site.has_value()) << site.error().front();
+    return recald::testing::allocation_count() - before;
+  };
+  (void)allocations_for(200);  // what is made once
+  const long few = allocations_for(500);
+  EXPECT_LT(allocations_for(1000), 3 * few);
+  EXPECT_LT(few, 500 * 100);  // reading a map takes thousands
+}
+
+TEST(SiteConfig, OneMeterTooManyIsFoundInALargePortfolio) {
+  std::string text = portfolio(600);
+  text.replace(text.find("unit = 7\n", text.find("[bus.b1]")), 9, "unit = 6\n");
+  const auto site = parse_site(text, "site.toml");
+  ASSERT_FALSE(site.has_value());
+  EXPECT_THAT(site.error(),
+              ElementsAre(::testing::HasSubstr(
+                  "meters 'm205' and 'm206' are the same registers of unit 6 on bus 'b1'")));
+}
+
+TEST(SiteConfig, ASiteFileThatIsNoFileIsRefusedAtOnce) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "site.toml";
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_THAT(load_site(file).error(),
+              ElementsAre("site file '" + file.string() +
+                          "' is a pipe, not a file; save its content to a file first"));
 }
 
 }  // namespace
