@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"
@@ -14,8 +16,6 @@ constexpr int kDraws = 200;
 constexpr double kMuchBetter = 20.0;  // nats
 
 using Alterations = std::vector<std::shared_ptr<const model::hourly::Alteration>>;
-
-Error cancelled() { return {ErrorCode::cancelled, "the diagnosis was cancelled"}; }
 
 /// Draws of the effect's parameters from the linearised posterior of all scores.
 std::vector<std::vector<double>> draw_effect(const Candidate& candidate, const JointFit& fit,
@@ -210,14 +210,15 @@ void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) 
 /// A diagnosis on its way: the model as it stands and what was found so far.
 class Search {
  public:
-  Search(const SiteProblem& site, const DiagnoseOptions& options)
-      : site_(site), options_(options), list_(list_candidates(site)) {
+  /// @param proceed  Asked before each run of the model.
+  Search(const SiteProblem& site, const DiagnoseOptions& options, std::function<bool()> proceed)
+      : site_(site), options_(options), proceed_(std::move(proceed)), list_(list_candidates(site)) {
     result_.not_identifiable = list_.not_identifiable;
     result_.candidates = list_.candidates;
   }
 
   Result<void> begin() {
-    Predictor base{site_};
+    Predictor base{site_, {}, proceed_};
     auto first = lay_ground(base, site_, errors());
     if (!first) return tl::unexpected(first.error());
     first_ = std::move(*first);
@@ -229,7 +230,7 @@ class Search {
   Result<bool> turn() {
     const std::size_t count = result_.passes.size();
     Rng rng{options_.seed, streams::kPasses[count]};
-    Predictor predictor{site_, accepted_};
+    Predictor predictor{site_, accepted_, proceed_};
     const std::vector<Candidate> open = still_open(list_, result_.added);
     NamingRules rules = options_.rules;
     const bool assumed = count < options_.assumed.size();
@@ -328,7 +329,7 @@ class Search {
   /// The model with one more effect. @param found  The base parameters fitted together with it.
   Result<void> take_up(const Addition& addition, const JointFit& found) {
     accepted_.push_back(alteration_of(addition.candidate, site_.facts(), addition.eta));
-    Predictor altered{site_, accepted_};
+    Predictor altered{site_, accepted_, proceed_};
     auto next = lay_next_ground(altered, site_, now(), found, errors());
     if (!next) return tl::unexpected(next.error());
     latest_ = std::move(*next);
@@ -339,6 +340,7 @@ class Search {
 
   const SiteProblem& site_;
   const DiagnoseOptions& options_;
+  std::function<bool()> proceed_;
   CandidateList list_;
   Alterations accepted_;
   Ground first_;
@@ -351,19 +353,23 @@ class Search {
 
 Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& options,
                            const Observer& observer) {
-  const auto go_on = [&](const char* what, double share) {
-    return !observer || observer(what, share);
-  };
-  Search search{site, options};
-  if (!go_on("calibrating the hourly model", 0.0)) return tl::unexpected(cancelled());
+  const char* what = "calibrating the hourly model";
+  double share = 0.0;
+  const auto go_on = [&] { return !observer || observer(what, share); };
+  Search search{site, options, go_on};
+  if (!go_on()) return tl::unexpected(diagnosis_cancelled());
   if (auto begun = search.begin(); !begun) return tl::unexpected(begun.error());
   for (int turn = 0;; ++turn) {
-    if (!go_on("looking for disagreement", 0.2 + 0.15 * turn)) return tl::unexpected(cancelled());
+    what = "looking for disagreement";
+    share = 0.2 + 0.15 * turn;
+    if (!go_on()) return tl::unexpected(diagnosis_cancelled());
     const auto more = search.turn();
     if (!more) return tl::unexpected(more.error());
     if (!*more) break;
   }
-  if (!go_on("showing", 0.95)) return tl::unexpected(cancelled());
+  what = "showing";
+  share = 0.95;
+  if (!go_on()) return tl::unexpected(diagnosis_cancelled());
   return std::move(search).end();
 }
 

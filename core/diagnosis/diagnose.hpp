@@ -70,7 +70,8 @@ struct Diagnosis {
   int model_runs = 0;
 };
 
-/// Progress in words and as a share; false stops the diagnosis.
+/// Progress in words and as a share; false stops the diagnosis. Asked before each run of the model,
+/// many times a second.
 using Observer = std::function<bool(const char* what, double share)>;
 
 /// @return the diagnosis, whatever its outcome; or

@@ -186,6 +186,7 @@ Result<FirstLook> look_at(Predictor& predictor, const FitContext& context, const
   std::vector<CandidateScale> scales;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Footprints prints = footprints_of(predictor, context, none, candidates[i], i, base);
+    if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
     judge_all(*judge, prints);
     result.candidates.push_back(summarise(prints.looks));
     const Look& best = result.candidates.back().best;

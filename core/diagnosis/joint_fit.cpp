@@ -65,6 +65,7 @@ class ScoredModel {
   Eigen::VectorXd stacked(const Eigen::VectorXd& own) {
     return context_.observations.stack(run(own));
   }
+  [[nodiscard]] bool is_stopped() const { return predictor_.is_stopped(); }
 
   /// What is chosen, never fitted. @param j  Index into eta.
   [[nodiscard]] bool is_choice(Eigen::Index j) const { return parameter(j).choice; }
@@ -162,6 +163,7 @@ class ModeSearch {
   Result<bool> climb(int iterations_max, double small_gain) {
     for (int i = 0; i < iterations_max; ++i) {
       const auto gain = iterate();
+      if (model_.is_stopped()) return tl::unexpected(diagnosis_cancelled());
       if (!gain) return tl::unexpected(gain.error());
       if (*gain < small_gain) return true;
     }
@@ -338,6 +340,7 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
     if (!ended) return tl::unexpected(ended.error());
   }
 
+  if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
   const Place& place = search.place;
   JointFit fit;
   fit.converged = *ended;

@@ -151,19 +151,23 @@ std::unique_ptr<model::hourly::Alteration> alteration_of(const Candidate& candid
 }
 
 Predictor::Predictor(const SiteProblem& site,
-                     std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted)
+                     std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted,
+                     std::function<bool()> proceed)
     : site_(&site),
       accepted_(std::move(accepted)),
       building_(site.nominal),
       hourly_(site.drivers),
       hours_kW_(static_cast<Eigen::Index>(site.drivers->hours.size()),
                 static_cast<Eigen::Index>(site.meters.size())),
-      parts_kW_(site.day_parts.count(), hours_kW_.cols()) {
+      parts_kW_(Eigen::ArrayXXd::Zero(site.day_parts.count(), hours_kW_.cols())),
+      proceed_(std::move(proceed)) {
   for (const MeterData& meter : site.meters) maps_.push_back(meter.end_uses);
 }
 
 const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
                                            const model::hourly::Alteration* extra) {
+  is_stopped_ = is_stopped_ || (proceed_ && !proceed_());
+  if (is_stopped_) return parts_kW_;
   building_ = site_->nominal;  // same sizes, nothing is allocated
   for (std::size_t j = 0; j < theta.size(); ++j) {
     site_->definitions[j]->set(building_, theta[j]);
@@ -177,5 +181,7 @@ const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
   ++runs_;
   return parts_kW_;
 }
+
+Error diagnosis_cancelled() { return {ErrorCode::cancelled, "the diagnosis was cancelled"}; }
 
 }  // namespace recald::diagnosis

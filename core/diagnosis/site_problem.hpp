@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -73,8 +74,13 @@ struct CandidateList {
 class Predictor {
  public:
   /// @param accepted  Effects of the model's present version: applied first, in every run.
-  Predictor(const SiteProblem& site,
-            std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted = {});
+  /// @param proceed   Asked before each run. Once it says no, nothing more is run.
+  explicit Predictor(const SiteProblem& site,
+                     std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted = {},
+                     std::function<bool()> proceed = {});
+
+  /// Whether it was told to stop: what came since means nothing, and whoever runs it gives up.
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
 
   /// @param theta  (q) in the parameters' units.
   /// @param extra  Applied after the accepted ones; may be null.
@@ -95,6 +101,11 @@ class Predictor {
   Eigen::ArrayXXd hours_kW_;
   Eigen::ArrayXXd parts_kW_;
   int runs_ = 0;
+  std::function<bool()> proceed_;
+  bool is_stopped_ = false;
 };
+
+/// What those who run a predictor give up with.
+[[nodiscard]] Error diagnosis_cancelled();
 
 }  // namespace recald::diagnosis

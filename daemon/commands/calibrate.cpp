@@ -47,6 +47,7 @@ int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
   if (!arguments.design.folder.empty()) return run_calibrate_design(arguments, console);
   const auto done = calibrate_aloud(arguments, console);
   if (!done) return done.error();
+  const InterruptGuard until_written;
   const std::string json = calibration_json(done->calibration, done->modelled.facts);
   const auto folder = folder_for(done->calibration.calibration.converged, arguments);
   if (!arguments.out.empty()) {

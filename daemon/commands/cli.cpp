@@ -7,6 +7,7 @@
 
 #include "core/calibration/samplers.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/interrupt.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {
@@ -417,7 +418,8 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   }
   const auto verb =
       std::ranges::find_if(verbs, [](const Verb& one) { return one.command->parsed(); });
-  return verb->run(console);  // CLI11 saw to it that there is one
+  const EndSignals signals;
+  return signals.exit_code(verb->run(console));  // CLI11 saw to it that there is one
 }
 
 }  // namespace recald::daemon

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
@@ -37,8 +38,11 @@ Result<SiteDiagnosis> diagnose_aloud(const ModelledSite& modelled,
                                      const diagnosis::SiteProblem& problem,
                                      const DiagnoseArguments& arguments, const Console& console) {
   const InterruptGuard guard;
+  double shown_share = -1.0;
   const auto observer = [&](const char* what, double share) {
-    if (console.is_terminal) console.err << fmt::format("\r{:3.0f} %  {:<32}", 100.0 * share, what);
+    if (console.is_terminal && std::exchange(shown_share, share) != share) {
+      console.err << fmt::format("\r{:3.0f} %  {:<32}", 100.0 * share, what) << std::flush;
+    }
     return !guard.interrupted();
   };
   auto done =
@@ -73,6 +77,7 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   const auto done = diagnose_aloud(*modelled, *problem, arguments, console);
   if (!done) return console.fail(done.error());
   const diagnosis::Diagnosis& diagnosis = done->diagnosis;
+  const InterruptGuard until_written;
 
   const auto fail = [&](const Error& error) {
     // What was found is not lost with a full disk.

@@ -42,6 +42,19 @@ DiagnoseOptions exact_model() {
   return options;
 }
 
+// Between two questions lies one run of the model, whatever the search is at.
+TEST(Diagnose, EndsAtTheRunAtWhichItIsToldTo) {
+  const SiteProblem site = site_with(nullptr, {}, 12);
+  for (const int runs : {1, 2, 30, 400}) {
+    int asked = 0;
+    const auto stopped =
+        diagnose(site, exact_model(), [&](const char*, double) { return ++asked < runs; });
+    ASSERT_FALSE(stopped.has_value());
+    EXPECT_EQ(stopped.error().code, ErrorCode::cancelled) << stopped.error().message;
+    EXPECT_EQ(asked, runs);
+  }
+}
+
 TEST(Diagnose, NamesNothingWhereNothingIsHidden) {
   const SiteProblem site = site_with(nullptr, {});
   const auto diagnosis = diagnose(site, exact_model());

@@ -1,0 +1,144 @@
+/// Ctrl-C and SIGTERM in the middle of long commands, as processes of their own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <ostream>
+
+#include "daemon/commands/interrupt.hpp"
+#include "tests/daemon/depot_year.hpp"
+#include "tests/support/background_process.hpp"
+#include "tests/support/sample_design.hpp"
+
+namespace recald::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+using recald::testing::BackgroundProcess;
+using recald::testing::edited;
+using recald::testing::eventually;
+using recald::testing::sample_site;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+struct LongCommand {
+  const char* name;
+  std::vector<std::string> words;  ///< SITE, DESIGN and OUT are replaced.
+  friend void PrintTo(const LongCommand& command, std::ostream* out) { *out << command.name; }
+};
+
+/// Seconds of processor time that a process has had.
+double worked_s(pid_t process) {
+  const std::string stat = recald::testing::read_text("/proc/" + std::to_string(process) + "/stat");
+  std::istringstream fields{stat.substr(stat.rfind(')') + 2)};
+  std::string skipped;
+  for (int i = 3; i < 14; ++i) fields >> skipped;
+  double ticks = 0.0;
+  fields >> ticks;
+  return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+class LongCommands : public ::testing::TestWithParam<LongCommand> {
+ protected:
+  LongCommands() {
+    // Steps of an hour, as the depot's readings come.
+    recald::testing::write_depot_year(
+        folder_.path(), edited(sample_site(), "interval = \"15m\"", "interval = \"1h\""));
+    recald::testing::write_sample_design(folder_ / "design");
+  }
+
+  [[nodiscard]] std::vector<std::string> command() const {
+    std::vector<std::string> words{RECALD_PROGRAM};
+    for (const std::string& word : GetParam().words) {
+      words.push_back(word == "SITE"     ? (folder_ / "site.toml").string()
+                      : word == "DESIGN" ? (folder_ / "design").string()
+                      : word == "OUT"    ? out().string()
+                                         : word);
+    }
+    return words;
+  }
+  [[nodiscard]] fs::path out() const { return folder_ / "out"; }
+  [[nodiscard]] fs::path said() const { return folder_ / "said.txt"; }
+
+  /// All files of the output's folder; a design that will be gone on with is none.
+  [[nodiscard]] std::vector<std::string> left() const {
+    std::vector<std::string> names;
+    if (!fs::exists(out())) return names;
+    const bool is_design = GetParam().words.front() == "doe";
+    for (const auto& one : fs::recursive_directory_iterator{out()}) {
+      const bool is_part = one.path().extension() == ".part";
+      if (one.is_regular_file() && (is_part || !is_design)) names.push_back(one.path().string());
+    }
+    return names;
+  }
+
+  /// Sends the signal once the command is at work, and waits for its end.
+  int end_at_work(BackgroundProcess& process, int signal) {
+    EXPECT_TRUE(eventually([&] { return worked_s(process.pid()) > 0.7; }));
+    return process.end(signal);
+  }
+
+  recald::testing::TemporaryFolder folder_;
+};
+
+TEST_P(LongCommands, EndByCtrlCAndLeaveNoHalfResult) {
+  BackgroundProcess process{command(), said()};
+  EXPECT_EQ(end_at_work(process, SIGINT), 130) << recald::testing::read_text(said());
+  EXPECT_THAT(recald::testing::read_text(said()), HasSubstr("recald: end"));
+  EXPECT_THAT(left(), IsEmpty());
+}
+
+TEST_P(LongCommands, EndBySigterm) {
+  BackgroundProcess process{command(), said()};
+  EXPECT_EQ(end_at_work(process, SIGTERM), 143) << recald::testing::read_text(said());
+  EXPECT_THAT(left(), IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EndSignals, LongCommands,
+    ::testing::Values(
+        LongCommand{
+            "calibrate",
+            {"calibrate", "SITE", "--sampler", "dram", "--draws", "100000000", "--out", "OUT"}},
+        LongCommand{
+            "report",
+            {"report", "SITE", "--sampler", "dram", "--draws", "100000000", "--out", "OUT"}},
+        LongCommand{"calibrate_design",
+                    {"calibrate", "--doe", "DESIGN", "--sampler", "dram", "--draws", "100000000",
+                     "--out", "OUT"}},
+        LongCommand{"doe", {"doe", "SITE", "--model", "hourly", "--runs", "5000", "--out", "OUT"}},
+        LongCommand{"diagnose", {"diagnose", "SITE", "--out", "OUT"}},
+        LongCommand{"drift",
+                    {"drift", "SITE", "--learn", "6", "--particles", "100000", "--out", "OUT"}}),
+    [](const auto& made) { return std::string{made.param.name}; });
+
+TEST(EndSignals, ASecondOneEndsAtOnce) {
+  const auto never_ends = [] {
+    const EndSignals signals;
+    const InterruptGuard guard;
+    std::raise(SIGINT);
+    if (!guard.interrupted()) return;
+    std::raise(SIGINT);
+  };
+  EXPECT_EXIT(never_ends(), ::testing::ExitedWithCode(130), "recald: ending; another Ctrl-C");
+}
+
+TEST(EndSignals, WithoutWorkThatCanBeAskedTheFirstEndsAtOnce) {
+  const auto waits = [] {
+    const EndSignals signals;
+    std::raise(SIGTERM);
+  };
+  EXPECT_EXIT(waits(), ::testing::ExitedWithCode(143), "recald: ended by a signal");
+}
+
+TEST(EndSignals, SayHowACommandEnded) {
+  const EndSignals signals;
+  EXPECT_EQ(signals.exit_code(1), 1);
+  const InterruptGuard guard;
+  std::raise(SIGTERM);
+  EXPECT_TRUE(guard.interrupted());
+  EXPECT_EQ(signals.exit_code(1), 143);
+}
+
+}  // namespace
+}  // namespace recald::daemon
