@@ -75,8 +75,25 @@ class Transition {
     return true;
   }
 
+  /// Nothing was counted since the old line was given up.
+  [[nodiscard]] bool stands() const {
+    const auto& previous = step_.state.previous;
+    return previous && previous->expires == CounterState::kStands;
+  }
+
+  /// The sample lies on the line that was given up, and counting does not explain how it got there.
+  [[nodiscard]] bool is_back() const {
+    const auto& previous = step_.state.previous;
+    if (!previous || !fits(sample_, previous->sample, settings_)) return false;
+    const double short_kWh = previous->sample.value_kWh - step_.state.baseline.value_kWh;
+    // A register that stood still and passes its old value in one step has not counted up to it.
+    if (stands()) return std::abs(short_kWh) > 2.0 * settings_.resolution_kWh;
+    return sample_.time < previous->expires && short_kWh > rise_max_kWh_;
+  }
+
   bool plain_rise() {
-    if (rise_kWh_ < 0.0 || rise_kWh_ > rise_max_kWh_) return false;
+    if (rise_kWh_ < 0.0 || rise_kWh_ > rise_max_kWh_ || (stands() && is_back())) return false;
+    if (rise_kWh_ > 0.0 && stands()) step_.state.previous->expires = sample_.time + kPreviousKept;
     CounterBooking booking = measured(step_.state.baseline, sample_, rise_kWh_);
     if (step_.state.pending) {
       booking.reasons = Reason::bounce;
@@ -129,16 +146,16 @@ class Transition {
 
   /// The register is back on the line that was given up: what was booked since was wrong.
   bool restore_previous() {
-    const auto& previous = step_.state.previous;
-    const bool back = step_.state.phase == CounterPhase::high && previous &&
-                      sample_.time < previous->expires &&
-                      fits(sample_, previous->sample, settings_);
-    if (!back) return false;
-    step_.bookings.push_back({{previous->sample.time, sample_.time},
-                              sample_.value_kWh - previous->sample.value_kWh,
+    const RegisterSample first = step_.state.pending->first;
+    if (!is_back() || !fits(first, step_.state.previous->sample, settings_)) return false;
+    const RegisterSample left = step_.state.previous->sample;
+    step_.bookings.push_back({{left.time, first.time},
+                              std::max(0.0, first.value_kWh - left.value_kWh),
                               Validity::scaled,
                               Reason::none,
                               true});
+    step_.bookings.push_back(
+        measured(first, sample_, std::max(0.0, sample_.value_kWh - first.value_kWh)));
     step_.event = CounterEvent::restored;
     step_.state.previous.reset();
     believe(sample_);
@@ -154,7 +171,9 @@ class Transition {
     step_.bookings.push_back(
         measured(first, sample_, std::max(0.0, sample_.value_kWh - first.value_kWh)));
     step_.event = fell ? CounterEvent::reset : CounterEvent::jump;
-    state.previous = CounterState::OldBaseline{state.baseline, sample_.time + kPreviousKept};
+    const bool counts = sample_.value_kWh != first.value_kWh;
+    state.previous = CounterState::OldBaseline{
+        state.baseline, counts ? sample_.time + kPreviousKept : CounterState::kStands};
     believe(sample_);
   }
 

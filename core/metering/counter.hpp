@@ -38,10 +38,13 @@ struct CounterState {
     RegisterSample last;
     int samples;
   };
+  /// An outage leaves a register standing at one value, often 0; for as long as it stands it may
+  /// come back. A register that counts on its own has probably been reset.
   struct OldBaseline {
     RegisterSample sample;
-    Instant expires;
+    Instant expires;  ///< 7 days after the register counted again; `kStands` until then.
   };
+  static constexpr Instant kStands = Instant::max();
   CounterPhase phase = CounterPhase::empty;
   RegisterSample baseline{};            ///< B: last sample believed.
   std::optional<OldBaseline> previous;  ///< O: the baseline before the last rebase.
@@ -69,8 +72,12 @@ struct CounterStep {
 /// With A = 1.2 rated Δt + 2 r, the most that can have been drawn since a sample: a rise within
 /// A is booked; a fall within 2 r is jitter; a fall near the modulus that fits A after adding M is
 /// a roll-over; anything else waits until three samples over two minutes agree with each other.
-/// Then a fall was a reset (the span up to it is missing, never guessed), a rise a jump; if the
-/// register returns to the line before the last rebase within 7 days, that line holds.
+/// Then a fall was a reset (the span up to it is missing, never guessed), a rise a jump.
+///
+/// If the register returns to the line before the last rebase, that line holds: what was booked
+/// since is superseded by the difference, `scaled`. A register that has stood still since then may
+/// return after any time, one that counts within 7 days and only over a difference that its load
+/// cannot have drawn: counting up through the old value is not a return.
 [[nodiscard]] CounterStep advance(CounterState state, const RegisterSample& sample,
                                   const CounterSettings& settings);
 

@@ -12,6 +12,8 @@ namespace {
 
 using std::chrono::seconds;
 
+constexpr std::ptrdiff_t kDaysAround = 14;
+
 std::vector<double> lengths_h(std::span<const CounterBooking> pieces) {
   std::vector<double> lengths;
   for (const CounterBooking& piece : pieces) lengths.push_back(in_hours(piece.span.length()));
@@ -96,6 +98,54 @@ void forget(IntervalBook& book, const CounterState& counter, seconds interval) {
   });
 }
 
+/// The mean of what was measured at that time of day on the days around; the record's where none
+/// was.
+/// @param record  Without a hole, each one interval after the last. @pre it outlives the shape.
+LoadShape like_days_around(std::span<const Reading> record, seconds interval) {
+  double sum_kW = 0.0;
+  int measured = 0;
+  for (const Reading& reading : record) {
+    if (reading.validity != Validity::ok) continue;
+    sum_kW += reading.mean_kW;
+    ++measured;
+  }
+  const double usual_kW = measured > 0 ? sum_kW / measured : 0.0;
+  return [record, interval, usual_kW](Instant start) {
+    const std::ptrdiff_t here = (start - record.front().start) / interval;
+    const std::ptrdiff_t day = kDay / interval;
+    double around_kW = 0.0;
+    int found = 0;
+    for (std::ptrdiff_t k = -kDaysAround; k <= kDaysAround; ++k) {
+      const std::ptrdiff_t i = here + k * day;
+      if (i < 0 || i >= std::ssize(record)) continue;
+      const Reading& reading = record[static_cast<std::size_t>(i)];
+      if (reading.validity != Validity::ok) continue;
+      around_kW += reading.mean_kW;
+      ++found;
+    }
+    return found > 0 ? around_kW / found : usual_kW;
+  };
+}
+
+std::vector<Reading> booked_readings(std::uint32_t meter, std::span<const RegisterSample> samples,
+                                     const BookingRules& rules, const CounterSettings& settings,
+                                     const LoadShape& shape) {
+  std::vector<Reading> readings;
+  CounterStep step;
+  IntervalBook book;
+  for (const RegisterSample& sample : samples) {
+    step = advance(std::move(step.state), sample, settings);
+    for (const BookedInterval& booked : book_intervals(book, meter, step, rules, shape)) {
+      while (booked.supersedes && !readings.empty() &&
+             readings.back().start >= booked.reading.start) {
+        readings.pop_back();
+      }
+      readings.push_back(booked.reading);
+    }
+  }
+  return readings;
+}
+
 }  // namespace
 
 std::vector<BookedInterval> book_intervals(IntervalBook& book, std::uint32_t meter,
@@ -130,20 +180,12 @@ std::vector<Reading> readings_from_register(std::uint32_t meter,
                                             std::span<const RegisterSample> samples,
                                             seconds interval, const CounterSettings& settings) {
   const BookingRules rules{.interval = interval, .sample_gap_max = interval};
-  std::vector<Reading> readings;
-  CounterStep step;
-  IntervalBook book;
-  for (const RegisterSample& sample : samples) {
-    step = advance(std::move(step.state), sample, settings);
-    for (const BookedInterval& booked : book_intervals(book, meter, step, rules)) {
-      while (booked.supersedes && !readings.empty() &&
-             readings.back().start >= booked.reading.start) {
-        readings.pop_back();
-      }
-      readings.push_back(booked.reading);
-    }
-  }
-  return readings;
+  std::vector<Reading> evenly = booked_readings(meter, samples, rules, settings, {});
+  const bool any_hole = std::any_of(evenly.begin(), evenly.end(), [](const Reading& reading) {
+    return reading.validity == Validity::scaled;
+  });
+  if (!any_hole) return evenly;
+  return booked_readings(meter, samples, rules, settings, like_days_around(evenly, interval));
 }
 
 }  // namespace recald::metering

@@ -52,7 +52,8 @@ struct IntervalBook {
                                                          const LoadShape& shape = {});
 
 /// A recorded register as readings, one for each interval that starts within [first, last) sample.
-/// Samples further apart than an interval are spread evenly over what lies between them.
+/// What the register rose by between samples further apart than an interval is spread as the load
+/// ran at the same time on the fourteen days before and after.
 /// @param samples  in time order, off-grid times allowed. @pre interval divides a day.
 [[nodiscard]] std::vector<Reading> readings_from_register(std::uint32_t meter,
                                                           std::span<const RegisterSample> samples,

@@ -97,6 +97,35 @@ TEST_F(GatewayTest, OutagesCostNoEnergy) {
   EXPECT_EQ(count("cooling", Validity::scaled), 0);         // its neighbour lost nothing
 }
 
+// The register reads 0 for ten days around the end of March, with a restart in between, and comes
+// back. Both months get the energy that it counted, and no interval of the outage is measured.
+TEST_F(GatewayTest, ARegisterAtZeroForDaysIsAnOutage) {
+  const milliseconds end = march().end - kStart;
+  const auto truth = devices_[1].energy_kWh;
+  const auto is_zero = [=](milliseconds t) { return t > end - days{5} && t < end + days{5}; };
+  devices_[1].energy_kWh = [=](milliseconds t) { return is_zero(t) ? 0.0 : truth(t); };
+  begin();
+  loop_.run_for(end + days{1});
+  begin();
+  loop_.run_for(days{34});
+  const metering::TimeSpan april{march().end, march().end + days{30}};
+  const metering::TimeSpan both{march().begin, april.end};
+  EXPECT_NEAR(stored_kWh("main", both), true_kWh(both), kTick);
+  const auto outage = stored("main", {march().end - days{5} + minutes{15}, march().end + days{5}});
+  EXPECT_EQ(std::ranges::count(outage, Validity::scaled, &metering::Reading::validity),
+            std::ssize(outage));
+  const auto figures = months_of("main");
+  for (const auto& [month, month_days, span] :
+       {std::tuple{"2024-03", 31, march()}, std::tuple{"2024-04", 30, april}}) {
+    const auto last = std::find_if(figures.rbegin(), figures.rend(), [&](const auto& figure) {
+      return metering::to_string(figure.month) == month;
+    });
+    ASSERT_NE(last, figures.rend());
+    EXPECT_NEAR(last->daily_average_kWh, true_kWh(span) / month_days, 1.0);
+    EXPECT_TRUE(last->usable) << last->unusable_because;
+  }
+}
+
 // Killed without a word every few hours at odd minutes, and back after some: no interval is lost or
 // doubled, and the energy is that of a run without.
 TEST_F(GatewayTest, KillsCostNoEnergy) {
