@@ -9,7 +9,7 @@ namespace recald::metering {
 namespace {
 
 /// To be raised when the program itself closes months differently.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 /// FNV-1a, 64 bit: rules are told apart, not protected. @see RFC draft eastlake-fnv.
 class Digest {
@@ -45,6 +45,7 @@ void add(const ValidationOptions& options, Digest& digest) {
   digest.add(options.unrated_history_factor);
   digest.add(options.spike_rise);
   digest.add(options.spike_scales);
+  digest.add(options.spike_days_around);
   digest.add(options.correction_window);
   digest.add(options.stuck_intervals);
 }
@@ -68,6 +69,7 @@ void add(const Meter& meter, Digest& digest) {
   digest.add(meter.zero_run_max);
   digest.add(meter.stuck_max);
   digest.add(meter.negative_is_valid);
+  digest.add(meter.is_counted);
   digest.add(static_cast<int>(meter.peak.method));
   digest.add(meter.peak.window);
 }

@@ -105,6 +105,7 @@ struct Meter {
   /// A run of equal non-zero values this long is a frozen meter. Absent: 12 intervals; 0 s: never.
   std::optional<std::chrono::seconds> stuck_max;
   bool negative_is_valid = false;
+  bool is_counted = false;  ///< Readings are what a cumulative register rose by.
   PeakRule peak;
 };
 

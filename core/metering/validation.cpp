@@ -15,6 +15,9 @@ using std::chrono::seconds;
 constexpr double kNormalMad = 1.4826;      // MAD of a normal distribution to its sd
 constexpr double kSpikeScaleFloor = 0.01;  // of the month's median
 constexpr std::size_t kSpikeDaysMin = 5;   // fewer days tell nothing about a time of day
+constexpr double kSameSize = 2.0;          // firings of one boiler differ by less
+constexpr int kFiringsConfirming = 2;      // that a load draws so much now and then
+constexpr double kFewSteps = 8.0;          // of a coarse register, at which a load rests
 
 void condemn(MonthSlots& month, std::size_t slot, Reason reason) {
   month.validity[slot] = Validity::suspect;
@@ -140,25 +143,6 @@ void check_corrections(MonthSlots& month, const ValidationContext& context,
   }
 }
 
-/// Second condition of the spike rule: far from what that time of day reads in this month.
-bool far_from_its_time_of_day(const MonthSlots& month, std::size_t slot,
-                              const ValidationOptions& options) {
-  const int time_of_day = month.grid->time_of_day(static_cast<int>(slot));
-  std::vector<double> values;
-  for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
-    if (i != slot && month.validity[i] == Validity::ok &&
-        month.grid->time_of_day(static_cast<int>(i)) == time_of_day) {
-      values.push_back(month.measured_kW[i]);
-    }
-  }
-  if (values.size() < kSpikeDaysMin) return false;
-  const double centre_kW = median_of(values);
-  for (double& value : values) value = std::abs(value - centre_kW);
-  const double scale_kW =
-      std::max(kNormalMad * median_of(values), kSpikeScaleFloor * median_magnitude(month));
-  return std::abs(month.measured_kW[slot] - centre_kW) > options.spike_scales * scale_kW;
-}
-
 /// Where the highest valid readings of a day stand.
 struct DayTop {
   std::size_t highest = 0;
@@ -200,23 +184,130 @@ bool has_third_reading_above(const MonthSlots& month, std::size_t begin, std::si
   return false;
 }
 
-void check_spikes(MonthSlots& month, double largest_kW, const ValidationOptions& options) {
-  const double ordinary_kW = largest_kW / (1.0 + options.spike_rise);
-  const std::vector<int>& begins = month.grid->day_begins();
-  for (std::size_t day = 0; day + 1 < begins.size(); ++day) {
-    const auto begin = static_cast<std::size_t>(begins[day]);
-    const auto end = static_cast<std::size_t>(begins[day + 1]);
-    if (has_third_reading_above(month, begin, end, ordinary_kW)) continue;
-    // Each turn takes one spike out, so two in one day are both found.
-    for (;;) {
-      const DayTop top = top_of_day(month, begin, end);
-      if (top.third_kW <= 0.0) break;  // a load that ran twice a day has no third to compare with
-      if ((top.first_kW - top.third_kW) / top.third_kW <= options.spike_rise) break;
-      if (!far_from_its_time_of_day(month, top.highest, options)) break;
-      condemn(month, top.highest, Reason::spike);
+/// The step of the readings: a coarse register shows 0, 1, 2 … of it. Tiny where they are fine.
+double step_of_readings_kW(const MonthSlots& month) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
+    if (month.validity[i] == Validity::ok) values.push_back(month.measured_kW[i]);
+  }
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const double rounding_kW = 1e-6 * std::max(values.back(), -values.front());
+  double step_kW = kAbsent;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double rise_kW = values[i] - values[i - 1];
+    if (rise_kW > rounding_kW && !(rise_kW >= step_kW)) step_kW = rise_kW;
+  }
+  return std::isnan(step_kW) ? 0.0 : step_kW;
+}
+
+/// Finds single readings far above the rest of their day that nothing confirms.
+class SpikeCheck {
+ public:
+  SpikeCheck(MonthSlots& month, const Meter& meter, const ValidationContext& context,
+             const ValidationOptions& options)
+      : month_{month}, meter_{meter}, context_{context}, options_{options} {}
+
+  void run(double largest_kW) {
+    const double ordinary_kW = largest_kW / (1.0 + options_.spike_rise);
+    const std::vector<int>& begins = month_.grid->day_begins();
+    for (std::size_t day = 0; day + 1 < begins.size(); ++day) {
+      const auto begin = static_cast<std::size_t>(begins[day]);
+      const auto end = static_cast<std::size_t>(begins[day + 1]);
+      if (has_third_reading_above(month_, begin, end, ordinary_kW)) continue;
+      // Each turn takes one spike out, so two in one day are both found.
+      for (;;) {
+        const DayTop top = top_of_day(month_, begin, end);
+        if (top.third_kW <= 0.0) break;  // a load that ran twice a day has no third to compare with
+        if ((top.first_kW - top.third_kW) / top.third_kW <= options_.spike_rise) break;
+        if (!is_far_from_its_time_of_day(top.highest) || is_confirmed(top.highest)) break;
+        condemn(month_, top.highest, Reason::spike);
+      }
     }
   }
-}
+
+ private:
+  bool is_far_from_its_time_of_day(std::size_t slot) {
+    const int time_of_day = month_.grid->time_of_day(static_cast<int>(slot));
+    std::vector<double> values;
+    for (std::size_t i = 0; i < month_.measured_kW.size(); ++i) {
+      if (i != slot && month_.validity[i] == Validity::ok &&
+          month_.grid->time_of_day(static_cast<int>(i)) == time_of_day) {
+        values.push_back(month_.measured_kW[i]);
+      }
+    }
+    if (values.size() < kSpikeDaysMin) return false;
+    const double centre_kW = median_of(values);
+    for (double& value : values) value = std::abs(value - centre_kW);
+    const double scale_kW = std::max(
+        {kNormalMad * median_of(values), kSpikeScaleFloor * median_magnitude(month_), step_kW()});
+    return std::abs(month_.measured_kW[slot] - centre_kW) > options_.spike_scales * scale_kW;
+  }
+
+  bool is_confirmed(std::size_t slot) {
+    if (meter_.is_counted && register_goes_on(slot)) return true;
+    const int others = readings_like(slot);
+    // A load that mostly rests is the same at no time of day: one other firing shows what it draws.
+    return others >= kFiringsConfirming || (others > 0 && mostly_rests());
+  }
+
+  /// A register that counted a spike goes on from there; one that misread falls back.
+  [[nodiscard]] bool register_goes_on(std::size_t slot) const {
+    const auto goes_on = [](const MonthSlots& month, std::size_t i) {
+      return !has(month.reasons[i], Reason::reset) && !has(month.reasons[i], Reason::jump);
+    };
+    if (slot + 1 < month_.reasons.size()) return goes_on(month_, slot + 1);
+    return context_.after == nullptr || goes_on(*context_.after, 0);
+  }
+
+  /// Others of the same size on the days around, at any time of day, over the month's ends too.
+  [[nodiscard]] int readings_like(std::size_t slot) const {
+    const double value_kW = month_.measured_kW[slot];
+    const auto reach =
+        static_cast<std::ptrdiff_t>(options_.spike_days_around) * month_.grid->times_of_day();
+    const auto centre = static_cast<std::ptrdiff_t>(slot);
+    const auto size = std::ssize(month_.measured_kW);
+    const auto count = [&](const MonthSlots* in, std::ptrdiff_t begin, std::ptrdiff_t end) {
+      if (in == nullptr) return 0;
+      int like = 0;
+      for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, begin);
+           i < std::min(end, std::ssize(in->measured_kW)); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        if (in->validity[k] != Validity::ok || (in == &month_ && i == centre)) continue;
+        const double other_kW = in->measured_kW[k];
+        if (other_kW >= value_kW / kSameSize && other_kW <= value_kW * kSameSize) ++like;
+      }
+      return like;
+    };
+    const std::ptrdiff_t before = context_.before ? std::ssize(context_.before->measured_kW) : 0;
+    return count(&month_, centre - reach, centre + reach + 1) +
+           count(context_.before, before + centre - reach, before) +
+           count(context_.after, 0, centre + reach + 1 - size);
+  }
+
+  [[nodiscard]] bool mostly_rests() {
+    if (!mostly_rests_) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < month_.measured_kW.size(); ++i) {
+        if (month_.validity[i] == Validity::ok) values.push_back(month_.measured_kW[i]);
+      }
+      mostly_rests_ = median_of(values) <= kFewSteps * step_kW();
+    }
+    return *mostly_rests_;
+  }
+
+  double step_kW() {
+    if (!step_kW_) step_kW_ = step_of_readings_kW(month_);
+    return *step_kW_;
+  }
+
+  MonthSlots& month_;
+  const Meter& meter_;
+  const ValidationContext& context_;
+  const ValidationOptions& options_;
+  std::optional<double> step_kW_;
+  std::optional<bool> mostly_rests_;
+};
 
 /// Reported slots equal to `value_kW` next to the month: back from its begin or on from its end.
 int run_outside(const MonthSlots* neighbour, double value_kW, bool from_its_end) {
@@ -309,7 +400,7 @@ void validate(MonthSlots& month, const Meter& meter, const ValidationContext& co
     check_range(month, lower_kW, limit_kW, both_ways ? Reason::range : Reason::negative);
   }
   if (!both_ways) check_corrections(month, context, options, extremes.lowest_kW < 0.0);
-  check_spikes(month, std::min(extremes.highest_kW, limit_kW), options);
+  SpikeCheck{month, meter, context, options}.run(std::min(extremes.highest_kW, limit_kW));
   RunCheck{month, meter, context, options}.run();
 }
 

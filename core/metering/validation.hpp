@@ -23,6 +23,7 @@ struct ValidationOptions {
   double unrated_history_factor = 2.0;
   double spike_rise = 1.8;    ///< (highest − third highest) / third highest of a local day.
   double spike_scales = 8.0;  ///< … and this many robust scales from the median of its time of day.
+  int spike_days_around = 7;  ///< Readings of the same size within these days confirm a spike.
   /// Readings this near to a negative one may be the rest of a register correction.
   std::chrono::seconds correction_window{6 * 3600};
   int stuck_intervals = 12;  ///< Used where the meter has no `stuck_max`.
@@ -47,8 +48,13 @@ struct ValidationContext {
 ///   and large positive ones around it. Within `correction_window` of a negative interval
 ///   a reading above the largest one found elsewhere in the month is part of the correction. So a
 ///   correction is never a peak, and ordinary readings beside it stay.
-/// - spike: both conditions. The robust scale is 1.4826 MAD of the time of day in the month, at
-///   least 1 % of the month's median, so that a constant load may still step.
+/// - spike: both conditions, and nothing confirms the reading. The robust scale is 1.4826 MAD of
+/// the
+///   time of day in the month, at least 1 % of the month's median, so that a constant load may
+///   still step, and at least one step of a coarse register. A counter confirms it unless the
+///   register falls back afterwards. So do two readings between half and twice its size on the days
+///   around, at any time of day; one, where half of the month's readings are 0 or a few register
+///   steps, as those of a boiler's gas meter are.
 /// - stuck and zero_run: runs of equal values as long as the meter allows, over month ends; blanks
 ///   inside neither break a run nor count in it.
 ///

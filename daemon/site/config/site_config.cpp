@@ -192,6 +192,7 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
     }
     config.counter = read_counter(*counter, meter.rated_kW);
   }
+  meter.is_counted = config.counter || (is_live && !config.live->map.energy.empty());
   config.end_uses = read_end_uses(table);
   config.text = table.toml();
   table.finish();

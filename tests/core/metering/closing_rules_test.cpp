@@ -12,7 +12,7 @@ using std::chrono::seconds;
 
 TEST(ClosingRules, AreTheSameTextForTheSameRulesAlways) {
   // The store of a running gateway has this text: another one closes all its months anew.
-  EXPECT_EQ(closing_rules({}, {.id = "main"}), "e0577b8358de0436");
+  EXPECT_EQ(closing_rules({}, {.id = "main"}), "5455eebcaa96187e");
   EXPECT_EQ(closing_rules({}, {.id = "main"}), closing_rules({}, {.id = "heat"}));
 }
 
@@ -29,12 +29,14 @@ TEST(ClosingRules, EachRuleMatters) {
       [](Rules& r) { r.closing.fill.holidays = {std::chrono::year{2024} / std::chrono::May / 1}; },
       [](Rules& r) { r.closing.fill.holidays = {std::chrono::year{2024} / std::chrono::May / 2}; },
       [](Rules& r) { r.closing.validation.spike_rise = 2.0; },
+      [](Rules& r) { r.closing.validation.spike_days_around = 3; },
       [](Rules& r) { r.closing.validation.stuck_intervals = 24; },
       [](Rules& r) { r.meter.rated_kW = 0.0; },
       [](Rules& r) { r.meter.rated_kW = 400.0; },
       [](Rules& r) { r.meter.zero_run_max = seconds{0}; },
       [](Rules& r) { r.meter.stuck_max = seconds{0}; },
       [](Rules& r) { r.meter.negative_is_valid = true; },
+      [](Rules& r) { r.meter.is_counted = true; },
       [](Rules& r) { r.meter.peak.window = seconds{1800}; },
       [](Rules& r) { r.meter.utility = Utility::steam; }};
   std::set<std::string> seen{closing_rules({}, {})};
