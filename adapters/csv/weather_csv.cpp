@@ -20,6 +20,7 @@ using weather::WeatherRecord;
 constexpr std::string_view kWeatherHeader =
     "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2";
 constexpr std::size_t kDryBulb = 0;  // in kWeatherVariables
+constexpr seconds kStepToInfer{1800};
 
 /// What can have been measured on the ground, in order of kWeatherVariables. Slight excess that
 /// sensors show (105 % humidity, −4 W/m2 at night) is cut off, more is kept out.
@@ -166,10 +167,28 @@ class WeatherReader {
     if (options_.stamps == Stamps::end) {
       for (WeatherRecord& record : records_) record.start -= csv_.step;
     }
-    auto series = weather::to_hourly(records_, csv_.step);
+    const auto instant = options_.stamps == Stamps::end ? weather::ValuesStand::at_its_end
+                                                        : weather::ValuesStand::at_its_start;
+    csv_.values = values_taken(instant);
+    const bool instants = csv_.values.values == weather::RecordedValues::instant;
+    auto series = weather::to_hourly(records_, csv_.step,
+                                     instants ? instant : weather::ValuesStand::over_the_record);
     if (!series) return tl::unexpected(series.error());
     csv_.series = std::move(*series);
     return std::move(csv_);
+  }
+
+  [[nodiscard]] weather::ValuesTaken values_taken(weather::ValuesStand instant) const {
+    using weather::KnownBy;
+    using weather::RecordedValues;
+    if (options_.values) return {*options_.values, KnownBy::declared};
+    // Half of a shorter step is nothing to a building, and too little to be seen.
+    if (csv_.step < kStepToInfer) return {RecordedValues::mean, KnownBy::usage};
+    if (const auto shown = weather::values_by_the_sun(records_, csv_.step, instant)) {
+      return {*shown, KnownBy::inferred};
+    }
+    const bool is_hourly = csv_.step >= std::chrono::hours{1};
+    return {is_hourly ? RecordedValues::instant : RecordedValues::mean, KnownBy::usage};
   }
 
   void bad(std::uint64_t line, std::string_view reason) { csv_.issues.add(line, reason); }

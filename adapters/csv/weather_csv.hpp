@@ -3,24 +3,30 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "adapters/csv/line_issues.hpp"
 #include "core/result.hpp"
-#include "core/weather/weather_series.hpp"
+#include "core/weather/recorded_values.hpp"
 
 namespace recald::csv {
 
 struct WeatherCsvOptions {
   Stamps stamps = Stamps::start;
+  /// Of temperature, humidity, wind and pressure. Absent: as the record shows against the sun;
+  /// where it cannot tell, instants from a step of an hour on, as weather services report, and
+  /// means below, as loggers store.
+  std::optional<weather::RecordedValues> values;
   std::size_t issues_listed_max = 100;
 };
 
 struct WeatherCsv {
   weather::WeatherSeries series;  ///< Hourly, gaps absent; see weather::fill_gaps.
   std::chrono::seconds step;      ///< Commonest step of the rows.
+  weather::ValuesTaken values;
   std::vector<std::string> ignored_columns;
   std::uint64_t rows = 0;
   LineIssues issues;  ///< Bad lines, impossible values (kept out as blanks), repeated stamps.

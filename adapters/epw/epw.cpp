@@ -15,6 +15,7 @@ using csv::FieldSplitter;
 using csv::in_quotes;
 using metering::Instant;
 using std::chrono::seconds;
+using weather::ValuesStand;
 using weather::WeatherHour;
 using weather::WeatherRecord;
 
@@ -83,8 +84,11 @@ std::optional<int> whole_number(std::string_view text) {
 
 class EpwReader {
  public:
-  EpwReader(csv::ByteSource source, std::string_view name)
-      : lines_{std::move(source)}, name_{name} {}
+  EpwReader(csv::ByteSource source, std::string_view name, weather::RecordedValues values)
+      : lines_{std::move(source)},
+        name_{name},
+        stand_{values == weather::RecordedValues::instant ? ValuesStand::at_its_end
+                                                          : ValuesStand::over_the_record} {}
 
   Result<EpwWeather> run(std::optional<int> year) {
     if (auto headers = read_headers(); !headers) return tl::unexpected(headers.error());
@@ -233,7 +237,7 @@ class EpwReader {
                                " hours with a relative humidity above 100 % were set to 100 %");
     }
     const std::vector<WeatherRecord> records = records_of_year();
-    auto series = weather::to_hourly(records, std::chrono::hours{1});
+    auto series = weather::to_hourly(records, std::chrono::hours{1}, stand_);
     if (!series) return tl::unexpected(series.error());
     weather_.series = std::move(*series);
     return std::move(weather_);
@@ -271,6 +275,7 @@ class EpwReader {
 
   csv::LineReader lines_;
   std::string name_;
+  ValuesStand stand_;
   csv::Line line_{};
   FieldSplitter fields_;
   EpwWeather weather_{};
@@ -283,15 +288,16 @@ class EpwReader {
 
 }  // namespace
 
-Result<EpwWeather> read_epw(const std::filesystem::path& file, std::optional<int> year) {
+Result<EpwWeather> read_epw(const std::filesystem::path& file, std::optional<int> year,
+                            weather::RecordedValues values) {
   auto source = csv::open_file(file, "EPW file");
   if (!source) return tl::unexpected(source.error());
-  return EpwReader{std::move(*source), file.string()}.run(year);
+  return EpwReader{std::move(*source), file.string(), values}.run(year);
 }
 
 Result<EpwWeather> read_epw_text(std::string_view text, std::string_view name,
-                                 std::optional<int> year) {
-  return EpwReader{csv::bytes_of(text), name}.run(year);
+                                 std::optional<int> year, weather::RecordedValues values) {
+  return EpwReader{csv::bytes_of(text), name, values}.run(year);
 }
 
 }  // namespace recald::epw

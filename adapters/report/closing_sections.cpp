@@ -51,6 +51,7 @@ void write_provenance(Html& html, const Provenance& from, const std::string& tim
   entry("Of these dropped", from.burn_in ? count_text(*from.burn_in) : "");
   entry("Seed", plain(from.seed));
   entry("Computing time", from.wall_s ? fmt::format("{:.1f} s", *from.wall_s) : "");
+  entry("Weather file's temperatures", from.weather_values);
   entry("Time zone", time_zone);
   entry("Time zone rules", from.time_zone_data);
   entry("Report made", generated_at);

@@ -31,6 +31,7 @@ struct Provenance {
   std::string data_revision;  ///< Hash of the readings that were used.
   std::string model_version;
   std::string time_zone_data;  ///< Release of the zone rules, e.g. "2025b".
+  std::string weather_values;  ///< What temperatures were taken for: "instant (inferred)".
   std::string catalogue;       ///< Which effects were tried, in words.
   std::string sampler;
   std::string hyper_prior_profile;

@@ -57,8 +57,19 @@ class Mean {
 
 using HourMeans = std::array<Mean, kVariables>;
 
-void add_to(HourMeans& means, const WeatherHour& values, double weight) {
+bool is_irradiance(const WeatherVariable& variable) {
+  return variable.member == &WeatherHour::ghi_W_m2 || variable.member == &WeatherHour::dni_W_m2 ||
+         variable.member == &WeatherHour::dhi_W_m2;
+}
+
+/// What of a record is added: all, what is a mean in any case, or what may be an instant.
+enum class Part : std::uint8_t { all, irradiance, air };
+
+void add_to(HourMeans& means, const WeatherHour& values, double weight, Part part = Part::all) {
   for (std::size_t v = 0; v < kVariables; ++v) {
+    if (part != Part::all && is_irradiance(kWeatherVariables[v]) != (part == Part::irradiance)) {
+      continue;
+    }
     const double value = values.*kWeatherVariables[v].member;
     if (!std::isfinite(value)) continue;
     if (is_direction(kWeatherVariables[v])) {
@@ -69,6 +80,26 @@ void add_to(HourMeans& means, const WeatherHour& values, double weight) {
       means[v].add(value, weight);
     }
   }
+}
+
+/// `values`, as far as `other` has them too, or as far as it lacks them.
+WeatherHour only_with(const WeatherHour& values, const WeatherHour& other, bool other_has) {
+  WeatherHour kept = values;
+  for (const WeatherVariable& variable : kWeatherVariables) {
+    if (std::isfinite(other.*variable.member) != other_has) kept.*variable.member = kAbsent;
+  }
+  return kept;
+}
+
+/// Adds part of a record whose values are instants. @param share  How far the middle of that part
+/// lies on the way from this record's instant to the neighbour's.
+void add_instants(HourMeans& means, const WeatherHour& own, const WeatherHour* neighbour,
+                  double share, double weight) {
+  add_to(means, own, weight, Part::irradiance);
+  if (neighbour == nullptr) return add_to(means, own, weight, Part::air);
+  add_to(means, only_with(own, *neighbour, true), weight * (1.0 - share), Part::air);
+  add_to(means, only_with(*neighbour, own, true), weight * share, Part::air);
+  add_to(means, only_with(own, *neighbour, false), weight, Part::air);
 }
 
 WeatherHour to_hour(const HourMeans& means) {
@@ -206,6 +237,17 @@ void count(std::vector<WeatherCoverage>& coverage, std::size_t variable,
   }
 }
 
+/// The instant at the other end of a record; null where the file has none there.
+const WeatherHour* neighbour_of(std::span<const WeatherRecord> records, std::size_t i, seconds step,
+                                ValuesStand stand) {
+  if (stand == ValuesStand::over_the_record) return nullptr;
+  const bool before = stand == ValuesStand::at_its_end;
+  if (before ? i == 0 : i + 1 == records.size()) return nullptr;
+  const WeatherRecord& other = records[before ? i - 1 : i + 1];
+  const seconds apart = before ? records[i].start - other.start : other.start - records[i].start;
+  return apart == step ? &other.values : nullptr;
+}
+
 }  // namespace
 
 const WeatherHour* WeatherSeries::find(Instant t) const {
@@ -213,7 +255,8 @@ const WeatherHour* WeatherSeries::find(Instant t) const {
   return &hours[static_cast<std::size_t>((t - begin) / std::chrono::hours{1})];
 }
 
-Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds step) {
+Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds step,
+                                ValuesStand stand) {
   if (records.empty()) return failure(ErrorCode::not_enough_data, "no weather records");
   assert(step > seconds{0});
   std::vector<WeatherRecord> sorted;  // years of records are large: copied only where they must be
@@ -227,13 +270,23 @@ Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds 
   series.begin = full_hour_before(records.front().start);
   const Instant last = full_hour_before(records.back().start + length - seconds{1});
   std::vector<HourMeans> means(static_cast<std::size_t>((last - series.begin) / hours{1}) + 1);
-  for (const WeatherRecord& record : records) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const WeatherRecord& record = records[i];
+    const WeatherHour* neighbour = neighbour_of(records, i, step, stand);
     const Instant end = record.start + length;
     for (Instant hour = full_hour_before(record.start); hour < end; hour += hours{1}) {
-      const seconds overlap =
-          std::min<Instant>(hour + hours{1}, end) - std::max(hour, record.start);
-      add_to(means[static_cast<std::size_t>((hour - series.begin) / hours{1})], record.values,
-             static_cast<double>(overlap.count()) / 3600.0);
+      const Instant from = std::max(hour, record.start);
+      const seconds overlap = std::min<Instant>(hour + hours{1}, end) - from;
+      HourMeans& mean = means[static_cast<std::size_t>((hour - series.begin) / hours{1})];
+      const double weight = metering::in_hours(overlap);
+      if (stand == ValuesStand::over_the_record) {
+        add_to(mean, record.values, weight);
+        continue;
+      }
+      const double past = metering::in_hours(from - record.start) + weight / 2.0;
+      const double share = past / metering::in_hours(step);
+      add_instants(mean, record.values, neighbour,
+                   stand == ValuesStand::at_its_end ? 1.0 - share : share, weight);
     }
   }
   series.hours.reserve(means.size());

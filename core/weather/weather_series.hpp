@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -53,20 +54,27 @@ struct WeatherSeries {
   [[nodiscard]] const WeatherHour* find(Instant t) const;
 };
 
-/// One observation as a file has it: a mean over [start, start + step).
+/// One observation as a file has it, of [start, start + step).
 struct WeatherRecord {
   Instant start;
   WeatherHour values;
 };
 
+/// Where the temperature, humidity, wind and pressure of a record stand. Irradiance is the mean of
+/// the record in any case.
+enum class ValuesStand : std::uint8_t { over_the_record, at_its_start, at_its_end };
+
 /// Puts records of any step on the UTC hour: each hour is the mean of what overlaps it, weighted by
-/// the overlap; it stays absent where less than half is covered. Wind direction is the direction
-/// of the mean vector, weighted by speed where known. Of a step above an hour only the first hour
-/// is taken as observed; the rest is for `fill_gaps`. Records with the same start: the first stays.
+/// the overlap; it stays absent where less than half is covered. Between two instants a value runs
+/// on a straight line; where its neighbour is absent it stands for the whole record. Wind direction
+/// is the direction of the mean vector, weighted by speed where known. Of a step above an hour only
+/// the first hour is taken as observed; the rest is for `fill_gaps`. Records with the same start:
+/// the first stays.
 /// @param step  the records' length, e.g. 15 minutes.
 /// @return not_enough_data without records; otherwise a series from the first to the last record.
 [[nodiscard]] Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records,
-                                              std::chrono::seconds step);
+                                              std::chrono::seconds step,
+                                              ValuesStand stand = ValuesStand::over_the_record);
 
 /// Where the hours of a local month came from, as shares 0…1, in order of `kWeatherVariables`.
 struct WeatherCoverage {

@@ -9,6 +9,7 @@
 #include "daemon/commands/check_meters.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/replay/site_weather.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -41,6 +42,15 @@ void print_meters(const SiteConfig& site, const Console& console) {
         config.stamps == csv::Stamps::end ? "end" : "start",
         config.interval ? duration_words(*config.interval) : "as the file shows");
   }
+}
+
+void print_weather(const WeatherConfig& config, const weather::ValuesTaken& taken,
+                   const Console& console) {
+  console.out << fmt::format(
+      "  weather {} ({}-stamped, temperature, humidity, wind and pressure: {})\n",
+      config.file.string(),
+      config.format == WeatherFormat::epw || config.stamps == csv::Stamps::end ? "end" : "start",
+      to_string(taken));
 }
 
 /// How much of its time each bus is busy if all goes well. Beyond all of it reads queue without
@@ -124,9 +134,16 @@ std::vector<std::string> check_files(const SiteConfig& site) {
 int run_check(const CheckArguments& arguments, const Console& console) {
   const auto site = load_site(arguments.site);
   std::vector<std::string> problems = site ? check_files(*site) : site.error();
+  std::optional<weather::ValuesTaken> weather;
+  if (site && site->weather && problems.empty()) {
+    const auto taken = weather_values(*site);
+    if (taken) weather = *taken;
+    if (!taken) problems.push_back(site->file.filename().string() + ": " + taken.error().message);
+  }
   if (site && !arguments.json) {
     console.out << fmt::format("{} ({}), {}\n", site->name, site->id, site->timezone);
     print_meters(*site, console);
+    if (weather) print_weather(*site->weather, *weather, console);
   }
   if (site) {
     const auto more = check_pushed(*site);
@@ -158,6 +175,7 @@ int run_check(const CheckArguments& arguments, const Console& console) {
   }
   if (arguments.json) {
     nlohmann::ordered_json result{{"ok", problems.empty()}, {"problems", problems}};
+    if (weather) result["weather_values"] = to_string(*weather);
     if (arguments.meters) result["meters"] = meters;
     console.out << result.dump(2) << "\n";
   }

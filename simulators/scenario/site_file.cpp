@@ -59,6 +59,7 @@ holidays = [   # local dates that run like Sundays
 file = "weather.csv"
 format = "csv"
 stamps = "start"
+values = "mean"
 
 )",
              drawings.id, drawings.name, drawings.time_zone, drawings.place.latitude_deg,

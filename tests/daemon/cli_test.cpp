@@ -137,6 +137,21 @@ TEST_F(Cli, CheckOfARightFileSaysWhatIsInIt) {
   EXPECT_THAT(outcome.out, ::testing::EndsWith("\nok\n"));
 }
 
+TEST_F(Cli, CheckSaysWhatTheWeathersTemperaturesAreTakenFor) {
+  write("weather.csv", weather_of(2021));
+  for (const auto& [key, taken] : {std::pair{"values = \"mean\"\n", "mean (declared)"},
+                                   std::pair{"values = \"instant\"\n", "instant (declared)"},
+                                   std::pair{"", "instant (default)"}}) {
+    write("site.toml", edited(sample_site(), "values = \"mean\"\n", key));
+    EXPECT_THAT(
+        run({"check", site()}).out,
+        HasSubstr(std::string{"(start-stamped, temperature, humidity, wind and pressure: "} +
+                  taken + ")\n"));
+    EXPECT_THAT(run({"check", site(), "--json"}).out,
+                HasSubstr(std::string{"\"weather_values\": \""} + taken + "\""));
+  }
+}
+
 TEST_F(Cli, CheckOfAWrongFileExplainsEachMistake) {
   write("site.toml", edited(edited(std::string{kSampleMeters}, "altitude_m", "altitud_m"),
                             "utility = \"heating\"", "utility = \"warmth\""));

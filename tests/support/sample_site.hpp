@@ -37,6 +37,7 @@ zero_run_max = "96h"
 inline constexpr std::string_view kSampleModel = R"(
 [weather]
 file = "weather.csv"
+values = "mean"
 
 [period]
 calibration = { from = "2021-01", to = "2021-09" }

@@ -88,6 +88,10 @@ WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_f
   weather.format =
       table.word("format", {"csv", "epw"}) == "epw" ? WeatherFormat::epw : WeatherFormat::csv;
   weather.stamps = read_stamps(table);
+  if (const auto values = table.word("values", {"instant", "mean"})) {
+    weather.values =
+        *values == "mean" ? weather::RecordedValues::mean : weather::RecordedValues::instant;
+  }
   table.finish();
   return weather;
 }

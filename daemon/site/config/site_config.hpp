@@ -18,6 +18,7 @@
 #include "core/model/model_kind.hpp"
 #include "core/model/parameter.hpp"
 #include "core/result.hpp"
+#include "core/weather/recorded_values.hpp"
 #include "core/weather/sun.hpp"
 #include "daemon/site/config/bus_config.hpp"
 #include "daemon/site/config/service_config.hpp"
@@ -55,6 +56,7 @@ struct WeatherConfig {
   std::filesystem::path file;
   WeatherFormat format = WeatherFormat::csv;
   csv::Stamps stamps = csv::Stamps::start;
+  std::optional<weather::RecordedValues> values;  ///< Absent: as the file shows or usually is.
 };
 
 struct PeriodConfig {

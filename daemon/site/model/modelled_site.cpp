@@ -105,6 +105,7 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
   if (!facts) return tl::unexpected(facts.error());
   auto weather = load_weather(site.config, site.calendar, whole_period(site.config));
   if (!weather) return tl::unexpected(weather.error());
+  facts->weather_values = to_string(weather->values);
   return ModelledSite{std::move(site), std::move(*recording), std::move(*weather),
                       std::move(*facts)};
 }

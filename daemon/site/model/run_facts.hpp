@@ -17,6 +17,7 @@ struct RunFacts {
   std::string data_revision;  ///< SHA-256 over the site file and all data files.
   std::string model_version;  ///< Kind of model and SHA-256 of the site file, shortened.
   std::string time_zone_data;
+  std::string weather_values;  ///< What temperatures were taken for; empty without weather.
   std::string sampler;
   std::string hyper_prior_profile;
   std::uint64_t seed = 1;

@@ -14,10 +14,15 @@ namespace {
 /// Positions in `weather::kWeatherVariables` of what a building model cannot do without.
 constexpr std::array<std::size_t, 4> kNeeded = {0, 1, 2, 4};
 
-Result<weather::WeatherSeries> read_csv(const WeatherConfig& config,
-                                        std::vector<std::string>& notes) {
-  auto read = csv::read_weather(config.file, {.stamps = config.stamps});
+Result<csv::WeatherCsv> read_csv(const WeatherConfig& config) {
+  return csv::read_weather(config.file, {.stamps = config.stamps, .values = config.values});
+}
+
+Result<weather::WeatherSeries> read_csv(const WeatherConfig& config, SiteWeather& result) {
+  auto read = read_csv(config);
   if (!read) return tl::unexpected(read.error());
+  result.values = read->values;
+  std::vector<std::string>& notes = result.notes;
   if (read->issues.total > 0) {
     notes.push_back(fmt::format("Weather file: {} bad line{} kept out, the first at line {}: {}.",
                                 read->issues.total, read->issues.total == 1 ? "" : "s",
@@ -31,12 +36,19 @@ Result<weather::WeatherSeries> read_csv(const WeatherConfig& config,
   return std::move(read->series);
 }
 
+weather::ValuesTaken epw_values(const WeatherConfig& config) {
+  if (config.values) return {*config.values, weather::KnownBy::declared};
+  return {weather::RecordedValues::instant, weather::KnownBy::usage};
+}
+
 /// One calendar year after the other from the same file. A typical year stands for each of them; a
 /// recorded year only for itself.
 Result<weather::WeatherSeries> read_epw_years(const WeatherConfig& config,
                                               const metering::MonthRange& months,
-                                              std::vector<std::string>& notes) {
-  const auto own = epw::read_epw(config.file);
+                                              SiteWeather& result) {
+  result.values = epw_values(config);
+  std::vector<std::string>& notes = result.notes;
+  const auto own = epw::read_epw(config.file, {}, result.values.values);
   if (!own) return tl::unexpected(own.error());
   if (!own->typical) {
     notes.insert(notes.end(), own->notes.begin(), own->notes.end());
@@ -49,7 +61,7 @@ Result<weather::WeatherSeries> read_epw_years(const WeatherConfig& config,
   // A year of local standard time ends within a day of the UTC year, so one more on each side.
   for (int year = static_cast<int>(months.first.year()) - 1;
        year <= static_cast<int>(months.last.year()) + 1; ++year) {
-    const auto one = epw::read_epw(config.file, year);
+    const auto one = epw::read_epw(config.file, year, result.values.values);
     if (!one) return tl::unexpected(one.error());
     if (all.hours.empty()) all.begin = one->series.begin;
     all.hours.insert(all.hours.end(), one->series.hours.begin(), one->series.hours.end());
@@ -81,11 +93,18 @@ Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCa
                                  const metering::MonthRange& months) {
   SiteWeather result;
   const auto series = site.weather->format == WeatherFormat::epw
-                          ? read_epw_years(*site.weather, months, result.notes)
-                          : read_csv(*site.weather, result.notes);
+                          ? read_epw_years(*site.weather, months, result)
+                          : read_csv(*site.weather, result);
   if (!series) return tl::unexpected(series.error());
   result.filled = weather::fill_gaps(*series, calendar);
   return result;
+}
+
+Result<weather::ValuesTaken> weather_values(const SiteConfig& site) {
+  if (site.weather->format == WeatherFormat::epw) return epw_values(*site.weather);
+  const auto read = read_csv(*site.weather);
+  if (!read) return tl::unexpected(read.error());
+  return read->values;
 }
 
 double weather_coverage(const weather::FilledWeather& filled, metering::Month month) {

@@ -15,6 +15,7 @@ namespace recald::daemon {
 
 struct SiteWeather {
   weather::FilledWeather filled;
+  weather::ValuesTaken values;
   std::vector<std::string> notes;  ///< What was done to it, in words.
 };
 
@@ -23,6 +24,10 @@ struct SiteWeather {
 [[nodiscard]] Result<SiteWeather> load_weather(const SiteConfig& site,
                                                const metering::LocalCalendar& calendar,
                                                const metering::MonthRange& months);
+
+/// What the temperatures of the site's weather file are taken for, and how that is known. Reads the
+/// file. @pre site.weather
+[[nodiscard]] Result<weather::ValuesTaken> weather_values(const SiteConfig& site);
 
 /// Share of a month's hours in which the weather was measured or interpolated, worst of the
 /// variables that the models need; 0 for a month that the file does not touch.

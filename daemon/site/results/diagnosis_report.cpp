@@ -26,6 +26,7 @@ report::Provenance diagnosis_provenance(const RunFacts& facts) {
           .data_revision = facts.data_revision,
           .model_version = facts.model_version,
           .time_zone_data = facts.time_zone_data,
+          .weather_values = facts.weather_values,
           .catalogue = fmt::format("{} effects, of recald {}", diagnosis::catalogue().size(),
                                    facts.recald_version),
           .seed = facts.seed};

@@ -130,6 +130,7 @@ std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
                      {"model_version", facts.model_version},
                      {"recald_version", facts.recald_version},
                      {"tzdata", facts.time_zone_data},
+                     {"weather_values", facts.weather_values},
                      {"wall_s", facts.wall_s}};
   return json.dump(2) + "\n";
 }

@@ -152,6 +152,7 @@ report::DriftData drift_report_of(const SiteConfig& config, const SiteDrift& dri
                                         .data_revision = facts.data_revision,
                                         .model_version = facts.model_version,
                                         .time_zone_data = facts.time_zone_data,
+                                        .weather_values = facts.weather_values,
                                         .seed = facts.seed}};
   for (const ExplainedAlarm& alarm : drift.alarms) data.alarms.push_back(card_of(drift, alarm));
   for (const MeterChange& change : drift.meter_changes) {

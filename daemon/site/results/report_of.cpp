@@ -18,6 +18,7 @@ report::Provenance provenance_of(const RunFacts& facts) {
           .data_revision = facts.data_revision,
           .model_version = facts.model_version,
           .time_zone_data = facts.time_zone_data,
+          .weather_values = facts.weather_values,
           .sampler = facts.sampler,
           .hyper_prior_profile = facts.hyper_prior_profile,
           .seed = facts.seed,

@@ -240,5 +240,17 @@ TEST(RealSites, CambridgeWeatherReportsItsGaps) {
   for (const auto& hour : filled.series.hours) EXPECT_FALSE(std::isnan(hour.dry_bulb_C));
 }
 
+// The Met Office reads its stations at the hour and sums the sunshine of the hour before.
+TEST(RealSites, CambridgeWeatherShowsThatItIsReadAtTheHour) {
+  for (const char* site : {"cambridge-b25", "cambridge-b40"}) {
+    const auto folder = site_folder(site);
+    SKIP_WITHOUT(folder);
+    const auto csv = csv::read_weather(folder / "weather.csv", {.stamps = csv::Stamps::end});
+    ASSERT_TRUE(csv.has_value()) << csv.error().message;
+    EXPECT_EQ(csv->values,
+              (weather::ValuesTaken{weather::RecordedValues::instant, weather::KnownBy::inferred}));
+  }
+}
+
 }  // namespace
 }  // namespace recald::real_sites_test

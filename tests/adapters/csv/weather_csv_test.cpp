@@ -12,6 +12,8 @@ using std::chrono::minutes;
 
 const metering::Instant kStart = std::chrono::sys_days{std::chrono::year{2016} / 3 / 1};
 
+const WeatherCsvOptions kMeans{.values = weather::RecordedValues::mean};
+
 Result<WeatherCsv> read(std::string_view text, const WeatherCsvOptions& options = {}) {
   return read_weather_text(text, "weather.csv", options);
 }
@@ -47,6 +49,7 @@ TEST(WeatherCsv, ColumnsInAnyOrderOthersIgnoredByName) {
 TEST(WeatherCsv, EndStampsAreMovedToTheStart) {
   WeatherCsvOptions options;
   options.stamps = Stamps::end;
+  options.values = weather::RecordedValues::mean;
   const auto csv = read(kHead +
                             "2016-03-01T00:00:00Z,5,,,,\n"
                             "2016-03-01T01:00:00Z,6,,,,\n",
@@ -56,10 +59,42 @@ TEST(WeatherCsv, EndStampsAreMovedToTheStart) {
   EXPECT_EQ(csv->series.hours[1].dry_bulb_C, 6.0);
 }
 
+/// Three rows of 5, 6 and 7 °C.
+std::string three_rows(std::chrono::seconds step) {
+  std::string text = kHead;
+  for (int i = 0; i < 3; ++i) {
+    text += metering::to_string(kStart + i * step) + "," + std::to_string(5 + i) + ",,,,\n";
+  }
+  return text;
+}
+
+// Instants become means of the hour after their stamp, or before it. Where nothing is said and
+// nothing shows it, hourly rows are instants, as weather services report, shorter ones means.
+TEST(WeatherCsv, ValuesAreInstantsOrMeans) {
+  using weather::KnownBy;
+  using weather::RecordedValues;
+  WeatherCsvOptions options;
+  options.values = RecordedValues::instant;
+  EXPECT_EQ(read(three_rows(hours{1}), options)->series.hours[0].dry_bulb_C, 5.5);
+  EXPECT_EQ(read(three_rows(hours{1}), options)->values,
+            (weather::ValuesTaken{RecordedValues::instant, KnownBy::declared}));
+  options.stamps = Stamps::end;
+  EXPECT_EQ(read(three_rows(hours{1}), options)->series.find(kStart)->dry_bulb_C, 5.5);
+  options.values = RecordedValues::mean;
+  EXPECT_EQ(read(three_rows(hours{1}), options)->series.find(kStart)->dry_bulb_C, 6.0);
+  EXPECT_EQ(read(three_rows(hours{1}))->series.hours[0].dry_bulb_C, 5.5);
+  EXPECT_EQ(read(three_rows(hours{1}))->values,
+            (weather::ValuesTaken{RecordedValues::instant, KnownBy::usage}));
+  EXPECT_EQ(read(three_rows(minutes{15}))->series.hours[0].dry_bulb_C, 6.0);
+  EXPECT_EQ(read(three_rows(minutes{15}))->values,
+            (weather::ValuesTaken{RecordedValues::mean, KnownBy::usage}));
+}
+
 TEST(WeatherCsv, ImpossibleValuesAreBlanksSlightExcessIsCut) {
   const auto csv = read(kHead +
-                        "2016-03-01T00:00:00Z,5,105,1,200,-4\n"
-                        "2016-03-01T01:00:00Z,155,50,1,200,0\n");
+                            "2016-03-01T00:00:00Z,5,105,1,200,-4\n"
+                            "2016-03-01T01:00:00Z,155,50,1,200,0\n",
+                        kMeans);
   ASSERT_TRUE(csv.has_value());
   EXPECT_EQ(csv->series.hours[0].rel_humidity_pct, 100.0);
   EXPECT_EQ(csv->series.hours[0].ghi_W_m2, 0.0);
@@ -108,9 +143,9 @@ TEST(WeatherCsvBadInput, CutAtEveryByteNothingIsInvented) {
     text += metering::to_string(kStart + hours{i}) + "," + std::to_string(10 + i) +
             ".5,50,3,200,1" + std::to_string(i) + "0\n";
   }
-  const auto whole = read(text);
+  const auto whole = read(text, kMeans);
   for (std::size_t cut = 0; cut < text.size(); ++cut) {
-    const auto csv = read(std::string_view{text}.substr(0, cut));
+    const auto csv = read(std::string_view{text}.substr(0, cut), kMeans);
     if (!csv) continue;
     for (std::size_t i = 0; i < csv->series.hours.size(); ++i) {
       EXPECT_EQ(csv->series.hours[i].dry_bulb_C, whole->series.hours.at(i).dry_bulb_C);

@@ -66,12 +66,25 @@ TEST(Epw, HoursNameTheirEndInLocalStandardTime) {
   // The last hour of 1 January belongs to the 1st; summer does not move the clock.
   const Instant second = Instant{sys_days{year{2013} / 1 / 2}} + hours{7};
   EXPECT_EQ(weather->series.find(second - hours{1})->dry_bulb_C, 1.0);
-  EXPECT_EQ(weather->series.find(second)->dry_bulb_C, 2.0);
-  EXPECT_EQ(weather->series.find(Instant{sys_days{year{2013} / 7 / 4}} + hours{7})->dry_bulb_C,
+  EXPECT_EQ(weather->series.find(second + hours{1})->dry_bulb_C, 2.0);
+  EXPECT_EQ(weather->series.find(Instant{sys_days{year{2013} / 7 / 4}} + hours{8})->dry_bulb_C,
             4.0);
   EXPECT_EQ(weather->series.hours[0].pressure_Pa, 82300.0);
   EXPECT_EQ(weather->series.hours[0].ghi_W_m2, 100.0);
   EXPECT_EQ(weather->series.hours[0].dhi_W_m2, 50.0);
+}
+
+// Temperature is the value at the end of a row's hour, irradiance the mean of the hour: the first
+// hour of 2 January runs from 1 to 2 degrees.
+TEST(Epw, TemperaturesAreInstantsAndBecomeMeans) {
+  const std::string text = kHeader + rows(false, in_2013);
+  const Instant second = Instant{sys_days{year{2013} / 1 / 2}} + hours{7};
+  const auto usual = read_epw_text(text, "a.epw");
+  ASSERT_TRUE(usual.has_value()) << usual.error().message;
+  EXPECT_EQ(usual->series.find(second)->dry_bulb_C, 1.5);
+  EXPECT_EQ(usual->series.find(second)->ghi_W_m2, 100.0);
+  const auto declared = read_epw_text(text, "a.epw", {}, weather::RecordedValues::mean);
+  EXPECT_EQ(declared->series.find(second)->dry_bulb_C, 2.0);
 }
 
 TEST(Epw, MissingCodesAreAbsent) {
@@ -96,7 +109,7 @@ TEST(Epw, TypicalYearsAreLaidOnTheYearAsked) {
   EXPECT_EQ(weather->notes[0], "the file has no 29 February: the 28th stands for it");
   const Instant leap_day = Instant{sys_days{year{2016} / 2 / 29}} + hours{7};
   EXPECT_EQ(weather->series.find(leap_day)->dry_bulb_C, 28.0);
-  EXPECT_EQ(weather->series.find(leap_day + hours{24})->dry_bulb_C, 1.0);
+  EXPECT_EQ(weather->series.find(leap_day + hours{25})->dry_bulb_C, 1.0);
 }
 
 TEST(Epw, ALeapYearHas8784RowsAndMayLoseOneDay) {
@@ -107,7 +120,7 @@ TEST(Epw, ALeapYearHas8784RowsAndMayLoseOneDay) {
   const auto plain = read_epw_text(kHeader + rows(true, in_2012), "a.epw", 2015);
   ASSERT_TRUE(plain.has_value());
   EXPECT_EQ(plain->series.hours.size(), 8760u);
-  EXPECT_EQ(plain->series.find(Instant{sys_days{year{2015} / 3 / 1}} + hours{7})->dry_bulb_C, 1.0);
+  EXPECT_EQ(plain->series.find(Instant{sys_days{year{2015} / 3 / 1}} + hours{8})->dry_bulb_C, 1.0);
 }
 
 TEST(Epw, HumidityAboveAHundredIsClippedAndCounted) {
@@ -176,14 +189,14 @@ TEST(EpwRealFiles, MeasuredAndTypicalYears) {
   if (!std::filesystem::exists(golden)) {
     GTEST_SKIP() << golden << " is not here; set RECALD_DATA to the data folder";
   }
-  const auto measured = read_epw(golden);
+  const auto measured = read_epw(golden, {}, weather::RecordedValues::mean);
   ASSERT_TRUE(measured.has_value()) << measured.error().message;
   EXPECT_EQ(measured->series.hours.size(), 8784u);
   EXPECT_EQ(measured->year, 2012);
   EXPECT_FALSE(measured->typical);
   EXPECT_EQ(measured->humidity_clipped, 82);
   EXPECT_NEAR(measured->series.hours[0].pressure_Pa, 82300.0, 1e-9);
-  const auto typical = read_epw(atlanta, 2015);
+  const auto typical = read_epw(atlanta, 2015, weather::RecordedValues::mean);
   ASSERT_TRUE(typical.has_value()) << typical.error().message;
   EXPECT_TRUE(typical->typical);
   EXPECT_EQ(typical->series.hours.size(), 8760u);
