@@ -318,11 +318,15 @@ Result<CommitCounts> Gateway::commit_pushed(StoreBatch& batch,
 void Gateway::tell_of_pushed(const std::string& meter, const CommitCounts& counts,
                              const std::optional<Correction>& correction, Instant now) {
   if (!counts.conflicts.empty()) {
-    note({now, Severity::warning, "reading_conflict", meter,
-          fmt::format("{} readings were sent again with another value, the first of {}; what was "
-                      "there stays",
-                      counts.conflicts.size(),
-                      metering::to_string(counts.conflicts.front().start))});
+    note({.time = now,
+          .severity = Severity::warning,
+          .kind = "reading_conflict",
+          .subject = meter,
+          .text = fmt::format("{} readings were sent again with another value, the first of {}; "
+                              "what was there stays",
+                              counts.conflicts.size(),
+                              metering::to_string(counts.conflicts.front().start)),
+          .is_counted = true});
   }
   if (correction && counts.taken > 0) {
     note({now, Severity::info, "readings_corrected", meter,

@@ -247,10 +247,14 @@ class Service {
     if (what == last_thrown_ && now.monotonic - last_thrown_at_ < std::chrono::hours{1}) return;
     last_thrown_ = what;
     last_thrown_at_ = now.monotonic;
-    gateway_->note({now.instant(), Severity::error, "unforeseen", "",
-                    "something happened that recald did not foresee; it goes on, and tries again "
-                    "what can be: " +
-                        what});
+    gateway_->note({.time = now.instant(),
+                    .severity = Severity::error,
+                    .kind = "unforeseen",
+                    .subject = "",
+                    .text = "something happened that recald did not foresee; it goes on, and tries "
+                            "again what can be: " +
+                            what,
+                    .is_counted = true});
   }
 
   boost::asio::awaitable<void> heed_signals() {

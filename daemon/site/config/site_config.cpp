@@ -435,13 +435,8 @@ tl::expected<SiteConfig, std::vector<std::string>> load_site(const std::filesyst
   const auto refused = [&](std::string_view why) {
     return tl::unexpected(Problems{fmt::format("site file '{}' {}", file.string(), why)});
   };
-  std::error_code error;
-  const auto kind = std::filesystem::status(file, error).type();
-  if (kind == std::filesystem::file_type::directory) {
+  if (std::error_code ignored; std::filesystem::is_directory(file, ignored)) {
     return refused("is a folder; name the TOML file in it");
-  }
-  if (error && kind != std::filesystem::file_type::not_found) {
-    return refused("cannot be looked at: " + error.message());
   }
   if (const auto is_file = system::require_file(file, "site file"); !is_file) {
     return tl::unexpected(Problems{is_file.error().message});

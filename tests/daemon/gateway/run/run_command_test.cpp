@@ -98,7 +98,7 @@ TEST_F(RunCommand, AFolderThatCannotBeLookedAtEndsNothing) {
   std::filesystem::create_symlink(loop, folder_ / "site.toml");
   daemon.signal(SIGHUP);
   ASSERT_TRUE(eventually([&] { return said_so("event=not_reloaded"); })) << what_was_said();
-  EXPECT_THAT(what_was_said(), HasSubstr("cannot be looked at"));
+  EXPECT_THAT(what_was_said(), HasSubstr("cannot be reached"));
   const std::int64_t before = samples();
   EXPECT_TRUE(eventually([&] { return samples() >= before + 2; })) << what_was_said();
   EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();

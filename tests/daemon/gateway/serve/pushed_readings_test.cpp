@@ -86,6 +86,24 @@ TEST_F(PushedMeterSite, AnotherValueIsNotTakenAndTold) {
   EXPECT_EQ(events[0]["kind"], "reading_conflict");
 }
 
+// A sender that repeats itself must not fill the list of events.
+TEST_F(PushedMeterSite, ThreeHundredConflictsAreOneCountedEvent) {
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})");
+  for (int i = 0; i < 300; ++i) {
+    taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":9}]})");
+    loop_.run_for(minutes{1});
+  }
+  int conflicts = 0;
+  const Json events = get_json("/api/v1/events")["events"];
+  for (const Json& event : events) {
+    if (event["kind"] != "reading_conflict") continue;
+    ++conflicts;
+    EXPECT_EQ(event["count"], 300);
+    EXPECT_EQ(event["last_time"], "2024-03-30T16:59:00Z");
+  }
+  EXPECT_EQ(conflicts, 1);
+}
+
 // 500 kW rated: 1.2 times that is the most that is believed, as of any other meter.
 TEST_F(PushedMeterSite, WhatTheMeterCannotReadIsSuspect) {
   const Json said = taken(R"({"meter":"chw","unit":"kW","readings":[
