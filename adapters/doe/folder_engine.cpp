@@ -27,7 +27,9 @@ Result<FolderEngine> FolderEngine::open(std::filesystem::path folder, DesignPlan
 Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& theta) const {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < theta.rows(); ++i) {
-    Eigen::Index row = 0;
+    // As a rule it is in the plan's own place; to look for each from the first on takes a square.
+    const bool is_in_place = i < plan_.theta.rows() && plan_.theta.row(i) == theta.row(i);
+    Eigen::Index row = is_in_place ? i : 0;
     while (row < plan_.theta.rows() && plan_.theta.row(row) != theta.row(i)) ++row;
     if (row == plan_.theta.rows()) {
       const std::vector<double> values{theta.row(i).begin(), theta.row(i).end()};

@@ -130,10 +130,15 @@ Result<bool> ParticleMover::move_one(Particles& particles, Eigen::Index i, doubl
   return true;
 }
 
-Result<void> ParticleMover::sweep(Particles& particles, double temperature) {
+Result<void> ParticleMover::sweep(Particles& particles, double temperature,
+                                  const std::function<bool()>& proceed) {
   constexpr double target_acceptance = 0.27;
+  constexpr Eigen::Index asked_every = 64;
   Eigen::Index accepted = 0;
   for (Eigen::Index i = 0; i < particles.count(); ++i) {
+    if (proceed && i % asked_every == asked_every - 1 && !proceed()) {
+      return failure(ErrorCode::cancelled, "cancelled in the middle of a sweep");
+    }
     const auto moved = move_one(particles, i, temperature);
     if (!moved) return tl::unexpected(moved.error());
     accepted += *moved ? 1 : 0;
@@ -149,7 +154,7 @@ Result<void> ParticleMover::move(Particles& particles, double temperature,
                                  const std::function<bool()>& proceed) {
   origins_ = particles.positions;
   for (int sweeps = 1; sweeps <= options_.sweeps_max; ++sweeps) {
-    if (auto swept = sweep(particles, temperature); !swept) return swept;
+    if (auto swept = sweep(particles, temperature, proceed); !swept) return swept;
     if (proceed && !proceed()) return failure(ErrorCode::cancelled, "cancelled between two sweeps");
     if (sweeps >= options_.sweeps_min && has_moved_enough(particles)) break;
   }

@@ -59,10 +59,11 @@ class ParticleMover {
   /// log prior + temperature * log likelihood. Afterwards the scale is adapted towards an
   /// acceptance of 0.27. Does not allocate.
   /// @return an error of the target.
-  [[nodiscard]] Result<void> sweep(Particles& particles, double temperature);
+  [[nodiscard]] Result<void> sweep(Particles& particles, double temperature,
+                                   const std::function<bool()>& proceed = {});
 
   /// Sweeps until the particles have moved enough.
-  /// @param proceed  Asked after each sweep; false gives `cancelled`.
+  /// @param proceed  Asked within and after each sweep; false gives `cancelled`.
   [[nodiscard]] Result<void> move(Particles& particles, double temperature,
                                   const std::function<bool()>& proceed = {});
 
