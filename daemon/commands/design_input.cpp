@@ -1,6 +1,9 @@
 #include "daemon/commands/design_input.hpp"
 
+#include <utility>
+
 #include "adapters/system/write_file.hpp"
+#include "daemon/site/calibrate/design_outliers.hpp"
 
 namespace recald::daemon {
 
@@ -8,6 +11,7 @@ tl::expected<doe::DesignFolder, int> open_design_folder(const DesignArguments& a
                                                         const Console& console) {
   auto design = doe::read_design_folder(arguments.folder, arguments.design);
   if (!design) return tl::unexpected(console.fail(design.error()));
+  for (std::string& note : set_aside_outliers(*design)) design->notes.push_back(std::move(note));
   return std::move(*design);
 }
 

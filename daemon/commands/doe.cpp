@@ -7,6 +7,7 @@
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/calibrate/design_outliers.hpp"
 #include "daemon/site/calibrate/design_site.hpp"
 #include "daemon/site/calibrate/site_design.hpp"
 #include "daemon/site/model/active_effects.hpp"
@@ -74,7 +75,11 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
   if (auto noted = note_site(arguments.out, arguments.site, version->effects); !noted) {
     return console.fail(noted.error());
   }
-  const auto& warnings = prepared->so_far.warnings;
+  std::vector<std::string> warnings = prepared->so_far.warnings;
+  if (auto design = doe::read_design_folder(arguments.out)) {
+    const auto outliers = set_aside_outliers(*design);
+    warnings.insert(warnings.end(), outliers.begin(), outliers.end());
+  }
   console.out << (arguments.json ? design_json(arguments, plan, before, warnings)
                                  : design_words(arguments, plan, before, warnings));
   return kSuccess;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
+#include "daemon/site/calibrate/design_outliers.hpp"
 #include "daemon/site/calibrate/design_site.hpp"
 #include "daemon/site/calibrate/site_design.hpp"
 #include "daemon/site/model/active_effects.hpp"
@@ -62,8 +64,9 @@ Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
 Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
                                             const std::filesystem::path& folder,
                                             const calibration::RunContext& context) {
-  const auto design = doe::read_design_folder(folder);
+  auto design = doe::read_design_folder(folder);
   if (!design) return tl::unexpected(design.error());
+  for (std::string& note : set_aside_outliers(*design)) design->notes.push_back(std::move(note));
   auto design_site = check_design_site(*design);
   if (!design_site) return tl::unexpected(design_site.error());
   const SiteConfig& site = modelled.site.config;
