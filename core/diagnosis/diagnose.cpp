@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/diagnosis/monthly_impact.hpp"
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"
 
@@ -33,18 +34,6 @@ std::vector<std::vector<double>> draw_effect(const Candidate& candidate, const J
   return draws;
 }
 
-std::vector<double> monthly_impact_kWh(const SiteProblem& site, const Eigen::ArrayXXd& effect_kW) {
-  std::vector<double> impact;
-  for (Eigen::Index g = 0; g < effect_kW.cols(); ++g) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < effect_kW.rows(); ++i) {
-      sum += site.day_parts.parts[static_cast<std::size_t>(i)].hours * effect_kW(i, g);
-    }
-    impact.push_back(sum / static_cast<double>(site.drivers->months.size()));
-  }
-  return impact;
-}
-
 double probability_of(const Naming& naming, const Candidate& candidate) {
   const auto found = std::ranges::find_if(naming.probabilities, [&](const NameProbability& p) {
     return p.effect == candidate.effect->id && p.meter == candidate.meter;
@@ -64,7 +53,8 @@ Addition addition_of(Predictor& predictor, const SiteProblem& site,
                     .null_scale = e.null_scale,
                     .monthly_kWh = {},
                     .effect_kW = e.fit.parts_kW - predictor.parts_kW(e.fit.theta)};
-  addition.monthly_kWh = monthly_impact_kWh(site, addition.effect_kW);
+  addition.monthly_kWh =
+      monthly_impact_kWh(site, addition.candidate, addition.eta, addition.effect_kW);
   for (std::size_t j = 0; j < addition.eta.size(); ++j) {
     double sum = 0.0;
     double squares = 0.0;

@@ -32,7 +32,7 @@ struct Addition {
   double probability;
   double evidence_gain;
   double null_scale;
-  std::vector<double> monthly_kWh;  ///< (m) with the effect minus without, mean month.
+  std::vector<double> monthly_kWh;  ///< (m) with the effect minus without, mean of its months.
   Eigen::ArrayXXd effect_kW;        ///< (parts x m) with the effect minus without.
 };
 
