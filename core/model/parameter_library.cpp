@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/text/nearest.hpp"
@@ -69,6 +71,10 @@ void set_heating_set_point(Building& b, double v) {
   b.set_points.heating_occupied_C = v;
 }
 
+constexpr double kNoLeast = -std::numeric_limits<double>::infinity();
+/// Beyond the design value, of the width of a range that it has left.
+constexpr double kWidened = 0.25;
+
 constexpr auto kRelative = RangeKind::relative;
 constexpr auto kAbsolute = RangeKind::absolute;
 
@@ -76,7 +82,7 @@ constexpr auto kAbsolute = RangeKind::absolute;
 const std::array kLibrary = std::to_array<ParameterDefinition>({
   // Table 1 of the seed.
   {"ground_temperature", "degC", "Ground temperature", "microclimate", kAbsolute, 12.6, 23.4,
-   [](const Building& b) { return b.ground_temperature_C; }, [](Building& b, double v) { b.ground_temperature_C = v; }},
+   [](const Building& b) { return b.ground_temperature_C; }, [](Building& b, double v) { b.ground_temperature_C = v; }, kNoLeast},
   {"conductivity_scale", "-", "Conductivity", "thermal properties", kRelative, 0.85, 1.15, nullptr, nullptr},
   {"u_factor_scale", "-", "U-factors, all surfaces", "thermal properties", kRelative, 0.85, 1.15, one, scale_u},
   {"shgc_scale", "-", "Solar heat gain coefficients", "thermal properties", kRelative, 0.85, 1.15, one, scale_shgc},
@@ -100,13 +106,13 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
   {"occupancy_density", "person/m2", "Occupancy density", "internal load", kRelative, 0.0, 2.0,
    [](const Building& b) { return b.use.occupancy_person_m2; }, [](Building& b, double v) { b.use.occupancy_person_m2 = v; }},
   {"cooling_setpoint", "degC", "Cooling set-point, occupied hours", "system operation", kAbsolute, 20.0, 27.8,
-   [](const Building& b) { return b.set_points.cooling_occupied_C; }, set_cooling_set_point},
-  {"chilled_water_temperature", "degC", "Chilled water temperature", "system operation", kAbsolute, 5.0, 8.0, nullptr, nullptr},
-  {"supply_temperature", "degC", "Supply air temperature", "system operation", kAbsolute, 11.0, 14.0, supply_temperature, set_supply_temperature},
+   [](const Building& b) { return b.set_points.cooling_occupied_C; }, set_cooling_set_point, kNoLeast},
+  {"chilled_water_temperature", "degC", "Chilled water temperature", "system operation", kAbsolute, 5.0, 8.0, nullptr, nullptr, kNoLeast},
+  {"supply_temperature", "degC", "Supply air temperature", "system operation", kAbsolute, 11.0, 14.0, supply_temperature, set_supply_temperature, kNoLeast},
   {"outdoor_airflow", "m3/s", "Outdoor airflow rate", "system operation", kRelative, 0.3, 1.2, outdoor_air, set_outdoor_air},
   // Ours.
   {"heating_setpoint", "degC", "Heating set-point, occupied hours", "system operation", kAbsolute, 16.0, 24.0,
-   [](const Building& b) { return b.set_points.heating_occupied_C; }, set_heating_set_point},
+   [](const Building& b) { return b.set_points.heating_occupied_C; }, set_heating_set_point, kNoLeast},
   {"minimum_supply_flow", "m3/s", "Supply flow with all boxes at minimum", "system operation", kRelative, 0.5, 1.3, least_flow, set_least_flow},
   {"heating_efficiency", "-", "Boiler or heat exchanger efficiency", "plant", kRelative, 0.85, 1.10,
    [](const Building& b) { return b.heating_efficiency; }, [](Building& b, double v) { b.heating_efficiency = v; }},
@@ -115,13 +121,13 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
   {"base_heat", "kW", "Heat drawn at all hours that serves no zone", "plant", kRelative, 0.0, 2.0,
    [](const Building& b) { return b.base_heat_kW; }, [](Building& b, double v) { b.base_heat_kW = v; }},
   {"start_early", "h", "Plant starts before its timetable", "system operation", kAbsolute, -1.0, 2.5,
-   [](const Building& b) { return b.set_points.start_early_h; }, [](Building& b, double v) { b.set_points.start_early_h = v; }},
+   [](const Building& b) { return b.set_points.start_early_h; }, [](Building& b, double v) { b.set_points.start_early_h = v; }, kNoLeast},
   {"stop_late", "h", "Plant stops after its timetable", "system operation", kAbsolute, -1.5, 1.5,
-   [](const Building& b) { return b.set_points.stop_late_h; }, [](Building& b, double v) { b.set_points.stop_late_h = v; }},
+   [](const Building& b) { return b.set_points.stop_late_h; }, [](Building& b, double v) { b.set_points.stop_late_h = v; }, kNoLeast},
   {"closet_share", "-", "Share of plug heat in closets that are cooled at all hours", "internal load", kAbsolute, 0.0, 0.6,
-   [](const Building& b) { return b.use.closet_share; }, [](Building& b, double v) { b.use.closet_share = v; }},
+   [](const Building& b) { return b.use.closet_share; }, [](Building& b, double v) { b.use.closet_share = v; }, 0.0, 1.0},
   {"gains_to_core", "-", "Share of the perimeter's internal gains that arises in the core", "internal load", kAbsolute, 0.0, 0.6,
-   [](const Building& b) { return b.use.gains_to_core; }, [](Building& b, double v) { b.use.gains_to_core = v; }},
+   [](const Building& b) { return b.use.gains_to_core; }, [](Building& b, double v) { b.use.gains_to_core = v; }, 0.0, 1.0},
   {"supply_reset", "K", "Supply air warmer on cold days", "system operation", kAbsolute, 0.0, 5.0,
    [](const Building& b) { return b.air ? b.air->supply_reset_K : 0.0; }, [](Building& b, double v) { if (b.air) b.air->supply_reset_K = v; }},
   {"warm_up", "h", "Time in which the heating set-point climbs in the morning", "system operation", kAbsolute, 0.0, 4.0,
@@ -135,7 +141,7 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
   {"air_capacity", "kJ/m2K", "Heat capacity of air and furniture per floor area", "thermal properties", kAbsolute, 0.0, 150.0,
    [](const Building& b) { return 1e-3 * b.air_capacity_J_m2K; }, [](Building& b, double v) { b.air_capacity_J_m2K = 1e3 * v; }},
   {"night_fan", "-", "Share of the fans that runs while rooms are heated at night", "system operation", kAbsolute, 0.0, 1.0,
-   [](const Building& b) { return b.air ? b.air->night_fan_share : 0.0; }, [](Building& b, double v) { if (b.air) b.air->night_fan_share = v; }},
+   [](const Building& b) { return b.air ? b.air->night_fan_share : 0.0; }, [](Building& b, double v) { if (b.air) b.air->night_fan_share = v; }, 0.0, 1.0},
   {"chiller_lift", "1/K", "More chiller electricity per K of outdoor wet bulb", "plant", kAbsolute, 0.0, 0.06,
    [](const Building& b) { return b.chiller_lift_per_K; }, [](Building& b, double v) { b.chiller_lift_per_K = v; }},
   {"floor_area", "m2", "Floor area", "geometry", kRelative, 0.4, 2.5,
@@ -171,11 +177,42 @@ Result<const ParameterDefinition*> find_parameter(std::string_view name) {
   return &*found;
 }
 
+Result<Prior> physical_prior(const ParameterDefinition& definition, const Prior& prior) {
+  Prior cut = prior;
+  if (const auto* normal = std::get_if<TruncatedNormalPrior>(&prior.distribution())) {
+    const double min = std::isfinite(normal->min) ? normal->min : definition.least;
+    const double max = std::isfinite(normal->max) ? normal->max : definition.most;
+    auto made = Prior::make(TruncatedNormalPrior{normal->location, normal->sd, min, max});
+    if (!made) return made;
+    cut = *made;
+  } else if (const auto* skewed = std::get_if<LogNormalPrior>(&prior.distribution())) {
+    const double max = std::isfinite(skewed->max) ? skewed->max : definition.most;
+    auto made = Prior::make(LogNormalPrior{skewed->median, skewed->log_sd, skewed->min, max});
+    if (!made) return made;
+    cut = *made;
+  }
+  const auto amount = [&](double value) {
+    return number(value) + (definition.unit == "-" ? "" : " " + std::string{definition.unit});
+  };
+  const bool is_too_low = cut.min() < definition.least;
+  const bool is_too_high = std::isfinite(cut.max()) && cut.max() > definition.most;
+  if (!is_too_low && !is_too_high) return cut;
+  return failure(
+      ErrorCode::invalid_value,
+      std::string{definition.name} + " cannot be " + amount(is_too_low ? cut.min() : cut.max()) +
+          "; it is at " +
+          (is_too_low ? "least " + amount(definition.least) : "most " + amount(definition.most)));
+}
+
 Result<Parameter> make_parameter(const ParameterDefinition& definition, const Building& nominal,
                                  const std::optional<Prior>& prior) {
   const std::string name{definition.name};
   const std::string unit{definition.unit};
-  if (prior) return Parameter{name, unit, *prior};
+  if (prior) {
+    auto physical = physical_prior(definition, *prior);
+    if (!physical) return tl::unexpected(physical.error());
+    return Parameter{name, unit, *physical};
+  }
   const double design = definition.get(nominal);
   if (definition.range == RangeKind::relative) {
     if (!(design > 0.0)) {
@@ -185,13 +222,16 @@ Result<Parameter> make_parameter(const ParameterDefinition& definition, const Bu
     }
     return Parameter{name, unit, {definition.low * design, design, definition.high * design}};
   }
-  if (design < definition.low || design > definition.high) {
+  if (!(definition.least <= design && design <= definition.most)) {
     return failure(ErrorCode::invalid_value,
-                   name + ": the design value " + number(design) + " " + unit +
-                       " lies outside the library's range " + number(definition.low) + " to " +
-                       number(definition.high) + "; give min, mode and max");
+                   name + ": the design value " + number(design) + " " + unit + " is not possible");
   }
-  return Parameter{name, unit, {definition.low, design, definition.high}};
+  const double beyond = kWidened * (definition.high - definition.low);
+  const double low =
+      design < definition.low ? std::max(design - beyond, definition.least) : definition.low;
+  const double high =
+      design > definition.high ? std::min(design + beyond, definition.most) : definition.high;
+  return Parameter{name, unit, {low, design, high}};
 }
 
 void settle(Building& building) {

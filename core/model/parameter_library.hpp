@@ -6,6 +6,7 @@
 /// areas).
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -31,6 +32,8 @@ struct ParameterDefinition {
   double high;
   double (*get)(const Building&);        ///< Design value; null: no model of ours has it.
   void (*set)(Building&, double value);  ///< On a copy of the nominal building.
+  double least = 0.0;                    ///< What physics allows, whatever is usual.
+  double most = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] bool is_modelled() const { return set != nullptr; }
 };
@@ -45,9 +48,15 @@ inline constexpr std::string_view kSeedParameters[] = {"occupancy_density", "out
 ///         simulation has (visible reflectance …).
 [[nodiscard]] Result<const ParameterDefinition*> find_parameter(std::string_view name);
 
-/// The parameter with its prior for this building; `prior` overrides the library's range.
-/// @return invalid_value when the design value lies outside an absolute range, or is 0 where the
-///         range is relative to it.
+/// A prior that the site gives, with open ends cut where physics ends.
+/// @return or invalid_value, for one that allows what physics does not.
+[[nodiscard]] Result<Prior> physical_prior(const ParameterDefinition& definition,
+                                           const Prior& prior);
+
+/// The parameter with its prior for this building; `prior` overrides the library's range. A design
+/// value outside an absolute range widens it: the library says what is usual, the drawings what is.
+/// @return invalid_value when the design value is not possible, or is 0 where the range is relative
+///         to it; or as `physical_prior`.
 [[nodiscard]] Result<Parameter> make_parameter(const ParameterDefinition& definition,
                                                const Building& nominal,
                                                const std::optional<Prior>& prior = {});

@@ -9,6 +9,7 @@
 #include "daemon/commands/check_meters.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/model/site_parts.hpp"
 #include "daemon/site/replay/site_weather.hpp"
 
 namespace recald::daemon {
@@ -113,6 +114,19 @@ std::vector<std::string> check_pushed(const SiteConfig& site) {
   return {nowhere_to_push(site, *pushed)};
 }
 
+/// What the models will miss in the weather: a problem where the site has one, else good to know.
+std::vector<std::string> check_weather(const SiteConfig& site, const Console& console) {
+  if (!site.weather || !system::require_file(site.weather->file, "the weather file")) return {};
+  const auto lack = lack_of_weather(site);
+  if (!lack) return {site.file.filename().string() + ": " + lack.error().message};
+  if (lack->sentence.empty()) return {};
+  if (site.model && lack->stops_all) {
+    return {site.file.filename().string() + ": " + lack->sentence};
+  }
+  console.err << "recald: " << lack->sentence << "\n";
+  return {};
+}
+
 std::vector<std::string> check_files(const SiteConfig& site) {
   std::vector<std::string> problems;
   const auto require = [&](const std::filesystem::path& file, std::string_view what) {
@@ -146,8 +160,9 @@ int run_check(const CheckArguments& arguments, const Console& console) {
     if (weather) print_weather(*site->weather, *weather, console);
   }
   if (site) {
-    const auto more = check_pushed(*site);
-    problems.insert(problems.end(), more.begin(), more.end());
+    for (const auto& more : {check_pushed(*site), check_weather(*site, console)}) {
+      problems.insert(problems.end(), more.begin(), more.end());
+    }
   }
   if (site) {
     const auto more = check_buses(*site, console, arguments.json);

@@ -218,6 +218,177 @@ TEST_F(Cli, CheckFindsAPriorThatTheBuildingDoesNotHave) {
             "which is 0; give min, mode and max\n");
 }
 
+TEST_F(Cli, AShopThatLeaksMoreThanOfficesDoIsNoMistake) {
+  write("site.toml",
+        edited(sample_site(), "name = \"occupancy_density\"", "name = \"leakage_area\"") +
+            "\n[building.infiltration]\nela_cm2_m2 = 9\n");
+  write("weather.csv", weather_of(2021));
+  const Outcome outcome = run({"check", site()});
+  EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("leakage_area         triangular 0.26 / 9 / 10.17 cm2/m2"));
+}
+
+TEST_F(Cli, APriorBeyondPhysicsIsNamedWithItsLine) {
+  write("site.toml", edited(sample_site(), "name = \"occupancy_density\"",
+                            "name = \"leakage_area\"\nmin = -2\nmode = 3\nmax = 60"));
+  const Outcome outcome = run({"check", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, HasSubstr("leakage_area cannot be -2 cm2/m2; it is at least 0 cm2/m2"));
+  write("site.toml", edited(sample_site(), "name = \"occupancy_density\"",
+                            "name = \"leakage_area\"\nmin = 0.1\nmode = 12\nmax = 60"));
+  write("weather.csv", weather_of(2021));
+  EXPECT_EQ(run({"check", site()}).exit_code, kSuccess);
+}
+
+/// Columns of the weather from the first to before `end`.
+std::string weather_columns(int end) {
+  std::istringstream lines{weather_of(2021)};
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    std::size_t at = 0;
+    for (int i = 0; i < end; ++i) at = line.find(',', at) + 1;
+    text += (at == 0 ? line : line.substr(0, at - 1)) + "\n";
+  }
+  return text;
+}
+
+TEST_F(Cli, WeatherOfTemperatureAloneSaysWhatStillWorks) {
+  write("site.toml", sample_site());
+  write("weather.csv", weather_columns(2));
+  const std::string sentence =
+      "the weather in weather.csv has no rel_humidity_pct, wind_speed_m_s, ghi_W_m2. Without the "
+      "sun no model can be run: calibrate, report, profile, doe, drift and diagnose do not work. "
+      "replay, run, import and export do. Add what is missing, or give an EPW file\n";
+  const Outcome check = run({"check", site()});
+  EXPECT_EQ(check.exit_code, kFailure);
+  EXPECT_EQ(check.err, "recald: site.toml: " + sentence);
+  const Outcome calibrate = run({"calibrate", site()});
+  EXPECT_EQ(calibrate.exit_code, kFailure);
+  EXPECT_THAT(calibrate.err, HasSubstr("recald: " + sentence));
+  EXPECT_EQ(run({"replay", site()}).exit_code, kSuccess);
+}
+
+/// Meters of halves of a building, and of what its roof feeds in: by day 1200, 600 and 180 kWh.
+class SumOfMeters : public Cli {
+ protected:
+  SumOfMeters() {
+    write("halves.csv", halves());
+    write("site.toml", site_text());
+  }
+  static std::string halves(Instant gap = {}) {
+    std::string text = "timestamp,meter,value,unit\n";
+    bool high = false;
+    for (Instant t = kBegin; t < kEnd; t += hours{1}, high = !high) {
+      const std::string stamp = metering::to_string(t);
+      text += stamp + ",east," + (high ? "60" : "40") + ",kW\n";
+      if (t != gap) text += stamp + ",west," + (high ? "30" : "20") + ",kW\n";
+      text += stamp + ",pv," + (high ? "10" : "5") + ",kW\n";
+    }
+    return text;
+  }
+  static std::string site_text() {
+    std::string text = "[site]\nid = \"x\"\ntimezone = \"Europe/Zurich\"\n";
+    for (const char* id : {"east", "west", "pv"}) {
+      text += std::string{"[[meter]]\nid = \""} + id +
+              "\"\nutility = \"electricity\"\nfile = \"halves.csv\"\n";
+    }
+    return text +
+           "[[meter]]\nid = \"all\"\nutility = \"electricity\"\nsum_of = [\"east\", \"west\", "
+           "\"-pv\"]\n";
+  }
+};
+
+TEST_F(SumOfMeters, IsAMeterWithMonthsAndAPeak) {
+  const Outcome outcome = run({"replay", site()});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("2021-01  all                  1620.0 kWh/day  peak     80.0 "
+                                     "kW  measured 100.0 %"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("all: 2159 readings every 3600 s (the sum of east, west, less pv)\n"));
+  const Outcome check = run({"check", site()});
+  EXPECT_EQ(check.exit_code, kSuccess) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("the sum of east, west, less pv\n"));
+}
+
+TEST_F(SumOfMeters, LacksWhatAPartLacks) {
+  write("halves.csv", halves(sys_days{year{2021} / 2 / 10} + hours{9}));
+  const Outcome outcome = run({"replay", site()});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("2021-02  all                  1620.0 kWh/day  peak     80.0 "
+                                     "kW  measured  99.9 %"));
+}
+
+TEST_F(SumOfMeters, OfPartsThatDoNotFitIsNamed) {
+  const auto problem_of = [&](const std::string& parts) {
+    write("site.toml", edited(site_text(), "[\"east\", \"west\", \"-pv\"]", parts));
+    return run({"check", site()}).err;
+  };
+  EXPECT_THAT(problem_of("[\"east\"]"), HasSubstr("'sum_of' needs the ids of two meters or more"));
+  EXPECT_THAT(problem_of("[\"east\", \"wset\"]"),
+              HasSubstr("'sum_of' names 'wset', which is not the id of a [[meter]]"));
+  EXPECT_THAT(problem_of("[\"east\", \"-east\"]"), HasSubstr("'sum_of' names 'east' twice"));
+  EXPECT_THAT(problem_of("[\"east\", \"all\"]"),
+              HasSubstr("'sum_of' names 'all', whose readings are in no file (source = \"sum\")"));
+  write("site.toml", site_text() + "file = \"halves.csv\"\n");
+  EXPECT_THAT(run({"check", site()}).err, HasSubstr("unknown key 'file'"));
+}
+
+TEST_F(Cli, TwoMetersOfTheWholeBuildingCountTwice) {
+  const std::string twice = edited(
+      edited(sample_site(), "outputs = [\"electricity\"", "outputs = [\"electricity\", \"west\""),
+      "[[meter]]\nid = \"district_heat\"",
+      "[[meter]]\nid = \"west\"\nutility = \"electricity\"\nfile = \"west.csv\"\n"
+      "name_in_file = \"electricity\"\n\n[[meter]]\nid = \"district_heat\"");
+  write("site.toml", twice);
+  write("west.csv", quarter_readings());
+  write("weather.csv", weather_of(2021));
+  const std::string sentence =
+      "the outputs 'electricity' and 'west' both stand for all electricity of the building, so it "
+      "would count twice; if each meters a part of it, add a [[meter]] with sum_of = "
+      "[\"electricity\", \"west\"] and put that among the outputs, or say by 'end_uses' what each "
+      "of them meters\n";
+  const Outcome check = run({"check", site()});
+  EXPECT_EQ(check.exit_code, kFailure);
+  EXPECT_EQ(check.err, "recald: site.toml: " + sentence);
+  const Outcome calibrate = run({"calibrate", site()});
+  EXPECT_EQ(calibrate.exit_code, kFailure);
+  EXPECT_THAT(calibrate.err, HasSubstr(sentence));
+}
+
+// The file ends on the tenth of March: what has not been read yet is not missing.
+TEST_F(Cli, TimeAfterTheLastReadingIsNoGap) {
+  const auto until = [&](const std::string& meter, Instant end) {
+    std::istringstream lines{quarter_readings()};
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      const bool is_its = meter.empty() || line.find("," + meter + ",") != std::string::npos;
+      const bool is_kept = text.empty() || !is_its || line < metering::to_string(end);
+      if (is_kept) text += line + "\n";
+    }
+    return text;
+  };
+  const Instant march_10 = sys_days{year{2021} / 3 / 10};
+  write("readings.csv", until("", march_10));
+  EXPECT_THAT(run({"replay", site()}).err, Not(HasSubstr("without a reading")));
+  write("readings.csv", until("heat", march_10));
+  EXPECT_THAT(
+      run({"replay", site()}).err,
+      HasSubstr("district_heat: 526 intervals without a reading, in one stretch of 21.9 days "
+                "from 2021-03-10 01:00."));
+}
+
+TEST_F(Cli, AMisspeltCommandIsToldWhatWasMeant) {
+  const Outcome outcome = run({"calibrte", site()});
+  EXPECT_EQ(outcome.exit_code, kUsage);
+  EXPECT_EQ(outcome.err, "recald: there is no command 'calibrte'; did you mean 'calibrate'?\n");
+  EXPECT_EQ(run({"nosuch", "--help"}).exit_code, kUsage);
+  EXPECT_EQ(run({"qqqqqqqq"}).err, "recald: there is no command 'qqqqqqqq'; see recald --help\n");
+  EXPECT_THAT(run({"nosuch", "--help"}).out, IsEmpty());
+  EXPECT_THAT(run({"model", "lst", site()}).err,
+              HasSubstr("there is no command 'model lst'; did you mean 'list'?"));
+  EXPECT_EQ(run({"model", "--help"}).exit_code, kSuccess);
+}
+
 TEST_F(Cli, CheckAsJson) {
   const auto good = nlohmann::json::parse(run({"check", site(), "--json"}).out);
   EXPECT_EQ(good, (nlohmann::json{{"ok", true}, {"problems", nlohmann::json::array()}}));

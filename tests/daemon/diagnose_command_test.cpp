@@ -121,8 +121,9 @@ TEST_F(DiagnoseCommand, WeatherWithoutSunCannotBeUsed) {
   edit_file("weather.csv", all,
             [](const std::string& line) { return without_columns(line, 5, 6); });
   expect_refusal(
-      "a diagnosis needs at least 6 months with weather and readings; depot has 0; give more "
-      "weather: 2021-01 is left out: only 0 % of its weather (ghi_W_m2) is known");
+      "the weather in weather.csv has no ghi_W_m2. Without the sun no model can be run: calibrate, "
+      "report, profile, doe, drift and diagnose do not work. replay, run, import and export do. "
+      "Add what is missing, or give an EPW file");
 }
 
 TEST_F(DiagnoseCommand, AMeterThatNeverSpokeIsNamed) {

@@ -26,6 +26,7 @@ using metering::Month;
 Result<void> require_months(const SiteMonths& months, const PeriodConfig& period,
                             const SiteWeather& weather) {
   if (!months.calibration.empty()) return {};
+  if (!weather.lack.empty()) return failure(ErrorCode::not_enough_data, weather.lack);
   const Month first = period.calibration.first;
   return failure(
       ErrorCode::not_enough_data,

@@ -287,18 +287,20 @@ std::optional<PeriodConfig> read_period(TomlReader table) {
 
 ParameterConfig read_parameter(TomlReader& table) {
   ParameterConfig config{table.required_text("name"), {}};
-  if (const auto found = model::find_parameter(config.name); !config.name.empty() && !found) {
-    table.problem_at("name", found.error().message);
-  }
+  const auto found = model::find_parameter(config.name);
+  if (!config.name.empty() && !found) table.problem_at("name", found.error().message);
   const auto distribution = table.text("distribution");
   const PriorNumbers numbers{table.number("min"), table.number("mode"), table.number("max"),
                              table.number("sd")};
   if (distribution || numbers.min || numbers.mode || numbers.max || numbers.sd) {
-    if (const auto prior = Prior::named(distribution.value_or("triangular"), numbers)) {
-      config.prior = *prior;
-    } else {
+    const auto prior = Prior::named(distribution.value_or("triangular"), numbers);
+    if (!prior) {
       table.problem(config.name + ": " + prior.error().message +
                     ", or nothing at all for the library's range");
+    } else if (const auto physical = found ? model::physical_prior(**found, *prior) : prior) {
+      config.prior = *physical;
+    } else {
+      table.problem(physical.error().message);
     }
   }
   table.finish();

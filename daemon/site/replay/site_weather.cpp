@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 
 #include "adapters/csv/weather_csv.hpp"
 #include "adapters/epw/epw.hpp"
@@ -13,6 +16,7 @@ namespace {
 
 /// Positions in `weather::kWeatherVariables` of what a building model cannot do without.
 constexpr std::array<std::size_t, 4> kNeeded = {0, 1, 2, 4};
+constexpr std::size_t kSun = 4;
 
 Result<csv::WeatherCsv> read_csv(const WeatherConfig& config) {
   return csv::read_weather(config.file, {.stamps = config.stamps, .values = config.values});
@@ -87,7 +91,38 @@ KnownShare least_known(const weather::FilledWeather& filled, metering::Month mon
   return least;
 }
 
+bool has_any(const weather::WeatherSeries& series, std::size_t variable) {
+  const auto member = weather::kWeatherVariables[variable].member;
+  return std::ranges::any_of(
+      series.hours, [&](const weather::WeatherHour& hour) { return std::isfinite(hour.*member); });
+}
+
+WeatherLack lack_of(const weather::WeatherSeries& series, const std::filesystem::path& file) {
+  std::vector<std::string_view> absent;
+  for (const std::size_t variable : kNeeded) {
+    if (!has_any(series, variable)) absent.push_back(weather::kWeatherVariables[variable].name);
+  }
+  if (absent.empty()) return {};
+  const bool no_sun = !has_any(series, kSun);
+  return {fmt::format("the weather in {} has no {}. {} Add what is missing, or give an EPW file",
+                      file.filename().string(), fmt::join(absent, ", "),
+                      no_sun ? "Without the sun no model can be run: calibrate, report, profile, "
+                               "doe, drift and diagnose do not work. replay, run, import and "
+                               "export do."
+                             : "diagnose assumes usual values, but calibrate, report, profile, doe "
+                               "and drift do not work. replay, run, import and export do."),
+          no_sun};
+}
+
 }  // namespace
+
+Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
+  if (site.weather->format == WeatherFormat::epw) return WeatherLack{};  // has all of it
+  std::vector<std::string> notes;
+  const auto series = read_csv(*site.weather, notes);
+  if (!series) return tl::unexpected(series.error());
+  return lack_of(*series, site.weather->file);
+}
 
 Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                  const metering::MonthRange& months) {
@@ -96,6 +131,9 @@ Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCa
                           ? read_epw_years(*site.weather, months, result)
                           : read_csv(*site.weather, result);
   if (!series) return tl::unexpected(series.error());
+  WeatherLack lack = lack_of(*series, site.weather->file);
+  if (lack.stops_all) return failure(ErrorCode::not_enough_data, std::move(lack.sentence));
+  result.lack = std::move(lack.sentence);
   result.filled = weather::fill_gaps(*series, calendar);
   return result;
 }

@@ -17,10 +17,22 @@ struct SiteWeather {
   weather::FilledWeather filled;
   weather::ValuesTaken values;
   std::vector<std::string> notes;  ///< What was done to it, in words.
+  std::string lack = {};           ///< WeatherLack::sentence.
 };
+
+/// What a weather file lacks of what the models need, and what still works without it.
+struct WeatherLack {
+  std::string sentence;    ///< Empty: it lacks nothing.
+  bool stops_all = false;  ///< No model runs without the sun.
+};
+
+/// Reads the columns and rows of a weather CSV for what is in none of them. @pre site.weather
+/// @return or what reading the file finds.
+[[nodiscard]] Result<WeatherLack> lack_of_weather(const SiteConfig& site);
 
 /// Reads the site's weather file and fills what it can. @pre site.weather
 /// @param months  Those that are needed: an EPW file is laid on their years.
+/// @return or what reading finds; not_enough_data for a file without the sun.
 [[nodiscard]] Result<SiteWeather> load_weather(const SiteConfig& site,
                                                const metering::LocalCalendar& calendar,
                                                const metering::MonthRange& months);
