@@ -1,11 +1,16 @@
 #include "daemon/commands/cli.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/calibration/samplers.hpp"
+#include "core/text/nearest.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/version.hpp"
@@ -396,6 +401,24 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
       ->add_option("version", given.model.version, "Version; without it the parent");
 }
 
+/// What is wrong with the first word of a command line, if it is no command; else empty. CLI11
+/// would answer `--help` before it looks at it.
+std::string unknown_command(const CLI::App& app, std::span<const char* const> words) {
+  if (words.empty() || std::string_view{words.front()}.starts_with('-')) return {};
+  const std::string_view word{words.front()};
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == word) return unknown_command(*command, words.subspan(1));
+    names.push_back(command->get_name());
+  }
+  if (names.empty()) return {};  // a file's name, or whatever the command takes
+  const std::string_view nearest = nearest_name(word, names);
+  const std::string above = app.get_parent() == nullptr ? "" : app.get_name() + " ";
+  return fmt::format("there is no command '{}{}'; {}", above, word,
+                     nearest.empty() ? fmt::format("see recald {}--help", above)
+                                     : fmt::format("did you mean '{}'?", nearest));
+}
+
 }  // namespace
 
 int run_cli(int argc, const char* const* argv, const Console& console) {
@@ -410,6 +433,11 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   add_calibration_verbs(app, given, verbs);
   add_design_verbs(app, given, verbs);
   add_model_verbs(app, given, verbs);
+  const std::span words{argv, static_cast<std::size_t>(argc)};
+  if (const auto why = unknown_command(app, words.subspan(std::min<std::size_t>(1, words.size())));
+      !why.empty()) {
+    return console.misused(why);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -112,6 +112,29 @@ INSTANTIATE_TEST_SUITE_P(
                     {"drift", "SITE", "--learn", "6", "--particles", "100000", "--out", "OUT"}}),
     [](const auto& made) { return std::string{made.param.name}; });
 
+// More than a pipe's buffer of lines, and a reader that has gone: `recald replay … | head`.
+TEST(Pipes, AReaderThatGoesLeavesTheResultsThere) {
+  const recald::testing::TemporaryFolder folder;
+  recald::testing::write_depot_year(folder.path());
+  std::string site = recald::testing::read_text(folder / "site.toml");
+  for (int i = 0; i < 8; ++i) {
+    const std::string copy = "copy_" + std::to_string(i);
+    fs::copy_file(folder / "readings.csv", folder / (copy + ".csv"));
+    site.insert(site.find("[[meter]]"), "[[meter]]\nid = \"" + copy +
+                                            "\"\nutility = \"electricity\"\nfile = \"" + copy +
+                                            ".csv\"\nname_in_file = \"electricity\"\n\n");
+  }
+  recald::testing::write_text(folder / "site.toml", site);
+  BackgroundProcess process{
+      {"/bin/sh", "-c",
+       std::string{RECALD_PROGRAM} + " replay " + (folder / "site.toml").string() + " --out " +
+           (folder / "out").string() + " | true"},
+      folder / "said.txt"};
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_TRUE(eventually([&] { return fs::exists(folder / "out/months.csv"); }))
+      << recald::testing::read_text(folder / "said.txt");
+}
+
 TEST(EndSignals, ASecondOneEndsAtOnce) {
   const auto never_ends = [] {
     const EndSignals signals;
