@@ -50,6 +50,7 @@ class MeterMap {
   double& operator[](EndUse use) { return shares_[static_cast<std::size_t>(use)]; }
   double operator[](EndUse use) const { return shares_[static_cast<std::size_t>(use)]; }
   [[nodiscard]] double sum_kWh(const EndUseEnergy& energy) const;
+  bool operator==(const MeterMap&) const = default;
 
  private:
   std::array<double, kEndUses> shares_{};

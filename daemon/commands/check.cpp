@@ -37,6 +37,11 @@ void print_meters(const SiteConfig& site, const Console& console) {
                                  duration_words(meter.interval));
       continue;
     }
+    if (config.source == MeterSource::sum) {
+      console.out << fmt::format("  meter {:<16} {:<14} {}\n", meter.id,
+                                 metering::to_string(meter.utility), sum_words(config));
+      continue;
+    }
     console.out << fmt::format(
         "  meter {:<16} {:<14} {} ('{}', {}-stamped, interval {})\n", meter.id,
         metering::to_string(meter.utility), config.file.string(), config.name_in_file,
@@ -91,6 +96,9 @@ std::vector<std::string> check_buses(const SiteConfig& site, const Console& cons
 /// Problems that only show once several tables are seen together.
 std::vector<std::string> check_model(const SiteConfig& site, const Console& console, bool json) {
   std::vector<std::string> problems;
+  if (const auto maps = meter_maps(site); !maps) {
+    problems.push_back(site.file.filename().string() + ": " + maps.error().message);
+  }
   for (const ParameterConfig& config : site.model->parameters) {
     const auto definition = model::find_parameter(config.name);
     const auto parameter = model::make_parameter(**definition, *site.building, config.prior);
@@ -136,7 +144,7 @@ std::vector<std::string> check_files(const SiteConfig& site) {
         fmt::format("{}: {}", site.file.filename().string(), is_file.error().message));
   };
   for (const MeterConfig& config : site.meters) {
-    if (config.is_stored()) continue;
+    if (config.source != MeterSource::csv) continue;
     require(config.file, fmt::format("the file of meter '{}',", config.meter.id));
   }
   if (site.weather) require(site.weather->file, "the weather file");

@@ -1,6 +1,7 @@
 #include "daemon/commands/open_site.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -24,6 +25,17 @@ std::string nowhere_to_push(const SiteConfig& site, const MeterConfig& meter) {
       "{}: meter '{}' has source = \"http\", but there is no [http] to send its readings to; add "
       "[http] with listen = \"127.0.0.1:8080\"",
       site.file.filename().string(), meter.meter.id);
+}
+
+std::string sum_words(const MeterConfig& meter) {
+  std::vector<std::string> added;
+  std::vector<std::string> taken_away;
+  for (const SumPart& part : meter.sum_of) {
+    (part.sign > 0.0 ? added : taken_away).push_back(part.meter);
+  }
+  std::string words = fmt::format("the sum of {}", fmt::join(added, ", "));
+  if (!taken_away.empty()) words += fmt::format(", less {}", fmt::join(taken_away, ", "));
+  return words;
 }
 
 void print_data_words(const Recording& recording, const Console& console) {

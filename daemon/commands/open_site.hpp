@@ -13,6 +13,9 @@ namespace recald::daemon {
 /// What is said of a meter with source = "http" at a site without [http].
 [[nodiscard]] std::string nowhere_to_push(const SiteConfig& site, const MeterConfig& meter);
 
+/// "the sum of main_a and main_b, less pv"
+[[nodiscard]] std::string sum_words(const MeterConfig& meter);
+
 /// Bad lines of the files and what the meters' data show, in words on err.
 void print_data_words(const Recording& recording, const Console& console);
 

@@ -54,7 +54,11 @@ nlohmann::ordered_json summary_json(const SiteConfig& site, const Recording& rec
           {"meters", meters}};
 }
 
-std::string source_line(const MeterRecord& record) {
+std::string source_line(const MeterConfig& config, const MeterRecord& record) {
+  if (config.source == MeterSource::sum) {
+    return fmt::format("{}: {} readings every {} s ({})\n", record.meter.id, record.counts.accepted,
+                       record.meter.interval.count(), sum_words(config));
+  }
   if (!record.in_file) {
     return fmt::format("{}: {} readings every {} s (read live)\n", record.meter.id,
                        record.counts.accepted, record.meter.interval.count());
@@ -86,7 +90,9 @@ int run_replay(const ReplayArguments& arguments, const Console& console) {
                     if (!arguments.json) console.out << figure_line(meter, figure, now) << "\n";
                   });
   if (!recording) return console.fail(recording.error());
-  for (const MeterRecord& record : recording->meters) console.err << source_line(record);
+  for (std::size_t i = 0; i < recording->meters.size(); ++i) {
+    console.err << source_line(site->config.meters[i], recording->meters[i]);
+  }
   print_data_words(*recording, console);
   if (!arguments.out.empty()) {
     if (auto made = system::make_folder(arguments.out); !made) return console.fail(made.error());

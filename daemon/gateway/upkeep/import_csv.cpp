@@ -68,6 +68,7 @@ class Import {
     if (!edit) return tl::unexpected(edit.error());
     edit_ = *edit;
     for (const MeterConfig& config : site_.meters) {
+      if (config.source == MeterSource::sum) continue;  // has no readings of its own
       const auto number = store_.meter_number(config.meter.id, config.meter.interval);
       if (!number) return tl::unexpected(number.error());
       const auto months = store_.months(*number);
@@ -94,6 +95,7 @@ class Import {
   [[nodiscard]] csv::ReadingsOptions file_options() const {
     csv::ReadingsOptions options;
     for (const MeterConfig& config : site_.meters) {
+      if (config.source == MeterSource::sum) continue;  // has no readings of its own
       options.meters.push_back({.name = config.meter.id,
                                 .utility = config.meter.utility,
                                 .stamps = options_.stamps,
@@ -153,7 +155,7 @@ class Import {
   const metering::LocalCalendar& calendar_;
   const ImportOptions& options_;
   std::int64_t edit_ = 0;
-  std::vector<MeterImport> meters_;  ///< By meter of the site.
+  std::vector<MeterImport> meters_;  ///< By meter of the site, sums left out.
   Result<void> failed_;
   ImportOutcome outcome_;
 };

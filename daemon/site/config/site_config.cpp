@@ -145,6 +145,16 @@ MeterSource read_source(TomlReader& table) {
   return word == "http" ? MeterSource::http : MeterSource::csv;
 }
 
+/// "main" is added, "-pv" taken away.
+std::vector<SumPart> read_sum(TomlReader& table) {
+  std::vector<SumPart> parts;
+  for (const std::string& text : table.texts("sum_of").value_or(std::vector<std::string>{})) {
+    const bool is_negative = text.starts_with('-');
+    parts.push_back({text.substr(is_negative ? 1 : 0), is_negative ? -1.0 : 1.0});
+  }
+  return parts;
+}
+
 MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& maps) {
   MeterConfig config;
   metering::Meter& meter = config.meter;
@@ -153,7 +163,8 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
     table.problem_at("id",
                      fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", meter.id));
   }
-  config.source = read_source(table);
+  config.sum_of = read_sum(table);
+  config.source = table.has("sum_of") ? MeterSource::sum : read_source(table);
   const bool is_live = config.source == MeterSource::modbus;
   const std::string utility_name = table.required_text("utility");
   if (const auto utility = metering::parse_utility(utility_name)) {
@@ -201,6 +212,35 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   config.text = table.toml();
   table.finish();
   return config;
+}
+
+/// A sum adds recorded meters of its own utility, each once.
+void require_parts(TomlReader& table, const SiteConfig& site, const MeterConfig& sum) {
+  const auto wrong = [&](const std::string& sentence) {
+    table.problem_at("sum_of", "'sum_of' " + sentence);
+  };
+  if (sum.sum_of.size() < 2) return wrong("needs the ids of two meters or more");
+  std::set<std::string> seen;
+  for (const SumPart& part : sum.sum_of) {
+    const auto index = site.meter_index(part.meter);
+    if (!index) {
+      wrong(fmt::format("names '{}', which is not the id of a [[meter]]", part.meter));
+      continue;
+    }
+    const MeterConfig& meter = site.meters[*index];
+    if (!seen.insert(part.meter).second) wrong(fmt::format("names '{}' twice", part.meter));
+    if (meter.source != MeterSource::csv) {
+      wrong(
+          fmt::format("names '{}', whose readings are in no file (source = \"{}\"); only "
+                      "recorded meters can be summed",
+                      part.meter, name_of(meter.source)));
+    }
+    if (meter.meter.utility != sum.meter.utility) {
+      wrong(fmt::format("names '{}', which meters {} and not {}", part.meter,
+                        metering::to_string(meter.meter.utility),
+                        metering::to_string(sum.meter.utility)));
+    }
+  }
 }
 
 /// The live meters of a site by what they answer to, so that each is compared with few others.
@@ -365,12 +405,17 @@ void read_root(TomlReader root, SiteConfig& config) {
   std::set<std::string> ids;
   BusAddresses addresses{config.buses};
   RegisterMaps maps{config.file.parent_path()};
-  for (TomlReader& meter : root.tables("meter")) {
+  std::vector<TomlReader> tables = root.tables("meter");
+  for (TomlReader& meter : tables) {
     config.meters.push_back(read_meter(meter, config, maps));
     addresses.add(config.meters.back(), config, meter);
     const std::string& id = config.meters.back().meter.id;
     if (!id.empty() && !ids.insert(id).second)
       meter.problem(fmt::format("a second meter has the id '{}'", id));
+  }
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const MeterConfig& meter = config.meters[i];
+    if (meter.source == MeterSource::sum) require_parts(tables[i], config, meter);
   }
   if (config.meters.empty()) root.problem("no [[meter]] is described");
   if (auto period = root.table("period")) config.period = read_period(*period);
@@ -400,6 +445,8 @@ std::string_view name_of(MeterSource source) {
       return "modbus";
     case MeterSource::http:
       return "http";
+    case MeterSource::sum:
+      return "sum";
     case MeterSource::csv:
       break;
   }

@@ -26,11 +26,18 @@
 
 namespace recald::daemon {
 
-/// Where a meter's readings come from: a file, registers that are read, or whoever sends them.
-enum class MeterSource : std::uint8_t { csv, modbus, http };
+/// Where a meter's readings come from: a file, registers that are read, whoever sends them, or
+/// other meters of the site.
+enum class MeterSource : std::uint8_t { csv, modbus, http, sum };
 
-/// "csv", "modbus", "http"
+/// "csv", "modbus", "http", "sum"
 [[nodiscard]] std::string_view name_of(MeterSource source);
+
+/// A meter that a sum adds, or takes away.
+struct SumPart {
+  std::string meter;  ///< Its id.
+  double sign;        ///< 1 or -1.
+};
 
 struct MeterConfig {
   metering::Meter meter;
@@ -44,10 +51,13 @@ struct MeterConfig {
   std::optional<metering::CounterSettings> counter;
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
   std::optional<LiveMeterConfig> live;      ///< source = "modbus".
+  std::vector<SumPart> sum_of;              ///< source = sum: recorded meters of the site.
   std::string text;  ///< The table as TOML: whether a file that is read again says something else.
 
   /// Its readings are in the site's store, and not in a file.
-  [[nodiscard]] bool is_stored() const { return source != MeterSource::csv; }
+  [[nodiscard]] bool is_stored() const {
+    return source == MeterSource::modbus || source == MeterSource::http;
+  }
 };
 
 enum class WeatherFormat { csv, epw };

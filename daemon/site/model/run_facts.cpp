@@ -15,7 +15,7 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
   if (auto added = data_digest.add_file(site.file); !added) return tl::unexpected(added.error());
   std::set<std::filesystem::path> files;
   for (const MeterConfig& meter : site.meters) {
-    if (!meter.is_stored()) files.insert(meter.file);
+    if (meter.source == MeterSource::csv) files.insert(meter.file);
   }
   if (site.weather) files.insert(site.weather->file);
   for (const auto& file : files) {

@@ -106,6 +106,32 @@ Result<ChosenParameters> site_parameters(const SiteConfig& site) {
   return chosen;
 }
 
+namespace {
+
+/// Two meters that are said to draw the same, all of it: the model would be held to both.
+Result<void> require_once(const SiteConfig& site, const std::vector<model::MeterMap>& maps) {
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string& one = site.model->outputs[j];
+      const std::string& other = site.model->outputs[i];
+      const auto utility = [&](const std::string& id) {
+        return site.meters[*site.meter_index(id)].meter.utility;
+      };
+      if (maps[i] != maps[j] || utility(one) != utility(other)) continue;
+      return failure(
+          ErrorCode::invalid_value,
+          fmt::format("the outputs '{0}' and '{1}' both stand for all {2} of the building, so it "
+                      "would count twice; if each meters a part of it, add a [[meter]] with sum_of "
+                      "= [\"{0}\", \"{1}\"] and put that among the outputs, or say by 'end_uses' "
+                      "what each of them meters",
+                      one, other, metering::to_string(utility(one))));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site) {
   std::vector<model::MeterMap> maps;
   for (const std::string& id : site.model->outputs) {
@@ -119,6 +145,7 @@ Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site) {
       return failure(map.error().code, fmt::format("meter '{}': {}", id, map.error().message));
     maps.push_back(*map);
   }
+  if (auto once = require_once(site, maps); !once) return tl::unexpected(once.error());
   return maps;
 }
 

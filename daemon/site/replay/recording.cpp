@@ -3,7 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <iterator>
+#include <set>
+
+#include "core/absent.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -17,7 +22,7 @@ std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> group_by
     const SiteConfig& site) {
   std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> groups;
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
-    if (site.meters[i].is_stored()) continue;
+    if (site.meters[i].source != MeterSource::csv) continue;
     const auto& file = site.meters[i].file;
     const auto known =
         std::ranges::find(groups, file, [](const auto& group) { return group.first; });
@@ -56,11 +61,13 @@ class SlotRecord {
   }
 
   /// @param figures  Of the months that were taken.
+  /// @param until    Where the site's record ends: what has not been read yet is no gap.
   void describe(const std::vector<metering::MonthlyFigure>& figures,
-                const metering::LocalCalendar& calendar, MeterRecord& record) const {
-    record.findings =
-        metering::describe_data(record.meter.id, joined_episodes(), joined_zero_runs(), figures,
-                                record.level_changes, record.counts, calendar);
+                const metering::LocalCalendar& calendar, MeterRecord& record,
+                Instant until = Instant::max()) const {
+    record.findings = metering::describe_data(
+        record.meter.id, episodes_until(until, record.meter.interval), joined_zero_runs(), figures,
+        record.level_changes, record.counts, calendar);
   }
 
  private:
@@ -70,6 +77,19 @@ class SlotRecord {
       all.insert(all.end(), episodes.begin(), episodes.end());
     }
     return metering::join_episodes(std::move(all));
+  }
+
+  [[nodiscard]] std::vector<metering::Episode> episodes_until(Instant until,
+                                                              std::chrono::seconds interval) const {
+    std::vector<metering::Episode> episodes = joined_episodes();
+    std::erase_if(episodes, [&](const metering::Episode& one) { return one.span.begin >= until; });
+    for (metering::Episode& one : episodes) {
+      if (one.span.end <= until) continue;
+      one.span.end = until;
+      one.slots =
+          static_cast<int>((one.span.length() + interval - std::chrono::seconds{1}) / interval);
+    }
+    return episodes;
   }
 
   [[nodiscard]] std::vector<TimeSpan> joined_zero_runs() const {
@@ -117,13 +137,15 @@ class Recorder {
     slots_[closed.meter].take(closed, record);
   }
 
-  void describe(const metering::MonthCloser& closer, const metering::LocalCalendar& calendar) {
+  /// @param until  End of the last reading of any meter.
+  void describe(const metering::MonthCloser& closer, const metering::LocalCalendar& calendar,
+                Instant until) {
     for (std::size_t i = 0; i < recording_.meters.size(); ++i) {
       MeterRecord& record = recording_.meters[i];
       record.counts = closer.counts(static_cast<std::uint32_t>(i));
       record.meter = closer.meters()[i];
       find_changes(record);
-      slots_[i].describe(record.figures, calendar, record);
+      slots_[i].describe(record.figures, calendar, record, until);
     }
   }
 
@@ -131,6 +153,77 @@ class Recorder {
   Recording& recording_;
   std::vector<SlotRecord> slots_;
 };
+
+/// Adds up what recorded meters read in the same interval. Files come one after the other, so a sum
+/// is known when all have been read.
+class Sum {
+ public:
+  Sum(std::size_t meter, const SiteConfig& site) : meter_(meter) {
+    for (const SumPart& part : site.meters[meter].sum_of) {
+      signs_[*site.meter_index(part.meter)] = part.sign;
+    }
+  }
+
+  [[nodiscard]] std::size_t meter() const { return meter_; }
+
+  /// The first reading of a part in an interval, as wherever one comes twice.
+  void take(std::size_t meter, const metering::Reading& reading) {
+    const auto sign = signs_.find(meter);
+    if (sign == signs_.end()) return;
+    Interval& interval = intervals_[reading.start];
+    if (!interval.parts.insert(meter).second) return;
+    interval.sum_kW += sign->second * reading.mean_kW;
+    interval.is_measured = interval.is_measured && reading.validity == metering::Validity::ok;
+  }
+
+  /// In order of time. An interval that lacks a part, or of which one says it is no measurement, is
+  /// blank.
+  void hand_out(const std::function<void(const metering::Reading&)>& sink) const {
+    for (const auto& [start, interval] : intervals_) {
+      const bool is_whole = interval.parts.size() == signs_.size() && interval.is_measured;
+      sink({.meter = 0, .start = start, .mean_kW = is_whole ? interval.sum_kW : kAbsent});
+    }
+  }
+
+  /// The grid that all parts have. @return or a sentence about two that differ
+  [[nodiscard]] Result<csv::MeterInFile> grid(const SiteConfig& site,
+                                              const Recording& recording) const {
+    std::optional<std::size_t> first;
+    for (const auto& [part, sign] : signs_) {
+      const auto& shown = recording.meters[part].in_file;
+      if (!shown) continue;  // what is said of a meter without rows is said elsewhere
+      if (!first) first = part;
+      const auto& as_first = recording.meters[*first].in_file;
+      if (shown->interval == as_first->interval && shown->phase == as_first->phase) continue;
+      return failure(
+          ErrorCode::invalid_value,
+          fmt::format("meter '{}' cannot be summed: '{}' reads every {} s and '{}' every "
+                      "{} s; bring the files to one interval",
+                      site.meters[meter_].meter.id, site.meters[*first].meter.id,
+                      as_first->interval.count(), site.meters[part].meter.id,
+                      shown->interval.count()));
+    }
+    return first ? *recording.meters[*first].in_file : csv::MeterInFile{};
+  }
+
+ private:
+  struct Interval {
+    std::set<std::size_t> parts;
+    double sum_kW = 0.0;
+    bool is_measured = true;
+  };
+  std::size_t meter_;
+  std::map<std::size_t, double> signs_;  ///< By meter of the site.
+  std::map<Instant, Interval> intervals_;
+};
+
+std::vector<Sum> sums_of(const SiteConfig& site) {
+  std::vector<Sum> sums;
+  for (std::size_t i = 0; i < site.meters.size(); ++i) {
+    if (site.meters[i].source == MeterSource::sum) sums.emplace_back(i, site);
+  }
+  return sums;
+}
 
 constexpr TimeSpan kAllTime{Instant{}, metering::kLatestInstant};
 
@@ -166,24 +259,33 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                  on_month_closed(meters[closed.meter], closed.figure, clock.now());
                                }};
   const TimeSpan asked = asked_span(options, calendar);
+  std::vector<Sum> sums = sums_of(site);
+  Instant last_end = Instant::min();
   const auto take = [&](std::size_t meter, const metering::Reading& reading) {
     if (!asked.contains(reading.start)) return;
     metering::Reading placed = reading;
     placed.meter = static_cast<std::uint32_t>(meter);
     clock.advance_to(placed.start + closer.meters()[placed.meter].interval);
+    if (!std::isnan(placed.mean_kW)) {
+      last_end = std::max(last_end, placed.start + closer.meters()[placed.meter].interval);
+    }
     closer.add(placed);
   };
 
   for (const auto& [file, indices] : group_by_file(site)) {
-    const csv::ReadingsSink sink{
-        .on_meter =
-            [&](const csv::MeterInFile& shown) {
-              const std::size_t i = indices[shown.meter];
-              closer.set_grid(static_cast<std::uint32_t>(i), shown.interval, shown.phase);
-              recording.meters[i].in_file = shown;
-            },
-        .on_reading =
-            [&](const metering::Reading& reading) { take(indices[reading.meter], reading); }};
+    const csv::ReadingsSink sink{.on_meter =
+                                     [&](const csv::MeterInFile& shown) {
+                                       const std::size_t i = indices[shown.meter];
+                                       closer.set_grid(static_cast<std::uint32_t>(i),
+                                                       shown.interval, shown.phase);
+                                       recording.meters[i].in_file = shown;
+                                     },
+                                 .on_reading =
+                                     [&](const metering::Reading& reading) {
+                                       take(indices[reading.meter], reading);
+                                       for (Sum& sum : sums)
+                                         sum.take(indices[reading.meter], reading);
+                                     }};
     auto report = csv::read_readings(file, file_options(site, indices), sink);
     if (!report) return tl::unexpected(report.error());
     recording.readings += report->readings;
@@ -200,16 +302,22 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
     if (!count) return tl::unexpected(count.error());
     recording.readings += *count;
   }
+  for (const Sum& sum : sums) {
+    const auto grid = sum.grid(site, recording);
+    if (!grid) return tl::unexpected(grid.error());
+    closer.set_grid(static_cast<std::uint32_t>(sum.meter()), grid->interval, grid->phase);
+    sum.hand_out([&](const metering::Reading& reading) { take(sum.meter(), reading); });
+  }
   // One that was added today says nothing yet; that must not stop what the others tell.
   if (live != nullptr && recording.readings == 0) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("the store has no reading of any meter of {} yet", site.id));
   }
   closer.finish();
-  recorder.describe(closer, calendar);
+  recorder.describe(closer, calendar, last_end);
 
   for (std::size_t i = 0; i < recording.meters.size(); ++i) {
-    if (recording.meters[i].in_file || site.meters[i].is_stored()) continue;
+    if (recording.meters[i].in_file || site.meters[i].source != MeterSource::csv) continue;
     return failure(ErrorCode::not_enough_data,
                    fmt::format("{} has no usable row of meter '{}'; check the meter column, or set "
                                "name_in_file",
