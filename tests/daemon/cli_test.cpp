@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
@@ -480,6 +481,29 @@ TEST_F(Cli, ReplayWritesMonths) {
                                  "2021-01-01T00:00:00Z,block-"));
   EXPECT_EQ(lines_in(months), 1 + 6);
   EXPECT_THAT(months, HasSubstr("2021-03,district_heat,"));
+}
+
+// A recorded register reads 0 for ten days around the end of January, while half the usual load
+// runs, and comes back: both months have the energy that it counted.
+TEST_F(Cli, ReplayKnowsTheEnergyOfARegisterAtZero) {
+  write("site.toml", edited(std::string{kSampleMeters}, "rated_kW = 400",
+                            "rated_kW = 400\ncounter = { unit = \"kWh\" }"));
+  const Instant begin = sys_days{year{2020} / 12 / 31} + hours{23};  // midnight in Zurich
+  std::string text = "timestamp,meter,value,unit\n";
+  double count_kWh = 50'000.0;
+  for (int h = 0; h <= 59 * 24; ++h) {
+    const bool is_half = h >= 26 * 24 && h < 36 * 24;
+    const bool is_zero = h > 26 * 24 && h < 36 * 24;
+    const std::string stamp = metering::to_string(begin + hours{h});
+    text += stamp + ",electricity," + std::to_string(is_zero ? 0.0 : count_kWh) + ",kWh\n";
+    text += stamp + ",heat," + std::to_string(40 + h % 24) + ",kW\n";
+    count_kWh += (is_half ? 0.5 : 1.0) * (50.0 + 10.0 * std::sin(h * 0.2617993878));
+  }
+  write("readings.csv", text);
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("2021-01  electricity          1103.2 kWh/day"));
+  EXPECT_THAT(outcome.out, HasSubstr("2021-02  electricity          1092.9 kWh/day"));
 }
 
 TEST_F(Cli, ReplayCannotWriteBelowAFile) {

@@ -131,6 +131,8 @@ TEST(SiteConfig, CounterIsInItsOwnUnit) {
   EXPECT_DOUBLE_EQ(counter->modulus_kWh, 1e6);
   EXPECT_DOUBLE_EQ(counter->resolution_kWh, 10.0);
   EXPECT_DOUBLE_EQ(counter->rated_kW, 400.0);
+  EXPECT_TRUE(file.config().meters[0].meter.is_counted);
+  EXPECT_FALSE(file.config().meters[1].meter.is_counted);
 }
 
 TEST(SiteConfig, EndUsesAndEndStamps) {
