@@ -52,8 +52,13 @@ TEST_F(TokenFile, IsReadWithoutItsLineEnd) {
 }
 
 TEST_F(TokenFile, IsTheOwnersAlone) {
-  std::filesystem::permissions(file_, perms::group_read, std::filesystem::perm_options::add);
-  EXPECT_THAT(why_not(), HasSubstr("can be read by others"));
+  for (const perms others : {perms::group_read, perms::group_write, perms::others_read,
+                             perms::others_write, perms::others_exec}) {
+    std::filesystem::permissions(file_, perms::owner_read | perms::owner_write | others);
+    EXPECT_THAT(why_not(), HasSubstr("can be read by others")) << static_cast<unsigned>(others);
+  }
+  std::filesystem::permissions(file_, perms::owner_read);
+  EXPECT_EQ(why_not(), "it was taken");
 }
 
 TEST_F(TokenFile, IsLongEnough) {

@@ -196,6 +196,67 @@ TEST(Counter, NonsenseForAnHourIsErratic) {
   EXPECT_TRUE(trace.bookings.empty());
 }
 
+// Three samples say the same, but within seconds: a gateway that answers from a stale cache does so
+// too. What they say is believed once it has been said for two minutes.
+TEST(Counter, AResetTakesTwoMinutes) {
+  CounterState state;
+  const auto read = [&](seconds after, double value_kWh) {
+    CounterStep step = advance(std::move(state), {kStart + after, value_kWh}, kSettings);
+    state = std::move(step.state);
+    return step.event;
+  };
+  (void)read(seconds{0}, 5000.0);
+  for (int second = 10; second < 130; second += 10) {
+    EXPECT_EQ(read(seconds{second}, 0.01 * second), CounterEvent::none) << second;
+  }
+  EXPECT_EQ(read(seconds{130}, 1.3), CounterEvent::reset);
+}
+
+// Two samples do not make a reset, however far apart.
+TEST(Counter, AResetTakesThreeSamples) {
+  Trace trace;
+  (void)trace.read(0, 5000.0);
+  (void)trace.read(1, 0.0);
+  (void)trace.read(10, 0.5);
+  EXPECT_EQ(trace.event, CounterEvent::none);
+  EXPECT_NEAR(trace.read(11, 5012.0), 12.0, 1e-9);
+  EXPECT_EQ(trace.event, CounterEvent::bounce);
+}
+
+// A load may draw a fifth more than its rating for a while, not a half more.
+TEST(Counter, ARiseBeyondTheRatingIsDoubted) {
+  for (const double times_rated : {1.15, 1.5}) {
+    Trace trace;
+    (void)trace.read(0, 5000.0);
+    const double rise_kWh = times_rated * 400.0;
+    EXPECT_NEAR(trace.read(60, 5000.0 + rise_kWh), times_rated < 1.2 ? rise_kWh : 0.0, 1e-9);
+    EXPECT_EQ(trace.state.phase, times_rated < 1.2 ? CounterPhase::run : CounterPhase::high);
+  }
+}
+
+// After an hour without a reading a register of 1000 kWh may have wrapped from 950 to 10 kWh. From
+// 500 to 10 kWh it has been reset: the load cannot be told from nothing by what it might draw.
+TEST(Counter, ARegisterWrapsOnlyNearItsEnd) {
+  for (const double from_kWh : {950.0, 500.0}) {
+    Trace trace;
+    trace.settings.modulus_kWh = 1000.0;
+    (void)trace.read(0, from_kWh);
+    const bool wraps = from_kWh > 900.0;
+    EXPECT_NEAR(trace.read(65, 10.0), wraps ? 60.0 : 0.0, 1e-9);
+    EXPECT_EQ(trace.state.phase, wraps ? CounterPhase::run : CounterPhase::low);
+  }
+}
+
+// Nine contradictions within an hour are a bad line; the tenth is told.
+TEST(Counter, TheTenthContradictionIsErratic) {
+  Trace trace;
+  (void)trace.read(0, 50'000.0);
+  for (int minute = 1; minute <= 11; ++minute) {
+    (void)trace.read(minute, minute % 2 == 0 ? 10.0 + 997.0 * minute : 900'000.0 - 991.0 * minute);
+    EXPECT_EQ(trace.event, minute == 11 ? CounterEvent::erratic : CounterEvent::none) << minute;
+  }
+}
+
 TEST(Counter, AnExchangedMeterStartsAnew) {
   Trace trace;
   (void)trace.read(0, 50'000.0);

@@ -219,17 +219,19 @@ TEST(BusPoller, ASilentUnitCostsOneTimeOutAPoll) {
 }
 
 TEST(BusPoller, ABusyDeviceIsAskedAgainThreeTimes) {
-  VirtualBus bus{{unit(1, seconds{60}, 2)}, [](const BusOrder& order, const Moment&) {
-                   return order.read == 0 ? exception(0x06) : Reply{};
-                 }};
-  bus.run(seconds{40});
-  std::vector<std::size_t> reads;
-  for (const auto& one : bus.made) reads.push_back(one.order.read);
-  EXPECT_THAT(reads, ElementsAre(0, 0, 0, 0, 1));
-  for (std::size_t i = 1; i < 4; ++i) {
-    EXPECT_EQ(bus.made[i].at - bus.made[i - 1].at, milliseconds{120});
+  for (const int busy : {0x05, 0x06}) {  // acknowledged and under way; busy with another
+    VirtualBus bus{{unit(1, seconds{60}, 2)}, [&](const BusOrder& order, const Moment&) {
+                     return order.read == 0 ? exception(busy) : Reply{};
+                   }};
+    bus.run(seconds{40});
+    std::vector<std::size_t> reads;
+    for (const auto& one : bus.made) reads.push_back(one.order.read);
+    EXPECT_THAT(reads, ElementsAre(0, 0, 0, 0, 1)) << busy;
+    for (std::size_t i = 1; i < 4; ++i) {
+      EXPECT_EQ(bus.made.at(i).at - bus.made.at(i - 1).at, milliseconds{120}) << busy;
+    }
+    EXPECT_EQ(bus.poller.state(0), UnitState::up) << busy;
   }
-  EXPECT_EQ(bus.poller.state(0), UnitState::up);
 }
 
 // Whatever it refuses with, it is asked again, ever more rarely, and its other registers as usual.
@@ -286,14 +288,16 @@ TEST(BusPoller, ToldToItTriesAllAgainAtOnce) {
 }
 
 TEST(BusPoller, AGatewayMayAnswerForADeadUnit) {
-  VirtualBus bus{{unit(1), unit(2)}, [](const BusOrder& order, const Moment&) {
-                   return order.unit == 0 ? exception(0x0B) : Reply{};
-                 }};
-  bus.run(minutes{10});
-  EXPECT_EQ(bus.poller.state(0), UnitState::down);
-  EXPECT_EQ(bus.poller.state(1), UnitState::up);
-  EXPECT_THAT(bus.lateness(1), SizeIs(Ge(10u)));  // the bus does not rest
-  EXPECT_THAT(bus.lateness(1), Each(Le(milliseconds{100})));
+  for (const int code : {0x0A, 0x0B}) {  // no path to it; no answer from it
+    VirtualBus bus{{unit(1), unit(2)}, [&](const BusOrder& order, const Moment&) {
+                     return order.unit == 0 ? exception(code) : Reply{};
+                   }};
+    bus.run(minutes{10});
+    EXPECT_EQ(bus.poller.state(0), UnitState::down) << code;
+    EXPECT_EQ(bus.poller.state(1), UnitState::up) << code;
+    EXPECT_THAT(bus.lateness(1), SizeIs(Ge(10u))) << code;  // the bus does not rest
+    EXPECT_THAT(bus.lateness(1), Each(Le(milliseconds{100}))) << code;
+  }
 }
 
 // endpoint_reboot: refused for five minutes, then back.

@@ -74,6 +74,14 @@ TEST_F(PushedMeterSite, SentAgainItIsTakenOnce) {
   EXPECT_THAT(intervals(), SizeIs(4));
 }
 
+// A year and a month may be caught up on; what is older is taken for a wrong date.
+TEST_F(PushedMeterSite, ReadingsOlderThan400DaysAreRefused) {
+  EXPECT_EQ(taken(body_of(kStart - days{399}, 1, 5.0))["stored"], 1);
+  const http::Response response = post(body_of(kStart - days{401}, 1, 5.0));
+  EXPECT_EQ(response.status, 400);
+  EXPECT_THAT(response.body, HasSubstr("more than 400 days ago"));
+}
+
 TEST_F(PushedMeterSite, AnotherValueIsNotTakenAndTold) {
   taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})");
   const Json said = taken(
