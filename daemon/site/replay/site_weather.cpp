@@ -118,10 +118,9 @@ WeatherLack lack_of(const weather::WeatherSeries& series, const std::filesystem:
 
 Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
   if (site.weather->format == WeatherFormat::epw) return WeatherLack{};  // has all of it
-  std::vector<std::string> notes;
-  const auto series = read_csv(*site.weather, notes);
-  if (!series) return tl::unexpected(series.error());
-  return lack_of(*series, site.weather->file);
+  const auto read = read_csv(*site.weather);
+  if (!read) return tl::unexpected(read.error());
+  return lack_of(read->series, site.weather->file);
 }
 
 Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCalendar& calendar,

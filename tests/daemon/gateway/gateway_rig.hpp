@@ -2,6 +2,8 @@
 /// what a gateway does, serves or leaves in its store.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <memory>
@@ -88,6 +90,28 @@ inline double stored_kWh(Store& store, std::uint32_t meter, const metering::Time
   return sum_kWh;
 }
 
+/// Whether both meters' intervals add up to what was counted between the first and the last of
+/// them.
+/// @return what is wrong; empty: nothing.
+inline std::string what_energy_is_wrong(Store& store) {
+  constexpr double kTick_kWh = 0.1 + 1e-6;  // two registers of 0.1 kWh bound an energy
+  for (std::uint32_t meter = 0; meter < 2; ++meter) {
+    const auto extent = store.interval_extent(meter);
+    if (!extent) return extent.error().message;
+    if (!*extent) continue;
+    const metering::TimeSpan span{(*extent)->begin, (*extent)->end + std::chrono::seconds{900}};
+    const auto counted_kWh = [&](metering::Instant t) {
+      return meter == 0 ? main_kWh(t - kRigStart) : cooling_kWh(t - kRigStart);
+    };
+    const double off_kWh =
+        stored_kWh(store, meter, span) - (counted_kWh(span.end) - counted_kWh(span.begin));
+    if (std::abs(off_kWh) <= kTick_kWh) continue;
+    return fmt::format("meter {}: {:.3f} kWh too much until {}", meter, off_kWh,
+                       metering::to_string(span.end));
+  }
+  return "";
+}
+
 /// Begins, ends and begins again on one store and one clock, as processes do.
 class GatewayRig {
  public:
@@ -123,6 +147,7 @@ class GatewayRig {
     gateway_->start();
     return {};
   }
+  Result<void> reload(const SiteConfig& site) { return gateway_->reload(site); }
   void begin(const SiteConfig& site) {
     if (const auto opened = open(site); !opened) throw std::runtime_error(opened.error().message);
   }

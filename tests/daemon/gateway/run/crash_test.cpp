@@ -3,14 +3,14 @@
 ///
 /// RECALD_KILLS: how often it is killed in a month, 300 unless set.
 #include <gmock/gmock.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 
+#include "adapters/stores/open.hpp"
 #include "tests/daemon/gateway/gateway_rig.hpp"
-#include "tests/daemon/gateway/run/surviving_store.hpp"
+#include "tests/daemon/gateway/run/witness.hpp"
 #include "tests/support/failing_store.hpp"
 #include "tests/support/faulty_disk.hpp"
 
@@ -26,39 +26,12 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::minutes;
 using testing::kRigStart;
-using testing::Promise;
 using WallTime = std::chrono::sys_time<milliseconds>;
 
 constexpr std::uint32_t kMeters = 2;
 constexpr double kTick_kWh = 0.1 + 1e-6;  // two registers of 0.1 kWh bound an energy
 constexpr int kKilled = 9;
 constexpr int kWholeRun = 0;
-
-/// What a killed process leaves behind besides its files.
-struct Witness {
-  static constexpr std::size_t kPromisesMax = 20'000;
-  WallTime now;
-  std::size_t count;
-  Promise promises[kPromisesMax];
-};
-
-/// Seen by a process and its children.
-class SharedWitness {
- public:
-  SharedWitness()
-      : memory_(static_cast<Witness*>(::mmap(nullptr, sizeof(Witness), PROT_READ | PROT_WRITE,
-                                             MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {
-    if (memory_ == MAP_FAILED) throw std::runtime_error("no shared memory");
-    memory_->now = kRigStart;
-  }
-  ~SharedWitness() { ::munmap(memory_, sizeof(Witness)); }
-  SharedWitness(const SharedWitness&) = delete;
-  SharedWitness& operator=(const SharedWitness&) = delete;
-  Witness* operator->() const { return memory_; }
-
- private:
-  Witness* memory_;
-};
 
 class Crash : public ::testing::Test {
  protected:
@@ -92,14 +65,7 @@ class Crash : public ::testing::Test {
     auto store = sqlite::SqliteStore::open(file, {.vfs = disk.name()});
     if (!store) throw std::runtime_error(store.error().message);
     FailingStore watched{*store};
-    watched.after_commit = [&](const StoreBatch& batch) {
-      for (const StoreBatch::Interval& interval : batch.intervals) {
-        if (witness_->count == Witness::kPromisesMax) throw std::runtime_error("too many");
-        const metering::Reading& reading = interval.reading;
-        witness_->promises[witness_->count] = {reading.meter, reading.start, reading.mean_kW};
-        ++witness_->count;
-      }
-    };
+    watched.after_commit = [&](const StoreBatch& batch) { witness_->add(batch); };
     testing::GatewayRig rig{watched, loop, testing::kRigStart};
     rig.begin(site_);
     loop.run_for(end - witness_->now);
@@ -111,11 +77,17 @@ class Crash : public ::testing::Test {
     const std::filesystem::path copy = folder_ / "looked-at";
     std::filesystem::remove_all(copy);
     std::filesystem::copy(folder, copy);
-    FaultyDisk disk{"look"};
-    auto store = sqlite::SqliteStore::open(copy / "site.db", {.vfs = disk.name()});
-    if (!store) return store.error().message;
-    if (!store->find_meter("cooling").value()) return "";  // killed before it knew its meters
-    return testing::what_is_wrong(*store, kMeters, {witness_->promises, witness_->count});
+    auto opened = stores::open_checked(copy / "site.db", {}, witness_instant());
+    if (!opened) return opened.error().message;
+    if (!opened->recovery.empty()) return opened->recovery;
+    Store& store = *opened->store;
+    if (!store.find_meter("cooling").value()) return "";  // killed before it knew its meters
+    const std::string wrong = testing::what_is_wrong(store, kMeters, witness_->all());
+    return wrong.empty() ? testing::what_energy_is_wrong(store) : wrong;
+  }
+
+  [[nodiscard]] metering::Instant witness_instant() const {
+    return std::chrono::floor<std::chrono::seconds>(witness_->now);
   }
 
   [[nodiscard]] std::filesystem::path make_folder(const char* name) const {
@@ -125,7 +97,7 @@ class Crash : public ::testing::Test {
 
   TemporaryFolder folder_;
   SiteConfig site_ = testing::load_rig_site(folder_.path(), testing::two_meter_site());
-  SharedWitness witness_;
+  testing::SharedWitness witness_{kRigStart};
 };
 
 TEST_F(Crash, AtEveryStepOfOpeningAndOfCommits) {
