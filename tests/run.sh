@@ -6,6 +6,7 @@
 #   sh tests/run.sh --plain      all tests alone
 #   sh tests/run.sh --long NAME  one of the longer studies; without NAME: which there are
 #   RECALD_DATA=DIR              measured data of others; tests that need it skip where it is absent
+#   RECALD_CI=1                  a test that skips fails the run, unless tests/skips.txt lists it
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -90,7 +91,20 @@ echo "--- tests, after $(($(date +%s) - begin)) s for all of the above"
 # Two at a time: several tests use threads of their own. Behind everything else: the daemon calibrates
 # at the lowest priority and would wait for every other test to end. ctest's own summary is the last
 # word, unless something failed before.
-nice -n 19 ctest --preset dev -j 2 || failed="$failed tests"
+log=$root/.build/dev/ctest.log
+nice -n 19 ctest --preset dev -j 2 --output-log "$log" || failed="$failed tests"
+
+# A test that skips shows nothing. Those of tests/skips.txt may; in CI (RECALD_CI=1) no other.
+skipped=$(sed -n 's/.*Test  *#[0-9]*: \([^ ]*\).*\*\*\*Skipped.*/\1/p' "$log" | sort -u)
+if [ -n "$skipped" ]; then
+  echo "Skipped:"
+  printf '  %s\n' $skipped
+  unexpected=$(printf '%s\n' $skipped | grep -v -E -x -f "$root/tests/skips.txt" || true)
+  if [ -n "$unexpected" ]; then
+    echo "Skipped although nothing says that it may (tests/skips.txt):" $unexpected >&2
+    [ -z "${RECALD_CI:-}" ] || failed="$failed skipped"
+  fi
+fi
 [ -z "$failed" ] || {
   echo "Failed:$failed" >&2
   exit 1

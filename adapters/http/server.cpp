@@ -5,8 +5,8 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
@@ -168,10 +168,9 @@ awaitable<void> accept_all(std::shared_ptr<Shared> shared) {
         co_await shared->acceptor.async_accept(redirect_error(use_awaitable, error));
     if (!error) {
       // Posted: whatever comes of one client, the next is heard.
-      boost::asio::post(shared->acceptor.get_executor(),
-                        [shared, socket = std::move(socket)]() mutable {
-                          receive(shared, std::move(socket));
-                        });
+      boost::asio::post(
+          shared->acceptor.get_executor(),
+          [shared, socket = std::move(socket)]() mutable { receive(shared, std::move(socket)); });
     } else if (shared->acceptor.is_open()) {
       // Out of descriptors, mostly: the waiting client stays, so asking at once would spin.
       pause.expires_after(kAfterAcceptFailed);

@@ -133,7 +133,7 @@ Result<bool> ParticleMover::move_one(Particles& particles, Eigen::Index i, doubl
 Result<void> ParticleMover::sweep(Particles& particles, double temperature,
                                   const std::function<bool()>& proceed) {
   constexpr double target_acceptance = 0.27;
-  constexpr Eigen::Index asked_every = 64;
+  constexpr Eigen::Index asked_every = 8;  // an hourly model takes a while
   Eigen::Index accepted = 0;
   for (Eigen::Index i = 0; i < particles.count(); ++i) {
     if (proceed && i % asked_every == asked_every - 1 && !proceed()) {

@@ -25,8 +25,8 @@ Upkeep::Upkeep(Store& store, StoreConfig config, metering::LocalCalendar calenda
       calendar_(std::move(calendar)),
       tell_(std::move(tell)),
       rules_(rules),
-      reserve_(std::make_shared<system::ReservedSpace>(reserve_file(config_),
-                                                       rules.reserve_bytes)) {
+      reserve_(
+          std::make_shared<system::ReservedSpace>(reserve_file(config_), rules.reserve_bytes)) {
   store_.on_refusal([reserve = reserve_] { return reserve->give_up(); });
 }
 

@@ -185,25 +185,24 @@ class Sum {
     }
   }
 
-  /// The grid that all parts have. @return or a sentence about two that differ
+  /// The grid that all parts have. @pre the files have rows of all of them
+  /// @return or a sentence about two that differ
   [[nodiscard]] Result<csv::MeterInFile> grid(const SiteConfig& site,
                                               const Recording& recording) const {
-    std::optional<std::size_t> first;
+    const std::size_t first = signs_.begin()->first;
+    const auto& as_first = recording.meters[first].in_file;
     for (const auto& [part, sign] : signs_) {
       const auto& shown = recording.meters[part].in_file;
-      if (!shown) continue;  // what is said of a meter without rows is said elsewhere
-      if (!first) first = part;
-      const auto& as_first = recording.meters[*first].in_file;
       if (shown->interval == as_first->interval && shown->phase == as_first->phase) continue;
       return failure(
           ErrorCode::invalid_value,
           fmt::format("meter '{}' cannot be summed: '{}' reads every {} s and '{}' every "
                       "{} s; bring the files to one interval",
-                      site.meters[meter_].meter.id, site.meters[*first].meter.id,
+                      site.meters[meter_].meter.id, site.meters[first].meter.id,
                       as_first->interval.count(), site.meters[part].meter.id,
                       shown->interval.count()));
     }
-    return first ? *recording.meters[*first].in_file : csv::MeterInFile{};
+    return *as_first;
   }
 
  private:
@@ -223,6 +222,31 @@ std::vector<Sum> sums_of(const SiteConfig& site) {
     if (site.meters[i].source == MeterSource::sum) sums.emplace_back(i, site);
   }
   return sums;
+}
+
+/// @pre the files have been read
+Result<void> add_sums(const std::vector<Sum>& sums, const SiteConfig& site,
+                      const Recording& recording, metering::MonthCloser& closer,
+                      const std::function<void(std::size_t, const metering::Reading&)>& take) {
+  for (const Sum& sum : sums) {
+    const auto grid = sum.grid(site, recording);
+    if (!grid) return tl::unexpected(grid.error());
+    closer.set_grid(static_cast<std::uint32_t>(sum.meter()), grid->interval, grid->phase);
+    sum.hand_out([&](const metering::Reading& reading) { take(sum.meter(), reading); });
+  }
+  return {};
+}
+
+/// A file has rows of each meter that the site looks for in it.
+Result<void> require_rows(const SiteConfig& site, const Recording& recording) {
+  for (std::size_t i = 0; i < recording.meters.size(); ++i) {
+    if (recording.meters[i].in_file || site.meters[i].source != MeterSource::csv) continue;
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("{} has no usable row of meter '{}'; check the meter column, or set "
+                               "name_in_file",
+                               site.meters[i].file.string(), site.meters[i].name_in_file));
+  }
+  return {};
 }
 
 constexpr TimeSpan kAllTime{Instant{}, metering::kLatestInstant};
@@ -294,6 +318,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
     }
     recording.files.push_back({file, std::move(report->issues)});
   }
+  if (auto whole = require_rows(site, recording); !whole) return tl::unexpected(whole.error());
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
     if (live == nullptr || !config.is_stored()) continue;
@@ -302,11 +327,8 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
     if (!count) return tl::unexpected(count.error());
     recording.readings += *count;
   }
-  for (const Sum& sum : sums) {
-    const auto grid = sum.grid(site, recording);
-    if (!grid) return tl::unexpected(grid.error());
-    closer.set_grid(static_cast<std::uint32_t>(sum.meter()), grid->interval, grid->phase);
-    sum.hand_out([&](const metering::Reading& reading) { take(sum.meter(), reading); });
+  if (auto added = add_sums(sums, site, recording, closer, take); !added) {
+    return tl::unexpected(added.error());
   }
   // One that was added today says nothing yet; that must not stop what the others tell.
   if (live != nullptr && recording.readings == 0) {
@@ -315,14 +337,6 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   }
   closer.finish();
   recorder.describe(closer, calendar, last_end);
-
-  for (std::size_t i = 0; i < recording.meters.size(); ++i) {
-    if (recording.meters[i].in_file || site.meters[i].source != MeterSource::csv) continue;
-    return failure(ErrorCode::not_enough_data,
-                   fmt::format("{} has no usable row of meter '{}'; check the meter column, or set "
-                               "name_in_file",
-                               site.meters[i].file.string(), site.meters[i].name_in_file));
-  }
   return recording;
 }
 
