@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <fstream>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -116,12 +117,15 @@ std::optional<std::vector<Value>> values_of(Bytes record) {
   return values;
 }
 
-/// The part of a record that did not fit onto its page.
+/// The part of a record that did not fit onto its page. A chain that comes back to itself is
+/// damage.
 bool append_overflow(std::vector<std::uint8_t>& record, std::size_t size, std::uint32_t next,
                      const PageOf& page_of) {
+  std::set<std::uint32_t> seen;
   while (record.size() < size) {
+    if (!seen.insert(next).second) return false;
     const std::vector<std::uint8_t> page = page_of(next);
-    if (page.empty()) return false;
+    if (page.size() < 4) return false;
     const std::size_t more = std::min(size - record.size(), page.size() - 4);
     record.insert(record.end(), page.begin() + 4, page.begin() + 4 + static_cast<long>(more));
     next = big_endian(page, 0, 4);

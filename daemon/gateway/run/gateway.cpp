@@ -119,7 +119,8 @@ Result<void> Gateway::take_over(Store& memory) {
       return taken;
     }
   }
-  return committer_.flush();
+  (void)committer_.flush();  // refused, it is kept and tried again
+  return {};
 }
 
 void Gateway::take_over_samples(LiveMeter& meter,
