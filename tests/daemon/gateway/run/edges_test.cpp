@@ -159,6 +159,22 @@ TEST_F(RecoveryEdges, AnInterruptedOneSaysSo) {
   EXPECT_THAT(opened.recovery, ::testing::HasSubstr("it was interrupted and has been done again"));
 }
 
+// A reserve that lies beside a store that cannot even be opened.
+TEST_F(RecoveryEdges, AFullDiskAtTheStartTakesTheReserve) {
+  begin_anew();
+  expect_whole();
+  recald::testing::write_text(reserve_file(config_), "room");
+  recald::testing::before_file_change = [&](std::string_view call) {
+    const bool grows = call.starts_with("open") || call.starts_with("pwrite");
+    return grows && std::filesystem::exists(reserve_file(config_)) ? ENOSPC : 0;
+  };
+  const auto opened = open_store(config_, kRigStart + hours{300});
+  recald::testing::before_file_change = {};
+  ASSERT_TRUE(opened.has_value()) << opened.error().message;
+  EXPECT_EQ(opened->recovery, "");
+  EXPECT_FALSE(std::filesystem::exists(reserve_file(config_)));
+}
+
 /// A gateway with its jobs and upkeep on a store on disk.
 class Life {
  public:

@@ -292,6 +292,23 @@ TEST_F(GatewayTest, RegistersRefusedForAWhileCostNoEnergy) {
   EXPECT_THAT(*events, Contains(Field(&StoreEvent::kind, "registers_answer")).Times(1));
 }
 
+// A page of the store that went bad where a counter's state is: that counter pays, nobody else.
+TEST_F(GatewayTest, AStateThatCannotBeReadBeginsThatCounterAnew) {
+  begin();
+  loop_.run_for(hours{2});
+  ASSERT_TRUE(disk_.database()
+                  .execute("UPDATE register SET state = '{]', sum = NULL WHERE meter = 0")
+                  .has_value());
+  begin();
+  loop_.run_for(hours{2} + minutes{1});
+  const auto events = disk_.events(10).value();
+  EXPECT_THAT(events, Contains(Field(&StoreEvent::kind, "counter_state_lost")).Times(1));
+  EXPECT_EQ(events.back().subject, "main");
+  EXPECT_EQ(count("cooling", Validity::ok), 15);
+  EXPECT_GE(count("main", Validity::ok), 13);
+  EXPECT_NEAR(stored_kWh("cooling", {kStart, kStart + hours{3}}), 300.0, kTick);
+}
+
 TEST_F(GatewayTest, AStoreThatCannotBeReadAtTheStartIsToldAtOnce) {
   store_.refuses = true;
   const auto opened = open(site_);
