@@ -304,7 +304,7 @@ TEST_F(GatewayTest, AStateThatCannotBeReadBeginsThatCounterAnew) {
   const auto events = disk_.events(10).value();
   EXPECT_THAT(events, Contains(Field(&StoreEvent::kind, "counter_state_lost")).Times(1));
   EXPECT_EQ(events.back().subject, "main");
-  EXPECT_EQ(count("cooling", Validity::ok), 15);
+  EXPECT_EQ(count("cooling", Validity::ok), 16);
   EXPECT_GE(count("main", Validity::ok), 13);
   EXPECT_NEAR(stored_kWh("cooling", {kStart, kStart + hours{3}}), 300.0, kTick);
 }
