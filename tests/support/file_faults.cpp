@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <linux/limits.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,16 +11,24 @@
 
 namespace recald::testing {
 
-std::function<int(std::string_view)> before_file_change;
+std::function<int(const FileChange&)> before_file_change;
 
 namespace {
 
 /// 0, or errno is set.
-int asked(std::string_view call) {
+int asked(std::string_view call, const char* path, const char* to = "") {
   if (!before_file_change) return 0;
-  const int error = before_file_change(call);
+  const int error = before_file_change({call, path, to});
   if (error != 0) errno = error;
   return error;
+}
+
+int asked(std::string_view call, int file) {
+  if (!before_file_change) return 0;
+  char path[PATH_MAX] = "";
+  const std::string link = "/proc/self/fd/" + std::to_string(file);
+  const ssize_t size = ::readlink(link.c_str(), path, sizeof path - 1);
+  return asked(call, size < 0 ? "" : path);
 }
 
 template <class Function>
@@ -33,7 +42,7 @@ bool changes(int flags) { return (flags & (O_CREAT | O_TRUNC)) != 0; }
 }  // namespace
 
 FailingChanges::FailingChanges(int nth, int error, bool lasting) {
-  before_file_change = [this, nth, error, lasting](std::string_view) {
+  before_file_change = [this, nth, error, lasting](const FileChange&) {
     if (++seen_ < nth || (!lasting && seen_ > nth)) return 0;
     has_failed_ = true;
     return error;
@@ -43,7 +52,7 @@ FailingChanges::FailingChanges(int nth, int error, bool lasting) {
 FailingChanges::~FailingChanges() { before_file_change = {}; }
 
 void end_process_before_change(int nth, int exit_code) {
-  before_file_change = [nth, exit_code, seen = 0](std::string_view) mutable {
+  before_file_change = [nth, exit_code, seen = 0](const FileChange&) mutable {
     if (++seen == nth) ::_exit(exit_code);
     return 0;
   };
@@ -54,32 +63,33 @@ void end_process_before_change(int nth, int exit_code) {
 // The C library's functions, with its own declarations.
 extern "C" {
 
-#define RECALD_FORWARD(type, name, parameters, arguments)                      \
+#define RECALD_LIST(...) __VA_ARGS__
+#define RECALD_FORWARD(type, name, parameters, arguments, what)                \
   type name parameters {                                                       \
-    if (recald::testing::asked(#name) != 0) return -1;                         \
+    if (recald::testing::asked(#name, RECALD_LIST what) != 0) return -1;       \
     static const auto real = recald::testing::real<type(*) parameters>(#name); \
     return real arguments;                                                     \
   }
 
-RECALD_FORWARD(int, rename, (const char* from, const char* to) noexcept, (from, to))
-RECALD_FORWARD(int, unlink, (const char* path) noexcept, (path))
-RECALD_FORWARD(int, remove, (const char* path) noexcept, (path))
-RECALD_FORWARD(int, mkdir, (const char* path, mode_t mode) noexcept, (path, mode))
-RECALD_FORWARD(int, fsync, (int file), (file))
-RECALD_FORWARD(int, fdatasync, (int file), (file))
-RECALD_FORWARD(int, ftruncate, (int file, off_t size) noexcept, (file, size))
-RECALD_FORWARD(int, ftruncate64, (int file, off64_t size) noexcept, (file, size))
+RECALD_FORWARD(int, rename, (const char* from, const char* to) noexcept, (from, to), (from, to))
+RECALD_FORWARD(int, unlink, (const char* path) noexcept, (path), (path))
+RECALD_FORWARD(int, remove, (const char* path) noexcept, (path), (path))
+RECALD_FORWARD(int, mkdir, (const char* path, mode_t mode) noexcept, (path, mode), (path))
+RECALD_FORWARD(int, fsync, (int file), (file), (file))
+RECALD_FORWARD(int, fdatasync, (int file), (file), (file))
+RECALD_FORWARD(int, ftruncate, (int file, off_t size) noexcept, (file, size), (file))
+RECALD_FORWARD(int, ftruncate64, (int file, off64_t size) noexcept, (file, size), (file))
 RECALD_FORWARD(ssize_t, pwrite, (int file, const void* bytes, size_t size, off_t at),
-               (file, bytes, size, at))
+               (file, bytes, size, at), (file))
 RECALD_FORWARD(ssize_t, pwrite64, (int file, const void* bytes, size_t size, off64_t at),
-               (file, bytes, size, at))
+               (file, bytes, size, at), (file))
 
 int open(const char* path, int flags, ...) {
   va_list rest;
   va_start(rest, flags);
   const mode_t mode = recald::testing::changes(flags) ? va_arg(rest, mode_t) : 0;
   va_end(rest);
-  if (recald::testing::changes(flags) && recald::testing::asked("open") != 0) return -1;
+  if (recald::testing::changes(flags) && recald::testing::asked("open", path) != 0) return -1;
   static const auto real = recald::testing::real<int (*)(const char*, int, ...)>("open");
   return real(path, flags, mode);
 }
@@ -89,7 +99,7 @@ int open64(const char* path, int flags, ...) {
   va_start(rest, flags);
   const mode_t mode = recald::testing::changes(flags) ? va_arg(rest, mode_t) : 0;
   va_end(rest);
-  if (recald::testing::changes(flags) && recald::testing::asked("open64") != 0) return -1;
+  if (recald::testing::changes(flags) && recald::testing::asked("open64", path) != 0) return -1;
   static const auto real = recald::testing::real<int (*)(const char*, int, ...)>("open64");
   return real(path, flags, mode);
 }

@@ -4,14 +4,21 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace recald::testing {
 
-/// Asked before each call that changes a file or a name, with the call's name. 0: it is made;
-/// another errno: it fails with that. Absent: all are made. Whoever ends the process here leaves
-/// the disk as before the call.
-extern std::function<int(std::string_view call)> before_file_change;
+struct FileChange {
+  std::string_view call;  ///< As the C library names it.
+  std::string path;       ///< Of the file or folder, before the call.
+  std::string to;         ///< Its name after a rename.
+};
+
+/// Asked before each call that changes a file or a name. 0: it is made; another errno: it fails
+/// with that. Absent: all are made. Whoever ends the process here leaves the disk as before the
+/// call.
+extern std::function<int(const FileChange&)> before_file_change;
 
 /// The n-th change fails, or that and all after it, until the value ends.
 class FailingChanges {

@@ -1,5 +1,10 @@
 /// A gateway's life where it begins, changes and ends, with a fault at each step: whatever call
-/// that changes a file fails, or ends the process, nothing that was stored is lost.
+/// that changes a file fails, ends the process or is the last before a power cut, nothing that was
+/// stored is lost.
+///
+/// RECALD_EDGE_KILLS: how often a daemon is killed that opens, reloads, backs up and works all the
+/// time, 100 unless set. RECALD_EDGE_CUTS: of a recovery and of such a life each, how many images
+/// of a power cut are looked at, 60 unless set.
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,6 +21,7 @@
 #include "tests/daemon/gateway/run/witness.hpp"
 #include "tests/support/damage.hpp"
 #include "tests/support/file_faults.hpp"
+#include "tests/support/power_cut.hpp"
 #include "tests/support/virtual_worker.hpp"
 
 namespace recald::daemon::edges_test {
@@ -24,6 +30,7 @@ namespace {
 using metering::Instant;
 using recald::testing::FailingChanges;
 using recald::testing::FailingStore;
+using recald::testing::FileChange;
 using recald::testing::TemporaryFolder;
 using recald::testing::VirtualLoop;
 using recald::testing::VirtualWorker;
@@ -51,6 +58,53 @@ bool ends_before(int nth, const Work& work) {
   EXPECT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
   return WIFEXITED(status) && WEXITSTATUS(status) == kDone;
 }
+
+int given_or(const char* variable, int otherwise) {
+  const char* given = std::getenv(variable);
+  return given != nullptr ? std::atoi(given) : otherwise;
+}
+
+/// What power cuts at random changes of a file leave of a folder, while this lives.
+class Images {
+ public:
+  /// @param keep  Told before an image is made; it has the number `taken()`.
+  Images(std::filesystem::path folder, std::filesystem::path to, Rng& rng,
+         std::function<void()> keep = {})
+      : cut_(std::move(folder)), to_(std::move(to)), rng_(rng), keep_(std::move(keep)) {
+    recald::testing::before_file_change = [this](const FileChange& change) {
+      if (!busy_) take(change);
+      return 0;
+    };
+  }
+  ~Images() { recald::testing::before_file_change = {}; }
+  Images(const Images&) = delete;
+  Images& operator=(const Images&) = delete;
+
+  bool heeds_syncs = true;
+
+  [[nodiscard]] int taken() const { return taken_; }
+  [[nodiscard]] std::filesystem::path image(int number) const {
+    return to_ / std::to_string(number);
+  }
+
+ private:
+  void take(const FileChange& change) {
+    busy_ = true;
+    if (rng_.below(4) == 0) {
+      if (keep_) keep_();
+      cut_.write_image(rng_, image(taken_++));
+    }
+    if (heeds_syncs || !change.call.ends_with("sync")) cut_.watch(change);
+    busy_ = false;
+  }
+
+  recald::testing::PowerCut cut_;
+  std::filesystem::path to_;
+  Rng& rng_;
+  std::function<void()> keep_;
+  int taken_ = 0;
+  bool busy_ = false;
+};
 
 /// A damaged store with two hundred intervals and their samples, of which one page is gone.
 class RecoveryEdges : public ::testing::Test {
@@ -83,8 +137,11 @@ class RecoveryEdges : public ::testing::Test {
     config_.file = folder_ / "work" / "site.db";
   }
 
+  void expect_whole() { expect_whole(folder_ / "work"); }
+
   /// Opens it undisturbed: nothing may be missing, and it says what happened.
-  void expect_whole() {
+  void expect_whole(const std::filesystem::path& work) {
+    config_.file = work / "site.db";
     auto opened = open_store(config_, kRigStart + hours{200});
     ASSERT_TRUE(opened.has_value()) << opened.error().message;
     Store& store = *opened->store;
@@ -106,7 +163,7 @@ class RecoveryEdges : public ::testing::Test {
     EXPECT_EQ(checked.damage, "");
     EXPECT_THAT(checked.problems, ::testing::IsEmpty());
     std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator{folder_ / "work"}) {
+    for (const auto& entry : std::filesystem::directory_iterator{work}) {
       names.insert(entry.path().filename().string());
     }
     EXPECT_FALSE(names.contains("site.db.recovery"));
@@ -150,6 +207,22 @@ TEST_F(RecoveryEdges, AnyStepMayFailOnceOrForGood) {
   }
 }
 
+TEST_F(RecoveryEdges, APowerCutAtAnyStepCostsNothing) {
+  const int wanted = given_or("RECALD_EDGE_CUTS", 60);
+  Rng rng{1};
+  for (int seen = 0; seen < wanted;) {
+    begin_anew();
+    Images images{folder_ / "work", folder_ / "images", rng};
+    ASSERT_TRUE(open_store(config_, kRigStart + hours{100}).has_value());
+    recald::testing::before_file_change = {};
+    for (int i = 0; i < images.taken(); ++i) {
+      SCOPED_TRACE(fmt::format("seed 1, image {}", ++seen));
+      expect_whole(images.image(i));
+      if (HasFailure()) return;
+    }
+  }
+}
+
 TEST_F(RecoveryEdges, AnInterruptedOneSaysSo) {
   for (int nth = 1; !std::filesystem::exists(folder_ / "work" / "site.db.recovering"); ++nth) {
     begin_anew();
@@ -164,8 +237,8 @@ TEST_F(RecoveryEdges, AFullDiskAtTheStartTakesTheReserve) {
   begin_anew();
   expect_whole();
   recald::testing::write_text(reserve_file(config_), "room");
-  recald::testing::before_file_change = [&](std::string_view call) {
-    const bool grows = call.starts_with("open") || call.starts_with("pwrite");
+  recald::testing::before_file_change = [&](const FileChange& change) {
+    const bool grows = change.call.starts_with("open") || change.call.starts_with("pwrite");
     return grows && std::filesystem::exists(reserve_file(config_)) ? ENOSPC : 0;
   };
   const auto opened = open_store(config_, kRigStart + hours{300});
@@ -296,11 +369,8 @@ TEST(LifeEdges, AnyStepMayFail) {
   }
 }
 
-// RECALD_EDGE_KILLS: how often a daemon is killed that opens, reloads, backs up and works all the
-// time, 100 unless set.
 TEST(LifeEdges, KilledAtAnyMomentItLosesNothing) {
-  const char* given = std::getenv("RECALD_EDGE_KILLS");
-  const int kills_wanted = given != nullptr ? std::atoi(given) : 100;
+  const int kills_wanted = given_or("RECALD_EDGE_KILLS", 100);
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "site");
   const testing::SharedWitness witness{kRigStart};
@@ -311,9 +381,9 @@ TEST(LifeEdges, KilledAtAnyMomentItLosesNothing) {
     const bool is_done = ends_before(steps, [&] {
       VirtualLoop loop{witness->now};
       const auto until = recald::testing::before_file_change;
-      recald::testing::before_file_change = [&](std::string_view call) {
+      recald::testing::before_file_change = [&](const FileChange& change) {
         witness->now = loop.now().wall;
-        return until(call);
+        return until(change);
       };
       Life life{folder / "site", loop, [&](const StoreBatch& batch) { witness->add(batch); }};
       life.begin();
@@ -340,6 +410,66 @@ TEST(LifeEdges, KilledAtAnyMomentItLosesNothing) {
   const auto jobs = life.store().jobs(JobKind::calibration, 100'000).value();
   EXPECT_THAT(jobs, ::testing::Not(::testing::IsEmpty()));
   for (const StoredJob& job : jobs) EXPECT_TRUE(job.ended.has_value()) << job.number;
+}
+
+/// What is wrong with what a power cut left of a site; empty: nothing. Its backups count too.
+std::string what_is_wrong_with(const std::filesystem::path& image,
+                               std::span<const testing::Promise> promises) {
+  const std::filesystem::path file = image / "site.db";
+  if (!std::filesystem::exists(file)) return promises.empty() ? "" : "the store is lost";
+  const auto opened = stores::open_checked(file, {}, kRigStart);
+  if (!opened) return opened.error().message;
+  if (!opened->recovery.empty()) return opened->recovery;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator{image}) {
+    if (!entry.path().filename().string().ends_with(".db") || entry.path() == file) continue;
+    auto backup = sqlite::SqliteStore::open(entry.path());
+    if (!backup) return entry.path().string() + ": " + backup.error().message;
+    const auto checked = backup->check();
+    if (!checked || !checked->damage.empty()) return "damaged: " + entry.path().string();
+  }
+  const auto known = opened->store->find_meter("cooling");
+  if (!known || !*known) return promises.empty() ? "" : "the meters are lost";
+  const std::string wrong = testing::what_is_wrong(*opened->store, 2, promises);
+  return wrong.empty() ? testing::what_energy_is_wrong(*opened->store) : wrong;
+}
+
+/// Opens, reloads, backs up and works until so many images were looked at.
+/// @return what is wrong with any of them.
+std::vector<std::string> live_with_power_cuts(int wanted, bool heeds_syncs) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "site");
+  VirtualLoop loop{kRigStart};
+  std::vector<testing::Promise> promises;
+  Life life{folder / "site", loop,
+            [&](const StoreBatch& batch) { testing::promise(batch, promises); }};
+  Rng rng{1};
+  std::vector<std::string> wrong;
+  std::vector<std::size_t> promised;
+  for (int seen = 0; seen < wanted;) {
+    promised.clear();
+    life.end();
+    Images images{folder / "site", folder / "images", rng,
+                  [&] { promised.push_back(promises.size()); }};
+    images.heeds_syncs = heeds_syncs;
+    life.begin();
+    if (!life.runs()) return {"it does not open"};
+    life.live();
+    recald::testing::before_file_change = {};
+    for (int i = 0; i < images.taken(); ++i, ++seen) {
+      auto found = what_is_wrong_with(images.image(i), std::span{promises}.first(promised[i]));
+      if (!found.empty()) wrong.push_back(fmt::format("seed 1, image {}: {}", seen, found));
+    }
+  }
+  return wrong;
+}
+
+TEST(LifeEdges, APowerCutAtAnyMomentCostsNothing) {
+  EXPECT_THAT(live_with_power_cuts(given_or("RECALD_EDGE_CUTS", 60), true), ::testing::IsEmpty());
+}
+
+// The test above would see a sync that is forgotten.
+TEST(LifeEdges, WithoutSyncsAPowerCutDoesCost) {
+  EXPECT_THAT(live_with_power_cuts(60, false), ::testing::SizeIs(::testing::Ge(5)));
 }
 
 }  // namespace
