@@ -13,7 +13,7 @@ import urllib.request
 from pathlib import Path
 
 BUILD, MONTHS, MINUTES = Path(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])
-FIRST_YEAR = 2016
+FIRST_YEAR = 2024  # no daemon believes an earlier clock
 PORT = 18090
 PUSH_S = 0.5  # real seconds between two rounds of pushes
 BATCH = 2000  # readings of one push, well below 1 MiB
@@ -31,7 +31,9 @@ def made_site(folder):
                    check=True, stdout=subprocess.DEVNULL)
     text = (folder / "site.toml").read_text()
     text = re.sub(r'file = "readings.csv"\nstamps = "start"', 'source = "http"\ninterval = "15m"', text)
-    (folder / "soak.toml").write_text(text + f'\n[http]\nlisten = "127.0.0.1:{PORT}"\n')
+    # Few are kept, so that within this life old ones go.
+    (folder / "soak.toml").write_text(text + f'\n[http]\nlisten = "127.0.0.1:{PORT}"\n'
+                                      '[store]\nresults_kept = 6\nevent_days = 400\n')
     readings = {}
     with open(folder / "readings.csv") as rows:
         next(rows)
@@ -98,6 +100,9 @@ def main():
         months = log.count("event=month_closed")
         print(f"ended with {code}; {months} months closed, {log.count('state=done')} jobs done, "
               f"{log.count('state=failed')} failed, {log.count(' error ')} errors in the log")
+        for line in sorted({line.split("state=failed", 1)[1].strip() for line in log.splitlines()
+                            if "state=failed" in line}):
+            print("failed:", line)
         verified = subprocess.run([f"{BUILD}/daemon/recald", "verify", folder / "soak.toml"],
                                   capture_output=True, text=True)
         print("verify:", (verified.stdout + verified.stderr).strip())
@@ -121,6 +126,8 @@ def live(process, folder, readings, now):
             for first in range(0, len(due), BATCH):
                 try:
                     taken += push(meter, unit, due[first:first + BATCH])["stored"]
+                except urllib.error.HTTPError as refusal:
+                    raise RuntimeError(f"{meter}: {refusal.read().decode()}") from refusal
                 except urllib.error.URLError:
                     sent[meter, unit] -= len(due) - first  # not up yet: again in the next round
                     break
@@ -129,6 +136,7 @@ def live(process, folder, readings, now):
             Held(process, folder).print(month)
             told = month + 10
         if month >= MONTHS:
+            Held(process, folder).print(month)
             print(f"{taken} readings were taken")
             return
 
