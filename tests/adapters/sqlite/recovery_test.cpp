@@ -248,6 +248,22 @@ TEST_F(RecoveryTest, WhatTheLogHasIsNotLost) {
   EXPECT_EQ(right_intervals(opened.store, 0), kQuarters + 50);
 }
 
+// Usually SQLite moves the log into the file before we read that. While somebody else has the file
+// open it does not.
+TEST_F(RecoveryTest, ALogThatStaysIsReadToo) {
+  recald::testing::damage_leaf(file(), "sample", 3);
+  auto other = SqliteStore::open(file()).value();
+  StoreBatch batch;
+  for (int i = kQuarters; i < kQuarters + 50; ++i) {
+    batch.intervals.push_back({{0, kStart + i * kQuarter, 1.0 * i}});
+  }
+  ASSERT_TRUE(other.commit(batch).has_value());
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_TRUE(std::filesystem::exists(opened.recovery->damaged.string() + "-wal"));
+  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters + 50);
+}
+
 // An older file has rows without sums; all of them count.
 TEST_F(RecoveryTest, RowsFromBeforeThereWereSumsAreTaken) {
   {

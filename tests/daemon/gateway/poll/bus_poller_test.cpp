@@ -316,6 +316,22 @@ TEST(BusPoller, ABusWithoutConnectionRests) {
   EXPECT_EQ(bus.poller.state(1), UnitState::up);
 }
 
+// The adapter is plugged in again, and somebody reloads: nobody waits for the end of the rest.
+TEST(BusPoller, ToldToItConnectsAgainAtOnce) {
+  bool refuses = true;
+  VirtualBus bus{
+      {unit(1, seconds{10})}, [&](const BusOrder&, const Moment&) {
+        return refuses ? Reply{milliseconds{1}, ReadFailure{ReadFault::refused}} : Reply{};
+      }};
+  const std::size_t rested = 8;  // 1, 2, 4 … 60 s
+  while (bus.made.size() < rested) bus.run(seconds{1});
+  refuses = false;
+  bus.poller.try_all_again();
+  bus.run(seconds{2});
+  ASSERT_THAT(bus.made, SizeIs(Ge(rested + 1)));
+  EXPECT_TRUE(bus.made[rested].answered);
+}
+
 TEST(BusPoller, ADeviceThatClosesOnceDoesNotSilenceItsNeighbours) {
   VirtualBus bus{
       {unit(1, seconds{10}), unit(2, seconds{10})}, [](const BusOrder& order, const Moment&) {

@@ -157,7 +157,7 @@ class RecoveryEdges : public ::testing::Test {
     EXPECT_NEAR(sum_kWh, kQuarters * (kQuarters - 1) / 2.0, 1e-6);
     EXPECT_EQ(store.registers(0)->size(), 1u);
     const auto events = store.events(10).value();
-    EXPECT_THAT(events, ::testing::SizeIs(1));
+    ASSERT_THAT(events, ::testing::SizeIs(1));
     EXPECT_EQ(events.front().kind, "store_recovered");
     const auto checked = store.check().value();
     EXPECT_EQ(checked.damage, "");

@@ -233,6 +233,9 @@ TEST_F(JobRunnerTest, EndingTheProcessInGoodOrderCountsAgainstNoJob) {
     kill_process();
     runner_->resume();
   }
+  loop_->run_for(seconds{30});
+  kill_process();  // in no good order: the first of three
+  runner_->resume();
   loop_->run_for(hours{1});
   EXPECT_EQ(stored(number).state, JobState::done);
 }
