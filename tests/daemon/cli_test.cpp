@@ -319,6 +319,22 @@ TEST_F(SumOfMeters, LacksWhatAPartLacks) {
                                      "kW  measured  99.9 %"));
 }
 
+TEST_F(SumOfMeters, OfPartsWithOtherIntervalsIsNamed) {
+  std::string text = "timestamp,meter,value,unit\n";
+  for (Instant t = kBegin; t < kEnd; t += std::chrono::minutes{30}) {
+    text += metering::to_string(t) + ",west,25,kW\n";
+  }
+  write("west.csv", text);
+  write("site.toml",
+        edited(site_text(), "\"west\"\nutility = \"electricity\"\nfile = \"halves.csv\"",
+               "\"west\"\nutility = \"electricity\"\nfile = \"west.csv\""));
+  const Outcome outcome = run({"replay", site()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_EQ(outcome.err,
+            "recald: meter 'all' cannot be summed: 'east' reads every 3600 s and 'west' every "
+            "1800 s; bring the files to one interval\n");
+}
+
 TEST_F(SumOfMeters, OfPartsThatDoNotFitIsNamed) {
   const auto problem_of = [&](const std::string& parts) {
     write("site.toml", edited(site_text(), "[\"east\", \"west\", \"-pv\"]", parts));
@@ -328,6 +344,11 @@ TEST_F(SumOfMeters, OfPartsThatDoNotFitIsNamed) {
   EXPECT_THAT(problem_of("[\"east\", \"wset\"]"),
               HasSubstr("'sum_of' names 'wset', which is not the id of a [[meter]]"));
   EXPECT_THAT(problem_of("[\"east\", \"-east\"]"), HasSubstr("'sum_of' names 'east' twice"));
+  const std::string gas =
+      edited(site_text(), "\"pv\"\nutility = \"electricity\"", "\"pv\"\nutility = \"gas\"");
+  write("site.toml", gas);
+  EXPECT_THAT(run({"check", site()}).err,
+              HasSubstr("'sum_of' names 'pv', which meters gas and not electricity"));
   EXPECT_THAT(problem_of("[\"east\", \"all\"]"),
               HasSubstr("'sum_of' names 'all', whose readings are in no file (source = \"sum\")"));
   write("site.toml", site_text() + "file = \"halves.csv\"\n");

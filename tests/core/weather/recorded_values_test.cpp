@@ -129,10 +129,15 @@ TEST(ToHourlyOfInstants, IsTheMeanBetweenThem) {
 
 // Airports report at 53 minutes past: the line between two reports is what the hour's mean is of.
 TEST(ToHourlyOfInstants, OffTheHourToo) {
-  auto records = ramp(hours{1}, ValuesStand::at_its_start, 4);
-  for (WeatherRecord& record : records) record.start += minutes{53};
-  const auto series = to_hourly(records, hours{1}, ValuesStand::at_its_start);
-  EXPECT_NEAR(series->hours.at(2).dry_bulb_C, 10.0 + 2.5 - 53.0 / 60.0, 1e-9);
+  for (const ValuesStand stand : {ValuesStand::at_its_start, ValuesStand::at_its_end}) {
+    auto records = ramp(hours{1}, stand, 4);
+    for (WeatherRecord& record : records) record.start += minutes{53};
+    // A bend at 02:53, or it would not matter which end of a record its instant is at.
+    records[stand == ValuesStand::at_its_end ? 2 : 3].values.dry_bulb_C += 60.0;
+    const auto series = to_hourly(records, hours{1}, stand);
+    const double bend_K = 7.0 / 60.0 * 3.5;
+    EXPECT_NEAR(series->hours.at(2).dry_bulb_C, 10.0 + 2.5 - 53.0 / 60.0 + bend_K, 1e-9);
+  }
 }
 
 // Beside a hole, and at the ends of the record, an instant stands for its interval: as many hours
@@ -151,6 +156,10 @@ TEST(ToHourlyOfInstants, AHoleCostsNoMoreThanItself) {
     EXPECT_TRUE(std::isnan(series->hours.at(5).dry_bulb_C));
     const std::size_t alone = stand == ValuesStand::at_its_end ? 3 : 1;
     EXPECT_NEAR(series->hours.at(alone).dry_bulb_C, records[alone].values.dry_bulb_C, 1e-9);
+    // The hour beside the row that is not there; what lies behind it is no neighbour.
+    const std::size_t beside = stand == ValuesStand::at_its_end ? 6 : 4;
+    const std::size_t row = stand == ValuesStand::at_its_end ? 5 : 4;
+    EXPECT_NEAR(series->hours.at(beside).dry_bulb_C, records[row].values.dry_bulb_C, 1e-9);
   }
 }
 

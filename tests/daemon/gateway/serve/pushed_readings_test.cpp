@@ -110,6 +110,13 @@ TEST_F(PushedMeterSite, ThreeHundredConflictsAreOneCountedEvent) {
     EXPECT_EQ(event["last_time"], "2024-03-30T16:59:00Z");
   }
   EXPECT_EQ(conflicts, 1);
+  // Days later it is another event: the list is in order of time.
+  loop_.run_for(days{2});
+  taken(R"({"meter":"chw","unit":"kW","readings":[{"time":"2024-03-30T10:00:00Z","value":9}]})");
+  loop_.run_for(minutes{1});
+  const Json newest = get_json("/api/v1/events")["events"][0];
+  EXPECT_EQ(newest["kind"], "reading_conflict");
+  EXPECT_EQ(newest["time"], "2024-04-01T17:00:00Z");
 }
 
 // 500 kW rated: 1.2 times that is the most that is believed, as of any other meter.
