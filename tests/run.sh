@@ -1,7 +1,7 @@
 #!/bin/sh
 # All tests, from nothing: installs what is missing, builds, runs. Ends with ctest's own summary.
 #
-#   sh tests/run.sh              the format of all sources, all tests, fuzz targets for ten seconds
+#   sh tests/run.sh              the format of all sources, all tests, fuzz targets for five seconds
 #                                each, and what leads from registers to months under the sanitizers
 #   sh tests/run.sh --plain      all tests alone
 #   sh tests/run.sh --long NAME  one of the longer studies; without NAME: which there are
@@ -75,8 +75,8 @@ instrumented() {
 }
 
 if [ "${1:-}" != "--plain" ]; then
-  stage "fuzz (10 s each)"
-  sh "$root/tests/fuzz/run.sh" 10 || failed="$failed fuzz"
+  stage "fuzz (5 s each)"
+  sh "$root/tests/fuzz/run.sh" 5 || failed="$failed fuzz"
   instrumented asan
   # What differs from the other scenarios by its dates, or by what comes late or not at all, has the same threads.
   instrumented tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy"
@@ -88,11 +88,11 @@ cmake --preset dev -DRECALD_PART=$part >/dev/null
 cmake --build --preset dev --parallel "$(build_jobs)"
 stage ""
 echo "--- tests, after $(($(date +%s) - begin)) s for all of the above"
-# Two at a time: several tests use threads of their own. Behind everything else: the daemon calibrates
-# at the lowest priority and would wait for every other test to end. ctest's own summary is the last
-# word, unless something failed before.
+# Three at a time on two cores: whole runs of the daemon wait for their virtual clocks. Behind everything else: the
+# daemon calibrates at the lowest priority and would wait for every other test to end. ctest's own summary is the
+# last word, unless something failed before.
 log=$root/.build/dev/ctest.log
-nice -n 19 ctest --preset dev -j 2 --output-log "$log" || failed="$failed tests"
+nice -n 19 ctest --preset dev -j $(($(nproc) + 1)) --output-log "$log" || failed="$failed tests"
 
 # A test that skips shows nothing. Those of tests/skips.txt may; in CI (RECALD_CI=1) no other.
 skipped=$(sed -n 's/.*Test  *#[0-9]*: \([^ ]*\).*\*\*\*Skipped.*/\1/p' "$log" | sort -u)

@@ -242,8 +242,11 @@ TEST_F(RecoveryEdges, KilledWhileItPutsALogAsideItGoesOn) {
 }
 
 TEST_F(RecoveryEdges, AnyStepMayFailOnceOrForGood) {
+  const bool has_time = std::getenv("RECALD_EDGE_KILLS") != nullptr;
   for (const int error : {EIO, ENOSPC}) {
     for (const bool lasting : {false, true}) {
+      // A disk's error passes, a full one stays; the other way round only where there is time.
+      if (lasting != (error == ENOSPC) && !has_time) continue;
       bool has_failed = true;
       for (int nth = 1; has_failed; ++nth) {
         SCOPED_TRACE(fmt::format("errno {}, change {}, lasting {}", error, nth, lasting));
