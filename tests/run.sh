@@ -71,7 +71,7 @@ instrumented() {
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset" --target ingestion_tests --parallel "$(build_jobs)"
   # All 300 kills happen below; under a sanitizer each takes ten times as long.
-  RECALD_KILLS=40 ctest --preset "$preset" -j 2 "$@" || failed="$failed $preset"
+  RECALD_KILLS=40 ctest --preset "$preset" -j $(($(nproc) + 1)) "$@" || failed="$failed $preset"
 }
 
 if [ "${1:-}" != "--plain" ]; then
