@@ -143,7 +143,11 @@ Result<Database> Database::open(const std::filesystem::path& file, const Options
       writes ? "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;"
              : "PRAGMA wal_autocheckpoint=0; PRAGMA query_only=ON; SELECT count(*) FROM "
                "sqlite_schema;";
-  if (auto set = database.execute(pragmas); !set) return tl::unexpected(set.error());
+  if (auto set = database.execute(pragmas); !set) {
+    // Our words are right: what SQLite cannot make sense of is the file, as by a flipped bit.
+    const bool is_of_the_file = (sqlite3_errcode(raw) & 0xFF) == SQLITE_ERROR;
+    return failure(is_of_the_file ? ErrorCode::malformed : set.error().code, set.error().message);
+  }
   return database;
 }
 
@@ -164,7 +168,7 @@ Result<Statement> Database::prepare(std::string_view sql) {
       std::make_unique<Statement::Impl>(Statement::Impl{StatementHandle{raw}, impl_->file})};
 }
 
-void Database::on_progress(std::function<void()> call) {
+void Database::on_progress(OnProgress call) {
   constexpr int kSteps = 200'000;  // of SQLite's machine: some milliseconds
   impl_->on_progress = std::move(call);
   sqlite3_progress_handler(
@@ -175,6 +179,8 @@ void Database::on_progress(std::function<void()> call) {
       },
       &impl_->on_progress);
 }
+
+void Database::interrupt() { sqlite3_interrupt(impl_->handle.get()); }
 
 Result<bool> Database::begin() {
   const bool is_part = sqlite3_get_autocommit(impl_->handle.get()) == 0;

@@ -17,6 +17,9 @@
 
 namespace recald::sqlite {
 
+/// Told now and then that long work goes on.
+using OnProgress = std::function<void()>;
+
 /// A prepared statement. Parameters and columns count from 0.
 class Statement {
  public:
@@ -96,7 +99,10 @@ class Database {
   }
 
   /// Called now and then while a statement runs for long; may be empty.
-  void on_progress(std::function<void()> call);
+  void on_progress(OnProgress call);
+
+  /// Ends what runs in another thread, which then fails. @pre the database lives meanwhile
+  void interrupt();
 
   /// What is damaged, in SQLite's words; empty when nothing is.
   [[nodiscard]] Result<std::string> quick_check();

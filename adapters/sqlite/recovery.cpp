@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <utility>
 
+#include "adapters/sqlite/damage.hpp"
+#include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/refill.hpp"
 #include "adapters/sqlite/schema.hpp"
 #include "adapters/system/durable_names.hpp"
@@ -34,31 +37,22 @@ bool is_there(const fs::path& file) {
   return fs::exists(file, ignored);
 }
 
-/// What is wrong with a file; empty: nothing, or there is no file. Another program's database and a
-/// newer version are errors, not damage.
-Result<std::string> damage_of(const fs::path& file, const OnProgress& on_progress) {
-  if (!is_there(file)) return std::string{};
-  auto database = Database::open(file, {});
-  if (!database) {
-    if (database.error().code == ErrorCode::malformed) return database.error().message;
-    return tl::unexpected(database.error());
-  }
-  database->on_progress(on_progress);
-  // A header that is another program's is a header that can be read.
-  if (auto version = schema_version(*database); !version) {
-    if (version.error().code == ErrorCode::malformed) return version.error().message;
-    return tl::unexpected(version.error());
-  }
-  auto damage = database->quick_check();
-  if (!damage || !damage->empty()) return damage;
-  return wrong_sums(*database);
-}
-
 /// "20240301T051500Z", for a file's name.
 std::string stamp_of(metering::Instant t) {
   std::string stamp = metering::to_string(t);
   std::erase_if(stamp, [](char c) { return c == '-' || c == ':'; });
   return stamp;
+}
+
+/// A name that nothing stands under: what was put aside is all that some rows are left of, and
+/// stamps repeat where a clock wakes up at the same time whenever the power comes back.
+fs::path free_name(const fs::path& wanted) {
+  fs::path name = wanted;
+  const auto is_taken = [&](const char* part) { return is_there(name.string() + part); };
+  for (int n = 2; std::ranges::any_of(kParts, is_taken); ++n) {
+    name = fmt::format("{}-{}", wanted.string(), n);
+  }
+  return name;
 }
 
 /// Two lines: where the damaged file is put, and what was wrong with it.
@@ -87,10 +81,13 @@ Result<void> put_aside(const Places& places, const fs::path& aside) {
   return {};
 }
 
-std::optional<fs::path> first_sound(const std::vector<fs::path>& backups) {
+std::optional<fs::path> first_sound(const std::vector<fs::path>& backups,
+                                    const OnProgress& on_progress) {
   for (const fs::path& backup : backups) {
+    if (on_progress) on_progress();
     auto database = Database::open(backup, {.access = Database::Access::read_only});
     if (!database) continue;
+    database->on_progress(on_progress);
     const auto damage = database->quick_check();
     const auto version = schema_version(*database);
     if (damage && damage->empty() && version && *version > 0) return backup;
@@ -113,6 +110,23 @@ Result<void> take_rows(const fs::path& file, Database& to, Recovery& recovery,
   return {};
 }
 
+/// When the recovery is told of: a clock that has not been set yet shows a time before all that is
+/// stored, and an event of 1970 would be deleted as an old one.
+Result<metering::Instant> time_of_event(Database& made, metering::Instant now) {
+  auto query = made.prepare("SELECT coalesce(max(t_start), 0) FROM interval");
+  if (!query) return tl::unexpected(query.error());
+  if (auto row = query->step(); !row) return tl::unexpected(row.error());
+  return std::max(now, instant_of(query->integer(0)));
+}
+
+Result<void> tell(SqliteStore& store, const Recovery& recovery, metering::Instant now) {
+  const auto time = time_of_event(store.database(), now);
+  if (!time) return tl::unexpected(time.error());
+  const auto told = store.commit(
+      {.events = {{*time, Severity::error, "store_recovered", "", recovery.sentence()}}});
+  return told ? Result<void>{} : tl::unexpected(told.error());
+}
+
 Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
                   const OnProgress& on_progress) {
   Database& to = made.database();
@@ -133,9 +147,7 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
   if (!refilled) return tl::unexpected(refilled.error());
   recovery.from_samples = refilled->from_samples;
   recovery.lost_intervals = refilled->still_missing;
-  const auto told =
-      made.commit({.events = {{now, Severity::error, "store_recovered", "", recovery.sentence()}}});
-  if (!told) return tl::unexpected(told.error());
+  if (auto told = tell(made, recovery, now); !told) return told;
   // All of it into the one file that is renamed.
   return to.execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
@@ -150,7 +162,7 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
                        const std::vector<fs::path>& backups, metering::Instant now,
                        const OnProgress& on_progress) {
   remove_store(places.made);  // what an interrupted recovery left
-  recovery.backup = first_sound(backups);
+  recovery.backup = first_sound(backups, on_progress);
   {
     auto made = SqliteStore::open(places.made);
     if (!made) return tl::unexpected(made.error());
@@ -159,40 +171,80 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
   return system::rename_durably(places.made, places.store);
 }
 
+/// Whether an event of the store tells of this recovery.
+Result<bool> tells_of(Database& store, const Recovery& recovery) {
+  auto query =
+      store.prepare("SELECT 1 FROM event WHERE kind = 'store_recovered' AND instr(text, ?) > 0");
+  if (!query) return tl::unexpected(query.error());
+  return query->bind(0, std::string_view{recovery.damaged.filename().native()}).step();
+}
+
+/// After the rename only the note was left to be removed; the new store tells of all. A store that
+/// does not was put there by somebody else: it is used, and what the damaged one holds must not be
+/// forgotten.
+Result<void> close_note(const Places& places, Recovery& recovery, metering::Instant now) {
+  auto store = SqliteStore::open(places.store);
+  // A damaged one is looked at when the note is gone.
+  if (!store && store.error().code != ErrorCode::malformed) return tl::unexpected(store.error());
+  if (store) {
+    const auto tells = tells_of(store->database(), recovery);
+    if (!tells) return tl::unexpected(tells.error());
+    recovery.is_overtaken = !*tells;
+    if (recovery.is_overtaken) {
+      if (auto told = tell(*store, recovery, now); !told) return told;
+    }
+  }
+  return system::remove_durably(places.note);
+}
+
 Result<std::optional<Recovery>> recover_if_damaged(const Places& places,
                                                    const std::vector<fs::path>& backups,
                                                    metering::Instant now,
                                                    const OnProgress& on_progress) {
   std::optional<Recovery> recovery = read_note(places);
-  const bool is_put_aside = recovery && is_there(recovery->damaged);
+  std::optional<Recovery> overtaken;
+  bool is_put_aside = recovery && is_there(recovery->damaged);
+  if (is_put_aside && is_there(places.store)) {
+    if (auto closed = close_note(places, *recovery, now); !closed) {
+      return tl::unexpected(closed.error());
+    }
+    if (recovery->is_overtaken) overtaken = recovery;
+    recovery.reset();
+    is_put_aside = false;
+  }
   if (!recovery) {
     auto damage = damage_of(places.store, on_progress);
     if (!damage) return tl::unexpected(damage.error());
-    if (damage->empty()) return std::optional<Recovery>{};
-    recovery =
-        Recovery{.damage = std::move(*damage),
-                 .damaged = fmt::format("{}.damaged-{}", places.store.string(), stamp_of(now))};
+    if (damage->empty()) return overtaken;
+    recovery = Recovery{
+        .damage = std::move(*damage),
+        .damaged = free_name(fmt::format("{}.damaged-{}", places.store.string(), stamp_of(now)))};
     if (auto noted = write_note(places, *recovery); !noted) return tl::unexpected(noted.error());
   }
   if (!is_put_aside) {
     if (auto put = put_aside(places, recovery->damaged); !put) return tl::unexpected(put.error());
   }
-  // After the rename only the note was left to be removed; the new store tells of all.
-  const bool is_done = is_put_aside && is_there(places.store);
-  if (!is_done) {
-    if (auto made = make_anew(places, *recovery, backups, now, on_progress); !made) {
-      return tl::unexpected(made.error());
-    }
+  if (auto made = make_anew(places, *recovery, backups, now, on_progress); !made) {
+    return tl::unexpected(made.error());
   }
   if (auto removed = system::remove_durably(places.note); !removed) {
     return tl::unexpected(removed.error());
   }
-  return is_done ? std::optional<Recovery>{} : recovery;
+  return recovery;
 }
 
 }  // namespace
 
 std::string Recovery::sentence() const {
+  if (is_overtaken) {
+    return fmt::format(
+        "the store was damaged ({}), and before its recovery had ended another store was put in "
+        "its "
+        "place, which is used; what '{}' holds is not in it. To recover that, stop recald, move "
+        "the "
+        "new store away, and give the damaged file its name back",
+        damage, damaged.filename().string());
+  }
   std::string text = fmt::format(
       "the store was damaged ({}); it is kept as '{}' and a new one holds what could be read:",
       damage, damaged.filename().string());

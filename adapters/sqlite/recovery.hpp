@@ -36,6 +36,7 @@ struct Recovery {
   std::int64_t from_samples = 0;    ///< Intervals.
   std::int64_t lost_intervals = 0;  ///< That lie between others and are in no source.
   bool was_interrupted = false;     ///< An earlier process had begun it.
+  bool is_overtaken = false;        ///< And another store has taken its place meanwhile.
 
   /// What happened, for a log and for people.
   [[nodiscard]] std::string sentence() const;

@@ -2,16 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 
 #include "adapters/sqlite/page_rows.hpp"
 
 namespace recald::sqlite {
-
-/// Told now and then that long work goes on.
-using OnProgress = std::function<void()>;
 
 struct SalvagedRows {
   std::map<std::string, std::int64_t> rows;  ///< By table: those that `to` did not have.

@@ -2,14 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace recald::sqlite {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x52434C44;  // "RCLD", in the file's header
 
-/// One text a version: from the version before to this one.
+/// One text a version: from the version before to this one. Each changes tables or indexes, and
+/// none is changed afterwards, not even its spaces: what a file holds is compared with what they
+/// make.
 constexpr std::array<const char*, kSchemaVersion> kUpgrades{
     R"sql(
 CREATE TABLE meter (
@@ -164,39 +170,116 @@ Result<std::int64_t> ask(Database& database, std::string_view sql) {
   return value;
 }
 
+/// Of a file: "table interval", and for which table and by which text it was made.
+using SchemaTexts = std::map<std::string, std::string>;
+
+Result<SchemaTexts> schema_of(Database& database) {
+  auto query = database.prepare(
+      "SELECT type || ' ' || name, tbl_name || ': ' || coalesce(sql, '') FROM sqlite_schema");
+  if (!query) return tl::unexpected(query.error());
+  SchemaTexts texts;
+  for (;;) {
+    const auto row = query->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return texts;
+    texts[query->text(0)] = query->text(1);
+  }
+}
+
+/// What each version's tables are, from version 0 on, which has none.
+Result<std::vector<SchemaTexts>> make_known_schemas() {
+  auto database = Database::open(":memory:", {});
+  if (!database) return tl::unexpected(database.error());
+  std::vector<SchemaTexts> known{{}};
+  for (const char* upgrade : kUpgrades) {
+    if (auto upgraded = database->execute(upgrade); !upgraded) {
+      return tl::unexpected(upgraded.error());
+    }
+    auto texts = schema_of(*database);
+    if (!texts) return tl::unexpected(texts.error());
+    known.push_back(std::move(*texts));
+  }
+  return known;
+}
+
+const Result<std::vector<SchemaTexts>>& known_schemas() {
+  static const Result<std::vector<SchemaTexts>> known = make_known_schemas();
+  return known;
+}
+
+/// The newest version all of whose tables and indexes a file has as that version made them.
+int version_of(const SchemaTexts& file, const std::vector<SchemaTexts>& known) {
+  auto version = static_cast<int>(known.size()) - 1;
+  while (version > 0 && !std::ranges::includes(file, known[static_cast<std::size_t>(version)])) {
+    --version;
+  }
+  return version;
+}
+
+/// Whether a file is recald's though neither its header nor all of its tables say so.
+bool has_our_tables(const SchemaTexts& file) {
+  return std::ranges::count_if(
+             std::array{"interval", "register", "reopened", "sample"},
+             [&](const char* name) { return file.contains(std::string{"table "} + name); }) >= 3;
+}
+
+/// In which way a file that is ours is as no version has made it.
+std::string misfit(int named, int version, const SchemaTexts& file,
+                   const std::vector<SchemaTexts>& known) {
+  if (version > 0) {
+    return fmt::format("its header says schema version {}, its tables are those of version {}",
+                       named, version);
+  }
+  const SchemaTexts& meant = known[static_cast<std::size_t>(std::clamp(named, 1, kSchemaVersion))];
+  for (const auto& [name, text] : meant) {
+    const auto found = file.find(name);
+    if (found == file.end()) return fmt::format("its {} is missing", name);
+    if (found->second != text) return fmt::format("its {} is not as recald has made it", name);
+  }
+  return "its tables are as no version of recald has made them";
+}
+
 }  // namespace
 
 Result<int> schema_version(Database& database) {
-  const auto version = ask(database, "PRAGMA user_version");
-  if (!version) return tl::unexpected(version.error());
+  const auto header = ask(database, "PRAGMA user_version");
+  if (!header) return tl::unexpected(header.error());
+  const auto named = static_cast<int>(*header);
   const auto application = ask(database, "PRAGMA application_id");
   if (!application) return tl::unexpected(application.error());
-  const auto tables = ask(database, "SELECT count(*) FROM sqlite_schema");
+  const auto tables = schema_of(database);
   if (!tables) return tl::unexpected(tables.error());
-  // With our tables in it the mark was damaged.
-  const auto ours =
-      ask(database, "SELECT count(*) FROM sqlite_schema WHERE name IN ('interval', 'sample')");
-  if (!ours) return tl::unexpected(ours.error());
-  if (*tables > 0 && *application != kApplicationId && *ours < 2) {
+  const auto& known = known_schemas();
+  if (!known) return tl::unexpected(known.error());
+  const int version = version_of(*tables, *known);
+  if (tables->empty() && named == 0) return 0;
+  if (version == 0 && *application != kApplicationId && !has_our_tables(*tables)) {
     return failure(ErrorCode::unsupported,
                    "the store file is a database of another program; name another file");
   }
-  if (*version > kSchemaVersion) {
+  // A newer version has other tables. Tables that are all of a version that we know, under a newer
+  // number, are that version's: the number was damaged.
+  const bool is_known = tables->size() == (*known)[static_cast<std::size_t>(version)].size();
+  if (named > kSchemaVersion && !is_known) {
     return failure(
         ErrorCode::unsupported,
         fmt::format("the store file has schema version {}, this recald knows {}; use the "
                     "newer recald that wrote it, or a backup from before",
-                    *version, kSchemaVersion));
+                    named, kSchemaVersion));
   }
-  return static_cast<int>(*version);
+  if (version != named) {
+    return failure(ErrorCode::malformed, misfit(named, version, *tables, *known));
+  }
+  return version;
 }
 
-Result<void> bring_up_to_date(Database& database) {
+Result<void> bring_up_to_date(Database& database, int until) {
   const auto version = schema_version(database);
   if (!version) return tl::unexpected(version.error());
-  for (auto next = static_cast<std::size_t>(*version); next < kUpgrades.size(); ++next) {
-    const std::string text = fmt::format("{}PRAGMA application_id={};PRAGMA user_version={};",
-                                         kUpgrades[next], kApplicationId, next + 1);
+  for (int next = *version; next < until; ++next) {
+    const std::string text =
+        fmt::format("{}PRAGMA application_id={};PRAGMA user_version={};",
+                    kUpgrades[static_cast<std::size_t>(next)], kApplicationId, next + 1);
     const auto upgraded = database.transaction([&] { return database.execute(text); });
     if (!upgraded) return upgraded;
   }

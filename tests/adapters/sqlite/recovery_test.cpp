@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/tables.hpp"
 #include "core/random/rng.hpp"
 #include "tests/support/damage.hpp"
@@ -286,6 +287,189 @@ TEST_F(RecoveryTest, RowsFromBeforeThereWereSumsAreTaken) {
   EXPECT_THAT(*opened.store.months(0), SizeIs(1));
   EXPECT_THAT(*opened.store.events(1000), SizeIs(60 + 1));
   EXPECT_TRUE(opened.store.job(1)->has_value());
+}
+
+// What a header says of the version is held against the tables.
+TEST_F(RecoveryTest, AFlippedVersionIsNoOtherVersion) {
+  for (const int named : {7, 4, 1, 0}) {
+    SCOPED_TRACE(named);
+    const TemporaryFolder here;
+    const auto flipped = here / "site.db";
+    std::filesystem::copy(file(), flipped);
+    ASSERT_TRUE(Database::open(flipped, {})
+                    ->execute(fmt::format("PRAGMA user_version = {}", named))
+                    .has_value());
+    const auto reader = SqliteStore::open(flipped, {.access = Database::Access::read_only});
+    ASSERT_FALSE(reader.has_value());
+    EXPECT_EQ(reader.error().code, ErrorCode::malformed);
+    CheckedStore opened = open(flipped);
+    ASSERT_TRUE(opened.recovery.has_value());
+    EXPECT_EQ(
+        opened.recovery->damage,
+        fmt::format("its header says schema version {}, its tables are those of version 5", named));
+    EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
+    EXPECT_EQ(opened.recovery->lost_intervals, 0);
+  }
+}
+
+// A column whose name has changed passes quick_check, and every statement that names it fails.
+TEST_F(RecoveryTest, AFlippedNameOfAColumnIsFound) {
+  std::string bytes = recald::testing::read_text(file());
+  const std::size_t at = bytes.find("mean_kW  REAL");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 5] = 'j';  // k with its last bit flipped
+  recald::testing::write_text(file(), bytes);
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(opened.recovery->damage, "its table interval is not as recald has made it");
+  EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
+}
+
+// Every third bit of a file's header, and some of its tables' texts: none may need a person.
+TEST_F(RecoveryTest, WhicheverBitOfTheFirstPageFlips) {
+  const TemporaryFolder small;
+  {
+    auto store = SqliteStore::open(small / "site.db").value();
+    StoreBatch batch;
+    for (int i = 0; i < 50; ++i) {
+      batch.intervals.push_back(
+          {{store.meter_number("main", kQuarter).value(), kStart + i * kQuarter, 1.0 * i}});
+    }
+    ASSERT_TRUE(store.commit(batch).has_value());
+  }
+  const std::string whole = recald::testing::read_text(small / "site.db");
+  Rng rng{1};
+  constexpr std::size_t kHeader = 8 * 100;
+  for (std::size_t i = 0; i < kHeader + 300; i += 3) {
+    const std::size_t bit =
+        i < kHeader ? i : kHeader + rng.below(8 * recald::testing::kPageBytes - kHeader);
+    SCOPED_TRACE(fmt::format("byte {}, bit {}", bit / 8, bit % 8));
+    const TemporaryFolder here;
+    std::string flipped = whole;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+    recald::testing::write_text(here / "site.db", flipped);
+    auto opened = open_checked(here / "site.db", {}, kNow);
+    ASSERT_TRUE(opened.has_value()) << opened.error().message;
+    EXPECT_EQ(right_intervals(opened->store, 0), 50);
+    EXPECT_TRUE(opened->store.commit({.intervals = {{{0, kStart - kQuarter, 1.0}}}}).has_value());
+  }
+}
+
+// Tables that no version known here has made are a newer version's.
+TEST_F(RecoveryTest, ANewerStoreIsRefusedAndAsItWas) {
+  for (const char* upgrade :
+       {"CREATE TABLE more (thing TEXT)", "ALTER TABLE interval ADD COLUMN more INTEGER"}) {
+    SCOPED_TRACE(upgrade);
+    const TemporaryFolder here;
+    std::filesystem::copy(file(), here / "site.db");
+    ASSERT_TRUE(Database::open(here / "site.db", {})
+                    ->execute(fmt::format("{}; PRAGMA user_version = 6", upgrade))
+                    .has_value());
+    const std::string before = recald::testing::read_text(here / "site.db");
+    const auto opened = open_checked(here / "site.db", {}, kNow);
+    ASSERT_FALSE(opened.has_value());
+    EXPECT_EQ(opened.error().code, ErrorCode::unsupported);
+    EXPECT_THAT(
+        opened.error().message,
+        HasSubstr("the store file has schema version 6, this recald knows 5; use the newer"));
+    EXPECT_EQ(recald::testing::read_text(here / "site.db"), before);
+    EXPECT_FALSE(std::filesystem::exists(here / "site.db.recovery"));
+  }
+}
+
+TEST(SchemaVersions, EachOlderOneIsBroughtUpToDate) {
+  for (int version = 0; version < kSchemaVersion; ++version) {
+    SCOPED_TRACE(version);
+    const TemporaryFolder here;
+    {
+      auto older = Database::open(here / "site.db", {});
+      ASSERT_TRUE(bring_up_to_date(*older, version).has_value());
+      EXPECT_EQ(schema_version(*older), version);
+    }
+    auto opened = open_checked(here / "site.db", {}, kNow);
+    ASSERT_TRUE(opened.has_value()) << opened.error().message;
+    EXPECT_FALSE(opened->recovery.has_value());
+    EXPECT_EQ(schema_version(opened->store.database()), kSchemaVersion);
+  }
+}
+
+// A file's tables are compared with these texts: changed, they would make all that is stored look
+// damaged. A sum is written here once, when its version is, and never again.
+TEST(SchemaVersions, TextsStayAsTheyWereWritten) {
+  std::vector<std::int64_t> sums;
+  for (int version = 1; version <= kSchemaVersion; ++version) {
+    auto database = Database::open(":memory:", {}).value();
+    ASSERT_TRUE(bring_up_to_date(database, version).has_value());
+    auto query = database
+                     .prepare(
+                         "SELECT row_sum('', group_concat(sql)) FROM (SELECT sql FROM "
+                         "sqlite_schema ORDER BY type, name)")
+                     .value();
+    ASSERT_TRUE(query.step().value());
+    sums.push_back(query.integer(0));
+  }
+  EXPECT_THAT(sums, ElementsAre(1978806147, 845759539, 1936630115, 1590918335, 3679785145));
+}
+
+// A second damage at the same second, as of a clock that always wakes up at the same time.
+TEST_F(RecoveryTest, WhatWasPutAsideIsNeverWrittenOver) {
+  recald::testing::damage_leaf(file(), "interval", 20);
+  const std::filesystem::path first = open(file()).recovery->damaged;
+  const std::string kept = recald::testing::read_text(first);
+  recald::testing::damage_leaf(file(), "interval", 10);
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_NE(opened.recovery->damaged, first);
+  EXPECT_TRUE(std::filesystem::exists(opened.recovery->damaged));
+  EXPECT_EQ(recald::testing::read_text(first), kept);
+}
+
+// In 1970: the event would go with the first old ones once the clock is right.
+TEST_F(RecoveryTest, IsDatedAfterWhatIsStored) {
+  recald::testing::damage_leaf(file(), "interval", 20);
+  auto opened = open_checked(file(), {}, Instant{std::chrono::seconds{40}}).value();
+  const auto events = opened.store.events(1).value();
+  ASSERT_THAT(events, SizeIs(1));
+  EXPECT_EQ(events[0].kind, "store_recovered");
+  EXPECT_EQ(events[0].time, kStart + (kQuarters - 1) * kQuarter);
+}
+
+// Before the first row is salvaged, minutes may go by over the backups.
+TEST_F(RecoveryTest, SaysThatItGoesOnWhileItLooksThroughBackups) {
+  const auto backup = folder_ / "backup.db";
+  back_up_to(backup);
+  recald::testing::damage_leaf(file(), "interval", 20);
+  const auto aside = folder_ / "site.db.damaged-20240409T000000Z";
+  std::filesystem::rename(file(), aside);
+  recald::testing::write_text(folder_ / "site.db.recovery",
+                              aside.filename().string() + "\nbad page\n");
+  int calls_before = 0;
+  const auto opened = open_checked(file(), {backup}, kNow, [&] {
+    const bool has_begun = std::filesystem::exists(folder_ / "site.db.recovering");
+    calls_before += static_cast<int>(!has_begun);
+  });
+  ASSERT_TRUE(opened.has_value()) << opened.error().message;
+  EXPECT_TRUE(opened->recovery->was_interrupted);
+  EXPECT_GE(calls_before, 1);
+}
+
+// Somebody put another store in the place of the one that was being recovered.
+TEST_F(RecoveryTest, AStoreThatTookItsPlaceIsToldOf) {
+  const auto aside = folder_ / "site.db.damaged-20240409T000000Z";
+  std::filesystem::rename(file(), aside);
+  recald::testing::write_text(folder_ / "site.db.recovery",
+                              aside.filename().string() + "\nbad page\n");
+  { ASSERT_TRUE(SqliteStore::open(file()).has_value()); }
+  {
+    CheckedStore opened = open(file());
+    ASSERT_TRUE(opened.recovery.has_value());
+    EXPECT_TRUE(opened.recovery->is_overtaken);
+    EXPECT_THAT(opened.recovery->sentence(),
+                HasSubstr("what 'site.db.damaged-20240409T000000Z' holds is not in it"));
+    EXPECT_EQ(opened.store.events(1)->at(0).text, opened.recovery->sentence());
+  }
+  EXPECT_TRUE(std::filesystem::exists(aside));
+  EXPECT_FALSE(open(file()).recovery.has_value());
 }
 
 TEST_F(RecoveryTest, AnotherProgramsDatabaseIsLeftAlone) {

@@ -470,7 +470,8 @@ TEST(StoreOpening, AFileOfANewerRecaldIsNotTouched) {
   { ASSERT_TRUE(SqliteStore::open(folder / "site.db").has_value()); }
   {
     auto database = Database::open(folder / "site.db", {});
-    ASSERT_TRUE(database->execute("PRAGMA user_version=99").has_value());
+    ASSERT_TRUE(
+        database->execute("CREATE TABLE more (thing TEXT); PRAGMA user_version=99").has_value());
   }
   const auto store = SqliteStore::open(folder / "site.db");
   ASSERT_FALSE(store.has_value());

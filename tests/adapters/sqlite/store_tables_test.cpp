@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -221,8 +222,12 @@ TEST_F(StoreTables, AReaderNeverMovesTheLog) {
 }
 
 TEST_F(StoreTables, AReaderDoesNotUpgrade) {
-  ASSERT_TRUE(store_.database().execute("PRAGMA user_version = 1").has_value());
-  const auto reader = SqliteStore::open(file(), {.access = Database::Access::read_only});
+  {
+    auto older = Database::open(folder_ / "older.db", {});
+    ASSERT_TRUE(bring_up_to_date(*older, 1).has_value());
+  }
+  const auto reader =
+      SqliteStore::open(folder_ / "older.db", {.access = Database::Access::read_only});
   ASSERT_FALSE(reader.has_value());
   EXPECT_EQ(reader.error().code, ErrorCode::unsupported);
   EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, this recald reads 5"));
