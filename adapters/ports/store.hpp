@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -167,14 +168,23 @@ struct StoreCheck {
   std::uint64_t intervals = 0;        ///< Rows, all revisions.
 };
 
-/// A consistent copy of a store that goes on being written, made a portion at a time. Given up
-/// before it is whole, it leaves nothing.
+/// A consistent copy of a store that goes on being written: made a portion at a time, then looked
+/// through, then kept. Given up before, it leaves nothing.
 class StoreBackup {
  public:
   virtual ~StoreBackup() = default;
 
-  /// Copies some pages more, of 4 KiB each. @return whether the copy is whole and in its place.
+  /// Copies some pages more, of 4 KiB each. @return whether the copy is whole.
   virtual Result<bool> step(int pages) = 0;
+
+  /// Reads all of a whole copy, which takes long and may be done in another thread.
+  /// @param stop  Ends it from outside.
+  /// @return its damage, which mostly is the store's too; empty: none. Or why it cannot be read;
+  ///         cancelled when it was stopped.
+  virtual Result<std::string> check(const std::stop_token& stop) = 0;
+
+  /// Puts a whole copy into its place. @return or io_failed.
+  virtual Result<void> keep() = 0;
 };
 
 class Store {
@@ -207,6 +217,9 @@ class Store {
 
   /// First start and last start, if there is any.
   virtual Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) = 0;
+
+  /// Whether any meter was read in the span: a good interval starts in it.
+  virtual Result<bool> was_read_in(const metering::TimeSpan& span) = 0;
 
   virtual Result<std::vector<RegisterState>> registers(std::uint32_t meter) = 0;
 
@@ -287,7 +300,8 @@ class Store {
   /// meter's grid, no more than 20 sentences of a kind.
   virtual Result<StoreCheck> check() = 0;
 
-  /// Begins a copy, which takes the place of `file` when it is whole. The store outlives it.
+  /// Begins a copy, which takes the place of `file` when it is kept. The store lives until it is
+  /// whole.
   virtual Result<std::unique_ptr<StoreBackup>> begin_backup(const std::filesystem::path& file) = 0;
 };
 

@@ -1,10 +1,11 @@
 #include "adapters/sqlite/backup.hpp"
 
-#include <fmt/format.h>
-
+#include <cassert>
 #include <utility>
 
+#include "adapters/sqlite/damage.hpp"
 #include "adapters/sqlite/handles.hpp"
+#include "adapters/system/durable_names.hpp"
 #include "adapters/system/regular_file.hpp"
 
 namespace recald::sqlite {
@@ -13,15 +14,6 @@ namespace {
 struct FinishBackup {
   void operator()(sqlite3_backup* backup) const { sqlite3_backup_finish(backup); }
 };
-
-/// Moves a file over another, as a finished copy does.
-Result<void> rename_over(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code error;
-  std::filesystem::rename(from, to, error);
-  if (!error) return {};
-  return failure(ErrorCode::io_failed, fmt::format("'{}' cannot become '{}': {}", from.string(),
-                                                   to.string(), error.message()));
-}
 
 }  // namespace
 
@@ -35,7 +27,9 @@ struct Backup::Impl {
     backup.reset();
     copy.reset();
     std::error_code ignored;
-    std::filesystem::remove(part, ignored);
+    for (const char* log : {"", "-wal", "-shm"}) {
+      std::filesystem::remove(part.string() + log, ignored);
+    }
   }
 };
 
@@ -67,10 +61,14 @@ Result<bool> Backup::step(int pages) {
   if (result != SQLITE_DONE) return failed(result, nullptr, impl_->part.string());
   impl_->backup.reset();
   impl_->copy.reset();
-  if (auto renamed = rename_over(impl_->part, impl_->file); !renamed) {
-    return tl::unexpected(renamed.error());
-  }
   return true;
 }
+
+Result<std::string> Backup::check(const std::stop_token& stop) {
+  assert(!impl_->copy && "the copy is whole");
+  return damage_of(impl_->part, {}, stop);
+}
+
+Result<void> Backup::keep() { return system::rename_durably(impl_->part, impl_->file); }
 
 }  // namespace recald::sqlite

@@ -9,12 +9,11 @@
 
 namespace recald::sqlite {
 
-/// Grows beside its target as "….part" and takes the target's place when it is whole; given up
-/// before, it leaves nothing. What the connection writes meanwhile goes into the copy too, so
-/// nothing waits for it.
+/// Grows beside its target as "….part"; given up before it is kept, it leaves nothing. What the
+/// connection writes meanwhile goes into the copy too, so nothing waits for it.
 class Backup final : public StoreBackup {
  public:
-  /// @param database  Must outlive the backup.
+  /// @param database  Must outlive the copying.
   /// @return io_failed when the file cannot be made.
   [[nodiscard]] static Result<Backup> begin(Database& database, const std::filesystem::path& file);
 
@@ -23,6 +22,8 @@ class Backup final : public StoreBackup {
   Backup& operator=(Backup&&) noexcept;
 
   [[nodiscard]] Result<bool> step(int pages) override;
+  [[nodiscard]] Result<std::string> check(const std::stop_token& stop) override;
+  [[nodiscard]] Result<void> keep() override;
 
  private:
   struct Impl;

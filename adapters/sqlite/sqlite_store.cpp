@@ -121,6 +121,17 @@ Result<std::optional<metering::TimeSpan>> SqliteStore::interval_extent(std::uint
       metering::TimeSpan{instant_of(query->integer(0)), instant_of(query->integer(1))}};
 }
 
+Result<bool> SqliteStore::was_read_in(const metering::TimeSpan& span) {
+  // A cross join: meter by meter each is a step in the index.
+  auto query = database_.prepare(
+      "SELECT EXISTS (SELECT 1 FROM meter CROSS JOIN interval ON interval.meter = meter.number "
+      "WHERE t_start >= ? AND t_start < ? AND validity = 0)");
+  if (!query) return tl::unexpected(query.error());
+  const auto row = query->bind(0, seconds_of(span.begin)).bind(1, seconds_of(span.end)).step();
+  if (!row) return tl::unexpected(row.error());
+  return query->integer(0) != 0;
+}
+
 Result<std::vector<RegisterState>> SqliteStore::registers(std::uint32_t meter) {
   auto query = database_.prepare("SELECT state FROM register WHERE meter = ? ORDER BY field");
   if (!query) return tl::unexpected(query.error());

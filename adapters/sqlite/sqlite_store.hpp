@@ -29,6 +29,7 @@ class SqliteStore final : public Store {
   Result<void> for_each_interval(std::uint32_t meter, const metering::TimeSpan& span,
                                  const std::function<void(const StoredInterval&)>& visit) override;
   Result<std::optional<metering::TimeSpan>> interval_extent(std::uint32_t meter) override;
+  Result<bool> was_read_in(const metering::TimeSpan& span) override;
   Result<std::vector<RegisterState>> registers(std::uint32_t meter) override;
   Result<void> for_each_sample(
       std::uint32_t meter, const std::string& field,

@@ -56,6 +56,10 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.interval_extent(meter);
   }
+  Result<bool> was_read_in(const metering::TimeSpan& span) override {
+    if (refuses) return refusal();
+    return behind_.was_read_in(span);
+  }
   Result<std::vector<RegisterState>> registers(std::uint32_t meter) override {
     if (refuses) return refusal();
     return behind_.registers(meter);

@@ -123,10 +123,11 @@ class Service {
         store_(running_.store.get()),
         loop_(context_, options.trial),
         worker_(loop_),
+        checker_(loop_),
         options_(options),
         jobs_({loop_, *store_, worker_}, make_site_work(site_),
               [](const StoredJob& job) { log_job(job); }),
-        upkeep_(*store_, upkeep_of(site_.config.store, running_), site_.calendar,
+        upkeep_(*store_, checker_, upkeep_of(site_.config.store, running_), site_.calendar,
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }) {}
 
@@ -371,6 +372,7 @@ class Service {
   boost::asio::signal_set signals_{context_, SIGINT, SIGTERM, SIGHUP};
   asio::AsioLoop loop_;
   system::WorkerThread worker_;
+  system::WorkerThread checker_;  ///< Of backups.
   ServiceOptions options_;
   JobRunner jobs_;  ///< Tells the worker's work to stop before the worker waits for it.
   std::unique_ptr<Recalibration> recalibration_;

@@ -2,39 +2,45 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
+#include <string>
 #include <system_error>
 
 namespace recald::daemon {
 namespace {
 
-/// Whether a name is "<stem>-<day><extension>".
-bool is_backup_of(const StoreConfig& store, const std::filesystem::path& file) {
+/// The day of a name "<stem>-<day><extension>"; nothing for another name.
+std::optional<metering::Day> day_in(const StoreConfig& store, const std::filesystem::path& file) {
   const std::string prefix = store.file.stem().string() + "-";
   const std::string stem = file.stem().string();
-  return file.extension() == store.file.extension() && stem.starts_with(prefix) &&
-         metering::parse_day(stem.substr(prefix.size())).has_value();
+  if (file.extension() != store.file.extension() || !stem.starts_with(prefix)) return {};
+  const auto day = metering::parse_day(stem.substr(prefix.size()));
+  return day ? std::optional{*day} : std::nullopt;
 }
 
-/// "20240301" of the first damaged store beside this one, as its name has the day; empty: none.
-std::string first_damage(const StoreConfig& store) {
+/// "20240301" of the last damaged store beside this one, as its name has the day; empty: none.
+/// @return or why the folder cannot be looked at.
+Result<std::string> last_damage(const StoreConfig& store) {
   const std::string prefix = store.file.filename().string() + ".damaged-";
-  std::string first;
+  const auto folder = store.file.has_parent_path() ? store.file.parent_path() : ".";
+  std::string last;
   std::error_code error;
-  for (std::filesystem::directory_iterator entry{store.file.parent_path(), error}, end;
-       !error && entry != end; entry.increment(error)) {
+  for (std::filesystem::directory_iterator entry{folder, error}, end; !error && entry != end;
+       entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (!name.starts_with(prefix)) continue;
-    const std::string day = name.substr(prefix.size(), 8);
-    if (first.empty() || day < first) first = day;
+    // A log that somebody left behind holds nothing without its file.
+    if (!name.starts_with(prefix) || name.ends_with("-wal") || name.ends_with("-shm")) continue;
+    last = std::max(last, name.substr(prefix.size(), 8));
   }
-  return first;
+  if (error) return failure(ErrorCode::io_failed, error.message());
+  return last;
 }
 
-/// The day of a backup, written likewise.
-std::string day_of(const StoreConfig& store, const std::filesystem::path& backup) {
-  std::string day = backup.stem().string().substr(store.file.stem().string().size() + 1);
-  std::erase(day, '-');
-  return day;
+/// "20240301", as the name of a damaged store has it.
+std::string digits_of(metering::Day day) {
+  std::string digits = metering::to_string(day);
+  std::erase(digits, '-');
+  return digits;
 }
 
 }  // namespace
@@ -49,18 +55,23 @@ std::vector<std::filesystem::path> backups_of(const StoreConfig& store) {
   std::error_code error;
   for (std::filesystem::directory_iterator entry{store.backup_folder, error}, end;
        !error && entry != end; entry.increment(error)) {
-    if (is_backup_of(store, entry->path())) files.push_back(entry->path());
+    if (day_in(store, entry->path())) files.push_back(entry->path());
   }
   std::ranges::sort(files, std::greater{});  // names of one form sort as their days do
   return files;
 }
 
+metering::Day day_of(const StoreConfig& store, const std::filesystem::path& backup) {
+  return *day_in(store, backup);
+}
+
 std::vector<std::filesystem::path> prune_backups(const StoreConfig& store) {
   const auto files = backups_of(store);
-  const std::string damaged = first_damage(store);
+  const auto damaged = last_damage(store);
+  if (!damaged) return {};
   std::vector<std::filesystem::path> kept_against_will;
   for (std::size_t i = kBackupsKept; i < files.size(); ++i) {
-    if (!damaged.empty() && day_of(store, files[i]) <= damaged) continue;
+    if (digits_of(day_of(store, files[i])) <= *damaged) continue;
     std::error_code error;
     std::filesystem::remove(files[i], error);
     if (error) kept_against_will.push_back(files[i]);

@@ -18,8 +18,12 @@ inline constexpr std::size_t kBackupsKept = 7;
 /// Whole backups of this store, the newest first; other files of the folder are none of ours.
 [[nodiscard]] std::vector<std::filesystem::path> backups_of(const StoreConfig& store);
 
+/// The local day of a backup, as its name says. @pre one of backups_of
+[[nodiscard]] metering::Day day_of(const StoreConfig& store, const std::filesystem::path& backup);
+
 /// Deletes all but the newest kBackupsKept. As long as a damaged store lies beside this one, those
-/// from before the damage stay as well: they may have what was lost.
+/// from before the damage stay as well: they may have what was lost. Where it cannot be seen
+/// whether one does, all stay.
 /// @return what could not be deleted.
 std::vector<std::filesystem::path> prune_backups(const StoreConfig& store);
 

@@ -1,5 +1,8 @@
 #include "daemon/gateway/upkeep/open_store.hpp"
 
+#include <algorithm>
+#include <chrono>
+
 #include "adapters/system/reserved_space.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 
@@ -11,10 +14,16 @@ std::filesystem::path reserve_file(const StoreConfig& config) {
 
 Result<stores::CheckedStore> open_store(const StoreConfig& config, metering::Instant now,
                                         const std::function<void()>& on_progress) {
-  auto opened = stores::open_checked(config.file, backups_of(config), now, on_progress);
+  const auto backups = backups_of(config);
+  // A damage is found after the newest backup was made, whatever is shown by a clock that has not
+  // been set: by the day in its name a damaged file tells which backups are from before.
+  if (!backups.empty()) {
+    now = std::max<metering::Instant>(now, std::chrono::sys_days{day_of(config, backups.front())});
+  }
+  auto opened = stores::open_checked(config.file, backups, now, on_progress);
   const bool is_refused = !opened && opened.error().code == ErrorCode::io_failed;
   if (is_refused && system::ReservedSpace{reserve_file(config), 0}.give_up()) {
-    opened = stores::open_checked(config.file, backups_of(config), now, on_progress);
+    opened = stores::open_checked(config.file, backups, now, on_progress);
   }
   return opened;
 }

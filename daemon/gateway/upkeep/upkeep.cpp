@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "adapters/system/write_file.hpp"
+#include "daemon/gateway/ingest/plausible_time.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/gateway/upkeep/open_store.hpp"
@@ -16,19 +17,28 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kRest = std::chrono::hours{1};
 
+/// Age is judged by a clock that readings have followed for a week. By one that was set years ahead
+/// for an hour, all that is kept would be old at once.
+metering::TimeSpan followed_until(Instant now) {
+  return {now - std::chrono::days{21}, now - std::chrono::days{7}};
+}
+
 }  // namespace
 
-Upkeep::Upkeep(Store& store, StoreConfig config, metering::LocalCalendar calendar,
+Upkeep::Upkeep(Store& store, Worker& checker, StoreConfig config, metering::LocalCalendar calendar,
                std::function<void(StoreEvent)> tell, const UpkeepRules& rules)
     : store_(store),
+      checker_(checker),
       config_(std::move(config)),
       calendar_(std::move(calendar)),
       tell_(std::move(tell)),
       rules_(rules),
-      reserve_(
-          std::make_shared<system::ReservedSpace>(reserve_file(config_), rules.reserve_bytes)) {
+      reserve_(std::make_shared<system::ReservedSpace>(reserve_file(config_), rules.reserve_bytes)),
+      self_(std::make_shared<Upkeep*>(this)) {
   store_.on_refusal([reserve = reserve_] { return reserve->give_up(); });
 }
+
+Upkeep::~Upkeep() { stop_.request_stop(); }
 
 milliseconds Upkeep::maintain(Instant now) {
   hold_reserve(now);
@@ -57,22 +67,52 @@ void Upkeep::hold_reserve(Instant now) {
 }
 
 Result<Upkeep::Progress> Upkeep::back_up(Instant now) {
+  if (is_checking_) return Progress::done;
   if (!backup_) return begin_backup(now);
   const auto is_whole = backup_->step(rules_.backup_pages);
   if (!is_whole) return tl::unexpected(is_whole.error());
   if (!*is_whole) return Progress::more;
-  backup_.reset();
+  check_backup(now);
+  return Progress::done;
+}
+
+void Upkeep::check_backup(Instant now) {
+  is_checking_ = true;
+  auto damage = std::make_shared<Result<std::string>>();
+  checker_.run(
+      [backup = backup_, stop = stop_.get_token(), damage] { *damage = backup->check(stop); },
+      [weak = std::weak_ptr{self_}, damage, now] {
+        if (const auto self = weak.lock()) (*self)->end_backup(*damage, now);
+      });
+}
+
+void Upkeep::end_backup(const Result<std::string>& damage, Instant now) {
+  is_checking_ = false;
+  const auto backup = std::exchange(backup_, nullptr);
+  if (damage && !damage->empty()) {
+    damaged_on_ = calendar_.local_time(now).date;
+    tell(now, backup_failure_, "store_damaged",
+         "the store is damaged, as its copy shows (" + *damage +
+             "); the copy was thrown away, and the backups from before stay. Restart recald: it "
+             "recovers what can be read",
+         Severity::error);
+    return;
+  }
+  const auto kept = damage ? backup->keep() : tl::unexpected(damage.error());
+  if (!kept) {
+    tell(now, backup_failure_, "backup_failed", kept.error().message);
+    return;
+  }
   backup_failure_.clear();
   for (const std::filesystem::path& file : prune_backups(config_)) {
     tell(now, backup_failure_, "backup_failed", "'" + file.string() + "' cannot be deleted");
   }
-  return Progress::done;
 }
 
 /// Due is today's once its time has come, whatever happened meanwhile: the folder remembers.
 Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
   const auto today = calendar_.local_time(now).date;
-  if (!config_.backup_at) return Progress::done;
+  if (!config_.backup_at || !is_plausible_time(now) || damaged_on_ == today) return Progress::done;
   if (now < calendar_.first_instant(today, static_cast<int>(config_.backup_at->count()))) {
     return Progress::done;
   }
@@ -88,18 +128,25 @@ Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
 }
 
 Result<Upkeep::Progress> Upkeep::delete_old(Instant now) {
-  const auto samples = store_.delete_samples(now - config_.raw_kept, rules_.rows);
-  if (!samples) return tl::unexpected(samples.error());
-  if (*samples == rules_.rows) return Progress::more;
-  const auto events = store_.delete_events(now - config_.events_kept, rules_.rows);
-  if (!events) return tl::unexpected(events.error());
-  if (*events == rules_.rows) return Progress::more;
+  const auto is_followed = store_.was_read_in(followed_until(now));
+  if (!is_followed) return tl::unexpected(is_followed.error());
+  const auto aged = *is_followed ? delete_aged(now) : Result<Progress>{Progress::done};
+  if (!aged || *aged == Progress::more) return aged;
   for (const JobKind kind : {JobKind::calibration, JobKind::diagnosis}) {
     const auto results = delete_results(kind);
     if (!results || *results == Progress::more) return results;
   }
   deleting_failure_.clear();
   return Progress::done;
+}
+
+Result<Upkeep::Progress> Upkeep::delete_aged(Instant now) {
+  const auto samples = store_.delete_samples(now - config_.raw_kept, rules_.rows);
+  if (!samples) return tl::unexpected(samples.error());
+  if (*samples == rules_.rows) return Progress::more;
+  const auto events = store_.delete_events(now - config_.events_kept, rules_.rows);
+  if (!events) return tl::unexpected(events.error());
+  return *events == rules_.rows ? Progress::more : Progress::done;
 }
 
 /// One at a time, its files first: killed in between, it is still known and its turn comes again.
@@ -128,10 +175,10 @@ milliseconds Upkeep::until_next(Instant now) const {
 }
 
 /// The same failure hour after hour is one event.
-void Upkeep::tell(Instant now, std::string& known, const char* kind,
-                  const std::string& sentence) const {
+void Upkeep::tell(Instant now, std::string& known, const char* kind, const std::string& sentence,
+                  Severity severity) const {
   if (std::exchange(known, sentence) == sentence) return;
-  tell_({now, Severity::warning, kind, "", sentence});
+  tell_({now, severity, kind, "", sentence});
 }
 
 }  // namespace recald::daemon

@@ -5,10 +5,13 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 
 #include "adapters/ports/store.hpp"
+#include "adapters/ports/worker.hpp"
 #include "adapters/system/reserved_space.hpp"
 #include "core/metering/civil_time.hpp"
 #include "daemon/site/config/store_config.hpp"
@@ -25,10 +28,16 @@ struct UpkeepRules {
 class Upkeep {
  public:
   /// From now on a commit that the disk refuses is tried again once the reserve is given up.
-  /// @param store  Outlives the upkeep.
-  /// @param tell   Takes the events.
-  Upkeep(Store& store, StoreConfig config, metering::LocalCalendar calendar,
+  /// @param store    Outlives the upkeep.
+  /// @param checker  Looks through each backup before it may take the place of an older one: nobody
+  ///                 else's, and it outlives the upkeep.
+  /// @param tell     Takes the events.
+  Upkeep(Store& store, Worker& checker, StoreConfig config, metering::LocalCalendar calendar,
          std::function<void(StoreEvent)> tell, const UpkeepRules& rules = {});
+  /// What the checker is about ends soon.
+  ~Upkeep();
+  Upkeep(const Upkeep&) = delete;
+  Upkeep& operator=(const Upkeep&) = delete;
 
   /// Does one portion of what is due; none takes longer than a commit. What fails becomes an event,
   /// once, and is tried again within the hour.
@@ -44,21 +53,31 @@ class Upkeep {
   void hold_reserve(metering::Instant now);
   [[nodiscard]] Result<Progress> back_up(metering::Instant now);
   [[nodiscard]] Result<Progress> begin_backup(metering::Instant now);
+  void check_backup(metering::Instant now);
+  /// @param damage  What the check has found.
+  void end_backup(const Result<std::string>& damage, metering::Instant now);
   /// Samples and events that are too old, results that are too many.
   [[nodiscard]] Result<Progress> delete_old(metering::Instant now);
+  [[nodiscard]] Result<Progress> delete_aged(metering::Instant now);
   [[nodiscard]] Result<Progress> delete_results(JobKind kind);
   [[nodiscard]] std::chrono::milliseconds until_next(metering::Instant now) const;
   void tell(metering::Instant now, std::string& known, const char* kind,
-            const std::string& sentence) const;
+            const std::string& sentence, Severity severity = Severity::warning) const;
 
   Store& store_;
+  Worker& checker_;
   StoreConfig config_;
   metering::LocalCalendar calendar_;
   std::function<void(StoreEvent)> tell_;
   UpkeepRules rules_;
   std::shared_ptr<system::ReservedSpace> reserve_;
-  std::unique_ptr<StoreBackup> backup_;  ///< Under way.
-  std::string reserve_failure_;          ///< The last one told.
+  std::shared_ptr<StoreBackup> backup_;  ///< Under way; the checker's too while it checks.
+  bool is_checking_ = false;
+  std::optional<metering::Day>
+      damaged_on_;  ///< Whose backup was damaged; the next day has another.
+  std::stop_source stop_;
+  std::shared_ptr<Upkeep*> self_;
+  std::string reserve_failure_;  ///< The last one told.
   std::string backup_failure_;
   std::string deleting_failure_;
 };

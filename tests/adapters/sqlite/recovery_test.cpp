@@ -58,8 +58,9 @@ class RecoveryTest : public ::testing::Test {
   }
   void back_up_to(const std::filesystem::path& backup) const {
     CheckedStore opened = open(file());
-    const auto whole = opened.store.begin_backup(backup).value()->step(10'000);
-    ASSERT_TRUE(whole.has_value() && *whole);
+    const auto copy = opened.store.begin_backup(backup).value();
+    ASSERT_TRUE(copy->step(10'000).value());
+    ASSERT_TRUE(copy->keep().has_value());
   }
   [[nodiscard]] static const RecoveredTable& table(const Recovery& recovery,
                                                    const std::string& name) {

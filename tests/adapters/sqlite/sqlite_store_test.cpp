@@ -381,9 +381,12 @@ TEST_F(StoreFile, ABackupIsAStoreOfItsOwn) {
   const auto copy = folder_ / "backup.db";
   for (int day = 0; day < 2; ++day) {  // the second replaces the first
     (void)commit({.intervals = {{reading(main, 1 + day, 11.0)}}});
-    const auto copied = store_->begin_backup(copy).value()->step(1000);
+    const auto backup = store_->begin_backup(copy).value();
+    const auto copied = backup->step(1000);
     ASSERT_TRUE(copied.has_value()) << copied.error().message;
     EXPECT_TRUE(*copied);
+    EXPECT_EQ(backup->check({}).value(), "");
+    EXPECT_TRUE(backup->keep().has_value());
   }
   auto opened = SqliteStore::open(copy);
   ASSERT_TRUE(opened.has_value()) << opened.error().message;
@@ -452,6 +455,7 @@ TEST(StoreOpening, OthersMayNotReadTheStoreNorItsBackups) {
     auto backup = store->begin_backup(folder / "backup.db");
     ASSERT_TRUE(backup.has_value()) << backup.error().message;
     ASSERT_TRUE((*backup)->step(1000).value());
+    ASSERT_TRUE((*backup)->keep().has_value());
     EXPECT_EQ(mode_of(folder / "backup.db"), mode);
   }
 }

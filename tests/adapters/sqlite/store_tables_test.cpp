@@ -147,6 +147,7 @@ TEST_F(StoreTables, ABackupInPortionsHasWhatCameMeanwhile) {
     ++steps;
   }
   EXPECT_GT(steps, 5);
+  ASSERT_TRUE(backup->keep().has_value());
   auto copy = SqliteStore::open(folder_ / "copy.db").value();
   EXPECT_EQ(intervals(copy, main_), 3000 + steps - 1);
   EXPECT_EQ(copy.check().value().damage, "");
@@ -156,6 +157,33 @@ TEST_F(StoreTables, ABackupInPortionsHasWhatCameMeanwhile) {
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.db"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.db.part"));
+}
+
+// Nobody waits for a check when the process ends.
+TEST_F(StoreTables, ACheckOfABackupCanBeStopped) {
+  ASSERT_TRUE(store_.commit(batch(0, 3000)).has_value());
+  const auto backup = store_.begin_backup(folder_ / "copy.db").value();
+  ASSERT_TRUE(backup->step(10'000).value());
+  std::stop_source stop;
+  EXPECT_EQ(backup->check(stop.get_token()).value(), "");
+  stop.request_stop();
+  const auto stopped = backup->check(stop.get_token());
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
+}
+
+TEST_F(StoreTables, ReadMeansAGoodInterval) {
+  const auto day = std::chrono::days{1};
+  StoreBatch some = batch(0, 4);
+  some.intervals.push_back({{.meter = main_,
+                             .start = kStart + day,
+                             .mean_kW = 1.0,
+                             .validity = metering::Validity::filled}});
+  ASSERT_TRUE(store_.commit(some).has_value());
+  EXPECT_TRUE(store_.was_read_in({kStart, kStart + kQuarter}).value());
+  EXPECT_TRUE(store_.was_read_in({kStart - day, kStart + kQuarter}).value());
+  EXPECT_FALSE(store_.was_read_in({kStart - day, kStart}).value());
+  EXPECT_FALSE(store_.was_read_in({kStart + day, kStart + 2 * day}).value());
 }
 
 TEST_F(StoreTables, AStoreSaysWhatIsWrongWithIt) {

@@ -334,7 +334,7 @@ class Life {
     rig_ = std::make_unique<Rig>(*store_, loop_);
     if (!rig_->open(site_)) return end();
     upkeep_ = std::make_unique<Upkeep>(
-        *store_, site_.store, metering::LocalCalendar::open(site_.timezone).value(),
+        *store_, checker_, site_.store, metering::LocalCalendar::open(site_.timezone).value(),
         [this](StoreEvent event) { rig_->note(std::move(event)); },
         UpkeepRules{.reserve_bytes = 64 * 1024});
     jobs_->resume();
@@ -373,6 +373,7 @@ class Life {
   std::function<void(const StoreBatch&)> on_commit_;
   SiteConfig site_;
   VirtualLoop& loop_;
+  VirtualWorker checker_{loop_, minutes{1}};
   std::unique_ptr<Store> behind_;
   std::unique_ptr<FailingStore> store_;
   std::unique_ptr<VirtualWorker> worker_;
