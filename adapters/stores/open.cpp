@@ -17,10 +17,6 @@ Result<std::unique_ptr<Store>> open(const std::filesystem::path& file,
 
 }  // namespace
 
-Result<std::unique_ptr<Store>> open_to_write(const std::filesystem::path& file) {
-  return open(file, sqlite::Database::Access::read_write);
-}
-
 Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& file) {
   return open(file, sqlite::Database::Access::read_only);
 }

@@ -4,11 +4,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "adapters/stores/open.hpp"
 #include "adapters/system/file_lock.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/gateway/upkeep/import_csv.hpp"
+#include "daemon/gateway/upkeep/open_store.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -73,11 +73,12 @@ int run_import(const ImportArguments& arguments, const Console& console) {
   if (!lock) {
     return console.fail(lock.error().message + "; end the daemon, import, and start it again");
   }
-  auto store = stores::open_to_write(site->config.store.file);
-  if (!store) return console.fail(store.error());
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto opened = open_store(site->config.store, now);
+  if (!opened) return console.fail(opened.error());
+  if (!opened->recovery.empty()) console.err << opened->recovery << "\n";
   const auto outcome =
-      import_readings(**store, site->config, site->calendar, arguments.file,
+      import_readings(*opened->store, site->config, site->calendar, arguments.file,
                       {.author = author(),
                        .reason = arguments.reason,
                        .stamps = arguments.stamps == "end" ? csv::Stamps::end : csv::Stamps::start,

@@ -14,6 +14,9 @@ int run_verify(const SiteArguments& arguments, const Console& console) {
   const auto site = open_site(arguments.site);
   if (!site) return console.fail(site.error());
   auto store = open_to_read(site->config);
+  if (!store && store.error().code == ErrorCode::malformed) {
+    return console.fail(damaged_file(store.error().message));
+  }
   if (!store) return console.fail(store.error());
   const auto verified = verify_store(**store, site->config, site->calendar);
   if (!verified) return console.fail(verified.error());

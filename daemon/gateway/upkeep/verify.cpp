@@ -85,15 +85,18 @@ Result<void> check_meter(Store& store, const SiteConfig& site,
 
 }  // namespace
 
+std::string damaged_file(std::string_view damage) {
+  return fmt::format("the file is damaged: {}; the daemon recovers what can be read when it starts",
+                     damage);
+}
+
 Result<Verification> verify_store(Store& store, const SiteConfig& site,
                                   const metering::LocalCalendar& calendar) {
   Verification verification;
   auto checked = store.check();
   if (!checked) return tl::unexpected(checked.error());
   if (!checked->damage.empty()) {
-    verification.problems.push_back(
-        fmt::format("the file is damaged: {}; the daemon recovers what can be read when it starts",
-                    checked->damage));
+    verification.problems.push_back(damaged_file(checked->damage));
     return verification;  // what else is wrong comes from that
   }
   verification.problems = std::move(checked->problems);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adapters/ports/store.hpp"
@@ -16,6 +17,9 @@ struct Verification {
   std::uint64_t days_compared = 0;    ///< Days of a meter whose sum was held against its counter.
   std::uint64_t months_compared = 0;  ///< Closed again and held against what is stored.
 };
+
+/// What is said of a file with this damage.
+[[nodiscard]] std::string damaged_file(std::string_view damage);
 
 /// Reads the whole store and changes nothing.
 ///

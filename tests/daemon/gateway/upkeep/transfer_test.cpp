@@ -174,6 +174,34 @@ TEST_F(Transfer, EndStampedImport) {
   EXPECT_EQ(opened.months(0)->at(0).figure.slots_by_validity[0], 2);  // January has both of its own
 }
 
+// A recovery that was refused by a full disk, and an import before the daemon starts again: a new
+// store would hide all that the damaged one holds.
+TEST_F(Transfer, AnImportGoesOnWithARecovery) {
+  std::filesystem::rename(folder_ / "site.db", folder_ / "site.db.damaged-20240401T000000Z");
+  write_text(folder_ / "site.db.recovery", "site.db.damaged-20240401T000000Z\nbad page\n");
+  const std::uint64_t before =
+      sqlite::SqliteStore::open(folder_ / "site.db.damaged-20240401T000000Z")
+          .value()
+          .check()
+          .value()
+          .intervals;
+  const Outcome imported = import(
+      "timestamp,meter,value,unit\n2024-02-01T00:00:00Z,main,4,kW\n"
+      "2024-02-01T00:15:00Z,main,5,kW\n");
+  EXPECT_EQ(imported.exit_code, 0) << imported.err;
+  EXPECT_THAT(imported.err, HasSubstr("it is kept as 'site.db.damaged-20240401T000000Z'"));
+  EXPECT_EQ(store().check().value().intervals, before + 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "site.db.recovery"));
+}
+
+TEST_F(Transfer, AFileWhoseHeaderIsDamagedIsToldSo) {
+  ASSERT_TRUE(store().database().execute("PRAGMA user_version = 7").has_value());
+  const Outcome verified = run({"verify", site()});
+  EXPECT_EQ(verified.exit_code, 1);
+  EXPECT_THAT(verified.err, HasSubstr("the file is damaged: its header says schema version 7"));
+  EXPECT_THAT(verified.err, HasSubstr("the daemon recovers what can be read when it starts"));
+}
+
 TEST_F(Transfer, NothingIsImportedWithoutReasonOrBesideADaemon) {
   write_text(csv(), "timestamp,meter,value,unit\n");
   EXPECT_EQ(run({"import", site(), csv()}).exit_code, 2);
