@@ -21,6 +21,17 @@ std::vector<const MeterConfig*> meters_on(const SiteConfig& site, const std::str
   return meters;
 }
 
+/// Why a meter without a state should have one; empty: it need not. Samples are stored together
+/// with the state that they led to, so where there are some, it was lost.
+Result<std::string> lost_state(Store& store, std::uint32_t meter, const std::string& field) {
+  std::string lost;
+  const auto read = store.for_each_sample(meter, field, [&](const metering::RegisterSample&) {
+    lost = "the state of its counter is not in the store any more";
+  });
+  if (!read) return tl::unexpected(read.error());
+  return lost;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<LiveBus>> LiveBus::open(const SiteConfig& site, const BusConfig& bus,
@@ -65,10 +76,15 @@ Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::Local
           metering::CounterSettings{.rated_kW = config.meter.rated_kW.value_or(0.0)}),
       .booking = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll}};
   // A map that once had a counter and now has none leaves the counter's state behind.
-  const auto field = live.map.energy.empty() ? "power" : "energy";
+  const std::string field = live.map.energy.empty() ? "power" : "energy";
   const auto found = std::ranges::find(*states, field, &RegisterState::field);
   const std::optional<RegisterState> state =
       found == states->end() ? std::nullopt : std::optional{*found};
+  if (!state && doubt.empty() && progress->last_interval) {
+    auto lost = lost_state(store, number, field);
+    if (!lost) return tl::unexpected(lost.error());
+    doubt = std::move(*lost);
+  }
   LiveMeter meter{.progress = std::move(*progress),
                   .config = live,
                   .text = config.text,

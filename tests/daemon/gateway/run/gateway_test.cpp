@@ -319,6 +319,29 @@ TEST_F(GatewayTest, AStateThatCannotBeReadBeginsThatCounterAnew) {
   EXPECT_NEAR(stored_kWh("cooling", {kStart, kStart + hours{3}}), 300.0, kTick);
 }
 
+TEST_F(GatewayTest, AStateThatIsGoneIsToldOf) {
+  begin();
+  loop_.run_for(hours{2});
+  ASSERT_TRUE(disk_.database().execute("DELETE FROM register WHERE meter = 0").has_value());
+  begin();
+  loop_.run_for(hours{2});
+  begin();  // it has one again
+  const auto events = disk_.events(10).value();
+  ASSERT_THAT(events, Contains(Field(&StoreEvent::kind, "counter_state_lost")).Times(1));
+  EXPECT_EQ(events.back().subject, "main");
+  EXPECT_THAT(events.back().text, ::testing::HasSubstr("is not in the store any more"));
+}
+
+// Readings from before the first poll, as an import brings them, have no state and never had one.
+TEST_F(GatewayTest, AMeterThatWasNeverPolledHasLostNothing) {
+  const std::uint32_t main = disk_.meter_number("main", seconds{900}).value();
+  ASSERT_TRUE(disk_.commit({.intervals = {{{main, kStart - days{1}, 1.0}}}}).has_value());
+  begin();
+  loop_.run_for(hours{1});
+  EXPECT_THAT(disk_.events(10).value(),
+              ::testing::Not(Contains(Field(&StoreEvent::kind, "counter_state_lost"))));
+}
+
 TEST_F(GatewayTest, AStoreThatCannotBeReadAtTheStartIsToldAtOnce) {
   store_.refuses = true;
   const auto opened = open(site_);
