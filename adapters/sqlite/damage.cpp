@@ -37,6 +37,8 @@ Result<std::string> damage_of(const std::filesystem::path& file, const OnProgres
     return tl::unexpected(version.error());
   }
   if (!says_that_it_has_a_log(file)) return "its header has the number of another file format";
+  // An interruption of what does not run yet is forgotten.
+  if (stop.stop_requested()) return failure(ErrorCode::cancelled, "the check was stopped");
   auto damage = database->quick_check();
   if (damage && damage->empty()) damage = wrong_sums(*database);
   if (stop.stop_requested()) return failure(ErrorCode::cancelled, "the check was stopped");
