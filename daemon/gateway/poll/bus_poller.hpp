@@ -86,11 +86,12 @@ class BusPoller {
   void answered(const BusOrder& order, const modbus::ReadResult& result,
                 std::chrono::milliseconds duration, const Moment& now);
 
-  /// Whatever waits for a later try, silent units, refused reads, a bus at rest, is tried now.
-  void try_all_again();
+  /// Forgets what it knows of its units: misses, time-outs, refusals, the rest of the bus. All are
+  /// polled at once, as at the start. An order under way is not told any more.
+  void begin_anew();
 
   [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }
-  /// A unit that answers but refuses a read is degraded.
+  /// A unit that answers but refuses a read, or is too busy for it, is degraded.
   [[nodiscard]] UnitState state(std::size_t unit) const;
   /// Polls that were not made because the bus was busy with others.
   [[nodiscard]] std::uint64_t skipped(std::size_t unit) const { return states_[unit].skipped; }
@@ -115,6 +116,7 @@ class BusPoller {
     std::uint64_t skipped = 0;
   };
 
+  [[nodiscard]] UnitPolling unknown(std::size_t unit) const;
   [[nodiscard]] WallTime due_after(std::size_t unit, WallTime t) const;
   void notice_clock(const Moment& now);
   void begin_due_polls(const Moment& now);

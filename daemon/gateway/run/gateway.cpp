@@ -153,9 +153,7 @@ void Gateway::start() {
 }
 
 void Gateway::start(LiveBus& bus) {
-  bus.start(
-      {ports_.loop, ports_.make_bus, ports_.seed + std::hash<std::string>{}(bus.config().name)},
-      [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
+  bus.start(ports_of(bus), [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
   for (LiveMeter& meter : bus.meters()) {
     if (meter.doubt.empty()) continue;
     const std::string& id = meter.progress.stored.meter.id;
@@ -163,6 +161,23 @@ void Gateway::start(LiveBus& bus) {
           fmt::format("meter '{}': {}; its counter starts anew, and what it counted since the last "
                       "interval is not known",
                       id, std::exchange(meter.doubt, {}))});
+  }
+}
+
+LiveBus::Ports Gateway::ports_of(const LiveBus& bus) const {
+  return {ports_.loop, ports_.make_bus, ports_.seed + std::hash<std::string>{}(bus.config().name)};
+}
+
+/// In a step of the loop each: to end a bus waits for the read under way.
+void Gateway::begin_buses_anew() {
+  for (const auto& bus : buses_) {
+    ports_.loop.after(milliseconds{0}, [weak = std::weak_ptr{self_}, name = bus->config().name] {
+      const auto self = weak.lock();
+      if (!self) return;
+      for (const auto& live : (*self)->buses_) {
+        if (live->config().name == name) live->begin_anew((*self)->ports_of(*live));
+      }
+    });
   }
 }
 
@@ -176,7 +191,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   if (!opened) return tl::unexpected(opened.error());
   if (auto pushed = open_pushed(site); !pushed) return pushed;
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
-  for (const auto& bus : buses_) bus->try_all_again();
+  begin_buses_anew();                   // those that stay
   // Reads that are held were planned by a description that may be another now.
   std::erase_if(held_, [&](const HeldRead& held) { return find_meter(held.meter) == nullptr; });
   for (auto& bus : *opened) {

@@ -64,12 +64,16 @@ class Gateway {
   /// Polls begin, and months that fell due while nobody ran are closed.
   void start();
 
-  /// Goes on by another site file. Buses of which it says what the old one said, with all their
-  /// meters, stay as they are: connected, with their counters. Whatever of them waits for a later
-  /// try is tried at once. The others are opened anew, from where the store has their counters.
+  /// Goes on by another site file. All buses begin anew. Those of which it says what the old one
+  /// said keep their meters with their counters; the others are opened from where the store has
+  /// them.
   /// @return or why not, as `open`; then everything is as it was.
   /// @pre the site's time zone is the same
   Result<void> reload(const SiteConfig& site);
+
+  /// Soon, one after the other: each connection is closed, and misses, learned time-outs and
+  /// refusals are forgotten. Counters go on.
+  void begin_buses_anew();
 
   /// Pushed readings, of a meter with source = "http". They are stored when it answers.
   /// @param readings    Their `meter` is not looked at.
@@ -110,6 +114,7 @@ class Gateway {
   [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
+  [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
   /// Opens the pushed meters of `site`; what is known of them stays.
   Result<void> open_pushed(const SiteConfig& site);
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
