@@ -207,8 +207,9 @@ void BusPoller::take_exception(const BusOrder& order, const modbus::ReadFailure&
     polling.not_before = now.monotonic + rules_.busy_wait;
     return;
   }
+  Refusal& refusal = polling.refusals[order.read];
+  refusal.is_busy = modbus::is_busy(failure.exception_code);
   if (modbus::is_refusal(failure)) {
-    Refusal& refusal = polling.refusals[order.read];
     refusal.wait = refusal.wait == milliseconds{0} ? rules_.refused_min
                                                    : std::min(2 * refusal.wait, rules_.refused_max);
     refusal.until = now.monotonic + refusal.wait;
@@ -282,8 +283,9 @@ void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result
 UnitState BusPoller::state(std::size_t unit) const {
   const UnitPolling& polling = states_[unit];
   const UnitState health = polling.health.state();
-  const bool refuses = std::ranges::any_of(
-      polling.refusals, [](const Refusal& one) { return one.wait > milliseconds{0}; });
+  const bool refuses = std::ranges::any_of(polling.refusals, [](const Refusal& one) {
+    return one.wait > milliseconds{0} || one.is_busy;
+  });
   return health == UnitState::up && refuses ? UnitState::degraded : health;
 }
 

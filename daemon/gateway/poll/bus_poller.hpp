@@ -77,7 +77,8 @@ class BusPoller {
   ///
   /// - An answer, even an exception, shows that the unit lives. Gateway exceptions 10 and 11 do
   /// not.
-  /// - Busy (5, 6): the same read again after 100 ms, three times.
+  /// - Busy (5, 6): the same read again after 100 ms, three times. A unit that is busy then still
+  /// has not served that poll, and is degraded.
   /// - Any other exception is a refusal of that read: it is left out of the polls for 10 s, then
   /// for twice as long, up to 5 minutes. A gateway that has just started says "illegal address" of
   /// registers that it has a moment later.
@@ -101,6 +102,7 @@ class BusPoller {
   struct Refusal {
     std::chrono::milliseconds wait{0};  ///< Zero: it is not refused.
     std::chrono::milliseconds until{0};
+    bool is_busy = false;  ///< The last poll found the unit busy to the end.
   };
   struct UnitPolling {
     UnitHealth health;
