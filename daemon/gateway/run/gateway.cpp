@@ -22,7 +22,8 @@ constexpr milliseconds kClockSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
 constexpr int kEventsTakenOver = 10'000;
-constexpr std::size_t kMonthsAtATime = 12;  // of one meter, in one step of the loop
+constexpr std::size_t kSamplesAtATime = 500;  // taken over between two looks at the store
+constexpr std::size_t kMonthsAtATime = 12;    // of one meter, in one step of the loop
 
 /// A day of all meters, and no less than usual, is kept while the store refuses.
 CommitRules rules_for(const SiteConfig& site) {
@@ -98,12 +99,18 @@ Result<void> Gateway::open_pushed(const SiteConfig& site) {
   return {};
 }
 
-Result<void> Gateway::take_over(Store& memory) {
+Result<void> Gateway::take_over(Store& memory, const std::function<void()>& on_progress) {
+  // In part it would not be found again: a counter does not go back to what lies behind it.
+  return ports_.store.as_one([&] { return take_over_all(memory, on_progress); });
+}
+
+Result<void> Gateway::take_over_all(Store& memory, const std::function<void()>& on_progress) {
   auto events = memory.events(kEventsTakenOver);
   if (!events) return tl::unexpected(events.error());
   std::ranges::reverse(*events);
   committer_.add({.events = std::move(*events)});
   for (MeterProgress* const progress : all_progress()) {
+    if (on_progress) on_progress();
     const auto number = memory.find_meter(progress->stored.meter.id);
     if (!number) return tl::unexpected(number.error());
     if (!*number) continue;
@@ -113,23 +120,24 @@ Result<void> Gateway::take_over(Store& memory) {
         [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
     if (!read) return read;
     LiveMeter* const meter = find_meter(progress->stored.number);
-    if (meter != nullptr && !samples.empty()) {
-      take_over_samples(*meter, samples);
-    } else if (auto taken = take_over_intervals(*progress, memory, **number); !taken) {
-      return taken;
-    }
+    const auto taken = meter != nullptr && !samples.empty()
+                           ? take_over_samples(*meter, samples)
+                           : take_over_intervals(*progress, memory, **number);
+    if (!taken) return taken;
   }
-  (void)committer_.flush();  // refused, it is kept and tried again
-  return {};
+  return committer_.flush();
 }
 
-void Gateway::take_over_samples(LiveMeter& meter,
-                                std::span<const metering::RegisterSample> samples) {
-  for (const metering::RegisterSample& sample : samples) {
-    StoreBatch batch = meter.track.take_kept(sample);
+Result<void> Gateway::take_over_samples(LiveMeter& meter,
+                                        std::span<const metering::RegisterSample> samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    StoreBatch batch = meter.track.take_kept(samples[i]);
     meter.progress.mark_late(batch, calendar_);
     committer_.add(std::move(batch));
+    if ((i + 1) % kSamplesAtATime != 0) continue;
+    if (auto flushed = committer_.flush(); !flushed) return flushed;
   }
+  return committer_.flush();
 }
 
 Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory,
@@ -143,7 +151,7 @@ Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory
   if (!read) return read;
   progress.mark_late(batch, calendar_);
   committer_.add(std::move(batch));
-  return {};
+  return committer_.flush();
 }
 
 void Gateway::start() {

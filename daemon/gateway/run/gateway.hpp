@@ -59,7 +59,10 @@ class Gateway {
   /// Takes in what a gateway has kept in memory while this one's store could not be opened:
   /// counters go on through its samples, and other meters' intervals are added. Call it before the
   /// start.
-  [[nodiscard]] Result<void> take_over(Store& memory);
+  /// @param on_progress  Told now and then that it goes on.
+  /// @return or the store's failure: then it has nothing of it, and this gateway is of no more use.
+  [[nodiscard]] Result<void> take_over(Store& memory,
+                                       const std::function<void()>& on_progress = {});
 
   /// Polls begin, and months that fell due while nobody ran are closed.
   void start();
@@ -120,7 +123,9 @@ class Gateway {
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
-  void take_over_samples(LiveMeter& meter, std::span<const metering::RegisterSample> samples);
+  [[nodiscard]] Result<void> take_over_all(Store& memory, const std::function<void()>& on_progress);
+  [[nodiscard]] Result<void> take_over_samples(LiveMeter& meter,
+                                               std::span<const metering::RegisterSample> samples);
   [[nodiscard]] Result<void> take_over_intervals(MeterProgress& progress, Store& memory,
                                                  std::uint32_t number);
   /// To be committed soon.
