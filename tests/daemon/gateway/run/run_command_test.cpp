@@ -211,7 +211,7 @@ TEST_F(WithoutAStore, WhileItIsOpenedItEndsWhenItIsToldTo) {
   ASSERT_TRUE(eventually([&] { return said_so("event=no_store"); })) << what_was_said();
   ASSERT_NO_FATAL_FAILURE(begin_opening());
   daemon.signal(SIGTERM);
-  EXPECT_TRUE(eventually([&] { return said_so("event=ended"); })) << what_was_said();
+  ASSERT_TRUE(eventually([&] { return said_so("event=ended"); })) << what_was_said();
   EXPECT_EQ(daemon.wait(), 0);
 }
 
