@@ -21,11 +21,9 @@ sigset_t set_of(std::initializer_list<int> signals) {
 const std::initializer_list<int> kEnds{SIGTERM, SIGINT};
 const std::initializer_list<int> kOthers{SIGHUP, SIGUSR1};
 
-/// Blocks them. One that is ignored, as by nohup, would be thrown away instead.
 void hold(std::initializer_list<int> signals) {
   const sigset_t held = set_of(signals);
   pthread_sigmask(SIG_BLOCK, &held, nullptr);
-  for (const int signal : signals) ::signal(signal, SIG_DFL);
 }
 
 }  // namespace
