@@ -16,8 +16,8 @@ using testing::kRigStart;
 
 constexpr double kTick_kWh = 0.1 + 1e-6;  // two registers of 0.1 kWh bound an energy
 
-/// Two meters with an interval a minute: six days of them are more than a committer keeps while its
-/// store refuses.
+/// Two meters with an interval a minute: eight days of one are more than a committer keeps while
+/// its store refuses.
 class TakeOver : public ::testing::Test {
  protected:
   TakeOver() {
@@ -90,7 +90,7 @@ class TakeOver : public ::testing::Test {
 
 TEST_F(TakeOver, DaysInMemoryAreHandedOverWhole) {
   run_on(disk_, hours{2});
-  run_on(memory_, days{6});
+  run_on(memory_, days{8});
   const auto gateway = open(disk_);
   ASSERT_TRUE(gateway->take_over(memory_).has_value());
   EXPECT_EQ(gateway->status().store.lost_intervals, 0u);
