@@ -163,10 +163,14 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
                        const OnProgress& on_progress) {
   remove_store(places.made);  // what an interrupted recovery left
   recovery.backup = first_sound(backups, on_progress);
-  {
+  const auto filled = [&]() -> Result<void> {
     auto made = SqliteStore::open(places.made);
     if (!made) return tl::unexpected(made.error());
-    if (auto filled = fill(*made, recovery, now, on_progress); !filled) return filled;
+    return fill(*made, recovery, now, on_progress);
+  }();
+  if (!filled) {
+    remove_store(places.made);  // it takes room on a disk that may have none
+    return filled;
   }
   return system::rename_durably(places.made, places.store);
 }

@@ -21,7 +21,7 @@ Result<FileLock> FileLock::take(const std::filesystem::path& file) {
   }
   FileLock lock{descriptor};
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return lock;
-  return failure(ErrorCode::io_failed,
+  return failure(ErrorCode::unsupported,
                  fmt::format("'{}' is held by another recald; one at a time may run on a store",
                              file.string()));
 }

@@ -11,7 +11,7 @@ namespace recald::system {
 /// ends.
 class FileLock {
  public:
-  /// @return io_failed when another process holds it, or when it cannot be made.
+  /// @return unsupported when another process holds it, io_failed when it cannot be made.
   [[nodiscard]] static Result<FileLock> take(const std::filesystem::path& file);
 
   ~FileLock();

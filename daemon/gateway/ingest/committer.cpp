@@ -52,9 +52,17 @@ void Committer::add(StoreBatch batch) {
   append(waiting_.events, std::move(batch.events));
   append(waiting_.reopened, std::move(batch.reopened));
   for (const StoreBatch::Register& entry : batch.registers) put_state(entry);
+  if (has_too_much() && !health_.is_degraded) (void)flush();
   give_up_what_is_too_much();
+  if (waiting_.empty()) return;
   if (health_.is_degraded) return;  // the retry is scheduled
   schedule(is_urgent ? milliseconds{0} : rules_.gather);
+}
+
+bool Committer::has_too_much() const {
+  return waiting_.intervals.size() > rules_.intervals_max ||
+         waiting_.samples.size() > rules_.samples_max ||
+         waiting_.events.size() > rules_.intervals_max;
 }
 
 void Committer::give_up_what_is_too_much() {

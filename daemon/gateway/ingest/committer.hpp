@@ -18,7 +18,8 @@ struct CommitRules {
   std::chrono::milliseconds gather{1'000};  ///< Intervals do not wait: they are committed at once.
   std::chrono::milliseconds retry{10'000};  ///< After a failure.
   /// What is kept while the store refuses: 24 hours of a hundred meters. Beyond it raw samples
-  /// are given up first, then the oldest intervals.
+  /// are given up first, then the oldest intervals. While it takes them nothing is given up: so
+  /// many do not wait.
   std::size_t intervals_max = 10'000;
   std::size_t samples_max = 50'000;
 };
@@ -53,6 +54,7 @@ class Committer {
  private:
   void schedule(std::chrono::milliseconds wait);
   void put_state(const StoreBatch::Register& entry);
+  [[nodiscard]] bool has_too_much() const;
   void give_up_what_is_too_much();
 
   Loop& loop_;

@@ -12,14 +12,44 @@ namespace {
 using metering::Instant;
 
 constexpr std::chrono::hours kToldEvery{1};
+/// A device is busy now and then, and a gateway misses one; as long as refused registers wait at
+/// most.
+constexpr std::chrono::minutes kPatience{5};
+
+/// What an exception is called where it goes on.
+struct Kind {
+  std::string_view event;
+  std::string_view says;  ///< Of the meter, before the registers.
+  std::string_view advice;
+  std::chrono::seconds patience;
+};
+
+Kind kind_of(std::uint8_t exception) {
+  if (modbus::is_busy(exception)) {
+    return {"device_busy", "is busy whenever it is asked for",
+            "they are asked for at every poll. If it goes on, poll more rarely, or see who else "
+            "asks the device",
+            kPatience};
+  }
+  if (modbus::is_from_gateway(exception)) {
+    return {"device_unreachable", "is not reached by its gateway, which answers for",
+            "it is tried again, at least every probe_max. If it goes on, check its power, wiring "
+            "and unit",
+            kPatience};
+  }
+  return {"registers_refused", "refuses",
+          "they are asked for again, at least every five minutes. If it goes on, check unit and "
+          "register map",
+          std::chrono::seconds{0}};
+}
 
 }  // namespace
 
-std::string to_string(const RefusedRegisters& refused) {
-  return fmt::format("registers {} to {} with exception {} since {}", refused.address,
-                     refused.address + refused.count - 1,
-                     modbus::describe_exception(refused.exception),
-                     metering::to_string(refused.since));
+std::string sentence_of(const std::string& meter, const RefusedRegisters& refused) {
+  return fmt::format(
+      "meter '{}' {} registers {} to {} with exception {} since {}", meter,
+      kind_of(refused.exception).says, refused.address, refused.address + refused.count - 1,
+      modbus::describe_exception(refused.exception), metering::to_string(refused.since));
 }
 
 std::optional<StoreEvent> RefusalWatch::take(const modbus::PlannedRead& read,
@@ -27,30 +57,35 @@ std::optional<StoreEvent> RefusalWatch::take(const modbus::PlannedRead& read,
   Read& known = reads_[read.address];
   if (result) return answer(known, at);
   const modbus::ReadFailure& failure = result.error();
-  if (!modbus::is_refusal(failure)) return {};
+  if (failure.fault != modbus::ReadFault::exception) return {};
   return refuse(known, {read.address, read.count, failure.exception_code, at}, at);
 }
 
-std::optional<StoreEvent> RefusalWatch::refuse(Read& read, const RefusedRegisters& refused,
+std::optional<StoreEvent> RefusalWatch::refuse(Read& read, RefusedRegisters refused,
                                                Instant at) const {
-  if (read.refused) return {};
+  if (read.refused) refused.since = read.refused->since;
   read.refused = refused;
+  const Kind kind = kind_of(refused.exception);
+  if (read.is_lasting || at - refused.since < kind.patience) return {};
+  read.is_lasting = true;
   read.is_told = read.told == Instant::min() || at - read.told >= kToldEvery;
   if (!read.is_told) return {};
   read.told = at;
-  return StoreEvent{at, Severity::warning, "registers_refused", meter_,
-                    fmt::format("meter '{}' refuses {}; they are asked for again, at least every "
-                                "five minutes. If it goes on, check unit and register map",
-                                meter_, to_string(refused))};
+  return StoreEvent{.time = at,
+                    .severity = Severity::warning,
+                    .kind = std::string{kind.event},
+                    .subject = meter_,
+                    .text = fmt::format("{}; {}", sentence_of(meter_, refused), kind.advice),
+                    .is_counted = kind.patience > std::chrono::seconds{0}};
 }
 
 std::optional<StoreEvent> RefusalWatch::answer(Read& read, Instant at) const {
   const auto was_refused = std::exchange(read.refused, std::nullopt);
+  read.is_lasting = false;
   if (!was_refused || !std::exchange(read.is_told, false)) return {};
   return StoreEvent{
       at, Severity::info, "registers_answer", meter_,
-      fmt::format("meter '{}' answers again for registers {} to {}, which it refused "
-                  "since {}",
+      fmt::format("meter '{}' answers again for registers {} to {}, which it had not done since {}",
                   meter_, was_refused->address, was_refused->address + was_refused->count - 1,
                   metering::to_string(was_refused->since))};
 }
@@ -58,7 +93,7 @@ std::optional<StoreEvent> RefusalWatch::answer(Read& read, Instant at) const {
 std::vector<RefusedRegisters> RefusalWatch::refused() const {
   std::vector<RefusedRegisters> all;
   for (const auto& [address, read] : reads_) {
-    if (read.refused) all.push_back(*read.refused);
+    if (read.is_lasting) all.push_back(*read.refused);
   }
   return all;
 }

@@ -12,7 +12,7 @@
 
 namespace recald::daemon {
 
-/// Registers that are asked for together and that their device refuses at present.
+/// Registers that are asked for together and that are answered with an exception at present.
 struct RefusedRegisters {
   std::uint16_t address;  ///< On the wire: base 0.
   std::uint16_t count;
@@ -22,8 +22,9 @@ struct RefusedRegisters {
   bool operator==(const RefusedRegisters&) const = default;
 };
 
-/// "registers 0 to 3 with exception 2 (illegal data address) since 2024-03-01T12:00:00Z".
-[[nodiscard]] std::string to_string(const RefusedRegisters& refused);
+/// "meter 'main' refuses registers 0 to 3 with exception 2 (illegal data address) since
+/// 2024-03-01T12:00:00Z"; one that is busy, or that its gateway answers for, does not refuse.
+[[nodiscard]] std::string sentence_of(const std::string& meter, const RefusedRegisters& refused);
 
 /// Of one meter. That registers are refused, and that they answer again, is an event each; a device
 /// that changes its mind at every poll gives no more than a pair of them an hour.
@@ -31,22 +32,25 @@ class RefusalWatch {
  public:
   explicit RefusalWatch(std::string meter) : meter_(std::move(meter)) {}
 
-  /// The outcome of one read. What a gateway says for a silent device, and "busy", refuse nothing.
+  /// The outcome of one read. "Busy", and what a gateway says for a silent device, may pass: they
+  /// are told when nothing else has come for five minutes, once, and then counted.
   /// @return what people are to be told.
   [[nodiscard]] std::optional<StoreEvent> take(const modbus::PlannedRead& read,
                                                const modbus::ReadResult& result,
                                                metering::Instant at);
 
+  /// What deserves a look.
   [[nodiscard]] std::vector<RefusedRegisters> refused() const;
 
  private:
   struct Read {
-    std::optional<RefusedRegisters> refused;
-    bool is_told = false;  ///< Of this refusal.
+    std::optional<RefusedRegisters> refused;  ///< Since its last answer.
+    bool is_lasting = false;                  ///< It deserves a look.
+    bool is_told = false;                     ///< Of this refusal.
     metering::Instant told = metering::Instant::min();
   };
 
-  [[nodiscard]] std::optional<StoreEvent> refuse(Read& read, const RefusedRegisters& refused,
+  [[nodiscard]] std::optional<StoreEvent> refuse(Read& read, RefusedRegisters refused,
                                                  metering::Instant at) const;
   [[nodiscard]] std::optional<StoreEvent> answer(Read& read, metering::Instant at) const;
 

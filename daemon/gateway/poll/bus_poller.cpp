@@ -27,12 +27,16 @@ WallTime next_multiple(WallTime t, milliseconds step) {
 
 BusPoller::BusPoller(std::vector<PolledUnit> units, const BusRules& rules, Rng rng)
     : units_(std::move(units)), rules_(rules), rng_(rng) {
-  for (const PolledUnit& unit : units_) {
-    assert(!unit.reads.empty() && unit.period > milliseconds{0});
-    states_.push_back({.health = UnitHealth{rules_.health},
-                       .timeout = LearnedTimeout{unit.timeout},
-                       .refusals = std::vector<Refusal>(unit.reads.size())});
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    assert(!units_[i].reads.empty() && units_[i].period > milliseconds{0});
+    states_.push_back(unknown(i));
   }
+}
+
+BusPoller::UnitPolling BusPoller::unknown(std::size_t unit) const {
+  return {.health = UnitHealth{rules_.health},
+          .timeout = LearnedTimeout{units_[unit].timeout},
+          .refusals = std::vector<Refusal>(units_[unit].reads.size())};
 }
 
 WallTime BusPoller::due_after(std::size_t unit, WallTime t) const {
@@ -203,8 +207,9 @@ void BusPoller::take_exception(const BusOrder& order, const modbus::ReadFailure&
     polling.not_before = now.monotonic + rules_.busy_wait;
     return;
   }
+  Refusal& refusal = polling.refusals[order.read];
+  refusal.is_busy = modbus::is_busy(failure.exception_code);
   if (modbus::is_refusal(failure)) {
-    Refusal& refusal = polling.refusals[order.read];
     refusal.wait = refusal.wait == milliseconds{0} ? rules_.refused_min
                                                    : std::min(2 * refusal.wait, rules_.refused_max);
     refusal.until = now.monotonic + refusal.wait;
@@ -278,18 +283,26 @@ void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result
 UnitState BusPoller::state(std::size_t unit) const {
   const UnitPolling& polling = states_[unit];
   const UnitState health = polling.health.state();
-  const bool refuses = std::ranges::any_of(
-      polling.refusals, [](const Refusal& one) { return one.wait > milliseconds{0}; });
+  const bool refuses = std::ranges::any_of(polling.refusals, [](const Refusal& one) {
+    return one.wait > milliseconds{0} || one.is_busy;
+  });
   return health == UnitState::up && refuses ? UnitState::degraded : health;
 }
 
-void BusPoller::try_all_again() {
+void BusPoller::begin_anew() {
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    const std::uint64_t skipped = states_[i].skipped;
+    states_[i] = unknown(i);
+    states_[i].skipped = skipped;
+  }
+  under_way_ = false;
+  wall_minus_monotonic_.reset();
+  probing_ = milliseconds{0};
+  silent_asked_ = milliseconds{0};
+  gap_until_ = milliseconds{0};
   rest_until_ = milliseconds{0};
   rest_length_ = milliseconds{0};
-  for (UnitPolling& polling : states_) {
-    polling.health.probe_now();
-    for (Refusal& refusal : polling.refusals) refusal.until = milliseconds{0};
-  }
+  lost_connections_ = 0;
 }
 
 }  // namespace recald::daemon

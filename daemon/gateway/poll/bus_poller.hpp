@@ -77,7 +77,8 @@ class BusPoller {
   ///
   /// - An answer, even an exception, shows that the unit lives. Gateway exceptions 10 and 11 do
   /// not.
-  /// - Busy (5, 6): the same read again after 100 ms, three times.
+  /// - Busy (5, 6): the same read again after 100 ms, three times. A unit that is busy then still
+  /// has not served that poll, and is degraded.
   /// - Any other exception is a refusal of that read: it is left out of the polls for 10 s, then
   /// for twice as long, up to 5 minutes. A gateway that has just started says "illegal address" of
   /// registers that it has a moment later.
@@ -86,11 +87,12 @@ class BusPoller {
   void answered(const BusOrder& order, const modbus::ReadResult& result,
                 std::chrono::milliseconds duration, const Moment& now);
 
-  /// Whatever waits for a later try, silent units, refused reads, a bus at rest, is tried now.
-  void try_all_again();
+  /// Forgets what it knows of its units: misses, time-outs, refusals, the rest of the bus. All are
+  /// polled at once, as at the start. An order under way is not told any more.
+  void begin_anew();
 
   [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }
-  /// A unit that answers but refuses a read is degraded.
+  /// A unit that answers but refuses a read, or is too busy for it, is degraded.
   [[nodiscard]] UnitState state(std::size_t unit) const;
   /// Polls that were not made because the bus was busy with others.
   [[nodiscard]] std::uint64_t skipped(std::size_t unit) const { return states_[unit].skipped; }
@@ -100,6 +102,7 @@ class BusPoller {
   struct Refusal {
     std::chrono::milliseconds wait{0};  ///< Zero: it is not refused.
     std::chrono::milliseconds until{0};
+    bool is_busy = false;  ///< The last poll found the unit busy to the end.
   };
   struct UnitPolling {
     UnitHealth health;
@@ -115,6 +118,7 @@ class BusPoller {
     std::uint64_t skipped = 0;
   };
 
+  [[nodiscard]] UnitPolling unknown(std::size_t unit) const;
   [[nodiscard]] WallTime due_after(std::size_t unit, WallTime t) const;
   void notice_clock(const Moment& now);
   void begin_due_polls(const Moment& now);

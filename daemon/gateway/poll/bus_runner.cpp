@@ -17,6 +17,14 @@ BusRunner::BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnR
 
 void BusRunner::start() { step(); }
 
+void BusRunner::begin_anew(const std::function<std::unique_ptr<Bus>()>& make_bus) {
+  self_ = std::make_shared<BusRunner*>(this);  // nobody who was asked before finds this one
+  bus_.reset();
+  bus_ = make_bus();
+  poller_.begin_anew();
+  step();
+}
+
 void BusRunner::count(const PolledRead& read) {
   ++counters_.requests[read.order.unit][static_cast<std::size_t>(result_of(read.result))];
   counters_.duration.observe(read.duration);

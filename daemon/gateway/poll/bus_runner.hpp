@@ -29,8 +29,10 @@ class BusRunner {
   BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnRead on_read);
 
   void start();
-  /// BusPoller::try_all_again; the bus hears of it within a second.
-  void try_all_again() { poller_.try_all_again(); }
+  /// As at the start, on another connection; what it has counted stays. What is under way is not
+  /// told.
+  /// @param make_bus  Called once the old bus has ended: a serial line has one owner.
+  void begin_anew(const std::function<std::unique_ptr<Bus>()>& make_bus);
   [[nodiscard]] const BusPoller& poller() const { return poller_; }
   [[nodiscard]] const BusCounters& counters() const { return counters_; }
 

@@ -16,11 +16,6 @@ void UnitHealth::answered() {
   wait_ = milliseconds{0};
 }
 
-void UnitHealth::probe_now() {
-  wait_ = milliseconds{0};
-  next_probe_ = milliseconds{0};
-}
-
 void UnitHealth::missed(milliseconds now, Rng& rng) {
   misses_ = std::min(misses_ + 1, rules_.down_after);
   if (state() != UnitState::down) return;

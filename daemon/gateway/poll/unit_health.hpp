@@ -32,8 +32,6 @@ class UnitHealth {
   [[nodiscard]] std::chrono::milliseconds next_probe() const { return next_probe_; }
 
   void answered();
-  /// The next probe is due at once, and the wait for those after it is short again.
-  void probe_now();
   void missed(std::chrono::milliseconds now, Rng& rng);
 
  private:

@@ -22,7 +22,8 @@ constexpr milliseconds kClockSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
 constexpr int kEventsTakenOver = 10'000;
-constexpr std::size_t kMonthsAtATime = 12;  // of one meter, in one step of the loop
+constexpr std::size_t kSamplesAtATime = 500;  // taken over between two looks at the store
+constexpr std::size_t kMonthsAtATime = 12;    // of one meter, in one step of the loop
 
 /// A day of all meters, and no less than usual, is kept while the store refuses.
 CommitRules rules_for(const SiteConfig& site) {
@@ -98,12 +99,18 @@ Result<void> Gateway::open_pushed(const SiteConfig& site) {
   return {};
 }
 
-Result<void> Gateway::take_over(Store& memory) {
+Result<void> Gateway::take_over(Store& memory, const std::function<void()>& on_progress) {
+  // In part it would not be found again: a counter does not go back to what lies behind it.
+  return ports_.store.as_one([&] { return take_over_all(memory, on_progress); });
+}
+
+Result<void> Gateway::take_over_all(Store& memory, const std::function<void()>& on_progress) {
   auto events = memory.events(kEventsTakenOver);
   if (!events) return tl::unexpected(events.error());
   std::ranges::reverse(*events);
   committer_.add({.events = std::move(*events)});
   for (MeterProgress* const progress : all_progress()) {
+    if (on_progress) on_progress();
     const auto number = memory.find_meter(progress->stored.meter.id);
     if (!number) return tl::unexpected(number.error());
     if (!*number) continue;
@@ -113,23 +120,24 @@ Result<void> Gateway::take_over(Store& memory) {
         [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
     if (!read) return read;
     LiveMeter* const meter = find_meter(progress->stored.number);
-    if (meter != nullptr && !samples.empty()) {
-      take_over_samples(*meter, samples);
-    } else if (auto taken = take_over_intervals(*progress, memory, **number); !taken) {
-      return taken;
-    }
+    const auto taken = meter != nullptr && !samples.empty()
+                           ? take_over_samples(*meter, samples)
+                           : take_over_intervals(*progress, memory, **number);
+    if (!taken) return taken;
   }
-  (void)committer_.flush();  // refused, it is kept and tried again
-  return {};
+  return committer_.flush();
 }
 
-void Gateway::take_over_samples(LiveMeter& meter,
-                                std::span<const metering::RegisterSample> samples) {
-  for (const metering::RegisterSample& sample : samples) {
-    StoreBatch batch = meter.track.take_kept(sample);
+Result<void> Gateway::take_over_samples(LiveMeter& meter,
+                                        std::span<const metering::RegisterSample> samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    StoreBatch batch = meter.track.take_kept(samples[i]);
     meter.progress.mark_late(batch, calendar_);
     committer_.add(std::move(batch));
+    if ((i + 1) % kSamplesAtATime != 0) continue;
+    if (auto flushed = committer_.flush(); !flushed) return flushed;
   }
+  return committer_.flush();
 }
 
 Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory,
@@ -143,7 +151,7 @@ Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory
   if (!read) return read;
   progress.mark_late(batch, calendar_);
   committer_.add(std::move(batch));
-  return {};
+  return committer_.flush();
 }
 
 void Gateway::start() {
@@ -153,9 +161,7 @@ void Gateway::start() {
 }
 
 void Gateway::start(LiveBus& bus) {
-  bus.start(
-      {ports_.loop, ports_.make_bus, ports_.seed + std::hash<std::string>{}(bus.config().name)},
-      [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
+  bus.start(ports_of(bus), [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
   for (LiveMeter& meter : bus.meters()) {
     if (meter.doubt.empty()) continue;
     const std::string& id = meter.progress.stored.meter.id;
@@ -163,6 +169,23 @@ void Gateway::start(LiveBus& bus) {
           fmt::format("meter '{}': {}; its counter starts anew, and what it counted since the last "
                       "interval is not known",
                       id, std::exchange(meter.doubt, {}))});
+  }
+}
+
+LiveBus::Ports Gateway::ports_of(const LiveBus& bus) const {
+  return {ports_.loop, ports_.make_bus, ports_.seed + std::hash<std::string>{}(bus.config().name)};
+}
+
+/// In a step of the loop each: to end a bus waits for the read under way.
+void Gateway::begin_buses_anew() {
+  for (const auto& bus : buses_) {
+    ports_.loop.after(milliseconds{0}, [weak = std::weak_ptr{self_}, name = bus->config().name] {
+      const auto self = weak.lock();
+      if (!self) return;
+      for (const auto& live : (*self)->buses_) {
+        if (live->config().name == name) live->begin_anew((*self)->ports_of(*live));
+      }
+    });
   }
 }
 
@@ -176,7 +199,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   if (!opened) return tl::unexpected(opened.error());
   if (auto pushed = open_pushed(site); !pushed) return pushed;
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
-  for (const auto& bus : buses_) bus->try_all_again();
+  begin_buses_anew();                   // those that stay
   // Reads that are held were planned by a description that may be another now.
   std::erase_if(held_, [&](const HeldRead& held) { return find_meter(held.meter) == nullptr; });
   for (auto& bus : *opened) {

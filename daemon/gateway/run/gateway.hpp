@@ -59,17 +59,24 @@ class Gateway {
   /// Takes in what a gateway has kept in memory while this one's store could not be opened:
   /// counters go on through its samples, and other meters' intervals are added. Call it before the
   /// start.
-  [[nodiscard]] Result<void> take_over(Store& memory);
+  /// @param on_progress  Told now and then that it goes on.
+  /// @return or the store's failure: then it has nothing of it, and this gateway is of no more use.
+  [[nodiscard]] Result<void> take_over(Store& memory,
+                                       const std::function<void()>& on_progress = {});
 
   /// Polls begin, and months that fell due while nobody ran are closed.
   void start();
 
-  /// Goes on by another site file. Buses of which it says what the old one said, with all their
-  /// meters, stay as they are: connected, with their counters. Whatever of them waits for a later
-  /// try is tried at once. The others are opened anew, from where the store has their counters.
+  /// Goes on by another site file. All buses begin anew. Those of which it says what the old one
+  /// said keep their meters with their counters; the others are opened from where the store has
+  /// them.
   /// @return or why not, as `open`; then everything is as it was.
   /// @pre the site's time zone is the same
   Result<void> reload(const SiteConfig& site);
+
+  /// Soon, one after the other: each connection is closed, and misses, learned time-outs and
+  /// refusals are forgotten. Counters go on.
+  void begin_buses_anew();
 
   /// Pushed readings, of a meter with source = "http". They are stored when it answers.
   /// @param readings    Their `meter` is not looked at.
@@ -110,12 +117,15 @@ class Gateway {
   [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
+  [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
   /// Opens the pushed meters of `site`; what is known of them stays.
   Result<void> open_pushed(const SiteConfig& site);
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
-  void take_over_samples(LiveMeter& meter, std::span<const metering::RegisterSample> samples);
+  [[nodiscard]] Result<void> take_over_all(Store& memory, const std::function<void()>& on_progress);
+  [[nodiscard]] Result<void> take_over_samples(LiveMeter& meter,
+                                               std::span<const metering::RegisterSample> samples);
   [[nodiscard]] Result<void> take_over_intervals(MeterProgress& progress, Store& memory,
                                                  std::uint32_t number);
   /// To be committed soon.

@@ -136,8 +136,8 @@ void LiveBus::start(const Ports& ports, OnRead on_read) {
   runner_->start();
 }
 
-void LiveBus::try_all_again() {
-  if (runner_) runner_->try_all_again();
+void LiveBus::begin_anew(const Ports& ports) {
+  if (runner_) runner_->begin_anew([&] { return make_bus(ports); });
 }
 
 bool LiveBus::is_described_by(const SiteConfig& site) const {

@@ -44,8 +44,8 @@ class LiveBus {
   /// The device behind it is opened and polls begin; nothing happens for a bus without meters.
   void start(const Ports& ports, OnRead on_read);
 
-  /// Silent devices, refused registers and a bus at rest are tried at once.
-  void try_all_again();
+  /// The device is opened anew and all that was learned of it forgotten, but its counters go on.
+  void begin_anew(const Ports& ports);
 
   /// Whether the site file says of this bus and its meters what it said when it was opened.
   [[nodiscard]] bool is_described_by(const SiteConfig& site) const;

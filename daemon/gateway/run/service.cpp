@@ -11,9 +11,10 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <csignal>
+#include <cstdlib>
 #include <random>
 
 #include "adapters/asio/asio_loop.hpp"
@@ -22,42 +23,21 @@
 #include "adapters/http/server.hpp"
 #include "adapters/modbus/bus_thread.hpp"
 #include "adapters/system/clock_setting.hpp"
-#include "adapters/system/file_lock.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/system/worker_thread.hpp"
 #include "daemon/gateway/run/gateway.hpp"
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/run/recalibration.hpp"
+#include "daemon/gateway/run/run_guarded.hpp"
+#include "daemon/gateway/run/running_store.hpp"
+#include "daemon/gateway/run/signals.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
 #include "daemon/gateway/run/watchdog.hpp"
 #include "daemon/gateway/serve/site_server.hpp"
-#include "daemon/gateway/upkeep/open_store.hpp"
 #include "daemon/gateway/upkeep/upkeep.hpp"
 
 namespace recald::daemon {
 namespace {
-
-/// Signals that would end a process that does not listen to them yet wait until it does.
-class HeldSignals {
- public:
-  HeldSignals() {
-    sigset_t held;
-    sigemptyset(&held);
-    sigaddset(&held, SIGHUP);
-    sigaddset(&held, SIGUSR1);
-    pthread_sigmask(SIG_BLOCK, &held, &before_);
-  }
-  ~HeldSignals() { release(); }
-  HeldSignals(const HeldSignals&) = delete;
-  HeldSignals& operator=(const HeldSignals&) = delete;
-
-  void release() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_;
-};
-
-constexpr std::chrono::seconds kLookForStore{10};
 
 /// What a process cannot change under way. @return or a sentence that names it.
 Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
@@ -80,31 +60,6 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   return {};
 }
 
-/// A store to run on.
-struct RunningStore {
-  std::unique_ptr<Store> store;
-  std::string missing;  ///< Why it only lives in memory; empty: it is the site's.
-};
-
-/// The site's store; where the disk does not let us have it, one in memory: meters are polled at
-/// any rate, and what they say can be taken over later.
-Result<RunningStore> open_running_store(const StoreConfig& config, metering::Instant now) {
-  auto opened = open_store(config, now, extend_start);
-  if (opened) {
-    if (!opened->recovery.empty()) {
-      spdlog::error("event=store_recovered what=\"{}\"", opened->recovery);
-    }
-    return RunningStore{std::move(opened->store), ""};
-  }
-  std::error_code ignored;
-  const bool is_of_the_disk = opened.error().code == ErrorCode::io_failed &&
-                              !std::filesystem::is_directory(config.file, ignored);
-  if (!is_of_the_disk) return tl::unexpected(opened.error());
-  auto memory = stores::open_in_memory();
-  if (!memory) return tl::unexpected(memory.error());
-  return RunningStore{std::move(*memory), opened.error().message};
-}
-
 /// Of a store in memory: nothing to copy, and no more of it than memory has.
 StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
   if (running.missing.empty()) return config;
@@ -117,10 +72,14 @@ StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
 /// ends before it.
 class Service {
  public:
-  Service(OpenSite site, const ServiceOptions& options, RunningStore store)
+  /// @param opener, signals  Of the process; they outlive this.
+  Service(OpenSite site, const ServiceOptions& options, RunningStore store, StoreOpener& opener,
+          Signals& signals)
       : site_(std::move(site)),
         running_(std::move(store)),
         store_(running_.store.get()),
+        opener_(opener),
+        signals_(signals),
         loop_(context_, options.trial),
         worker_(loop_),
         checker_(loop_),
@@ -133,7 +92,6 @@ class Service {
 
   /// @param memory  What a service before this one has kept there; may be null.
   Result<void> open(Store* memory) {
-    signals_.add(SIGUSR1);
     auto gateway =
         Gateway::open(site_.config, site_.calendar,
                       {.loop = loop_,
@@ -153,9 +111,20 @@ class Service {
     if (!gateway) return tl::unexpected(gateway.error());
     gateway_ = std::move(*gateway);
     if (memory != nullptr) {
-      if (auto taken = gateway_->take_over(*memory); !taken) return taken;
+      if (auto taken = gateway_->take_over(*memory, feed_watchdog); !taken) return taken;
     }
-    return listen();
+    return {};
+  }
+
+  /// Serves HTTP, where the site wants it.
+  Result<void> listen() {
+    const auto& http = site_.config.http;
+    if (!http) return {};
+    auto server = serve_site(context_, *http, served());
+    if (!server) return tl::unexpected(server.error());
+    server_ = std::move(*server);
+    spdlog::info("event=listening address={} port={}", http->address, server_->port());
+    return {};
   }
 
   Result<void> run() {
@@ -169,7 +138,7 @@ class Service {
     keep_up();
     if (!running_.missing.empty()) stand_in();
     loop_.post([this] { watchdog_.ready(); });
-    run_loop();
+    run_guarded(context_, loop_, [this](StoreEvent event) { gateway_->note(std::move(event)); });
     if (!found_) watchdog_.ending();
     server_.reset();
     jobs_.interrupt();
@@ -183,30 +152,51 @@ class Service {
   /// With what it has kept in memory.
   [[nodiscard]] std::unique_ptr<Store> take_store() { return std::move(running_.store); }
   [[nodiscard]] const OpenSite& site() const { return site_; }
+  /// The site's store is being opened beside the loop; to end this waits for it.
+  [[nodiscard]] bool is_opening() const { return is_opening_; }
 
  private:
   void stand_in() {
-    gateway_->note(
-        {loop_.now().instant(), Severity::error, "no_store", "",
-         "the store cannot be opened, and readings are kept in memory until it can be: " +
-             running_.missing});
+    gateway_->note({.time = loop_.now().instant(),
+                    .severity = Severity::error,
+                    .kind = "no_store",
+                    .subject = "",
+                    .text = "the store cannot be opened, and readings are kept in memory until it "
+                            "can be: " +
+                            running_.missing,
+                    .is_counted = true});
     look_for_store();
   }
 
   void look_for_store() {
-    loop_.after(kLookForStore, [this] {
-      auto opened = open_running_store(site_.config.store, loop_.now().instant());
-      if (!opened || !opened->missing.empty()) return look_for_store();
-      spdlog::info("event=store_opened what=\"what was kept in memory is taken over\"");
-      found_ = std::move(*opened);
-      context_.stop();
-    });
+    loop_.after(opener_.wait(), [this] { try_to_open(); });
   }
 
-  Result<void> listen() {
-    const auto& http = site_.config.http;
-    if (!http) return {};
-    Served served{.site = site_.config,
+  /// Beside the loop, which polls meanwhile: a large store takes minutes, a damaged one longer. The
+  /// worker has no jobs, since there is no store for them.
+  void try_to_open() {
+    is_opening_ = true;
+    auto opened = std::make_shared<Result<stores::CheckedStore>>();
+    worker_.run([this, opened, store = site_.config.store,
+                 now = loop_.now().instant()] { *opened = opener_.open(store, now); },
+                [this, opened] {
+                  is_opening_ = false;
+                  take_opened(std::move(*opened));
+                });
+  }
+
+  void take_opened(Result<stores::CheckedStore> opened) {
+    if (!opened) return look_for_store();
+    if (!opened->recovery.empty()) {
+      spdlog::error("event=store_recovered what=\"{}\"", opened->recovery);
+    }
+    spdlog::info("event=store_opened what=\"what was kept in memory is taken over\"");
+    found_ = RunningStore{std::move(opened->store), ""};
+    context_.stop();
+  }
+
+  Served served() {
+    return Served{.site = site_.config,
                   .calendar = site_.calendar,
                   .store = *store_,
                   .status =
@@ -218,59 +208,32 @@ class Service {
                   .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
                   .now = [this] { return loop_.now().instant(); },
                   .started = loop_.now().instant(),
+                  .no_store = running_.missing,
                   .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
                   .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
                   .take_readings =
                       [this](const std::string& meter, auto readings, const auto& correction) {
                         return gateway_->take_pushed(meter, std::move(readings), correction);
                       }};
-    auto server = serve_site(context_, *http, std::move(served));
-    if (!server) return tl::unexpected(server.error());
-    server_ = std::move(*server);
-    spdlog::info("event=listening address={} port={}", http->address, server_->port());
-    return {};
-  }
-
-  /// Until it is stopped. What one call throws, the others do not suffer from.
-  void run_loop() {
-    while (!context_.stopped()) {
-      try {
-        context_.run();
-      } catch (const std::exception& thrown) {
-        tell_of_throw(thrown.what());
-      }
-    }
-  }
-
-  /// The same minute after minute is one event an hour.
-  void tell_of_throw(const std::string& what) {
-    const Moment now = loop_.now();
-    if (what == last_thrown_ && now.monotonic - last_thrown_at_ < std::chrono::hours{1}) return;
-    last_thrown_ = what;
-    last_thrown_at_ = now.monotonic;
-    gateway_->note({.time = now.instant(),
-                    .severity = Severity::error,
-                    .kind = "unforeseen",
-                    .subject = "",
-                    .text = "something happened that recald did not foresee; it goes on, and tries "
-                            "again what can be: " +
-                            what,
-                    .is_counted = true});
   }
 
   boost::asio::awaitable<void> heed_signals() {
     for (;;) {
-      const int signal = co_await signals_.async_wait(boost::asio::use_awaitable);
+      co_await signal_file_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                                       boost::asio::use_awaitable);
+      const auto signal = signals_.next();
+      if (!signal) continue;
       // Posted: whatever comes of it, the next signal is heeded.
-      if (signal == SIGHUP) {
+      if (*signal == SIGHUP) {
         loop_.post([this] { reload(); });
-      } else if (signal == SIGUSR1) {
+      } else if (*signal == SIGUSR1) {
         loop_.post([this] { calibrate("signal"); });
       } else {
-        spdlog::info("event=ending signal={}", signal);
+        spdlog::info("event=ending signal={}", *signal);
         break;
       }
     }
+    signals_.let_ends_through();  // a second one need not wait for the end
     context_.stop();
   }
 
@@ -285,15 +248,17 @@ class Service {
     recalibration_->start();
   }
 
-  /// The site file again. One that is wrong changes nothing.
+  /// The site file again. One that is wrong changes nothing; the buses begin anew all the same.
   void reload() {
     const auto changed = reload_from(site_.config.file);
     if (changed) {
       spdlog::info("event=reloaded file={}", site_.config.file.string());
       return;
     }
-    gateway_->note({loop_.now().instant(), Severity::error, "not_reloaded", "",
-                    "the site file was not taken: " + changed.error().message});
+    gateway_->begin_buses_anew();
+    gateway_->note(
+        {loop_.now().instant(), Severity::error, "not_reloaded", "",
+         "the site file was not taken, recald goes on by the old one: " + changed.error().message});
   }
 
   Result<void> reload_from(const std::filesystem::path& file) {
@@ -331,6 +296,9 @@ class Service {
   }
 
   Result<std::int64_t> ask(JobKind kind, const std::string& asked_by) {
+    if (!running_.missing.empty()) {
+      return failure(ErrorCode::io_failed, "the store cannot be opened: " + running_.missing);
+    }
     if (auto modelled = require_model(site_.config); !modelled) {
       return tl::unexpected(modelled.error());
     }
@@ -367,9 +335,12 @@ class Service {
   OpenSite site_;
   RunningStore running_;
   Store* store_;  ///< Of `running_`.
+  StoreOpener& opener_;
+  Signals& signals_;
+  bool is_opening_ = false;
   std::optional<RunningStore> found_;
   boost::asio::io_context context_{1};
-  boost::asio::signal_set signals_{context_, SIGINT, SIGTERM, SIGHUP};
+  boost::asio::posix::stream_descriptor signal_file_{context_, signals_.descriptor()};
   asio::AsioLoop loop_;
   system::WorkerThread worker_;
   system::WorkerThread checker_;  ///< Of backups.
@@ -380,27 +351,40 @@ class Service {
   Watchdog watchdog_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<http::Server> server_;
-  std::string last_thrown_;
-  std::chrono::milliseconds last_thrown_at_{0};
 };
+
+/// An opening may last minutes more. It can be killed at any step, so nobody waits for it.
+[[noreturn]] void leave_at_once(const Result<void>& ended) {
+  std::_Exit(ended ? EXIT_SUCCESS : EXIT_FAILURE);
+}
 
 }  // namespace
 
 Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   spdlog::set_default_logger(spdlog::stderr_logger_st("recald"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
-  HeldSignals held;
-  const auto lock = system::FileLock::take(site.config.store.file.string() + ".lock");
-  if (!lock) return tl::unexpected(lock.error());
-  auto store = open_running_store(site.config.store, std::chrono::floor<std::chrono::seconds>(
-                                                         std::chrono::system_clock::now()));
+  auto signals = Signals::open();
+  if (!signals) return tl::unexpected(signals.error());
+  StoreOpener opener;
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  auto store = open_running_store(opener, site.config.store, now, extend_start);
   if (!store) return tl::unexpected(store.error());
+  signals->hold_ends();
   for (std::unique_ptr<Store> memory;;) {
-    auto service = std::make_unique<Service>(site, options, std::move(*store));
-    if (auto opened = service->open(memory.get()); !opened) return opened;
-    held.release();
+    auto service = std::make_unique<Service>(site, options, std::move(*store), opener, *signals);
+    if (auto opened = service->open(memory.get()); !opened) {
+      if (!memory) return opened;
+      // What it has is nowhere else: on with it, and another try later.
+      spdlog::error("event=not_taken_over why=\"{}\"", opened.error().message);
+      opener.back_off();
+      store = RunningStore{std::move(memory), opened.error().message};
+      continue;
+    }
+    memory.reset();
+    if (auto listening = service->listen(); !listening) return listening;
     auto ended = service->run();
     auto found = service->take_found();
+    if (service->is_opening()) leave_at_once(ended);
     if (!found) return ended;
     site = service->site();
     memory = service->take_store();

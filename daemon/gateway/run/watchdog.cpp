@@ -17,6 +17,8 @@ void extend_start() {
   sd_notify(0, "EXTEND_TIMEOUT_USEC=120000000");  // by two minutes from now
 }
 
+void feed_watchdog() { sd_notify(0, "WATCHDOG=1"); }
+
 Watchdog::Watchdog(Loop& loop, std::function<bool()> is_well)
     : loop_(loop), is_well_(std::move(is_well)), self_(std::make_shared<Watchdog*>(this)) {
   std::uint64_t microseconds = 0;
@@ -37,7 +39,7 @@ void Watchdog::feed() {
   loop_.after(period_, [weak = std::weak_ptr{self_}] {
     if (const auto self = weak.lock()) (*self)->feed();
   });
-  if (is_well_()) sd_notify(0, "WATCHDOG=1");
+  if (is_well_()) feed_watchdog();
 }
 
 }  // namespace recald::daemon

@@ -12,6 +12,9 @@ namespace recald::daemon {
 /// minutes. Tells systemd at most every ten seconds, however often it is called.
 void extend_start();
 
+/// Feeds it where the loop does not turn for a while but work goes on.
+void feed_watchdog();
+
 /// Feeds the watchdog of the unit file for as long as the loop turns and the store answers. Where
 /// nobody watches it does nothing.
 class Watchdog {

@@ -45,7 +45,7 @@ bool asks_for_nothing_more(std::string body) {
 
 http::Response refused_job(const Error& error) {
   if (error.code == ErrorCode::io_failed) {
-    return http::error_response(503, "store_unavailable", error.message);
+    return not_taken(error.message);
   }
   return http::error_response(409, "not_possible", error.message);
 }
@@ -130,6 +130,10 @@ http::Response post_job_of(JobKind kind, const Served& served, const http::Reque
   if (!served.ask_job) {
     return http::error_response(409, "not_possible",
                                 fmt::format("this daemon makes no {}", plural(kind)));
+  }
+  if (!served.no_store.empty()) {
+    return not_taken(fmt::format("no {} is begun, ask again: the store cannot be opened: {}",
+                                 name_of(kind), served.no_store));
   }
   const auto number = served.ask_job(kind);
   if (!number) return refused_job(number.error());

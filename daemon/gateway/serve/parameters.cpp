@@ -38,6 +38,12 @@ tl::unexpected<http::Response> refusal(const Error& error) {
   return refusal(503, "store_unavailable", "the store cannot be read: " + error.message);
 }
 
+http::Response not_taken(std::string_view message) {
+  http::Response response = http::error_response(503, "store_unavailable", message);
+  response.headers.emplace_back("Retry-After", "60");
+  return response;
+}
+
 Checked<void> has_only(const http::Request& request,
                        std::initializer_list<std::string_view> names) {
   for (const auto& [name, value] : request.query) {

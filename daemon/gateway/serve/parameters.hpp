@@ -25,6 +25,8 @@ inline constexpr int kLimitUsual = 1'000;
                                                      std::string_view field = "");
 /// A failure of the store: 503, since it is tried again.
 [[nodiscard]] tl::unexpected<http::Response> refusal(const Error& error);
+/// 503 to what the store does not take at present, with when to send it again.
+[[nodiscard]] http::Response not_taken(std::string_view message);
 
 /// A query of no other names than these; a misspelt one would otherwise be taken for everything.
 [[nodiscard]] Checked<void> has_only(const http::Request& request,

@@ -34,7 +34,7 @@ std::vector<std::string> reasons_to_look(const GatewayStatus& status) {
   for (const MeterStatus& meter : status.meters) {
     if (!meter.poll) continue;
     for (const RefusedRegisters& refused : meter.poll->refused) {
-      reasons.push_back(fmt::format("meter '{}' refuses {}", meter.id, to_string(refused)));
+      reasons.push_back(sentence_of(meter.id, refused));
     }
   }
   return reasons;

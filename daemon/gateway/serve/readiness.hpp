@@ -13,7 +13,7 @@ namespace recald::daemon {
 [[nodiscard]] std::vector<std::string> reasons_not_ready(const GatewayStatus& status);
 
 /// What deserves a look without making the daemon unready, in sentences: registers that a device
-/// refuses.
+/// refuses, or is too busy for, and devices that their gateway does not reach.
 [[nodiscard]] std::vector<std::string> reasons_to_look(const GatewayStatus& status);
 
 /// /healthz: 200 as long as the loop turns.

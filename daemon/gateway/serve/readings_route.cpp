@@ -41,6 +41,10 @@ nlohmann::ordered_json suspect_json(const std::vector<metering::Reading>& readin
 
 http::Response post_readings(const Served& served, const http::Request& request) {
   if (const auto checked = has_only(request, {}); !checked) return checked.error();
+  if (!served.no_store.empty()) {
+    return not_taken("nothing was stored, send it again: the store cannot be opened: " +
+                     served.no_store);
+  }
   if (!is_plausible_time(served.now())) {
     return http::error_response(503, "clock_not_set",
                                 "the clock here has not been set yet, send it again later");
@@ -56,8 +60,7 @@ http::Response post_readings(const Served& served, const http::Request& request)
       suspect_json(pushed->readings, pushed->meter->meter, served.site.closing.closing.validation);
   const auto counts = served.take_readings(id, std::move(pushed->readings), pushed->correction);
   if (!counts) {
-    return http::error_response(503, "store_unavailable",
-                                "nothing was stored, send it again: " + counts.error().message);
+    return not_taken("nothing was stored, send it again: " + counts.error().message);
   }
   auto conflicts = nlohmann::ordered_json::array();
   for (const metering::Reading& reading : counts->conflicts) {

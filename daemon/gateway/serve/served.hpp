@@ -23,6 +23,9 @@ struct Served {
   std::function<std::optional<MeterStatus>(const std::string& id)> meter_status;
   std::function<metering::Instant()> now;
   metering::Instant started{};
+  /// Why `store` lives in memory alone: what comes in is not taken, since it would not last. Empty:
+  /// it does not.
+  std::string no_store = {};
   /// Asks for a job: its number, or why there is none (unsupported: the site has no model).
   /// Absent: nobody works here.
   std::function<Result<std::int64_t>(JobKind kind)> ask_job = {};

@@ -139,6 +139,23 @@ TEST_F(CommitterTest, WhatIsKeptIsBoundedAndTheLossIsCounted) {
   EXPECT_EQ(stored_samples(), 3);
 }
 
+// A counter that comes back after weeks, or what was kept in memory for days, comes all at once.
+TEST_F(CommitterTest, MoreThanIsKeptIsNoLossWhileTheStoreTakesIt) {
+  Committer committer = this->committer({.intervals_max = 5, .samples_max = 3});
+  StoreBatch many;
+  for (int i = 0; i < 8; ++i) many.intervals.push_back(interval(i).intervals.front());
+  committer.add(std::move(many));
+  for (int i = 8; i < 30; ++i) {
+    committer.add(interval(i));
+    committer.add(sample(i));
+  }
+  EXPECT_LE(committer.waiting_intervals(), 5u);
+  loop_.run_for(seconds{1});
+  EXPECT_EQ(committer.health().lost_intervals, 0u);
+  EXPECT_EQ(stored(), 30);
+  EXPECT_EQ(stored_samples(), 22);
+}
+
 TEST_F(CommitterTest, EveryPartOfABatchArrives) {
   Committer committer = this->committer();
   committer.add({.intervals = {{{meter_, kStart, 10.0}}},

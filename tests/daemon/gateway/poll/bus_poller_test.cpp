@@ -230,7 +230,7 @@ TEST(BusPoller, ABusyDeviceIsAskedAgainThreeTimes) {
     for (std::size_t i = 1; i < 4; ++i) {
       EXPECT_EQ(bus.made.at(i).at - bus.made.at(i - 1).at, milliseconds{120}) << busy;
     }
-    EXPECT_EQ(bus.poller.state(0), UnitState::up) << busy;
+    EXPECT_EQ(bus.poller.state(0), UnitState::degraded) << busy;
   }
 }
 
@@ -272,7 +272,7 @@ TEST(BusPoller, AReadThatIsServedAgainIsOrdinaryAgain) {
   EXPECT_EQ(bus.made.size() - before, 10u);
 }
 
-TEST(BusPoller, ToldToItTriesAllAgainAtOnce) {
+TEST(BusPoller, BegunAnewItTriesAllAgainAtOnce) {
   bool works = false;
   VirtualBus bus{{unit(1), unit(2)}, [&](const BusOrder& order, const Moment&) {
                    if (works) return Reply{};
@@ -281,7 +281,7 @@ TEST(BusPoller, ToldToItTriesAllAgainAtOnce) {
   bus.run(hours{1} + seconds{1});
   ASSERT_EQ(bus.poller.state(1), UnitState::down);
   works = true;
-  bus.poller.try_all_again();
+  bus.poller.begin_anew();
   bus.run(minutes{1});
   EXPECT_EQ(bus.poller.state(0), UnitState::up);
   EXPECT_EQ(bus.poller.state(1), UnitState::up);
@@ -316,8 +316,30 @@ TEST(BusPoller, ABusWithoutConnectionRests) {
   EXPECT_EQ(bus.poller.state(1), UnitState::up);
 }
 
+// What it has learned of devices that were exchanged since is not true of the new ones.
+TEST(BusPoller, BegunAnewItKnowsNothingOfItsUnits) {
+  bool answers = true;
+  VirtualBus bus{{unit(1), unit(2)}, [&](const BusOrder& order, const Moment&) {
+                   return order.unit == 0 || answers ? Reply{} : silence();
+                 }};
+  bus.run(minutes{20});
+  answers = false;
+  bus.run(minutes{10});
+  ASSERT_EQ(bus.made.back().order.timeout, LearnedTimeout::kMin);
+  ASSERT_EQ(bus.poller.state(1), UnitState::down);
+  bus.poller.begin_anew();
+  EXPECT_EQ(bus.poller.state(1), UnitState::up);
+  bus.made.clear();
+  bus.run(seconds{5});
+  ASSERT_THAT(bus.made, SizeIs(2));
+  for (const auto& one : bus.made) {
+    EXPECT_FALSE(one.order.is_probe);
+    EXPECT_EQ(one.order.timeout, LearnedTimeout::kUnknown);
+  }
+}
+
 // The adapter is plugged in again, and somebody reloads: nobody waits for the end of the rest.
-TEST(BusPoller, ToldToItConnectsAgainAtOnce) {
+TEST(BusPoller, BegunAnewItConnectsAgainAtOnce) {
   bool refuses = true;
   VirtualBus bus{
       {unit(1, seconds{10})}, [&](const BusOrder&, const Moment&) {
@@ -326,7 +348,7 @@ TEST(BusPoller, ToldToItConnectsAgainAtOnce) {
   const std::size_t rested = 8;  // 1, 2, 4 … 60 s
   while (bus.made.size() < rested) bus.run(seconds{1});
   refuses = false;
-  bus.poller.try_all_again();
+  bus.poller.begin_anew();
   bus.run(seconds{2});
   ASSERT_THAT(bus.made, SizeIs(Ge(rested + 1)));
   EXPECT_TRUE(bus.made[rested].answered);

@@ -78,6 +78,28 @@ TEST(BusRunner, HandsOnEveryReadWithItsTimes) {
   }
 }
 
+// Another connection, with the old one ended first; what was under way on that is not told.
+TEST(BusRunner, BegunAnewItReadsOnAnotherBus) {
+  VirtualLoop loop{kNoon};
+  int before = 0;
+  int after = 0;
+  std::vector<PolledRead> told;
+  BusRunner runner{loop, std::make_unique<TestBus>(loop, milliseconds{30}, before), poller(),
+                   [&](const PolledRead& read) { told.push_back(read); }};
+  runner.start();
+  loop.run_for(minutes{1} + milliseconds{10});
+  ASSERT_EQ(before, 2);
+  runner.begin_anew([&] { return std::make_unique<TestBus>(loop, milliseconds{40}, after); });
+  loop.run_for(seconds{1});
+  EXPECT_EQ(after, 1);
+  ASSERT_THAT(told, SizeIs(2));
+  EXPECT_EQ(told[1].duration, milliseconds{40});
+  loop.run_for(minutes{2});
+  EXPECT_EQ(before, 2);
+  EXPECT_EQ(after, 3);
+  EXPECT_EQ(runner.counters().duration.count(), 4u);
+}
+
 // A poll of two reads is as late as its first one; probes of a dead unit are not late at all.
 TEST(BusRunner, CountsRequestsAndPolls) {
   VirtualLoop loop{kNoon};

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <ostream>
 
 #include "tests/daemon/gateway/gateway_rig.hpp"
 
@@ -291,6 +292,55 @@ TEST_F(GatewayTest, RegistersRefusedForAWhileCostNoEnergy) {
   EXPECT_THAT(*events, Contains(Field(&StoreEvent::kind, "registers_refused")).Times(1));
   EXPECT_THAT(*events, Contains(Field(&StoreEvent::kind, "registers_answer")).Times(1));
 }
+
+struct Unserved {
+  int exception;
+  const char* event;
+  friend void PrintTo(const Unserved& unserved, std::ostream* out) { *out << unserved.event; }
+};
+class UnservedForHours : public GatewayTest, public ::testing::WithParamInterface<Unserved> {};
+
+// Now and then a device is busy, and a gateway misses one. For minutes on end people are told, once
+// and then counted.
+TEST_P(UnservedForHours, IsToldOnceAndThenCounted) {
+  const auto is_unserved = [](milliseconds t) {
+    return (t > minutes{30} && t < minutes{33}) || (t > hours{1} && t < hours{3}) ||
+           (t > hours{5} && t < hours{6});
+  };
+  devices_[2].exception = [=](milliseconds t) { return is_unserved(t) ? GetParam().exception : 0; };
+  const auto told = [&] {
+    auto events = disk_.events(100).value();
+    std::erase_if(events, [](const StoreEvent& one) { return one.kind != GetParam().event; });
+    return events;
+  };
+  begin();
+  loop_.run_for(minutes{50});
+  EXPECT_THAT(told(), SizeIs(0));
+  loop_.run_for(minutes{70});
+  const GatewayStatus status = gateway_->status();
+  EXPECT_NE(status.meters[1].poll->state, UnitState::up);
+  ASSERT_THAT(status.meters[1].poll->refused, SizeIs(1));
+  EXPECT_EQ(status.meters[1].poll->refused[0].exception, GetParam().exception);
+  EXPECT_GE(status.meters[1].poll->refused[0].since, kStart + hours{1});
+  ASSERT_THAT(told(), SizeIs(1));
+  EXPECT_EQ(told()[0].subject, "cooling");
+  EXPECT_EQ(told()[0].count, 1);
+  loop_.run_for(hours{2} + minutes{30});
+  EXPECT_EQ(gateway_->status().meters[1].poll->state, UnitState::up);
+  EXPECT_THAT(gateway_->status().meters[1].poll->refused, SizeIs(0));
+  EXPECT_THAT(disk_.events(100).value(),
+              Contains(Field(&StoreEvent::kind, "registers_answer")).Times(1));
+  loop_.run_for(hours{2});
+  ASSERT_THAT(told(), SizeIs(1));
+  EXPECT_EQ(told()[0].count, 2);
+  EXPECT_NEAR(stored_kWh("cooling", {kStart, kStart + hours{6}}), 600.0, kTick);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Exceptions, UnservedForHours,
+    ::testing::Values(Unserved{0x05, "device_busy"}, Unserved{0x06, "device_busy"},
+                      Unserved{0x0A, "device_unreachable"}, Unserved{0x0B, "device_unreachable"}),
+    [](const auto& given) { return "Exception" + std::to_string(given.param.exception); });
 
 // A device that refuses and answers in turn must not fill the list of events.
 TEST_F(GatewayTest, RegistersRefusedAgainAndAgainAreToldOnceAnHour) {

@@ -83,7 +83,7 @@ TEST_F(Reload, AnotherRuleClosesTheClosedMonthsAnewAndOnce) {
   EXPECT_EQ(std::ranges::count(events, "rules_changed", &StoreEvent::kind), 1);
 }
 
-TEST_F(Reload, AFileThatSaysTheSameChangesNothing) {
+TEST_F(Reload, AFileThatSaysTheSameBeginsTheBusesAnewAndCostsNothing) {
   begin(kTwoBuses);
   loop_.run_for(hours{1} + minutes{7});
   const auto requests = gateway_->status().meters[0].poll->requests;
@@ -92,8 +92,11 @@ TEST_F(Reload, AFileThatSaysTheSameChangesNothing) {
                   ->reload(site("# again\n" + bus("roof") + bus("plant") +
                                 meter("main", "plant", 1) + meter("lift", "roof", 2)))
                   .has_value());
-  EXPECT_THAT(buses_made_, ElementsAre("plant", "roof"));
-  EXPECT_EQ(gateway_->status().meters[0].poll->requests, requests);
+  loop_.run_for(seconds{1});
+  EXPECT_THAT(buses_made_, ElementsAre("plant", "roof", "plant", "roof"));
+  auto once_more = requests;
+  ++once_more[static_cast<std::size_t>(RequestResult::ok)];
+  EXPECT_EQ(gateway_->status().meters[0].poll->requests, once_more);
   loop_.run_for(hours{3});
   EXPECT_EQ(flawed("main"), 0);
   EXPECT_EQ(flawed("lift"), 0);
@@ -106,7 +109,8 @@ TEST_F(Reload, AChangedBusIsOpenedAnewAndItsNeighbourGoesOn) {
                   ->reload(site(bus("plant") + bus("roof", "request_gap = \"50ms\"\n") +
                                 meter("main", "plant", 1) + meter("lift", "roof", 2)))
                   .has_value());
-  EXPECT_THAT(buses_made_, ElementsAre("plant", "roof", "roof"));
+  loop_.run_for(seconds{1});
+  EXPECT_THAT(buses_made_, ElementsAre("plant", "roof", "roof", "plant"));
   loop_.run_for(hours{3});
   for (const char* id : {"main", "lift"}) EXPECT_EQ(flawed(id), 0) << id;
   EXPECT_NEAR(stored_kWh("main"), 50.0 * 3.75, 0.11);
@@ -130,7 +134,7 @@ TEST_F(Reload, ANewMeterIsPolledAndOneThatIsGoneIsNot) {
   EXPECT_EQ((*pump)->end, kStart + hours{2} + minutes{30});
 }
 
-TEST_F(Reload, WhatIsKnownOfASilentDeviceIsNotForgotten) {
+TEST_F(Reload, WhatIsKnownOfASilentDeviceIsForgotten) {
   devices_[2].is_silent = [](milliseconds) { return true; };
   begin(kTwoBuses);
   loop_.run_for(hours{2});
@@ -139,9 +143,27 @@ TEST_F(Reload, WhatIsKnownOfASilentDeviceIsNotForgotten) {
                   ->reload(site(bus("plant", "timeout = \"2s\"\n") + bus("roof") +
                                 meter("main", "plant", 1) + meter("lift", "roof", 2)))
                   .has_value());
+  loop_.run_for(milliseconds{0});
   for (const MeterStatus& one : gateway_->status().meters) {
-    EXPECT_EQ(one.poll->state, one.id == "lift" ? UnitState::down : UnitState::up) << one.id;
+    EXPECT_EQ(one.poll->state, UnitState::up) << one.id;
   }
+}
+
+// As where the site file cannot be read: the old one goes on, on connections of now.
+TEST_F(Reload, WithoutAFileTheBusesBeginAnewAndCountersGoOn) {
+  bool works = false;
+  devices_[2].is_silent = [&](milliseconds t) { return !works && t > hours{1}; };
+  begin(kTwoBuses);
+  loop_.run_for(hours{2});
+  ASSERT_EQ(gateway_->status().meters[1].poll->state, UnitState::down);
+  works = true;
+  gateway_->begin_buses_anew();
+  loop_.run_for(seconds{1});
+  EXPECT_THAT(buses_made_, ElementsAre("plant", "roof", "plant", "roof"));
+  EXPECT_EQ(gateway_->status().meters[1].poll->state, UnitState::up);
+  loop_.run_for(hours{2});
+  EXPECT_EQ(flawed("main"), 0);
+  EXPECT_NEAR(stored_kWh("lift"), 100.0 * 3.75, 0.11);
 }
 
 TEST_F(Reload, WhatWaitsOnABusThatStaysIsTriedAtOnce) {

@@ -7,7 +7,9 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
+#include <boost/asio/ip/tcp.hpp>
 #include <cmath>
+#include <iterator>
 
 #include "adapters/http/client.hpp"
 #include "adapters/sqlite/database.hpp"
@@ -75,12 +77,12 @@ TEST_F(RunCommand, ReloadBadFile) {
   EXPECT_THAT(what_was_said(), HasSubstr("unknown key 'pol'"));
   const std::int64_t before = samples();
   EXPECT_TRUE(eventually([&] { return samples() >= before + 2; })) << what_was_said();
-  EXPECT_EQ(server_.connections(), 1);
+  EXPECT_EQ(server_.connections(), 2);  // the old file goes on, on another connection
 
   recald::testing::write_text(folder_ / "site.toml", good + "timeout = \"2s\"\n");
   daemon.signal(SIGHUP);
   ASSERT_TRUE(eventually([&] { return said_so("event=reloaded"); })) << what_was_said();
-  EXPECT_TRUE(eventually([&] { return server_.connections() == 2; })) << what_was_said();
+  EXPECT_TRUE(eventually([&] { return server_.connections() == 3; })) << what_was_said();
   EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
 }
 
@@ -150,6 +152,102 @@ TEST_F(RunCommand, OnAFullDiskItStartsInMemoryAndHandsOverLater) {
   const auto store = stores::open_to_read(folder_ / "site.db").value();
   const auto events = store->events(10).value();
   EXPECT_THAT(events, ::testing::Contains(::testing::Field(&StoreEvent::kind, "no_store")));
+}
+
+/// Begins without a store: where the lock would be made there is a folder. As long as `opening` is
+/// a pipe, whoever opens the store afterwards waits: the note of a recovery is read first.
+class WithoutAStore : public RunCommand {
+ protected:
+  WithoutAStore() {
+    std::filesystem::create_directory(lock());
+    recald::testing::write_text(said(), "");
+  }
+  ~WithoutAStore() override { let_opening_go_on(); }
+
+  [[nodiscard]] std::filesystem::path lock() const { return folder_ / "site.db.lock"; }
+  [[nodiscard]] std::filesystem::path note() const { return folder_ / "site.db.recovery"; }
+
+  void begin_opening() {
+    ASSERT_EQ(::mkfifo(note().c_str(), 0600), 0);
+    std::filesystem::remove(lock());
+    ASSERT_TRUE(eventually([&] { return std::filesystem::is_regular_file(lock()); }));
+  }
+  void let_opening_go_on() {
+    const int pipe = ::open(note().c_str(), O_WRONLY | O_NONBLOCK);
+    std::filesystem::remove(note());
+    if (pipe >= 0) ::close(pipe);
+  }
+  [[nodiscard]] int how_often_said(const std::string& words) const {
+    const std::string text = what_was_said();
+    int count = 0;
+    for (std::size_t at = text.find(words); at != std::string::npos;
+         at = text.find(words, at + 1)) {
+      ++count;
+    }
+    return count;
+  }
+};
+
+TEST_F(WithoutAStore, WhileItIsOpenedMetersArePolledAndSignalsHeeded) {
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return said_so("event=no_store"); })) << what_was_said();
+  ASSERT_NO_FATAL_FAILURE(begin_opening());
+  const int asked = server_.requests() + 3;
+  EXPECT_TRUE(eventually([&] { return server_.requests() >= asked; })) << what_was_said();
+  daemon.signal(SIGHUP);
+  EXPECT_TRUE(eventually([&] { return said_so("event=reloaded"); })) << what_was_said();
+  const int polled = server_.requests();
+  let_opening_go_on();
+  ASSERT_TRUE(eventually([&] { return said_so("event=store_opened"); })) << what_was_said();
+  daemon.signal(SIGHUP);  // between the one store and the other
+  EXPECT_TRUE(eventually([&] { return how_often_said("event=reloaded") == 2; })) << what_was_said();
+  EXPECT_TRUE(eventually([&] { return samples() >= polled; })) << samples() << what_was_said();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
+}
+
+// Nor does it wait for the opening, which may take minutes.
+TEST_F(WithoutAStore, WhileItIsOpenedItEndsWhenItIsToldTo) {
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return said_so("event=no_store"); })) << what_was_said();
+  ASSERT_NO_FATAL_FAILURE(begin_opening());
+  daemon.signal(SIGTERM);
+  ASSERT_TRUE(eventually([&] { return said_so("event=ended"); })) << what_was_said();
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST_F(WithoutAStore, PushedReadingsAreTakenOnceThereIsOne) {
+  recald::testing::write_text(folder_ / "site.toml",
+                              recald::testing::read_text(folder_ / "site.toml") +
+                                  "[[meter]]\nid = \"chw\"\nsource = \"http\"\n"
+                                  "utility = \"chilled_water\"\n"
+                                  "[http]\nlisten = \"127.0.0.1:0\"\n");
+  const auto post = [&]() -> std::string {
+    const std::string text = what_was_said();
+    const std::size_t port = text.rfind(" port=");
+    if (port == std::string::npos) return "";
+    const std::string body = R"({"meter":"chw","unit":"kWh","readings":[{"time":")" +
+                             metering::to_string(std::chrono::floor<std::chrono::hours>(
+                                 std::chrono::system_clock::now() - std::chrono::hours{2})) +
+                             R"(","value":1.5}]})";
+    boost::asio::ip::tcp::iostream server{"127.0.0.1",
+                                          text.substr(port + 6, text.find('\n', port) - port - 6)};
+    server << "POST /api/v1/readings HTTP/1.1\r\nHost: x\r\nConnection: close\r\n"
+              "Content-Type: application/json\r\nContent-Length: "
+           << body.size() << "\r\n\r\n"
+           << body << std::flush;
+    return {std::istreambuf_iterator{server}, {}};
+  };
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return said_so("event=no_store"); })) << what_was_said();
+  const std::string refused = post();
+  EXPECT_THAT(refused, HasSubstr(" 503 "));
+  EXPECT_THAT(refused, HasSubstr("Retry-After: 60"));
+  std::filesystem::remove(lock());
+  EXPECT_TRUE(eventually([&] { return post().find(" 200 ") != std::string::npos; }))
+      << what_was_said();
+  EXPECT_EQ(daemon.end(SIGKILL), -SIGKILL);
+  const auto store = stores::open_to_read(folder_ / "site.db").value();
+  EXPECT_TRUE(store->interval_extent(store->find_meter("chw")->value())->has_value());
 }
 
 // Who starts us waits for a recovery only if it hears that it goes on.

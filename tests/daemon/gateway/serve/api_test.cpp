@@ -225,6 +225,18 @@ class Jobs : public ServedSite {
   }
 };
 
+TEST_F(Jobs, WithoutAStoreOnDiskNoneIsBegun) {
+  work_on_jobs();
+  served_.no_store = "database or disk is full";
+  for (const char* path : {"/api/v1/calibrations", "/api/v1/diagnoses"}) {
+    const http::Response response = post(path);
+    EXPECT_EQ(response.status, 503) << path;
+    EXPECT_EQ(response.header("Retry-After"), "60");
+    EXPECT_THAT(response.body, HasSubstr("is begun, ask again: the store cannot be opened"));
+  }
+  EXPECT_THAT(disk_.unfinished_jobs().value(), SizeIs(0));
+}
+
 TEST_F(Jobs, AreAskedForAndFollowed) {
   work_on_jobs();
   const http::Response accepted = post("/api/v1/calibrations", "{}");

@@ -266,8 +266,21 @@ TEST_F(PushedMeterSite, IsShownAsSuch) {
 
 TEST_F(PushedMeterSite, ARefusedStoreIsTold) {
   store_.refuses = true;
-  EXPECT_EQ(post(body_of(kStart - hours{3}, 4, 5.0)).status, 503);
+  const http::Response response = post(body_of(kStart - hours{3}, 4, 5.0));
+  EXPECT_EQ(response.status, 503);
+  EXPECT_EQ(response.header("Retry-After"), "60");
   store_.refuses = false;
+  EXPECT_THAT(intervals(), IsEmpty());
+}
+
+// What is answered 200 is on the disk. In memory it would go with the process.
+TEST_F(PushedMeterSite, WhileReadingsAreOnlyInMemoryTheyAreToBeSentAgain) {
+  served_.no_store = "database or disk is full";
+  const http::Response response = post(body_of(kStart - hours{3}, 4, 5.0));
+  EXPECT_EQ(response.status, 503);
+  EXPECT_EQ(response.header("Retry-After"), "60");
+  EXPECT_THAT(response.body, HasSubstr("nothing was stored, send it again: the store cannot be "
+                                       "opened: database or disk is full"));
   EXPECT_THAT(intervals(), IsEmpty());
 }
 

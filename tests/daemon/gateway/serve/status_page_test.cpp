@@ -123,6 +123,25 @@ TEST_F(Readiness, RefusedRegistersDeserveALook) {
   EXPECT_THAT(get("/").body, HasSubstr("exception 2 (illegal data address)"));
 }
 
+TEST_F(Readiness, ABusyDeviceAndOneThatItsGatewayDoesNotReachDeserveALook) {
+  devices_[1].exception = [](auto) { return 6; };
+  devices_[2].exception = [](auto) { return 11; };
+  begin();
+  loop_.run_for(minutes{4});
+  EXPECT_EQ(get_json("/readyz")["look_at"].size(), 0u);
+  loop_.run_for(minutes{10});
+  const Json look_at = get_json("/readyz")["look_at"];
+  ASSERT_EQ(look_at.size(), 2u) << look_at;
+  EXPECT_THAT(look_at[0].get<std::string>(),
+              StartsWith("meter 'main' is busy whenever it is asked for registers 0 to 3 with "
+                         "exception 6 (device busy) since 2024-03-30T12:00:00Z"));
+  EXPECT_THAT(look_at[1].get<std::string>(),
+              StartsWith("meter 'cooling' is not reached by its gateway, which answers for "
+                         "registers 0 to 3 with exception 11 ("));
+  EXPECT_EQ(get_json("/api/v1/meters/main")["state"], "degraded");
+  EXPECT_EQ(get_json("/api/v1/meters/cooling")["state"], "down");
+}
+
 TEST_F(Readiness, ASilentMeterIsNoReason) {
   devices_.clear();
   begin();

@@ -1,0 +1,53 @@
+#include "daemon/gateway/run/run_guarded.hpp"
+
+#include <exception>
+#include <optional>
+#include <string>
+
+namespace recald::daemon {
+namespace {
+
+/// What was thrown last, and when.
+class Thrown {
+ public:
+  /// @return what people are to be told; nothing: they know.
+  std::optional<StoreEvent> take(const std::string& what, const Moment& now) {
+    if (what == last_ && now.monotonic - at_ < std::chrono::hours{1}) return {};
+    last_ = what;
+    at_ = now.monotonic;
+    return StoreEvent{.time = now.instant(),
+                      .severity = Severity::error,
+                      .kind = "unforeseen",
+                      .subject = "",
+                      .text =
+                          "something happened that recald did not foresee; it goes on, and tries "
+                          "again what can be: " +
+                          what,
+                      .is_counted = true};
+  }
+
+ private:
+  std::string last_;
+  std::chrono::milliseconds at_{0};
+};
+
+}  // namespace
+
+void run_guarded(boost::asio::io_context& context, const Loop& loop,
+                 const std::function<void(StoreEvent)>& note) {
+  Thrown thrown;
+  while (!context.stopped()) {
+    std::string what;
+    try {
+      context.run();
+      continue;
+    } catch (const std::exception& exception) {
+      what = exception.what();
+    } catch (...) {
+      what = "without a word";
+    }
+    if (auto event = thrown.take(what, loop.now())) note(std::move(*event));
+  }
+}
+
+}  // namespace recald::daemon
