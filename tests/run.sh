@@ -61,6 +61,7 @@ if [ "${1:-}" != "--plain" ]; then
 fi
 
 failed=
+logs=
 part=all
 # instrumented PRESET [OPTIONS OF CTEST…]: what leads from registers to months, built with a sanitizer
 # and run.
@@ -71,7 +72,9 @@ instrumented() {
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset" --target ingestion_tests --parallel "$(build_jobs)"
   # All 300 kills happen below; under a sanitizer each takes ten times as long.
-  RECALD_KILLS=40 ctest --preset "$preset" -j $(($(nproc) + 1)) "$@" || failed="$failed $preset"
+  logs="$logs .build/$preset/ctest.log"
+  RECALD_KILLS=40 ctest --preset "$preset" -j $(($(nproc) + 1)) \
+    --output-log "$root/.build/$preset/ctest.log" "$@" || failed="$failed $preset"
 }
 
 if [ "${1:-}" != "--plain" ]; then
@@ -91,11 +94,13 @@ echo "--- tests, after $(($(date +%s) - begin)) s for all of the above"
 # Three at a time on two cores: whole runs of the daemon wait for their virtual clocks. Behind everything else: the
 # daemon calibrates at the lowest priority and would wait for every other test to end. ctest's own summary is the
 # last word, unless something failed before.
-log=$root/.build/dev/ctest.log
-nice -n 19 ctest --preset dev -j $(($(nproc) + 1)) --output-log "$log" || failed="$failed tests"
+logs="$logs .build/dev/ctest.log"
+nice -n 19 ctest --preset dev -j $(($(nproc) + 1)) --output-log "$root/.build/dev/ctest.log" ||
+  failed="$failed tests"
 
-# A test that skips shows nothing. Those of tests/skips.txt may; in CI (RECALD_CI=1) no other.
-skipped=$(sed -n 's/.*Test  *#[0-9]*: \([^ ]*\).*\*\*\*Skipped.*/\1/p' "$log" | sort -u)
+# A test that skips shows nothing, in whichever run. Those of tests/skips.txt may; in CI (RECALD_CI=1) no other.
+# shellcheck disable=SC2086  # a list of files
+skipped=$(sed -n 's/.*Test  *#[0-9]*: \([^ ]*\).*\*\*\*Skipped.*/\1/p' $logs | sort -u)
 if [ -n "$skipped" ]; then
   echo "Skipped:"
   printf '  %s\n' $skipped

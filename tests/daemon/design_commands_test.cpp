@@ -133,10 +133,26 @@ TEST_F(DesignCommands, ARunFarFromAllOthersIsToldAndSetAside) {
   EXPECT_NEAR(json["sigma_r"]["chw_peak_kw"].get<double>(),
               sound["sigma_r"]["chw_peak_kw"].get<double>(),
               0.5 * sound["sigma_r"]["chw_peak_kw"].get<double>());
+}
+
+// Three times the usual peak is far outside the other runs, and would be inside with the wild one.
+TEST_F(DesignCommands, ARunThatIsSetAsideDoesNotWidenTheRange) {
+  write_text(design() / "doe_outputs.csv",
+             with_wild_peaks(read_text(design() / "doe_outputs.csv"), {"17"}));
+  const std::string measured = read_text(design() / "measurements.csv");
+  const std::size_t july = measured.find("2020-07,");
+  const std::size_t peak = measured.find(',', measured.find(',', july) + 1) + 1;
+  const std::size_t end = measured.find(',', peak);
+  const double tripled_kW = 3.0 * std::stod(measured.substr(peak, end - peak));
+  write_text(design() / "measurements.csv",
+             measured.substr(0, peak) + std::to_string(tripled_kW) + measured.substr(end));
   const Outcome calibrated = calibrate({"--json"});
   ASSERT_EQ(calibrated.exit_code, kSuccess) << calibrated.err;
-  EXPECT_THAT(warnings_of(Json::parse(calibrated.out)),
-              Contains(HasSubstr("Run 17 is left out: ")));
+  const Json json = Json::parse(calibrated.out);
+  EXPECT_THAT(warnings_of(json), Contains(HasSubstr("Run 17 is left out: ")));
+  ASSERT_EQ(json["extrapolation"].size(), 1U);
+  EXPECT_EQ(json["extrapolation"][0]["output"], "chw_peak_kw");
+  EXPECT_EQ(json["extrapolation"][0]["month"], "2020-07");
 }
 
 TEST_F(DesignCommands, ManyRunsFarFromTheOthersAreNoAccident) {

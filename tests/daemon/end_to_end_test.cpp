@@ -1,5 +1,6 @@
 /// A simulated building's three years from readings to report: what must not change a result, and
 /// that everything promised is there.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -263,6 +264,70 @@ TEST_F(EndToEnd, MonthWithoutWeatherIsLeftOutAndNamed) {
                   ::testing::MatchesRegex("2022-06 is left out: only [0-9]+ % of its weather "
                                           "\\(dry_bulb_C\\) is known\\.")));
   EXPECT_EQ(json["months"].size(), 35u);
+}
+
+/// The station's weather as a file of hourly values at the stamp; radiation is the hour's.
+/// @param rows  weather.csv of a year in means of 15 minutes, its first local hour the first.
+std::string as_epw(const std::vector<std::string>& rows) {
+  std::vector<std::vector<double>> quarters;  // dry_bulb, humidity, wind, direction, sun
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    std::istringstream fields{rows[i].substr(rows[i].find(',') + 1)};
+    std::vector<double>& values = quarters.emplace_back();
+    for (std::string field; std::getline(fields, field, ',');) values.push_back(std::stod(field));
+  }
+  std::string text =
+      "LOCATION,Campus,GA,USA,AMY,0,33.65,-84.43,-5.0,308.0\nDESIGN CONDITIONS,0\n"
+      "TYPICAL/EXTREME PERIODS,0\nGROUND TEMPERATURES,0\nHOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0\n"
+      "COMMENTS 1,\nCOMMENTS 2,\nDATA PERIODS,1,1,Data,Friday,1/1,12/31\n";
+  for (std::size_t hour = 0; 4 * hour + 3 < quarters.size(); ++hour) {
+    const auto& before = quarters[4 * hour + 3];
+    const auto& after = quarters[std::min(4 * hour + 4, quarters.size() - 1)];
+    double sun_W_m2 = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) sun_W_m2 += 0.25 * quarters[4 * hour + i][4];
+    const std::chrono::year_month_day day = std::chrono::sys_days{std::chrono::year{2021} / 1 / 1} +
+                                            std::chrono::days{static_cast<int>(hour / 24)};
+    const auto at_stamp = [&](std::size_t k) { return 0.5 * (before[k] + after[k]); };
+    text += fmt::format(
+        "2021,{},{},{},0,x,{:.2f},99.9,{:.1f},999999,9999,9999,9999,{:.1f},9999,9999,9999,9999,"
+        "9999,"
+        "9999,{:.0f},{:.2f},9999,9999,9999,9999,9999,9999,9999,9999,9999,9999,9999,9999,9999\n",
+        static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()), hour % 24 + 1,
+        at_stamp(0), at_stamp(1), sun_W_m2, before[3], at_stamp(2));
+  }
+  return text;
+}
+
+// Read half an hour late, such a file makes the clock of a sound building's meter look wrong, with
+// certainty.
+TEST(WeatherAtTheStamp, NamesNoClockOfASoundBuilding) {
+  const recald::testing::TemporaryFolder folder;
+  const simulators::Scenario sound{.period = {.years = 1}, .care = simulators::MeterCare::perfect};
+  const auto written =
+      simulators::write_building_feed({.out = folder.path(), .scenario = sound, .seed = 7});
+  ASSERT_TRUE(written.has_value()) << written.error().message;
+  write_text(folder / "weather.epw", as_epw(lines_of(read_text(folder / "weather.csv"))));
+  const std::string site = edited(read_text(folder / "site.toml"),
+                                  "file = \"weather.csv\"\nformat = \"csv\"\nstamps = \"start\"\n"
+                                  "values = \"mean\"\n",
+                                  "file = \"weather.epw\"\nformat = \"epw\"\n");
+  const auto diagnose = [&](const std::string& text) {
+    write_text(folder / "site.toml", text);
+    const Outcome outcome = run({"diagnose", (folder / "site.toml").string(), "--json"});
+    EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+    return Json::parse(outcome.out);
+  };
+  const Json json = diagnose(site);
+  EXPECT_EQ(json["outcome"], "none");
+  for (const Json& candidate : json["candidates"]) {
+    if (candidate["effect"] == "clock_offset") {
+      EXPECT_LT(candidate["probability"].get<double>(), 0.05);
+    }
+  }
+  // The building, and a year of it, would show such a clock.
+  const Json late =
+      diagnose(edited(site, "format = \"epw\"\n", "format = \"epw\"\nvalues = \"mean\"\n"));
+  EXPECT_EQ(late["outcome"], "named");
+  EXPECT_EQ(late["candidates"][0]["effect"], "clock_offset");
 }
 
 }  // namespace

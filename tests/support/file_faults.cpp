@@ -31,6 +31,16 @@ int asked(std::string_view call, int file) {
   return asked(call, size < 0 ? "" : path);
 }
 
+/// Of a name in an open folder, as std::filesystem::remove_all deletes what is in one.
+int asked(std::string_view call, int folder, const char* name) {
+  if (!before_file_change) return 0;
+  if (folder == AT_FDCWD || name[0] == '/') return asked(call, name);
+  char path[PATH_MAX] = "";
+  const std::string link = "/proc/self/fd/" + std::to_string(folder);
+  const ssize_t size = ::readlink(link.c_str(), path, sizeof path - 1);
+  return asked(call, ((size < 0 ? "" : path) + std::string{"/"} + name).c_str());
+}
+
 template <class Function>
 Function real(const char* name) {
   return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
@@ -73,10 +83,13 @@ extern "C" {
 
 RECALD_FORWARD(int, rename, (const char* from, const char* to) noexcept, (from, to), (from, to))
 RECALD_FORWARD(int, unlink, (const char* path) noexcept, (path), (path))
+RECALD_FORWARD(int, unlinkat, (int folder, const char* name, int flags) noexcept,
+               (folder, name, flags), (folder, name))
 RECALD_FORWARD(int, remove, (const char* path) noexcept, (path), (path))
 RECALD_FORWARD(int, mkdir, (const char* path, mode_t mode) noexcept, (path, mode), (path))
-RECALD_FORWARD(int, fsync, (int file), (file), (file))
-RECALD_FORWARD(int, fdatasync, (int file), (file), (file))
+// The disk of the machine is spared: no test needs it to outlive one.
+int fsync(int file) { return recald::testing::asked("fsync", file) != 0 ? -1 : 0; }
+int fdatasync(int file) { return recald::testing::asked("fdatasync", file) != 0 ? -1 : 0; }
 RECALD_FORWARD(int, ftruncate, (int file, off_t size) noexcept, (file, size), (file))
 RECALD_FORWARD(int, ftruncate64, (int file, off64_t size) noexcept, (file, size), (file))
 RECALD_FORWARD(ssize_t, pwrite, (int file, const void* bytes, size_t size, off_t at),

@@ -46,7 +46,7 @@ void PowerCut::watch(const FileChange& change) {
     sync(change.path);
   } else if (change.call == "rename") {
     change_name(change.path, change.to);
-  } else if (change.call == "unlink" || change.call == "remove") {
+  } else if (change.call.starts_with("unlink") || change.call == "remove") {
     if (now_.contains(change.path)) change_name(change.path, "");
   } else if (change.call.starts_with("open") && !now_.contains(change.path)) {
     change_name("", change.path);

@@ -20,15 +20,21 @@ class VirtualLoop final : public Loop {
   void post(Call call) override { after(std::chrono::milliseconds{0}, std::move(call)); }
 
   /// Makes all calls that fall due, each at its time.
-  void run_for(std::chrono::milliseconds length) {
+  /// @return false: it was stopped before.
+  bool run_for(std::chrono::milliseconds length) {
     const auto end = now_.monotonic + length;
+    is_stopped_ = false;
     while (!calls_.empty() && calls_.begin()->first <= end) {
       auto next = calls_.extract(calls_.begin());
       pass(next.key() - now_.monotonic);
       next.mapped()();
+      if (is_stopped_) return false;
     }
     pass(end - now_.monotonic);
+    return true;
   }
+  /// From within a call: it is the last one of this run.
+  void stop() { is_stopped_ = true; }
 
   /// Somebody sets the clock on the wall.
   void set_wall_clock(std::chrono::milliseconds forward) { now_.wall += forward; }
@@ -40,6 +46,7 @@ class VirtualLoop final : public Loop {
   }
 
   Moment now_;
+  bool is_stopped_ = false;
   std::multimap<std::chrono::milliseconds, Call> calls_;  ///< Equal keys keep their order.
 };
 

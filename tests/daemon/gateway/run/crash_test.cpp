@@ -6,19 +6,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-
-#include "adapters/stores/open.hpp"
+#include "daemon/gateway/upkeep/open_store.hpp"
 #include "tests/daemon/gateway/gateway_rig.hpp"
 #include "tests/daemon/gateway/run/witness.hpp"
 #include "tests/support/failing_store.hpp"
 #include "tests/support/faulty_disk.hpp"
+#include "tests/support/seed.hpp"
 
 namespace recald::daemon::crash_test {
 namespace {
 
 using recald::testing::FailingStore;
 using recald::testing::FaultyDisk;
+using recald::testing::given_or;
+using recald::testing::Seed;
 using recald::testing::TemporaryFolder;
 using recald::testing::VirtualLoop;
 using std::chrono::days;
@@ -77,7 +78,7 @@ class Crash : public ::testing::Test {
     const std::filesystem::path copy = folder_ / "looked-at";
     std::filesystem::remove_all(copy);
     std::filesystem::copy(folder, copy);
-    auto opened = stores::open_checked(copy / "site.db", {}, witness_instant());
+    auto opened = open_store(default_store(copy / "site.toml"), witness_instant());
     if (!opened) return opened.error().message;
     if (!opened->recovery.empty()) return opened->recovery;
     Store& store = *opened->store;
@@ -123,12 +124,12 @@ TEST_F(Crash, AtEveryStepOfOpeningAndOfCommits) {
 }
 
 TEST_F(Crash, AMonthOfKillsCostsNothing) {
-  const char* given = std::getenv("RECALD_KILLS");
-  const int kills_wanted = given != nullptr ? std::atoi(given) : 300;
+  const int kills_wanted = given_or("RECALD_KILLS", 300);
   const std::filesystem::path folder = make_folder("store");
   const WallTime end = kRigStart + days{37};
   const auto steps_a_kill = static_cast<std::uint64_t>(240'000 / kills_wanted);
-  Rng rng{1};
+  const Seed seed;
+  Rng rng{seed.value()};
   int kills = 0;
   for (;;) {
     const bool kill = kills < kills_wanted;

@@ -4,18 +4,19 @@
 /// RECALD_CUTS: how often the power goes at least, 300 unless set.
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-
+#include "daemon/gateway/upkeep/open_store.hpp"
 #include "tests/daemon/gateway/gateway_rig.hpp"
 #include "tests/daemon/gateway/run/surviving_store.hpp"
 #include "tests/support/failing_store.hpp"
 #include "tests/support/faulty_disk.hpp"
+#include "tests/support/seed.hpp"
 
 namespace recald::daemon::power_cut_test {
 namespace {
 
 using recald::testing::FailingStore;
 using recald::testing::FaultyDisk;
+using recald::testing::Seed;
 using recald::testing::TemporaryFolder;
 using recald::testing::VirtualLoop;
 using std::chrono::hours;
@@ -48,8 +49,7 @@ class PowerCut : public ::testing::Test {
     };
     GatewayRig rig{watched, loop_, kRigStart};
     rig.begin(site_);
-    const char* given = std::getenv("RECALD_CUTS");
-    const int cuts = given != nullptr ? std::atoi(given) : 0;
+    const int cuts = recald::testing::given_or("RECALD_CUTS", 0);
     for (int hour = 0; hour < 26 || (images_ < cuts && wrong_.empty()); ++hour) {
       loop_.run_for(hours{1});
       StoredJob job{.asked_by = "api", .asked = loop_.now().instant()};
@@ -66,16 +66,21 @@ class PowerCut : public ::testing::Test {
   /// The power goes now: the store is opened again from what is left, and goes on.
   void cut() {
     recald::testing::write_image(disk_.after_power_cut(rng_), folder_ / "left");
-    FaultyDisk left_disk{"left"};
-    auto left = sqlite::SqliteStore::open(folder_ / "left" / "site.db", {.vfs = "left"});
     ++images_;
-    const std::string wrong =
-        left ? testing::what_is_wrong(*left, kMeters, promises_) : left.error().message;
+    auto left = open_store(default_store(folder_ / "left" / "site.toml"), loop_.now().instant());
+    const std::string wrong = what_is_wrong(left);
     if (!wrong.empty()) {
       wrong_.push_back(fmt::format("image {}: {}", images_, wrong));
     } else if (images_ % 20 == 0) {
-      goes_on(*left);
+      goes_on(*left->store);
     }
+  }
+
+  [[nodiscard]] std::string what_is_wrong(const Result<stores::CheckedStore>& left) const {
+    if (!left) return left.error().message;
+    if (!left->recovery.empty()) return left->recovery;
+    const std::string wrong = testing::what_is_wrong(*left->store, kMeters, promises_);
+    return wrong.empty() ? testing::what_energy_is_wrong(*left->store) : wrong;
   }
 
   /// A gateway that starts on what is left books all that the meters counted meanwhile.
@@ -98,7 +103,8 @@ class PowerCut : public ::testing::Test {
   SiteConfig site_ = testing::load_rig_site(folder_.path(), testing::two_meter_site());
   VirtualLoop loop_{kRigStart};
   FaultyDisk disk_{"power-cut"};
-  Rng rng_{1};
+  Seed seed_;
+  Rng rng_{seed_.value()};
   std::vector<Promise> promises_;
   std::vector<std::string> wrong_;
   int images_ = 0;

@@ -25,13 +25,17 @@ inline void promise(const StoreBatch& batch, std::vector<Promise>& promises) {
   }
 }
 
+/// One that is made again from samples may differ from the first in its last bits.
+inline constexpr double kRounding_kW = 1e-9;
+
 /// Looks for promised intervals, for intervals that stand twice or apart, for states that do not
 /// stand with their intervals, and for what the store itself finds.
 /// @param meters    Numbers 0 to meters − 1, each with intervals of a quarter of an hour.
-/// @param promises  None of them superseded.
+/// @param promises  None of them superseded; each is kept within the tolerance.
 /// @return what is wrong; empty: nothing.
 inline std::string what_is_wrong(Store& store, std::uint32_t meters,
-                                 std::span<const Promise> promises) {
+                                 std::span<const Promise> promises,
+                                 double tolerance_kW = kRounding_kW) {
   const auto checked = store.check();
   if (!checked) return checked.error().message;
   if (!checked->damage.empty()) return checked->damage;
@@ -61,9 +65,9 @@ inline std::string what_is_wrong(Store& store, std::uint32_t meters,
   for (const Promise& one : promises) {
     const auto& readings = stored.at(one.meter);
     const auto found = std::ranges::lower_bound(readings, one.start, {}, &metering::Reading::start);
-    const bool is_there =
-        found != readings.end() && found->start == one.start &&
-        (found->mean_kW == one.mean_kW || (std::isnan(found->mean_kW) && std::isnan(one.mean_kW)));
+    const bool is_there = found != readings.end() && found->start == one.start &&
+                          (std::abs(found->mean_kW - one.mean_kW) <= tolerance_kW ||
+                           (std::isnan(found->mean_kW) && std::isnan(one.mean_kW)));
     if (is_there) continue;
     return fmt::format("meter {}: {} was acknowledged and is lost", one.meter,
                        metering::to_string(one.start));

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <stdexcept>
 
@@ -15,6 +16,7 @@ namespace recald::daemon::testing {
 struct Witness {
   static constexpr std::size_t kPromisesMax = 200'000;
   std::chrono::sys_time<std::chrono::milliseconds> now;
+  std::int64_t last_job;  ///< Of those that were taken; 0: none.
   std::size_t count;
   Promise promises[kPromisesMax];
 
