@@ -350,7 +350,7 @@ TEST_F(SumOfMeters, OfPartsThatDoNotFitIsNamed) {
   EXPECT_THAT(run({"check", site()}).err,
               HasSubstr("'sum_of' names 'pv', which meters gas and not electricity"));
   EXPECT_THAT(problem_of("[\"east\", \"all\"]"),
-              HasSubstr("'sum_of' names 'all', whose readings are in no file (source = \"sum\")"));
+              HasSubstr("'sum_of' names 'all', which is a sum itself; name its parts"));
   write("site.toml", site_text() + "file = \"halves.csv\"\n");
   EXPECT_THAT(run({"check", site()}).err, HasSubstr("unknown key 'file'"));
 }

@@ -132,6 +132,93 @@ TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {
   EXPECT_NE(from_store["data_revision"], from_file["data_revision"]);
 }
 
+/// The depot's electricity read by two meters, half of it each: one is polled, one is pushed.
+class HalvesOfALiveSite : public LiveSite {
+ protected:
+  HalvesOfALiveSite() {
+    const std::string live = read_text(folder_ / "live.toml");
+    const auto begin = live.find("[[meter]]");
+    const auto end = live.find("[[meter]]", begin + 1);
+    std::string east = live.substr(begin, end - begin);
+    replace(east, "id = \"electricity\"", "id = \"east\"");
+    const std::string west =
+        "[[meter]]\nid = \"west\"\nutility = \"electricity\"\nsource = \"http\"\n"
+        "interval = \"1h\"\nrated_kW = 400\n\n";
+    const std::string sum =
+        "[[meter]]\nid = \"electricity\"\nutility = \"electricity\"\nrated_kW = 400\n"
+        "sum_of = [\"east\", \"west\"]\n\n";
+    write_text(folder_ / "live.toml", live.substr(0, begin) + east + west + sum + live.substr(end) +
+                                          "\n[http]\nlisten = \"127.0.0.1:8080\"\n");
+    std::istringstream whole{read_text(folder_ / "history.csv")};
+    std::string halves;
+    for (std::string line; std::getline(whole, line);) {
+      const auto name = line.find(",electricity,");
+      if (name == std::string::npos) {
+        halves += line + "\n";
+        continue;
+      }
+      const double half = 0.5 * std::stod(line.substr(name + 13));
+      for (const char* id : {"east", "west"}) {
+        halves += fmt::format("{},{},{:.7f},kW\n", line.substr(0, name), id, half);
+      }
+    }
+    write_text(folder_ / "history.csv", halves);
+  }
+};
+
+TEST_F(HalvesOfALiveSite, AreCalibratedAsTheirSum) {
+  import_history();
+  const auto calibrated = [&](const char* site) {
+    const Outcome outcome =
+        run({"calibrate", path(site), "--json", "--draws", "600", "--burn-in", "200"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  std::string with_file = read_text(folder_ / "site.toml");
+  replace(with_file, "name_in_file = \"heat\"", "name_in_file = \"heat\"\nrated_kW = 900");
+  write_text(folder_ / "site.toml", with_file);
+  const json from_file = calibrated("site.toml");
+  const json from_store = calibrated("live.toml");
+  EXPECT_EQ(from_store["months"], from_file["months"]);
+  EXPECT_EQ(from_store["parameters"], from_file["parameters"]);
+}
+
+TEST_F(HalvesOfALiveSite, ReplayAsTheirSum) {
+  import_history();
+  const Outcome replayed = run({"replay", path("live.toml")});
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
+  EXPECT_THAT(replayed.err, HasSubstr("electricity: 8760 readings every 3600 s (the sum of east, "
+                                      "west)\n"));
+}
+
+// What `check` says to do can be done.
+TEST_F(HalvesOfALiveSite, AreSummedAsCheckSays) {
+  const std::string sum = read_text(folder_ / "live.toml");
+  std::string both = sum;
+  replace(both, "outputs = [\"electricity\"", "outputs = [\"east\", \"west\"");
+  write_text(folder_ / "live.toml", both);
+  EXPECT_THAT(run({"check", path("live.toml")}).err,
+              HasSubstr("add a [[meter]] with sum_of = [\"east\", \"west\"]"));
+  write_text(folder_ / "live.toml", sum);
+  const Outcome check = run({"check", path("live.toml")});
+  EXPECT_EQ(check.exit_code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("the sum of east, west\n"));
+}
+
+TEST_F(HalvesOfALiveSite, OneInAFileIsNamed) {
+  std::string mixed = read_text(folder_ / "live.toml");
+  replace(mixed, "source = \"http\"", "file = \"readings.csv\"");
+  write_text(folder_ / "live.toml", mixed);
+  EXPECT_THAT(run({"check", path("live.toml")}).err,
+              HasSubstr("'sum_of' names 'east', which is read live, and 'west', which is in a "
+                        "file; sum meters of one kind"));
+  replace(mixed, "file = \"readings.csv\"\ninterval = \"1h\"",
+          "source = \"http\"\ninterval = \"30m\"");
+  write_text(folder_ / "live.toml", mixed);
+  EXPECT_THAT(run({"check", path("live.toml")}).err,
+              HasSubstr("'sum_of' names 'east' and 'west', whose intervals are 3600 s and 1800 s"));
+}
+
 // What the API shows is what is calibrated: a month that was closed otherwise is taken as it
 // stands.
 TEST_F(LiveSite, CalibratesOnTheMonthsThatTheStoreHas) {

@@ -37,7 +37,8 @@ Recalibration::Recalibration(Loop& loop, const SiteConfig& site, metering::Local
                              std::function<void(const std::string&)> ask)
     : loop_(loop),
       schedule_(site.model ? site.recalibration.schedule : Schedule{}),
-      modelled_meters_(site.model ? site.model->outputs : std::vector<std::string>{}),
+      modelled_meters_(site.model ? site.without_sums(site.model->outputs)
+                                  : std::vector<std::string>{}),
       calendar_(std::move(calendar)),
       ask_(std::move(ask)),
       self_(std::make_shared<Recalibration*>(this)) {}

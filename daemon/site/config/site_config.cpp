@@ -214,13 +214,14 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   return config;
 }
 
-/// A sum adds recorded meters of its own utility, each once.
+/// A sum adds meters of its own utility, each once: all of them in files, or all in the store.
 void require_parts(TomlReader& table, const SiteConfig& site, const MeterConfig& sum) {
   const auto wrong = [&](const std::string& sentence) {
     table.problem_at("sum_of", "'sum_of' " + sentence);
   };
   if (sum.sum_of.size() < 2) return wrong("needs the ids of two meters or more");
   std::set<std::string> seen;
+  const MeterConfig* first = nullptr;
   for (const SumPart& part : sum.sum_of) {
     const auto index = site.meter_index(part.meter);
     if (!index) {
@@ -229,16 +230,28 @@ void require_parts(TomlReader& table, const SiteConfig& site, const MeterConfig&
     }
     const MeterConfig& meter = site.meters[*index];
     if (!seen.insert(part.meter).second) wrong(fmt::format("names '{}' twice", part.meter));
-    if (meter.source != MeterSource::csv) {
-      wrong(
-          fmt::format("names '{}', whose readings are in no file (source = \"{}\"); only "
-                      "recorded meters can be summed",
-                      part.meter, name_of(meter.source)));
+    if (meter.source == MeterSource::sum) {
+      wrong(fmt::format("names '{}', which is a sum itself; name its parts", part.meter));
+      continue;
     }
     if (meter.meter.utility != sum.meter.utility) {
       wrong(fmt::format("names '{}', which meters {} and not {}", part.meter,
                         metering::to_string(meter.meter.utility),
                         metering::to_string(sum.meter.utility)));
+    }
+    if (first == nullptr) first = &meter;
+    if (meter.is_stored() != first->is_stored()) {
+      const bool is_first = first->is_stored();
+      wrong(fmt::format(
+          "names '{}', which is read live, and '{}', which is in a file; sum meters "
+          "of one kind: `recald import` takes a file into the store of a live meter",
+          is_first ? first->meter.id : part.meter, is_first ? part.meter : first->meter.id));
+    } else if (meter.is_stored() && meter.meter.interval != first->meter.interval) {
+      wrong(
+          fmt::format("names '{}' and '{}', whose intervals are {} s and {} s; give them one "
+                      "'interval'",
+                      first->meter.id, part.meter, first->meter.interval.count(),
+                      meter.meter.interval.count()));
     }
   }
 }
@@ -414,8 +427,14 @@ void read_root(TomlReader root, SiteConfig& config) {
       meter.problem(fmt::format("a second meter has the id '{}'", id));
   }
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    const MeterConfig& meter = config.meters[i];
-    if (meter.source == MeterSource::sum) require_parts(tables[i], config, meter);
+    MeterConfig& meter = config.meters[i];
+    if (meter.source != MeterSource::sum) continue;
+    require_parts(tables[i], config, meter);
+    // Recorded parts show theirs in their files.
+    if (config.comes_from_store(meter)) {
+      const auto part = config.meter_index(meter.sum_of.front().meter);
+      meter.meter.interval = config.meters[*part].meter.interval;
+    }
   }
   if (config.meters.empty()) root.problem("no [[meter]] is described");
   if (auto period = root.table("period")) config.period = read_period(*period);
@@ -455,6 +474,25 @@ std::string_view name_of(MeterSource source) {
 
 bool ModelConfig::has_output(const std::string& meter_id) const {
   return std::ranges::find(outputs, meter_id) != outputs.end();
+}
+
+bool SiteConfig::comes_from_store(const MeterConfig& meter) const {
+  if (meter.sum_of.empty()) return meter.is_stored();
+  const auto part = meter_index(meter.sum_of.front().meter);
+  return part && meters[*part].is_stored();
+}
+
+std::vector<std::string> SiteConfig::without_sums(const std::vector<std::string>& ids) const {
+  std::vector<std::string> all;
+  for (const std::string& one : ids) {
+    const auto index = meter_index(one);
+    if (!index || meters[*index].sum_of.empty()) {
+      all.push_back(one);
+      continue;
+    }
+    for (const SumPart& part : meters[*index].sum_of) all.push_back(part.meter);
+  }
+  return all;
 }
 
 std::optional<std::size_t> SiteConfig::meter_index(const std::string& meter_id) const {

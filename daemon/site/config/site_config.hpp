@@ -51,7 +51,7 @@ struct MeterConfig {
   std::optional<metering::CounterSettings> counter;
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
   std::optional<LiveMeterConfig> live;      ///< source = "modbus".
-  std::vector<SumPart> sum_of;              ///< source = sum: recorded meters of the site.
+  std::vector<SumPart> sum_of;  ///< source = sum: meters of the site, all in files or all stored.
   std::string text;  ///< The table as TOML: whether a file that is read again says something else.
 
   /// Its readings are in the site's store, and not in a file.
@@ -109,6 +109,12 @@ struct SiteConfig {
 
   /// Index of a meter by its id.
   [[nodiscard]] std::optional<std::size_t> meter_index(const std::string& meter_id) const;
+
+  /// Whether a meter's readings are in the store, or those of a sum's parts.
+  [[nodiscard]] bool comes_from_store(const MeterConfig& meter) const;
+
+  /// The same meters, with its parts in the place of each sum.
+  [[nodiscard]] std::vector<std::string> without_sums(const std::vector<std::string>& ids) const;
 };
 
 /// Reads and checks a site file. Data files are not opened; paths are relative to the site file,

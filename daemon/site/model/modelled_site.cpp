@@ -16,22 +16,29 @@ namespace {
 /// and another one that has just been added, or that says nonsense, is none of the model's
 /// business.
 void leave_out_unmodelled_live_meters(SiteConfig& site) {
-  const auto electricity = profile_meter(site);
-  const std::string profiled = electricity ? site.meters[*electricity].meter.id : "";
-  std::erase_if(site.meters, [&](const MeterConfig& config) {
-    return config.is_stored() && !site.model->has_output(config.meter.id) &&
-           config.meter.id != profiled;
-  });
+  std::vector<std::string> needed = site.model->outputs;
+  if (const auto electricity = profile_meter(site)) {
+    needed.push_back(site.meters[*electricity].meter.id);
+  }
+  const std::vector<std::string> parts = site.without_sums(needed);
+  needed.insert(needed.end(), parts.begin(), parts.end());
+  std::vector<MeterConfig> kept;
+  for (const MeterConfig& config : site.meters) {
+    const bool is_needed = std::ranges::find(needed, config.meter.id) != needed.end();
+    if (is_needed || !site.comes_from_store(config)) kept.push_back(config);
+  }
+  site.meters = std::move(kept);
 }
 
 /// @pre what the model has no use for is left out
 Result<void> require_live_months(const SiteConfig& site, const Recording& recording) {
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
-    if (!site.meters[i].is_stored() || !recording.meters[i].figures.empty()) continue;
+    const MeterConfig& config = site.meters[i];
+    if (!site.comes_from_store(config) || !recording.meters[i].figures.empty()) continue;
     return failure(ErrorCode::not_enough_data,
                    fmt::format("the store has no closed month of meter '{}' yet, which the model "
                                "needs; the daemon closes a month some days after its end",
-                               site.meters[i].meter.id));
+                               config.meter.id));
   }
   return {};
 }
@@ -80,7 +87,7 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
   auto live = open_live_readings(site.config);
   if (!live) return tl::unexpected(live.error());
   if (*live) {
-    if (auto taken = take_closed_months(site.config, **live, *recording); !taken) {
+    if (auto taken = take_closed_months(site.config, site.calendar, **live, *recording); !taken) {
       return tl::unexpected(taken.error());
     }
   }

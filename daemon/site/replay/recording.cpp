@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "core/absent.hpp"
@@ -154,8 +155,8 @@ class Recorder {
   std::vector<SlotRecord> slots_;
 };
 
-/// Adds up what recorded meters read in the same interval. Files come one after the other, so a sum
-/// is known when all have been read.
+/// Adds up what meters read in the same interval. They come one after the other, so a sum is known
+/// when all have been read.
 class Sum {
  public:
   Sum(std::size_t meter, const SiteConfig& site) : meter_(meter) {
@@ -173,19 +174,26 @@ class Sum {
     Interval& interval = intervals_[reading.start];
     if (!interval.parts.insert(meter).second) return;
     interval.sum_kW += sign->second * reading.mean_kW;
-    interval.is_measured = interval.is_measured && reading.validity == metering::Validity::ok;
-  }
-
-  /// In order of time. An interval that lacks a part, or of which one says it is no measurement, is
-  /// blank.
-  void hand_out(const std::function<void(const metering::Reading&)>& sink) const {
-    for (const auto& [start, interval] : intervals_) {
-      const bool is_whole = interval.parts.size() == signs_.size() && interval.is_measured;
-      sink({.meter = 0, .start = start, .mean_kW = is_whole ? interval.sum_kW : kAbsent});
+    if (reading.validity == metering::Validity::scaled) {
+      interval.validity = reading.validity;
+    } else if (reading.validity != metering::Validity::ok) {
+      interval.is_known = false;
     }
   }
 
-  /// The grid that all parts have. @pre the files have rows of all of them
+  /// In order of time. An interval that lacks a part, or of which one says it is no measurement, is
+  /// blank. Where a counter knows one's sum but not its shape, so it is with all of them.
+  void hand_out(const std::function<void(const metering::Reading&)>& sink) const {
+    for (const auto& [start, interval] : intervals_) {
+      if (interval.parts.size() == signs_.size() && interval.is_known) {
+        sink({.start = start, .mean_kW = interval.sum_kW, .validity = interval.validity});
+      } else {
+        sink({.start = start, .mean_kW = kAbsent});
+      }
+    }
+  }
+
+  /// The grid that all parts have. @pre they are in files, with rows of all of them
   /// @return or a sentence about two that differ
   [[nodiscard]] Result<csv::MeterInFile> grid(const SiteConfig& site,
                                               const Recording& recording) const {
@@ -209,19 +217,39 @@ class Sum {
   struct Interval {
     std::set<std::size_t> parts;
     double sum_kW = 0.0;
-    bool is_measured = true;
+    bool is_known = true;
+    metering::Validity validity = metering::Validity::ok;
   };
   std::size_t meter_;
   std::map<std::size_t, double> signs_;  ///< By meter of the site.
   std::map<Instant, Interval> intervals_;
 };
 
-std::vector<Sum> sums_of(const SiteConfig& site) {
+std::vector<Sum> sums_of_files(const SiteConfig& site) {
   std::vector<Sum> sums;
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
-    if (site.meters[i].source == MeterSource::sum) sums.emplace_back(i, site);
+    const MeterConfig& config = site.meters[i];
+    const bool is_of_files = config.source == MeterSource::sum && !site.comes_from_store(config);
+    if (is_of_files) sums.emplace_back(i, site);
   }
   return sums;
+}
+
+/// The readings in the store of a meter, or of a sum of such. @return how many of meters there are.
+Result<std::uint64_t> for_each_stored(const SiteConfig& site, std::size_t meter,
+                                      const TimeSpan& span, LiveReadings& live,
+                                      const ReadingSink& sink) {
+  if (site.meters[meter].is_stored()) return live.for_each(site.meters[meter], span, sink);
+  Sum sum{meter, site};
+  for (const SumPart& part : site.meters[meter].sum_of) {
+    const std::size_t index = *site.meter_index(part.meter);
+    const auto count =
+        live.for_each(site.meters[index], span,
+                      [&](const metering::Reading& reading) { sum.take(index, reading); });
+    if (!count) return count;
+  }
+  sum.hand_out(sink);
+  return std::uint64_t{0};
 }
 
 /// @pre the files have been read
@@ -258,6 +286,27 @@ TimeSpan asked_span(const ReplayOptions& options, const metering::LocalCalendar&
   return span;
 }
 
+/// The daemon closes its parts and not the sum: peaks do not add up.
+Result<std::vector<metering::MonthlyFigure>> months_of_sum(const SiteConfig& site,
+                                                           std::size_t meter,
+                                                           const metering::LocalCalendar& calendar,
+                                                           LiveReadings& live) {
+  std::map<metering::Month, metering::MonthlyFigure> latest;
+  metering::MonthCloser closer{
+      calendar, {site.meters[meter].meter}, site.closing, [&](ClosedMonth&& closed) {
+        latest[closed.figure.month] = std::move(closed.figure);
+      }};
+  const auto read = for_each_stored(site, meter, kAllTime, live, [&](metering::Reading reading) {
+    reading.meter = 0;
+    closer.add(reading);
+  });
+  if (!read) return tl::unexpected(read.error());
+  closer.finish();
+  std::vector<metering::MonthlyFigure> figures;
+  for (auto& [month, figure] : latest) figures.push_back(std::move(figure));
+  return figures;
+}
+
 }  // namespace
 
 bool is_site_different(const Recording& recording, metering::Month month) {
@@ -283,7 +332,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                  on_month_closed(meters[closed.meter], closed.figure, clock.now());
                                }};
   const TimeSpan asked = asked_span(options, calendar);
-  std::vector<Sum> sums = sums_of(site);
+  std::vector<Sum> sums = sums_of_files(site);
   Instant last_end = Instant::min();
   const auto take = [&](std::size_t meter, const metering::Reading& reading) {
     if (!asked.contains(reading.start)) return;
@@ -320,10 +369,9 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   }
   if (auto whole = require_rows(site, recording); !whole) return tl::unexpected(whole.error());
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
-    const MeterConfig& config = site.meters[i];
-    if (live == nullptr || !config.is_stored()) continue;
-    const auto count = live->for_each(config, kAllTime,
-                                      [&](const metering::Reading& reading) { take(i, reading); });
+    if (live == nullptr || !site.comes_from_store(site.meters[i])) continue;
+    const auto count = for_each_stored(site, i, kAllTime, *live,
+                                       [&](const metering::Reading& reading) { take(i, reading); });
     if (!count) return tl::unexpected(count.error());
     recording.readings += *count;
   }
@@ -340,11 +388,19 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   return recording;
 }
 
-Result<void> take_closed_months(const SiteConfig& site, LiveReadings& live, Recording& recording) {
+Result<void> take_closed_months(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                                LiveReadings& live, Recording& recording) {
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
-    if (!config.is_stored()) continue;
+    if (!site.comes_from_store(config)) continue;
     MeterRecord& record = recording.meters[i];
+    if (config.source == MeterSource::sum) {
+      auto figures = months_of_sum(site, i, calendar, live);
+      if (!figures) return tl::unexpected(figures.error());
+      record.figures = std::move(*figures);
+      find_changes(record);
+      continue;
+    }
     auto figures = live.months(config);
     if (!figures) return tl::unexpected(figures.error());
     record.figures = std::move(*figures);
@@ -368,7 +424,7 @@ Result<void> take_hours(const SiteConfig& site, const metering::LocalCalendar& c
   const TimeSpan span = metering::span_judged_by(months, calendar);
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
-    if (!config.is_stored()) continue;
+    if (!site.comes_from_store(config)) continue;
     MeterRecord& record = recording.meters[i];
     SlotRecord slots;
     std::vector<metering::MonthlyFigure> figures;
@@ -377,7 +433,7 @@ Result<void> take_hours(const SiteConfig& site, const metering::LocalCalendar& c
                                    if (month < months.first || months.last < month) return;
                                    slots.take(closed, record);
                                  }};
-    const auto count = live.for_each(config, span, [&](metering::Reading reading) {
+    const auto count = for_each_stored(site, i, span, live, [&](metering::Reading reading) {
       reading.meter = 0;
       closer.add(reading);
     });

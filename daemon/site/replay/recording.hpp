@@ -90,9 +90,11 @@ class LiveReadings {
                                               LiveReadings* live = nullptr);
 
 /// Gives live meters their figures: the months that the daemon has closed, not closed once more.
+/// Those of their sums are made of the readings.
 /// @return or the store's failure.
-[[nodiscard]] Result<void> take_closed_months(const SiteConfig& site, LiveReadings& live,
-                                              Recording& recording);
+[[nodiscard]] Result<void> take_closed_months(const SiteConfig& site,
+                                              const metering::LocalCalendar& calendar,
+                                              LiveReadings& live, Recording& recording);
 
 /// Gives live meters their hours and findings in these months: what profiles, pictures and
 /// diagnoses need of the readings. Figures stay as they are.

@@ -92,6 +92,19 @@ TEST_F(RecalibrationTest, MetersThatAreNotModelledAreNoReason) {
   EXPECT_THAT(asked_, IsEmpty());
 }
 
+TEST_F(RecalibrationTest, AMonthOfAPartOfAModelledSumIsAReason) {
+  for (const char* id : {"east", "west"}) {
+    site_.meters.push_back({.meter = {.id = id}, .source = MeterSource::http});
+  }
+  site_.meters.push_back({.meter = {.id = "main"},
+                          .source = MeterSource::sum,
+                          .sum_of = {{"east", 1.0}, {"west", 1.0}}});
+  begin("monthly");
+  recalibration_->month_closed("east");
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(asked_, ElementsAre("month 2026-03-28T00:01:00Z"));
+}
+
 TEST_F(RecalibrationTest, NeverMeansNever) {
   begin("never");
   recalibration_->month_closed("main");
