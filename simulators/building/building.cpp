@@ -24,7 +24,7 @@ AirHandlerDesign design_of(const Truth& truth, std::size_t index, double supply_
   const Drawings& drawings = truth.drawings;
   const bool perimeter = serves_perimeter(index);
   const AirHandlerPlate& plate = perimeter ? drawings.perimeter_air : drawings.core_air;
-  const bool scheduled = perimeter || !drawings.core_runs_always;
+  const bool scheduled = !drawings.runs_always(perimeter);
   return {.supply_kg_s = supply_kg_s,
           .outdoor_kg_s = kDesignDensity_kg_m3 * truth.outdoor_m3_s[index],
           .supply_C = truth.supply_C[index],
@@ -87,7 +87,7 @@ void Building::begin_day(metering::Day day) {
   day_kind_ = calendar_.kind_of(day);
   const bool saturday = day_kind_ == DayKind::saturday && truth_.saturday_operation;
   timetable_ = {.kind = day_kind_,
-                .air = day_kind_ == DayKind::workday
+                .air = is_open(truth_.drawings.open_days, day_kind_)
                            ? RunningHours{truth_.occupied_from_h, truth_.occupied_to_h}
                        : saturday ? RunningHours{8.0, 14.0}
                                   : kNever};
@@ -162,7 +162,7 @@ AirHandlerCommand Building::command_at_night(std::size_t air_handler, const Mome
 }
 
 AirHandlerCommand Building::command_always(const Moment& now, const Operation& operation) const {
-  const bool day = now.day_kind == DayKind::workday && now.air_runs;
+  const bool day = is_open(truth_.drawings.open_days, now.day_kind) && now.air_runs;
   const double share = day ? 1.0 : std::max(truth_.core_night_share, operation.air.night_run_share);
   return {AirHandlerMode::ventilate, share, share, 1.0, operation.air};
 }
@@ -170,7 +170,7 @@ AirHandlerCommand Building::command_always(const Moment& now, const Operation& o
 void Building::run_air_handler(std::size_t index, const Moment& now, const Operation& operation) {
   const RoomOperation& rooms = operation.rooms;
   const std::size_t storey = index / 2;
-  const bool scheduled = serves_perimeter(index) || !truth_.drawings.core_runs_always;
+  const bool scheduled = !truth_.drawings.runs_always(serves_perimeter(index));
   const AirHandlerCommand command =
       scheduled ? command_scheduled(index, now, operation) : command_always(now, operation);
   if (serves_perimeter(index)) {
@@ -218,12 +218,13 @@ void Building::add_gains(const Moment& now, const Operation& operation) {
   const Drawings& drawings = truth_.drawings;
   const RoomOperation& rooms = operation.rooms;
   const auto& effects = envelope_.expose(now.outdoors, pressurised_, operation.envelope);
-  const auto& powers =
-      internal_loads_.advance(people_, now.local.minute_of_day, day_kind_ == DayKind::workday);
+  const auto& powers = internal_loads_.advance(people_, now.local.minute_of_day,
+                                               is_open(drawings.open_days, day_kind_));
   const double floor_m2 = drawings.floor_area_m2();
   const double special_m2 = static_cast<double>(drawings.storeys) * drawings.zone_m2(special);
   load_.lights_and_plugs_W = load_.other_electricity_W = load_.other_fuel_W = 0.0;
   double planned_present = 0.0;
+  double planned_awake = 0.0;
   for (std::size_t zone = 0; zone < zone_loads_.size(); ++zone) {
     const std::size_t side = zone % kZonesPerStorey;
     const double weight = drawings.storey_weight(zone / kZonesPerStorey);
@@ -249,14 +250,17 @@ void Building::add_gains(const Moment& now, const Operation& operation) {
     loads.outdoor = now.outdoors.air;
     load_.lights_and_plugs_W += weight * (drawn_lights_W + drawn_plugs_W);
     planned_present += planned;
+    planned_awake += planned * drawings.rooms(side).awake_share(now.local.minute_of_day);
   }
-  load_.people_share = people_.assigned() > 0 ? planned_present / people_.assigned() : 0.0;
+  const double assigned = std::max(1, people_.assigned());
+  load_.people_share = planned_present / assigned;
+  load_.awake_share = planned_awake / assigned;
   constexpr double dusk_sine = -0.05;  // lamps switch when the sun is 3 degrees below the horizon
   load_.dark = now.outdoors.sun.up < dusk_sine;
 }
 
 void Building::exchange_through_doors() {
-  constexpr double exchange_per_door_kg_s = 0.12;
+  const double exchange_kg_s = truth_.drawings.between_rooms_kg_s;
   for (ZoneLoads& loads : zone_loads_) loads.exchange_W = loads.exchange_moisture_kg_s = 0.0;
   for (std::size_t storey = 0; storey < truth_.drawings.storeys_simulated(); ++storey) {
     const std::size_t centre = storey * kZonesPerStorey + core;
@@ -265,9 +269,8 @@ void Building::exchange_through_doors() {
       const AirState& inner = zones()[centre].air();
       const AirState& outer = zones()[room].air();
       const double heat_W =
-          exchange_per_door_kg_s * kDryAirHeat_J_kgK * (inner.temperature_C - outer.temperature_C);
-      const double moisture_kg_s =
-          exchange_per_door_kg_s * (inner.humidity_kg_kg - outer.humidity_kg_kg);
+          exchange_kg_s * kDryAirHeat_J_kgK * (inner.temperature_C - outer.temperature_C);
+      const double moisture_kg_s = exchange_kg_s * (inner.humidity_kg_kg - outer.humidity_kg_kg);
       zone_loads_[room].exchange_W += heat_W;
       zone_loads_[room].exchange_moisture_kg_s += moisture_kg_s;
       zone_loads_[centre].exchange_W -= heat_W;

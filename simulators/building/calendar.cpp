@@ -64,21 +64,73 @@ void add_school_breaks(std::vector<Day>& list, year y) {
   add_span(list, y / December / 21, y / December / 31);
 }
 
-}  // namespace
+/// Trade goes on where others rest, but for the days on which nobody buys.
+std::vector<Day> trading_holidays(year y) {
+  using namespace std::chrono;
+  return {y / January / 1, sys_days{y / November / Thursday[4]}, y / December / 25};
+}
 
-std::vector<Day> Calendar::holidays_of(year y) const {
-  std::vector<Day> list = public_holidays(y);
-  switch (use_) {
+void add_mondays(std::vector<Day>& list, year y) {
+  using namespace std::chrono;
+  for (sys_days day{y / January / Monday[1]}; year_month_day{day}.year() == y; day += weeks{1}) {
+    list.emplace_back(day);
+  }
+}
+
+std::vector<Day> all_holidays(Use use, year y) {
+  using namespace std::chrono;
+  std::vector<Day> list;
+  switch (use) {
     case Use::laboratory:
+      list = public_holidays(y);
       add_campus_days(list, y);
       break;
     case Use::office:
+      list = public_holidays(y);
       add_office_days(list, y);
       break;
     case Use::school:
+      list = public_holidays(y);
       add_school_breaks(list, y);
       break;
+    case Use::clinic:
+    case Use::warehouse:
+      list = public_holidays(y);
+      list.push_back(observed(y / December / 25));
+      break;
+    case Use::shop:
+      list = trading_holidays(y);
+      list.push_back(y / July / 4);
+      break;
+    case Use::restaurant:
+      list = trading_holidays(y);
+      add_mondays(list, y);
+      break;
+    case Use::gym:
+      list = trading_holidays(y);
+      break;
+    case Use::hotel:
+      break;
   }
+  return list;
+}
+
+}  // namespace
+
+bool is_open(OpenDays days, DayKind kind) {
+  switch (kind) {
+    case DayKind::workday:
+      return true;
+    case DayKind::saturday:
+      return days != OpenDays::workdays;
+    case DayKind::sunday:
+      return days == OpenDays::every_day;
+  }
+  return false;
+}
+
+std::vector<Day> Calendar::holidays_of(year y) const {
+  std::vector<Day> list = all_holidays(use_, y);
   std::ranges::sort(list);
   const auto twice = std::ranges::unique(list);
   list.erase(twice.begin(), twice.end());
@@ -94,7 +146,7 @@ DayKind Calendar::kind_of(Day day) const {
 }
 
 double Calendar::season_attendance(Day day) const {
-  if (use_ == Use::school) return 1.0;  // its breaks are holidays
+  if (use_ != Use::laboratory && use_ != Use::office) return 1.0;  // what there is are holidays
   const auto month = static_cast<unsigned>(day.month());
   const auto date = static_cast<unsigned>(day.day());
   if ((month == 12 && date >= 19) || (month == 1 && date <= 4)) return 0.50;

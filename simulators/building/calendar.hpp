@@ -10,12 +10,14 @@ namespace recald::simulators {
 
 enum class DayKind { workday, saturday, sunday };
 
+[[nodiscard]] bool is_open(OpenDays days, DayKind kind);
+
 class Calendar {
  public:
   explicit Calendar(Use use) : use_(use) {}
 
   /// Observed holidays of one year, in order: these days run like Sundays. A school's include its
-  /// breaks but for the summer.
+  /// breaks but for the summer, a restaurant's all Mondays. A hotel has none.
   [[nodiscard]] std::vector<metering::Day> holidays_of(std::chrono::year year) const;
 
   /// A holiday counts as a Sunday.

@@ -25,6 +25,18 @@ std::string_view to_string(Use use) {
       return "office";
     case Use::school:
       return "school";
+    case Use::shop:
+      return "shop";
+    case Use::hotel:
+      return "hotel";
+    case Use::clinic:
+      return "clinic";
+    case Use::warehouse:
+      return "warehouse";
+    case Use::restaurant:
+      return "restaurant";
+    case Use::gym:
+      return "gym";
   }
   return "";
 }

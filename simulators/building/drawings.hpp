@@ -11,14 +11,22 @@
 #include <string>
 #include <string_view>
 
+#include "simulators/building/visits.hpp"
 #include "simulators/climate/climates.hpp"
 #include "simulators/climate/sun.hpp"
 
 namespace recald::simulators {
 
-enum class Use { laboratory, office, school };
-enum class CoolingPlant { district, chiller };
+enum class Use { laboratory, office, school, shop, hotel, clinic, warehouse, restaurant, gym };
+inline constexpr std::array kUses{Use::laboratory, Use::office,     Use::school,
+                                  Use::shop,       Use::hotel,      Use::clinic,
+                                  Use::warehouse,  Use::restaurant, Use::gym};
+/// Packaged units cool the air itself: no chilled water, and no meter for it.
+enum class CoolingPlant { district, chiller, packaged };
 enum class HeatingPlant { district_steam, district_water, boiler, heat_pump };
+
+/// On which days people work there. Holidays are Sundays.
+enum class OpenDays { workdays, workdays_and_saturdays, every_day };
 
 /// A storey's zones: rooms along the four facades, the core, and special rooms inside it. In the
 /// laboratory these are offices, the open laboratory, and equipment rooms, which are small and hot.
@@ -42,6 +50,14 @@ struct RoomUse {
   double plugs_working_share;   ///< Of them, 8 to 18 h on working days.
   double plugs_habit;           ///< One standard deviation from day to day.
   bool appliance_runs;          ///< Autoclaves, ovens, kilns: started and left to end.
+  bool lit_while_open = false;  ///< Sales floors, halls: all lights, however many people are there.
+  /// Who comes and goes all day; absent: people who arrive, lunch and leave as above.
+  std::optional<Visits> visits = {};
+
+  /// Of the people present, those who use lights, devices and warm water.
+  [[nodiscard]] double awake_share(int minute_of_day) const {
+    return visits ? visits->awake[static_cast<std::size_t>(minute_of_day / 60)] : 1.0;
+  }
 };
 
 /// One air handler's nameplate.
@@ -73,6 +89,9 @@ struct Drawings {
   double width_m = 40.0;   ///< East and west facades.
   double perimeter_depth_m = 6.0;
   double special_share_of_core = 0.3;
+  /// One large room under its own roof: air finds its way in over the whole height and through all
+  /// of the roof.
+  bool hall = false;
 
   double window_share = 0.35;
   double skylight_share = 0.0;  ///< Of the core's roof.
@@ -86,7 +105,9 @@ struct Drawings {
   double wall_absorptance = 0.6;
   double roof_absorptance = 0.7;
   double leakage_cm2_m2 = 1.3;  ///< At 4 Pa, per m² of exterior wall and roof.
-  bool heavy = true;            ///< Concrete slabs and block walls, or steel deck and stud walls.
+  /// Of the rooms against outdoors, while the perimeter's air handler brings outdoor air.
+  double pressurised_Pa = 3.0;
+  bool heavy = true;  ///< Concrete slabs and block walls, or steel deck and stud walls.
 
   double occupancy_person_m2 = 0.05;
   double sensible_W_person = 75.0;
@@ -95,19 +116,29 @@ struct Drawings {
   RoomUse core_rooms{1.0, 9.0, 9.2, 0.25, 0.16, 10.5, 27.0, 0.42, 0.32, 0.0, 0.06, true};
   RoomUse special_rooms{0.0, 0.0, 0.0, 0.0, 0.0, 10.5, 60.0, 0.60, 0.0, 0.06, 0.06, true};
   /// People present / assigned by local hour, as the site file has it.
-  std::array<double, 24> presence_workday{0,    0,    0,    0,    0,    0,    0.03, 0.15,
-                                          0.41, 0.67, 0.78, 0.79, 0.62, 0.68, 0.79, 0.80,
-                                          0.72, 0.46, 0.19, 0.07, 0.04, 0.03, 0.01, 0};
-  std::array<double, 24> presence_weekend{0,    0,    0,    0,    0,    0,    0,    0.01,
-                                          0.01, 0.02, 0.03, 0.04, 0.04, 0.04, 0.03, 0.03,
-                                          0.02, 0.01, 0.01, 0,    0,    0,    0,    0};
+  HourlyShares presence_workday{0,    0,    0,    0,    0,    0,    0.03, 0.15,
+                                0.41, 0.67, 0.78, 0.79, 0.62, 0.68, 0.79, 0.80,
+                                0.72, 0.46, 0.19, 0.07, 0.04, 0.03, 0.01, 0};
+  HourlyShares presence_saturday{0,    0,    0,    0,    0,    0,    0,    0.01,
+                                 0.01, 0.02, 0.03, 0.04, 0.04, 0.04, 0.03, 0.03,
+                                 0.02, 0.01, 0.01, 0,    0,    0,    0,    0};
+  HourlyShares presence_sunday = presence_saturday;
   /// Fewer people come in summer, between the years and in breaks, and nobody tells the user.
   bool attendance_follows_season = true;
+  OpenDays open_days = OpenDays::workdays;
+  double working_from_h = 8.0;  ///< On open days: what runs while people work, and lit halls.
+  double working_to_h = 18.0;
+  double cleaning_from_h = 19.0;  ///< On open days; never where `to` is not later.
+  double cleaning_to_h = 21.5;
+  /// Air through the doors between the core and each room around it, kg/s; a sales floor has none.
+  double between_rooms_kg_s = 0.12;
   double exterior_kW = 6.0;
   double zone_heat_share = 0.9;  ///< Of lights and plugs; the rest leaves with the exhaust.
 
   double cooling_setpoint_C = 24.0;
   double heating_setpoint_C = 21.0;
+  double heating_setpoint_min_C = 20.3;  ///< Thermostats found in such buildings.
+  double heating_setpoint_max_C = 21.9;
   double night_cooling_C = 29.0;
   double night_heating_C = 17.0;
   double occupied_from_h = 6.0;
@@ -116,7 +147,8 @@ struct Drawings {
   /// Whether air handlers with a timetable run 8-14 h on Saturdays; absent: the drawings do not
   /// say.
   std::optional<bool> saturday_operation;
-  bool core_runs_always = true;   ///< The core's air handlers never stop.
+  bool perimeter_runs_always = false;  ///< The perimeter's air handlers never stop.
+  bool core_runs_always = true;        ///< Likewise the core's.
   double core_night_share = 0.9;  ///< Of their outdoor air and minimum flow, where they never stop.
   double supply_C = 13.0;
   /// Largest supply flow of the zone on one storey, m³/s, in the order of `Side`.
@@ -144,6 +176,8 @@ struct Drawings {
   double chiller_cop = 5.2;          ///< Nameplate at full load, towers included.
   double heat_pump_cop = 3.2;        ///< Nameplate at 8.3 degC outdoors.
   double hot_water_m3_day = 6.0;
+  /// Of the day's mean flow, with all people there; a quarter of it runs whoever is in.
+  double hot_water_with_people = 2.4;
   double hot_water_C = 55.0;
   double mains_C = 17.0;
   double hot_water_efficiency = 0.85;
@@ -170,6 +204,13 @@ struct Drawings {
   [[nodiscard]] double core_and_special_m2() const {
     return (length_m - 2 * perimeter_depth_m) * (width_m - 2 * perimeter_depth_m);
   }
+  [[nodiscard]] double perimeter_floor_share() const {
+    return 1.0 - core_and_special_m2() / storey_m2();
+  }
+  /// Of all people, those in the rooms along the facades; the others are in the core.
+  [[nodiscard]] double perimeter_people_share() const {
+    return perimeter_rooms.crowding * (storey_m2() - core_and_special_m2()) / storey_m2();
+  }
   [[nodiscard]] double facade_length_m(std::size_t side) const {
     return side == south || side == north ? length_m : width_m;
   }
@@ -179,6 +220,11 @@ struct Drawings {
   [[nodiscard]] const RoomUse& rooms(std::size_t side) const {
     return side == special ? special_rooms : side == core ? core_rooms : perimeter_rooms;
   }
+  [[nodiscard]] bool runs_always(bool perimeter) const {
+    return perimeter ? perimeter_runs_always : core_runs_always;
+  }
+  /// No air handler ever stops: the timetable means nothing.
+  [[nodiscard]] bool never_stops() const { return perimeter_runs_always && core_runs_always; }
   [[nodiscard]] double min_share(std::size_t side) const {
     return side == special ? special_min_share
            : side == core  ? core_min_share

@@ -98,6 +98,13 @@ double wind_pressure_coefficient(double wind_from_deg, double facade_azimuth) {
   return facing > 0.0 ? -0.35 + 0.95 * facing : -0.35 + 0.10 * facing;
 }
 
+/// Leakage area is defined at 4 Pa with discharge coefficient 1; cracks follow a power of 0.65.
+double through_cracks_kg_s(double area_m2, double inward_Pa, double density) {
+  if (inward_Pa <= 0.0) return 0.0;
+  const double flow_at_4_Pa_m3_s = area_m2 * std::sqrt(2.0 * 4.0 / density);
+  return density * flow_at_4_Pa_m3_s * std::pow(inward_Pa / 4.0, 0.65);
+}
+
 }  // namespace
 
 Envelope::Envelope(const Truth& truth, AirState initial)
@@ -253,6 +260,14 @@ double Envelope::exposed_heat_W() const {
   return sum_W;
 }
 
+/// Exterior area whose cracks open into a facade's zone.
+double Envelope::leaking_m2(std::size_t side, bool top) const {
+  const Drawings& drawings = truth_.drawings;
+  double roof_m2 = top ? drawings.zone_m2(side) : 0.0;
+  if (drawings.hall) roof_m2 /= drawings.perimeter_floor_share();  // the core's part as well
+  return storey_facade_m2(drawings, side) + roof_m2;
+}
+
 double Envelope::infiltration_kg_s(std::size_t zone, const Outdoors& outdoors, double pressurised,
                                    const EnvelopeOperation& operation) const {
   const Drawings& drawings = truth_.drawings;
@@ -272,18 +287,20 @@ double Envelope::infiltration_kg_s(std::size_t zone, const Outdoors& outdoors, d
   const double warmer_inside_K = zones_[zone].air().temperature_C - outdoors.air.temperature_C;
   const double stack_Pa = density * 9.81 * (neutral_m - height_m) * warmer_inside_K /
                           (outdoors.air.temperature_C + 273.15);
-  const double inward_Pa = wind_Pa + stack_Pa - (3.0 * pressurised - 0.5);
-  // Leakage area is defined at 4 Pa with discharge coefficient 1; cracks follow a power of 0.65.
+  const double inward_Pa = wind_Pa + stack_Pa - (drawings.pressurised_Pa * pressurised - 0.5);
+  const double area_m2 = truth_.leakage_cm2_m2 * 1e-4 * leaking_m2(side, top);
   double flow_kg_s = 0.0;
-  if (inward_Pa > 0.0) {
-    const double leaking_m2 =
-        storey_facade_m2(drawings, side) + (top ? drawings.zone_m2(side) : 0.0);
-    const double area_m2 = truth_.leakage_cm2_m2 * 1e-4 * leaking_m2;
-    const double flow_at_4_Pa_m3_s = area_m2 * std::sqrt(2.0 * 4.0 / density);
-    flow_kg_s = density * flow_at_4_Pa_m3_s * std::pow(inward_Pa / 4.0, 0.65);
-    if (storey == 0) {
-      flow_kg_s += kDischarge * operation.opening_m2[side] * std::sqrt(2.0 * density * inward_Pa);
-    }
+  if (drawings.hall) {
+    // Half of the cracks lie a quarter of the height below the middle, half above.
+    const double within_Pa = density * 9.81 * 0.25 * drawings.storey_height_m * warmer_inside_K /
+                             (outdoors.air.temperature_C + 273.15);
+    flow_kg_s = through_cracks_kg_s(0.5 * area_m2, inward_Pa + within_Pa, density) +
+                through_cracks_kg_s(0.5 * area_m2, inward_Pa - within_Pa, density);
+  } else {
+    flow_kg_s = through_cracks_kg_s(area_m2, inward_Pa, density);
+  }
+  if (storey == 0 && inward_Pa > 0.0) {
+    flow_kg_s += kDischarge * operation.opening_m2[side] * std::sqrt(2.0 * density * inward_Pa);
   }
   const double perimeter_m2 = (drawings.storey_m2() - drawings.core_and_special_m2()) *
                               static_cast<double>(drawings.storeys);

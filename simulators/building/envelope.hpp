@@ -58,6 +58,7 @@ class Envelope {
   [[nodiscard]] OuterSide expose_window(const Exposed& face, const OuterSide& film,
                                         const Irradiance& sun, double sun_factor);
   void join_halves();
+  [[nodiscard]] double leaking_m2(std::size_t side, bool top) const;
   [[nodiscard]] double infiltration_kg_s(std::size_t zone, const Outdoors& outdoors,
                                          double pressurised,
                                          const EnvelopeOperation& operation) const;

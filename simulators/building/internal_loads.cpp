@@ -49,14 +49,18 @@ double InternalLoads::occupied_share(const People& people, std::size_t zone,
   // Nobody sits in the special rooms: the core's people go in and out.
   if (side_of(zone) == special) --zone;
   const int assigned = people.assigned(zone);
-  return assigned > 0 ? static_cast<double>(people.present(zone, minute_of_day)) / assigned : 0.0;
+  if (assigned <= 0) return 0.0;
+  return use_of(zone).awake_share(minute_of_day) * people.present(zone, minute_of_day) / assigned;
 }
 
-double InternalLoads::lights_W(std::size_t zone, double occupied, bool cleaning) {
+double InternalLoads::lights_W(std::size_t zone, double occupied, bool working_hours,
+                               bool cleaning) {
   ZoneState& state = zones_[zone];
   const double corridor = 0.12;
   const double crew = cleaning ? 0.30 : 0.0;
-  const double wanted = corridor + (1.0 - corridor) * std::max(crew, lit_share(occupied));
+  const bool all = working_hours && use_of(zone).lit_while_open;
+  const double wanted =
+      all ? 1.0 : corridor + (1.0 - corridor) * std::max(crew, lit_share(occupied));
   const double follow = wanted > state.lights_on ? lights_on_follow_ : lights_off_follow_;
   state.lights_on += follow * (wanted - state.lights_on);
   return truth_.lighting_scale * use_of(zone).lighting_W_m2 *
@@ -98,12 +102,16 @@ double InternalLoads::plugs_W(std::size_t zone, double occupied, bool working_ho
 }
 
 const std::vector<ZonePower>& InternalLoads::advance(const People& people, int minute_of_day,
-                                                     bool workday) {
-  const bool cleaning = workday && minute_of_day >= 19 * 60 && minute_of_day < 21 * 60 + 30;
-  const bool working_hours = workday && minute_of_day >= 8 * 60 && minute_of_day < 18 * 60;
+                                                     bool open) {
+  const Drawings& drawings = truth_.drawings;
+  const double hour = minute_of_day / 60.0;
+  const bool cleaning = open && hour >= drawings.cleaning_from_h && hour < drawings.cleaning_to_h;
+  const bool working_hours =
+      open && hour >= drawings.working_from_h && hour < drawings.working_to_h;
   for (std::size_t zone = 0; zone < zones_.size(); ++zone) {
     const double occupied = occupied_share(people, zone, minute_of_day);
-    power_[zone] = {lights_W(zone, occupied, cleaning), plugs_W(zone, occupied, working_hours)};
+    power_[zone] = {lights_W(zone, occupied, working_hours, cleaning),
+                    plugs_W(zone, occupied, working_hours)};
   }
   return power_;
 }

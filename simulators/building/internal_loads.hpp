@@ -22,7 +22,8 @@ class InternalLoads {
   void begin_day();
 
   /// Power of all zones in one step.
-  const std::vector<ZonePower>& advance(const People& people, int minute_of_day, bool workday);
+  /// @param open  whether people work in the building on this day
+  const std::vector<ZonePower>& advance(const People& people, int minute_of_day, bool open);
 
  private:
   struct Run {
@@ -38,7 +39,8 @@ class InternalLoads {
   [[nodiscard]] const RoomUse& use_of(std::size_t zone) const;
   [[nodiscard]] double occupied_share(const People& people, std::size_t zone,
                                       int minute_of_day) const;
-  [[nodiscard]] double lights_W(std::size_t zone, double occupied, bool cleaning);
+  [[nodiscard]] double lights_W(std::size_t zone, double occupied, bool working_hours,
+                                bool cleaning);
   [[nodiscard]] double plugs_W(std::size_t zone, double occupied, bool working_hours);
   [[nodiscard]] double appliance_runs_W(std::size_t zone, double installed_W, bool working_hours);
 

@@ -1,6 +1,8 @@
 /// The building's people, one by one: when each comes, lunches, leaves and is away.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "simulators/building/operation.hpp"
@@ -15,7 +17,7 @@ class People {
   People(const Truth& truth, Rng rng);
 
   /// Draws the whole local day. Call once a day, in order.
-  /// @param season share that comes at all
+  /// @param season share that comes at all, of people with a working day
   /// @param attendance share of those that is not kept away by a hidden effect; decided by each
   ///        person's own number for the day, so that everybody else's day stays as it was
   void begin_day(metering::Day day, DayKind kind, double season, double attendance);
@@ -28,7 +30,6 @@ class People {
   [[nodiscard]] int assigned() const { return static_cast<int>(people_.size()); }
 
  private:
-  static constexpr std::size_t kSlotsPerDay = 288;
   struct Person {
     std::size_t zone;
     double arrival_h;
@@ -36,14 +37,26 @@ class People {
     double weekend_share;  ///< Of weekend days on which this person shows up.
     double evening_share;  ///< Of days on which this person returns after dinner.
     int days_away;         ///< Left of a vacation or illness.
+    bool stays;            ///< Where people come and go: the place was taken as yesterday ended.
+  };
+  /// Visits of one day, in the perimeter and in the core; nothing where people work there.
+  struct VisitDays {
+    std::optional<VisitDay> perimeter, core;
   };
   [[nodiscard]] std::size_t draw_zone(const Drawings& drawings);
   [[nodiscard]] double number_of(std::size_t person, metering::Day day) const;
   void plan_day(Person& person, DayKind kind, double attendance, bool kept_away);
+  [[nodiscard]] VisitDays draw_visit_days(DayKind kind);
+  [[nodiscard]] std::optional<VisitDay> visit_day(const RoomUse& rooms, std::size_t room_kind,
+                                                  DayKind kind, double busy);
+  void plan_visits(Person& person, const VisitDay& day, bool kept_away);
   void attend(std::size_t zone, double from_h, double to_h, bool kept_away);
 
   Rng rng_;
   std::uint64_t numbers_;  ///< Seed of the persons' own numbers.
+  Drawings drawings_;
+  std::optional<Persistence> trade_;              ///< Good and bad weeks of places with visits.
+  std::array<double, 2> last_share_{-1.0, -1.0};  ///< Of places taken as the day before ended.
   std::vector<Person> people_;
   std::vector<int> assigned_;
   std::vector<int> present_;  ///< zones × slots of five minutes

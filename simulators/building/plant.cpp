@@ -9,6 +9,7 @@ namespace recald::simulators {
 namespace {
 
 constexpr double kKelvin = 273.15;
+constexpr double kChilledWaterPumps = 0.65;  ///< Of all pumps' power, where there is chilled water.
 
 double variable_speed(double part_load) {
   return 0.18 + 0.82 * std::pow(std::min(1.0, part_load), 2.2);
@@ -19,10 +20,10 @@ double variable_speed(double part_load) {
 Plant::Plant(const Truth& truth, double step_s, Rng rng)
     : truth_(truth), rng_(rng), taps_(1800.0, step_s, rng_) {}
 
-double Plant::hot_water_W(double people_share, const PlantOperation& operation) {
+double Plant::hot_water_W(double awake_share, const PlantOperation& operation) {
   const Drawings& drawings = truth_.drawings;
   // Glass washers and hand basins: most of the day's water while people are in.
-  const double daily_shape = 0.25 + 2.4 * people_share;
+  const double daily_shape = 0.25 + drawings.hot_water_with_people * awake_share;
   const double taps = std::max(0.0, 1.0 + 0.45 * taps_.advance(rng_));
   const double flow_kg_s =
       operation.hot_water_factor * truth_.hot_water_m3_day * 1000.0 / 86'400.0 * daily_shape * taps;
@@ -32,38 +33,49 @@ double Plant::hot_water_W(double people_share, const PlantOperation& operation) 
 }
 
 double Plant::pumps_W(const ServiceLoad& load, const PlantOperation& operation) const {
-  const bool loop_never_stops = truth_.drawings.core_runs_always;
+  const Drawings& drawings = truth_.drawings;
+  const bool loop_never_stops = drawings.core_runs_always || drawings.perimeter_runs_always;
   const auto speed = [&](double load_W, double design_kW) {
     const bool turns = load_W > 0.0 || loop_never_stops;
     const double following = turns ? variable_speed(load_W / (1000.0 * design_kW)) : 0.0;
     return following + (1.0 - operation.pumps_follow_load) * (1.0 - following);
   };
-  return 1000.0 * truth_.pump_kW *
-             (0.65 * speed(load.cooling_W, truth_.drawings.chilled_water_design_kW) +
-              0.35 * speed(load.heating_W, truth_.drawings.heating_design_kW)) +
-         operation.pumps_always_W;
+  const double heating = speed(load.heating_W, drawings.heating_design_kW);
+  const double both =
+      drawings.cooling == CoolingPlant::packaged
+          ? heating
+          : kChilledWaterPumps * speed(load.cooling_W, drawings.chilled_water_design_kW) +
+                0.35 * heating;
+  return 1000.0 * truth_.pump_kW * both + operation.pumps_always_W;
 }
 
-/// Compressor and tower by the universal chiller model, (Te/Tc)·x = 1 + a/q + b/q·(Tc − Te) + c·q·x
-/// with x = 1 + 1/COP and load share q; internal losses weigh at part load, heat exchangers at
-/// full.
+/// A chiller's condenser follows the tower's wet bulb, that of packaged units the outdoor air.
+Plant::Lift Plant::lift_of(const Outdoors& outdoors) const {
+  if (truth_.drawings.cooling == CoolingPlant::packaged) {
+    // Rated at 35 degC outdoors (AHRI 340/360); two to four compressors in stages.
+    return {8.0 + kKelvin, 49.0 + kKelvin,
+            std::max(25.0, outdoors.air.temperature_C + 14.0) + kKelvin, 0.25};
+  }
+  const double tower_C = wet_bulb_C(outdoors.air, outdoors.pressure_Pa) + 5.5;
+  return {12.0 + kKelvin, 29.4 + kKelvin, std::max(18.0, tower_C) + kKelvin, 0.12};
+}
+
+/// Compressor and what cools it by the universal chiller model,
+/// (Te/Tc)·x = 1 + a/q + b/q·(Tc − Te) + c·q·x with x = 1 + 1/COP and load share q; internal losses
+/// weigh at part load, heat exchangers at full.
 /// @see Gordon, Ng (2000), "Cool Thermodynamics", ch. 4.
-double Plant::chiller_W(double cooling_W, double cop_factor, double wet_bulb_C) const {
+double Plant::compressor_W(double cooling_W, double cop_factor, const Lift& at) const {
   if (cooling_W <= 0.0) return 0.0;
-  constexpr double evaporator_K = 12.0 + kKelvin;
-  constexpr double rated_condenser_K = 29.4 + kKelvin;
   constexpr double internal_loss = 0.02;
   constexpr double leak_loss = 0.02;  // at the rated lift
-  constexpr double least_share = 0.12;
   const double cop = truth_.chiller_cop_scale * truth_.drawings.chiller_cop;
-  const double exchanger_loss =
-      evaporator_K / rated_condenser_K - (1.0 + internal_loss + leak_loss) / (1.0 + 1.0 / cop);
-  const double condenser_K = std::max(18.0, wet_bulb_C + 5.5) + kKelvin;
-  const double lift = (condenser_K - evaporator_K) / (rated_condenser_K - evaporator_K);
+  const double exchanger_loss = at.evaporator_K / at.rated_condenser_K -
+                                (1.0 + internal_loss + leak_loss) / (1.0 + 1.0 / cop);
+  const double lift = (at.condenser_K - at.evaporator_K) / (at.rated_condenser_K - at.evaporator_K);
   const double share = cooling_W / (1000.0 * truth_.drawings.chilled_water_design_kW);
-  const double q = std::max(share, least_share);  // below, it cycles at this share
+  const double q = std::max(share, at.least_share);
   const double x = (1.0 + (internal_loss + leak_loss * lift) / q) /
-                   (evaporator_K / condenser_K - exchanger_loss * q);
+                   (at.evaporator_K / at.condenser_K - exchanger_loss * q);
   return cooling_W * (x - 1.0) / cop_factor;
 }
 
@@ -79,20 +91,29 @@ double Plant::heat_pump_W(double heating_W, double cop_factor, double outdoor_C)
   return heating_W * ((1.0 - resistance_share) / cop + resistance_share);
 }
 
+/// Chilled water with the losses of its pipes, or what packaged units take from the air.
+double Plant::cooling_kW(const ServiceLoad& load, double pumps_W,
+                         const PlantOperation& operation) const {
+  // A store that gives more than is needed keeps the rest.
+  if (truth_.drawings.cooling == CoolingPlant::packaged) {
+    return std::max(0.0, load.cooling_W + operation.cooling_shift_W) / 1000.0;
+  }
+  const double pump_heat_W = kChilledWaterPumps * 0.8 * pumps_W;
+  const double cooling_W = std::max(0.0, load.cooling_W * (1.0 + truth_.chilled_water_loss_share) +
+                                             pump_heat_W + operation.cooling_shift_W);
+  return cooling_W / 1000.0 + truth_.chilled_water_standing_kW +
+         operation.chilled_water_standing_W / 1000.0;
+}
+
 UtilityPower Plant::advance(const ServiceLoad& load, const PlantOperation& operation,
                             const Outdoors& outdoors) {
   const Drawings& drawings = truth_.drawings;
   const double pumps_W_now = pumps_W(load, operation);
   const double exterior_W = load.dark ? 1000.0 * truth_.exterior_kW : 0.0;
-  const double pump_heat_W = 0.65 * 0.8 * pumps_W_now;
-  const double hot_water_W_now = hot_water_W(load.people_share, operation);
+  const double hot_water_W_now = hot_water_W(load.awake_share, operation);
   double electricity_W =
       load.lights_and_plugs_W + load.fans_W + pumps_W_now + exterior_W + load.other_electricity_W;
-  // A store that gives more than is needed keeps the rest.
-  const double cooling_W = std::max(0.0, load.cooling_W * (1.0 + truth_.chilled_water_loss_share) +
-                                             pump_heat_W + operation.cooling_shift_W);
-  const double cooling_kW = cooling_W / 1000.0 + truth_.chilled_water_standing_kW +
-                            operation.chilled_water_standing_W / 1000.0;
+  const double cooling_kW_now = cooling_kW(load, pumps_W_now, operation);
   double heat_kW = 0.0;
   if (drawings.heating == HeatingPlant::heat_pump) {
     const double standing_W = 1000.0 * truth_.heating_standing_kW + operation.heating_standing_W;
@@ -104,11 +125,11 @@ UtilityPower Plant::advance(const ServiceLoad& load, const PlantOperation& opera
     heat_kW = heating_W / heating_efficiency(heating_W) / 1000.0 + truth_.heating_standing_kW +
               (operation.heating_standing_W + load.other_fuel_W) / 1000.0;
   }
-  if (drawings.cooling == CoolingPlant::chiller) {
-    const double wet_bulb = wet_bulb_C(outdoors.air, outdoors.pressure_Pa);
-    electricity_W += chiller_W(1000.0 * cooling_kW, operation.chiller_cop_factor, wet_bulb);
+  if (drawings.cooling != CoolingPlant::district) {
+    electricity_W +=
+        compressor_W(1000.0 * cooling_kW_now, operation.chiller_cop_factor, lift_of(outdoors));
   }
-  return {electricity_W / 1000.0, cooling_kW, heat_kW};
+  return {electricity_W / 1000.0, cooling_kW_now, heat_kW};
 }
 
 double Plant::heating_efficiency(double heating_W) const {

@@ -39,12 +39,13 @@ struct ServiceLoad {
   double fans_W = 0.0;
   double other_electricity_W = 0.0;  ///< Outside the rooms.
   double other_fuel_W = 0.0;         ///< Burnt or condensed, outside the heating system.
-  double people_share = 0.0;         ///< Present / assigned, drives hot-water use.
+  double people_share = 0.0;         ///< Present / assigned.
+  double awake_share = 0.0;          ///< Of them, who is up: drives hot-water use.
   bool dark = false;                 ///< Exterior lights on.
 };
 
-/// A building's services. With an own chiller or heat pump their electricity joins the meter's; the
-/// chilled water is metered either way.
+/// A building's services. With an own chiller, packaged units or a heat pump their electricity
+/// joins the meter's; chilled water is metered wherever there is any.
 class Plant {
  public:
   Plant(const Truth& truth, double step_s, Rng rng);
@@ -53,10 +54,20 @@ class Plant {
                                      const Outdoors& outdoors);
 
  private:
-  [[nodiscard]] double hot_water_W(double people_share, const PlantOperation& operation);
+  /// What a compressor works between: at its rating, and now.
+  struct Lift {
+    double evaporator_K;
+    double rated_condenser_K;
+    double condenser_K;
+    double least_share;  ///< Of the rated load; below, it cycles at this share.
+  };
+  [[nodiscard]] Lift lift_of(const Outdoors& outdoors) const;
+  [[nodiscard]] double hot_water_W(double awake_share, const PlantOperation& operation);
   [[nodiscard]] double pumps_W(const ServiceLoad& load, const PlantOperation& operation) const;
   [[nodiscard]] double heating_efficiency(double heating_W) const;
-  [[nodiscard]] double chiller_W(double cooling_W, double cop_factor, double wet_bulb_C) const;
+  [[nodiscard]] double cooling_kW(const ServiceLoad& load, double pumps_W,
+                                  const PlantOperation& operation) const;
+  [[nodiscard]] double compressor_W(double cooling_W, double cop_factor, const Lift& lift) const;
   [[nodiscard]] double heat_pump_W(double heating_W, double cop_factor, double outdoor_C) const;
 
   Truth truth_;

@@ -59,8 +59,10 @@ void draw_setpoints(Truth& truth, Rng& rng) {
   };
   truth.thermostat_band_K = Triangular{1.0, 1.4, 2.0}.draw(rng);
   // Controllers refuse overlapping bands: the heating set-point gives way to a low cooling one.
-  truth.heating_setpoint_C = std::min(Triangular{20.3, drawn.heating_setpoint_C, 21.9}.draw(rng),
-                                      truth.cooling_setpoint_C - truth.thermostat_band_K - 0.3);
+  const Triangular heating{drawn.heating_setpoint_min_C, drawn.heating_setpoint_C,
+                           drawn.heating_setpoint_max_C};
+  truth.heating_setpoint_C =
+      std::min(heating.draw(rng), truth.cooling_setpoint_C - truth.thermostat_band_K - 0.3);
   truth.night_heating_C = between(drawn.night_heating_C, 1.5, 1.0);
   truth.night_cooling_C = between(drawn.night_cooling_C, 1.0, 1.0);
   draw_thermostats(truth, rng);
@@ -92,7 +94,9 @@ void draw_air_system(Truth& truth, Rng& rng) {
   draw_air_handlers(truth, rng);
   truth.supply_reset_K = Triangular{0.0, 1.5, 3.0}.draw(rng);
   const double night = drawn.core_night_share / 0.9;
-  truth.core_night_share = Triangular{0.82 * night, drawn.core_night_share, 0.97 * night}.draw(rng);
+  const double night_share =
+      Triangular{0.82 * night, drawn.core_night_share, 0.97 * night}.draw(rng);
+  truth.core_night_share = drawn.core_night_share < 1.0 ? night_share : 1.0;  // nothing to set back
   truth.box_minimum_scale = draw_around(rng, 1.0, 0.12);
   truth.fan_scale = draw_around(rng, 1.0, 0.10);
   truth.fan_exponent = Triangular{1.9, 2.3, 2.8}.draw(rng);
@@ -105,7 +109,8 @@ void draw_loads(Truth& truth, Rng& rng) {
   truth.perimeter_plugs_scale = draw_around(rng, 1.0, 0.15);
   truth.core_plugs_scale = draw_around(rng, 1.0, 0.15);
   truth.special_plugs_scale = draw_around(rng, 1.0, 0.12);
-  truth.zone_heat_share = Triangular{0.83, drawn.zone_heat_share, 0.97}.draw(rng);
+  const double hoods = drawn.zone_heat_share - 0.9;  // below 0 where they take more away
+  truth.zone_heat_share = Triangular{0.83 + hoods, drawn.zone_heat_share, 0.97 + hoods}.draw(rng);
   truth.exterior_kW = draw_around(rng, drawn.exterior_kW, 0.10);
 }
 

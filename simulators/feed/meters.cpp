@@ -155,8 +155,10 @@ void strike(MeterFeed& feed, const Fault& fault, const MeterPlate& plate, Rng& r
 }  // namespace
 
 std::vector<MeterPlate> plates_of(const Drawings& drawings) {
-  std::vector<MeterPlate> plates{chilled_water_plate(drawings.cooling_rated_kW),
-                                 electricity_plate(drawings.electricity_rated_kW)};
+  std::vector<MeterPlate> plates{electricity_plate(drawings.electricity_rated_kW)};
+  if (drawings.cooling != CoolingPlant::packaged) {
+    plates.insert(plates.begin(), chilled_water_plate(drawings.cooling_rated_kW));
+  }
   switch (drawings.heating) {
     case HeatingPlant::district_steam:
       plates.push_back(steam_plate(drawings.heat_rated_kW));

@@ -28,8 +28,8 @@ struct MeterPlate {
   bool in_steam_pit;  ///< Suffers accordingly.
 };
 
-/// The building's meters in the order of files: chilled water, electricity, and heat where it does
-/// not come from a heat pump (steam, hot water or gas).
+/// The building's meters in the order of files: chilled water but of packaged units, electricity,
+/// and heat where it does not come from a heat pump (steam, hot water or gas).
 [[nodiscard]] std::vector<MeterPlate> plates_of(const Drawings& drawings);
 
 /// The meter of the building next door, in the same file by mistake.

@@ -109,10 +109,16 @@ class Gallery {
 
 Result<void> draw_all(Gallery& gallery, std::span<const EffectKind> kinds) {
   gallery.add_heading("Buildings without effects");
-  constexpr std::array<std::pair<Use, ShowBuilding>, 3> weeks{
+  constexpr std::array<std::pair<Use, ShowBuilding>, kUses.size()> weeks{
       {{Use::office, ShowBuilding::office},
        {Use::laboratory, ShowBuilding::laboratory},
-       {Use::school, ShowBuilding::school}}};
+       {Use::school, ShowBuilding::school},
+       {Use::shop, ShowBuilding::shop},
+       {Use::hotel, ShowBuilding::hotel},
+       {Use::clinic, ShowBuilding::clinic},
+       {Use::warehouse, ShowBuilding::warehouse},
+       {Use::restaurant, ShowBuilding::restaurant},
+       {Use::gym, ShowBuilding::gym}}};
   for (const auto& [use, building] : weeks) {
     if (const auto drawn = gallery.add_week(use, building); !drawn) return drawn;
   }

@@ -53,6 +53,18 @@ Brief brief_of(ShowBuilding building) {
       return {.use = Use::laboratory};
     case ShowBuilding::school:
       return {.use = Use::school};
+    case ShowBuilding::shop:
+      return typical_brief(Use::shop);
+    case ShowBuilding::hotel:
+      return typical_brief(Use::hotel);
+    case ShowBuilding::clinic:
+      return typical_brief(Use::clinic);
+    case ShowBuilding::warehouse:
+      return typical_brief(Use::warehouse);
+    case ShowBuilding::restaurant:
+      return typical_brief(Use::restaurant);
+    case ShowBuilding::gym:
+      return typical_brief(Use::gym);
   }
   return {};
 }
@@ -109,12 +121,13 @@ std::string describe_scenario(const Scenario& scenario) {
   const Drawings& drawings = scenario.drawings;
   std::string use(to_string(drawings.use));
   use.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(use.front())));
-  return fmt::format(
-      "{}, {:.0f} m², {} climate, {}, {}{}, {}", use, drawings.floor_area_m2(),
-      name_of(drawings.climate),
-      drawings.cooling == CoolingPlant::district ? "district cooling" : "own chiller",
-      heating_in_words(drawings.heating), drawings.skylight_share > 0.0 ? ", skylight" : "",
-      scenario.period.start_year);
+  return fmt::format("{}, {:.0f} m², {} climate, {}, {}{}, {}", use, drawings.floor_area_m2(),
+                     name_of(drawings.climate),
+                     drawings.cooling == CoolingPlant::district  ? "district cooling"
+                     : drawings.cooling == CoolingPlant::chiller ? "own chiller"
+                                                                 : "packaged cooling",
+                     heating_in_words(drawings.heating),
+                     drawings.skylight_share > 0.0 ? ", skylight" : "", scenario.period.start_year);
 }
 
 }  // namespace recald::simulators

@@ -24,8 +24,14 @@ enum class ShowBuilding : std::size_t {
   office_in_marine,
   laboratory,
   school,
+  shop,
+  hotel,
+  clinic,
+  warehouse,
+  restaurant,
+  gym,
 };
-inline constexpr std::size_t kShowBuildings = 11;
+inline constexpr std::size_t kShowBuildings = 17;
 
 [[nodiscard]] ShowBuilding show_building_of(const EffectKind& kind);
 

@@ -5,6 +5,9 @@
 
 namespace recald::simulators {
 
+/// When it was built: constructions, lights and machines follow the codes of their time.
+enum class Vintage { of_1980s, of_2000s, of_2010s };
+
 /// What an owner asks an architect for; engineers size the rest from it.
 struct Brief {
   Use use = Use::office;
@@ -17,14 +20,14 @@ struct Brief {
   bool heavy = true;
   CoolingPlant cooling = CoolingPlant::district;
   HeatingPlant heating = HeatingPlant::district_water;
+  Vintage vintage = Vintage::of_2000s;
 };
 
-/// The building's drawings: rooms and hours by use, constructions by climate, air system and plant
-/// sized from both (`size_services`).
-[[nodiscard]] Drawings draw_up(const Brief& brief);
+/// Size and plant that are common for the use.
+[[nodiscard]] Brief typical_brief(Use use);
 
-/// Sizes flows, coils, fans, pumps and meters for the building as drawn. Call again after changing
-/// geometry, constructions, rooms or outdoor air.
-void size_services(Drawings& drawings);
+/// The building's drawings: rooms and hours by use, constructions by climate, air system and plant
+/// sized from both (sizing.hpp).
+[[nodiscard]] Drawings draw_up(const Brief& brief);
 
 }  // namespace recald::simulators

@@ -15,12 +15,22 @@ bool has_heat_meter(const Drawings& drawings) {
   return drawings.heating != HeatingPlant::heat_pump;
 }
 
+bool has_chilled_water_meter(const Drawings& drawings) {
+  return drawings.cooling != CoolingPlant::packaged;
+}
+
 /// What the building lacks for the effect, as the end of a sentence; empty where nothing is
 /// missing.
 std::string missing_for(const EffectNeeds& needs, const Drawings& drawings) {
   const auto lacks = [](bool needed, bool there) { return needed && !there; };
   if (lacks(needs.heat_meter, has_heat_meter(drawings))) {
     return "a heat meter, and a heat pump's heat is not metered: choose another [plant] heating";
+  }
+  if (lacks(needs.cooling_meter, has_chilled_water_meter(drawings))) {
+    return "a chilled-water meter, and packaged units have none: choose another [plant] cooling";
+  }
+  if (lacks(needs.timetable, !drawings.never_stops())) {
+    return "air handlers that stop at night: choose another use in [building]";
   }
   if (lacks(needs.own_chiller, drawings.cooling == CoolingPlant::chiller)) {
     return "an own chiller: set cooling = \"chiller\" in [plant]";
@@ -78,6 +88,9 @@ Result<void> check_alone(const HiddenChoice& choice, const Drawings& drawings) {
   }
   if (choice.meter == Utility::heat && !has_heat_meter(drawings)) {
     return refuse(fmt::format("effect {}: this building has no heat meter", kind.id));
+  }
+  if (choice.meter == Utility::cooling && !has_chilled_water_meter(drawings)) {
+    return refuse(fmt::format("effect {}: this building has no chilled-water meter", kind.id));
   }
   return {};
 }

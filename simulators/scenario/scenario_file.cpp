@@ -6,16 +6,19 @@
 #include <algorithm>
 
 #include "simulators/scenario/archetypes.hpp"
+#include "simulators/scenario/sizing.hpp"
 #include "simulators/toml/toml_table.hpp"
 
 namespace recald::simulators {
 namespace {
 
-constexpr std::array kUses{Word<Use>{"laboratory", Use::laboratory},
-                           Word<Use>{"office", Use::office}, Word<Use>{"school", Use::school}};
 constexpr std::array kMasses{Word<bool>{"heavy", true}, Word<bool>{"light", false}};
 constexpr std::array kCoolings{Word<CoolingPlant>{"district", CoolingPlant::district},
-                               Word<CoolingPlant>{"chiller", CoolingPlant::chiller}};
+                               Word<CoolingPlant>{"chiller", CoolingPlant::chiller},
+                               Word<CoolingPlant>{"packaged", CoolingPlant::packaged}};
+constexpr std::array kVintages{Word<Vintage>{"1980s", Vintage::of_1980s},
+                               Word<Vintage>{"2000s", Vintage::of_2000s},
+                               Word<Vintage>{"2010s", Vintage::of_2010s}};
 constexpr std::array kHeatings{Word<HeatingPlant>{"district_steam", HeatingPlant::district_steam},
                                Word<HeatingPlant>{"district_water", HeatingPlant::district_water},
                                Word<HeatingPlant>{"boiler", HeatingPlant::boiler},
@@ -28,6 +31,12 @@ constexpr std::array kSteps{Word<std::chrono::seconds>{"5m", std::chrono::second
 constexpr std::array kDecoys{Word<Decoy>{"wind_of_another_year", Decoy::wind_of_another_year},
                              Word<Decoy>{"neighbour_meter", Decoy::neighbour_meter}};
 
+std::array<Word<Use>, kUses.size()> use_words() {
+  std::array<Word<Use>, kUses.size()> words{};
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = {to_string(kUses[i]), kUses[i]};
+  return words;
+}
+
 std::array<Word<ClimateKind>, kClimateKinds.size()> climate_words() {
   std::array<Word<ClimateKind>, kClimateKinds.size()> words{};
   for (std::size_t i = 0; i < words.size(); ++i)
@@ -38,8 +47,8 @@ std::array<Word<ClimateKind>, kClimateKinds.size()> climate_words() {
 /// What decides the sizes of everything else comes first.
 Drawings read_brief(TomlTable& building, TomlTable& climate, TomlTable& plant) {
   Brief brief;
-  building.word("use", kUses, brief.use);
-  if (brief.use == Use::laboratory) brief = {brief.use, ClimateKind::hot_humid, 3, 65.0, 40.0};
+  building.word("use", use_words(), brief.use);
+  brief = typical_brief(brief.use);
   auto storeys = static_cast<std::int64_t>(brief.storeys);
   building.whole("storeys", 1, 40, storeys);
   brief.storeys = static_cast<std::size_t>(storeys);
@@ -48,6 +57,7 @@ Drawings read_brief(TomlTable& building, TomlTable& climate, TomlTable& plant) {
   building.number("window_share", 0.02, 0.95, brief.window_share);
   building.number("skylight_share", 0.0, 0.5, brief.skylight_share);
   building.word("mass", kMasses, brief.heavy);
+  building.word("vintage", kVintages, brief.vintage);
   climate.word("name", climate_words(), brief.climate);
   plant.word("cooling", kCoolings, brief.cooling);
   plant.word("heating", kHeatings, brief.heating);
@@ -55,7 +65,7 @@ Drawings read_brief(TomlTable& building, TomlTable& climate, TomlTable& plant) {
 }
 
 void read_constructions(TomlTable& building, Drawings& drawings) {
-  building.number("storey_height_m", 2.5, 8.0, drawings.storey_height_m);
+  building.number("storey_height_m", 2.5, 12.0, drawings.storey_height_m);
   building.number("wall_u_W_m2K", 0.08, 2.5, drawings.wall_u_W_m2K);
   building.number("roof_u_W_m2K", 0.05, 2.0, drawings.roof_u_W_m2K);
   building.number("window_u_W_m2K", 0.5, 5.0, drawings.window_u_W_m2K);
@@ -69,11 +79,14 @@ void read_constructions(TomlTable& building, Drawings& drawings) {
 
 void read_controls(TomlTable& controls, Drawings& drawings) {
   controls.number("cooling_setpoint_C", 21.0, 27.5, drawings.cooling_setpoint_C);
-  controls.number("heating_setpoint_C", 20.3, 21.9, drawings.heating_setpoint_C);
+  controls.number("heating_setpoint_C", drawings.heating_setpoint_min_C,
+                  drawings.heating_setpoint_max_C, drawings.heating_setpoint_C);
   controls.number("night_cooling_C", 24.0, 35.0, drawings.night_cooling_C);
   controls.number("night_heating_C", 10.0, 20.0, drawings.night_heating_C);
-  controls.number("occupied_from_h", 2.0, 12.0, drawings.occupied_from_h);
-  controls.number("occupied_to_h", 13.0, 23.0, drawings.occupied_to_h);
+  if (!drawings.never_stops()) {
+    controls.number("occupied_from_h", 2.0, 12.0, drawings.occupied_from_h);
+    controls.number("occupied_to_h", 13.0, 23.0, drawings.occupied_to_h);
+  }
   controls.number("supply_C", 11.0, 16.0, drawings.supply_C);
   controls.number("economiser_limit_C", 5.0, 30.0, drawings.economiser_limit_C);
 }
@@ -148,7 +161,7 @@ class Reader {
     plant.number("chiller_cop", 2.0, 9.0, scenario.drawings.chiller_cop);
     plant.number("heat_pump_cop", 1.5, 6.0, scenario.drawings.heat_pump_cop);
     plant.number("heating_efficiency", 0.5, 0.99, scenario.drawings.heating_efficiency);
-    calendar.word("of", kUses, scenario.drawings.calendar);
+    calendar.word("of", use_words(), scenario.drawings.calendar);
     meters.word("care", kCares, scenario.care);
     read_period(period, scenario);
     for (TomlTable* each : {&building, &climate, &plant, &controls, &calendar, &meters, &period}) {

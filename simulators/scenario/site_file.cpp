@@ -204,22 +204,38 @@ sunday = [{}]
                      drawings.latent_W_person, mean_W_m2(drawings, &RoomUse::lighting_W_m2),
                      mean_W_m2(drawings, &RoomUse::plugs_W_m2), drawings.exterior_kW,
                      drawings.zone_heat_share, by_hour(drawings.presence_workday),
-                     by_hour(drawings.presence_weekend), by_hour(drawings.presence_weekend));
+                     by_hour(drawings.presence_saturday), by_hour(drawings.presence_sunday));
+}
+
+/// Of the outdoor air, what runs while nobody is expected.
+double night_outdoor_share(const Drawings& drawings) {
+  const auto storeys = static_cast<double>(drawings.storeys);
+  double share = 0.0;
+  for (const bool perimeter : {true, false}) {
+    if (!drawings.runs_always(perimeter)) continue;
+    const AirHandlerPlate& plate = perimeter ? drawings.perimeter_air : drawings.core_air;
+    share += storeys * drawings.core_night_share * plate.outdoor_m3_s / drawings.outdoor_air_m3_s();
+  }
+  return share;
+}
+
+std::string_view at_night_in_words(const Drawings& drawings) {
+  if (drawings.use == Use::clinic) return "wards run always";
+  if (drawings.never_stops()) return "air handlers never stop, on no day";
+  return drawings.core_runs_always ? "laboratories run always" : "air handlers stop at night";
 }
 
 std::string operation(const Drawings& drawings) {
   // Rooms that are never left to float hold their set-points at night: the floor-area means.
   const auto storeys = static_cast<double>(drawings.storeys);
-  const double core_m2 = storeys * drawings.core_and_special_m2();
-  const double held_share = drawings.core_runs_always ? core_m2 / drawings.floor_area_m2() : 0.0;
+  const double core_share = storeys * drawings.core_and_special_m2() / drawings.floor_area_m2();
+  const double held_share = drawings.never_stops()      ? 1.0
+                            : drawings.core_runs_always ? core_share
+                                                        : 0.0;
   const double night_cooling_C =
       held_share * drawings.cooling_setpoint_C + (1.0 - held_share) * drawings.night_cooling_C;
   const double night_heating_C =
       held_share * drawings.heating_setpoint_C + (1.0 - held_share) * drawings.night_heating_C;
-  const double night_outdoor_share =
-      drawings.core_runs_always ? storeys * drawings.core_night_share *
-                                      drawings.core_air.outdoor_m3_s / drawings.outdoor_air_m3_s()
-                                : 0.0;
   double least_m3_s = 0.0;
   for (std::size_t side = south; side <= special; ++side) {
     least_m3_s += drawings.min_share(side) * drawings.zone_supply_m3_s[side];
@@ -232,7 +248,7 @@ heating_occupied_C = {}
 heating_unoccupied_C = {:.0f}
 occupied_from = {:.0f}
 occupied_to = {:.0f}
-
+{}
 [building.infiltration]
 ela_cm2_m2 = {}
 
@@ -246,9 +262,10 @@ fan_design_kW = {}
 pump_design_kW = {}
 )",
       drawings.cooling_setpoint_C, night_cooling_C, drawings.heating_setpoint_C, night_heating_C,
-      drawings.occupied_from_h, drawings.occupied_to_h, drawings.leakage_cm2_m2,
-      drawings.outdoor_air_m3_s(), night_outdoor_share,
-      drawings.core_runs_always ? "laboratories run always" : "air handlers stop at night",
+      drawings.occupied_from_h, drawings.occupied_to_h,
+      is_open(drawings.open_days, DayKind::saturday) ? "saturday_occupied = true\n" : "",
+      drawings.leakage_cm2_m2, drawings.outdoor_air_m3_s(), night_outdoor_share(drawings),
+      at_night_in_words(drawings),
       storeys * (drawings.perimeter_supply_m3_s() + drawings.core_supply_m3_s()),
       storeys * least_m3_s, drawings.supply_C,
       std::round(10.0 * storeys * (drawings.perimeter_air.fan_kW + drawings.core_air.fan_kW)) /
@@ -278,10 +295,12 @@ std::string heating(const Drawings& drawings) {
 }
 
 std::string services(const Drawings& drawings) {
+  const bool packaged = drawings.cooling == CoolingPlant::packaged;
   std::string text = heating(drawings) + fmt::format("\n[building.cooling]\nloss_fraction = {}\n",
-                                                     drawings.chilled_water_loss);
-  if (drawings.cooling == CoolingPlant::chiller) {
-    text += fmt::format("chiller_cop = {}\n", drawings.chiller_cop);
+                                                     packaged ? 0.0 : drawings.chilled_water_loss);
+  if (drawings.cooling != CoolingPlant::district) {
+    text += fmt::format("chiller_cop = {}{}\n", drawings.chiller_cop,
+                        packaged ? "   # packaged units, in the electricity meter" : "");
   }
   return text + fmt::format(R"(
 [building.hot_water]

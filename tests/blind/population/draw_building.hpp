@@ -13,6 +13,9 @@ namespace recald::blind {
 [[nodiscard]] simulators::Drawings draw_building(const std::vector<simulators::EffectNeeds>& needs,
                                                  Rng& rng);
 
+/// A building of this use with the sizes, plants and age that such buildings have, in any climate.
+[[nodiscard]] simulators::Drawings draw_building_of(simulators::Use use, Rng& rng);
+
 /// The drawings as their engineer remembers them: constructions, densities and nameplates off by
 /// some ten per cent, rounded as people round; geometry, plant and hours are known.
 [[nodiscard]] simulators::Drawings misremembered(simulators::Drawings drawings, Rng& rng);

@@ -1,6 +1,7 @@
 // Draws a blind population: cases as users would have them, answers apart and sealed.
 //
 //   blind_make --population sealed --seed N --out DIR [--cases 1-20] [--twins] [--threads 0]
+//   blind_make --population plain --uses office,shop --count 60 --seed N --out DIR
 
 #include <fmt/format.h>
 
@@ -27,6 +28,8 @@ struct Arguments {
   std::uint64_t seed = 1;
   std::filesystem::path out;
   std::string cases;
+  std::vector<std::string> uses;  ///< Of a plain population; with `count`.
+  std::size_t count = 0;
   bool twins = false;
   unsigned threads = 0;
 };
@@ -81,11 +84,41 @@ class Maker {
   std::string error_;
 };
 
+/// What is asked for, in words and as plans.
+struct Population {
+  std::string name;
+  std::vector<CasePlan> plans;
+};
+
+Result<Population> plan_what_is_asked(const Arguments& given) {
+  const bool plain = given.population == "plain";
+  const auto kind = population_kind(given.population);
+  if (!plain && !kind) return tl::unexpected(kind.error());
+  if (!plain) {
+    if (!given.uses.empty() || given.count > 0) {
+      return failure(ErrorCode::invalid_value, "--uses and --count are of --population plain");
+    }
+    return Population{kind->name, plan_population(*kind, given.seed)};
+  }
+  const auto uses = uses_named(given.uses);
+  if (!uses) return tl::unexpected(uses.error());
+  constexpr std::size_t most = 999;
+  if (given.count < 1 || given.count > most) {
+    return failure(ErrorCode::invalid_value,
+                   fmt::format("a plain population has 1 to {} cases: give --count", most));
+  }
+  std::string list;
+  for (const simulators::Use use : *uses) {
+    list += (list.empty() ? "" : ", ") + std::string(to_string(use));
+  }
+  return Population{"plain (" + list + ")", plan_plain(*uses, given.count, given.seed)};
+}
+
 /// The folder belongs to one population and seed from its first case on.
-Result<void> claim(const Arguments& given) {
+Result<void> claim(const Arguments& given, const std::string& name) {
   const std::filesystem::path file = given.out / "population.txt";
-  const std::string mine = fmt::format("{} with seed {}{}\n", given.population, given.seed,
-                                       given.twins ? ", twins kept" : "");
+  const std::string mine =
+      fmt::format("{} with seed {}{}\n", name, given.seed, given.twins ? ", twins kept" : "");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return system::write_file(file, mine);
   const std::string theirs{std::istreambuf_iterator<char>(stream), {}};
@@ -96,9 +129,9 @@ Result<void> claim(const Arguments& given) {
 }
 
 int make(const Arguments& given) {
-  const auto kind = population_kind(given.population);
-  if (!kind) return failed(kind.error().message, 2);
-  const std::vector<CasePlan> plans = plan_population(*kind, given.seed);
+  const auto population = plan_what_is_asked(given);
+  if (!population) return failed(population.error().message, 2);
+  const std::vector<CasePlan>& plans = population->plans;
   const auto range = case_range_of(given.cases, plans.size());
   if (!range) {
     return failed(fmt::format("--cases {}: give one number or two with a dash, 1 to {}",
@@ -113,7 +146,7 @@ int make(const Arguments& given) {
   if (std::filesystem::exists(folders.answers / "answers.sha256")) {
     return failed(fmt::format("{} is sealed already; choose another --out", given.out.string()));
   }
-  if (const auto same = claim(given); !same) return failed(same.error().message);
+  if (const auto same = claim(given, population->name); !same) return failed(same.error().message);
   Maker maker(folders, given.out / "scratch", range->size());
   system::parallel_for(given.threads)(
       range->size(), [&](std::size_t i) { maker.make(plans[range->first - 1 + i]); });
@@ -126,7 +159,7 @@ int make(const Arguments& given) {
   const auto hash = seal_answers(folders.answers);
   if (!hash) return failed(hash.error().message);
   std::cout << fmt::format("{} cases of {} with seed {} in {}; answers sealed: {}\n", plans.size(),
-                           kind->name, given.seed, folders.cases.string(), *hash);
+                           population->name, given.seed, folders.cases.string(), *hash);
   return 0;
 }
 
@@ -136,7 +169,10 @@ int main(int argc, char** argv) {
   CLI::App app{"Draws a blind population: feeds and site files, answers apart and sealed.",
                "blind_make"};
   Arguments given;
-  app.add_option("--population", given.population, "smoke, training or sealed")->required();
+  app.add_option("--population", given.population, "smoke, training, sealed or plain")->required();
+  app.add_option("--uses", given.uses, "of a plain population, such as office,shop")
+      ->delimiter(',');
+  app.add_option("--count", given.count, "of a plain population: how many cases");
   app.add_option("--seed", given.seed, "of the population")
       ->required()
       ->check(CLI::NonNegativeNumber);

@@ -174,7 +174,7 @@ void Smoke::refuses_in_one_sentence() {
   EXPECT_EQ(make(*folder_, "--population smoke" + out).exit_code, 2);
   const Ran unknown = make(*folder_, "--population secret --seed 1" + out);
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("there are smoke, training and sealed"));
+  EXPECT_THAT(unknown.err, HasSubstr("there are smoke, training, sealed and plain"));
   const Ran beyond = make(*folder_, "--population smoke --seed 1 --cases 5-13" + out);
   EXPECT_EQ(beyond.exit_code, 2);
   EXPECT_THAT(beyond.err, HasSubstr("1 to 12"));
@@ -229,6 +229,52 @@ TEST_F(Smoke, IsSealedRepeatableTakenByRecaldAndScored) {
   same_seed_same_bytes_even_in_pieces();
   refuses_in_one_sentence();
   is_diagnosed_and_scored();
+}
+
+/// One building of each use that was not there from the first, made whole and in a piece.
+TEST(PlainPopulation, IsSealedRepeatableAndTakenByRecald) {
+  const TemporaryFolder folder;
+  const std::string asked =
+      "--population plain --uses shop,hotel,clinic,warehouse,restaurant,gym --count 6 --seed 4";
+  const Ran made = make(folder, asked + " --out " + (folder / "whole").string());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("plain (shop, hotel, clinic, warehouse, restaurant, gym)"));
+  ASSERT_TRUE(verify_seal(folder / "whole" / "answers", std::nullopt).has_value());
+  const auto answers = read_answers(folder / "whole" / "answers");
+  ASSERT_TRUE(answers.has_value()) << answers.error().message;
+  ASSERT_EQ(answers->size(), 6u);
+  for (const auto& [id, answer] : *answers) {
+    SCOPED_TRACE(id);
+    EXPECT_EQ(answer.block, Block::no_effect);
+    EXPECT_TRUE(answer.effects.empty());
+    const std::string site = (folder / "whole" / "cases" / id / "site.toml").string();
+    for (const std::string command : {" check ", " replay --json "}) {
+      const Ran taken = run(folder, std::string(RECALD_PROGRAM) + command + site);
+      EXPECT_EQ(taken.exit_code, 0) << taken.out << taken.err;
+    }
+  }
+  ASSERT_EQ(make(folder, asked + " --cases 5 --out " + (folder / "piece").string()).exit_code, 0);
+  const auto all = files_below(folder / "whole");
+  const auto piece = files_below(folder / "piece");
+  EXPECT_EQ(piece.size(), 5u);  // three of the case, its answer, population.txt
+  for (const auto& [path, text] : piece) EXPECT_TRUE(all.at(path) == text) << path;
+}
+
+TEST(PlainPopulation, RefusesInOneSentence) {
+  const TemporaryFolder folder;
+  const std::string out = " --seed 1 --out " + (folder / "x").string();
+  const auto refusal = [&](const std::string& arguments) {
+    const Ran ran = make(folder, arguments + out);
+    EXPECT_EQ(ran.exit_code, 2) << arguments;
+    return ran.err;
+  };
+  EXPECT_THAT(refusal("--population plain --count 3"), HasSubstr("no use is given"));
+  EXPECT_THAT(refusal("--population plain --uses palace --count 3"),
+              HasSubstr("unknown use palace; there are laboratory, office"));
+  EXPECT_THAT(refusal("--population plain --uses shop"), HasSubstr("1 to 999 cases"));
+  EXPECT_THAT(refusal("--population plain --uses shop --count 1000"), HasSubstr("1 to 999 cases"));
+  EXPECT_THAT(refusal("--population smoke --uses shop"), HasSubstr("are of --population plain"));
+  EXPECT_FALSE(fs::exists(folder / "x"));
 }
 
 }  // namespace

@@ -126,6 +126,8 @@ std::vector<HiddenChoice> with_stand_ins(const EffectKind& kind, const Scenario&
   return candidates;
 }
 
+Period draw_period(int years, Rng& rng) { return {2012 + static_cast<int>(rng.below(18)), years}; }
+
 CasePlan plan_case(const PopulationKind& kind, std::uint64_t population_seed, std::size_t index,
                    const Hidden& hidden) {
   Rng rng{population_seed, static_cast<std::uint64_t>(Chance::cases) + index};
@@ -136,7 +138,7 @@ CasePlan plan_case(const PopulationKind& kind, std::uint64_t population_seed, st
   Scenario& scenario = plan.scenario;
   scenario.drawings = draw_building(needs_of(hidden.kinds), rng);
   scenario.drawings.id = plan.id;
-  scenario.period = {2012 + static_cast<int>(rng.below(18)), kind.years};
+  scenario.period = draw_period(kind.years, rng);
   scenario.step = kInterval;
   const bool gaps = rng.uniform() < 1.0 / 3.0;
   scenario.care = gaps ? MeterCare::gaps : MeterCare::perfect;
@@ -145,6 +147,22 @@ CasePlan plan_case(const PopulationKind& kind, std::uint64_t population_seed, st
   for (const EffectKind* effect : hidden.kinds) {
     plan.wanted.push_back({with_stand_ins(*effect, scenario, rng), hidden.target});
   }
+  return plan;
+}
+
+CasePlan plan_plain_case(std::uint64_t population_seed, std::size_t index, Use use) {
+  Rng rng{population_seed, static_cast<std::uint64_t>(Chance::cases) + index};
+  CasePlan plan;
+  plan.id = fmt::format("plain-{:03}", index + 1);
+  plan.block = Block::no_effect;
+  plan.seed = rng.below(std::uint64_t{1} << 53U);
+  Scenario& scenario = plan.scenario;
+  scenario.drawings = draw_building_of(use, rng);
+  scenario.drawings.id = plan.id;
+  scenario.period = draw_period(3, rng);
+  scenario.step = kInterval;
+  scenario.care = MeterCare::usual;
+  plan.as_believed = misremembered(scenario.drawings, rng);
   return plan;
 }
 
@@ -206,8 +224,41 @@ Result<PopulationKind> population_kind(std::string_view name) {
   if (name == "sealed") {
     return PopulationKind{"sealed", {60, {{kPlain, 60}, {kStrong, 40}}, 20, 20}, 3};
   }
-  return failure(ErrorCode::not_found,
-                 fmt::format("unknown population {}; there are smoke, training and sealed", name));
+  return failure(
+      ErrorCode::not_found,
+      fmt::format("unknown population {}; there are smoke, training, sealed and plain", name));
+}
+
+Result<std::vector<Use>> uses_named(const std::vector<std::string>& names) {
+  if (names.empty()) {
+    return failure(ErrorCode::not_enough_data, "no use is given; such as --uses office,school");
+  }
+  std::vector<Use> uses;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find_if(kUses, [&](Use use) { return to_string(use) == name; });
+    if (found == kUses.end()) {
+      std::string list;
+      for (const Use use : kUses) list += (list.empty() ? "" : ", ") + std::string(to_string(use));
+      return failure(ErrorCode::not_found, fmt::format("unknown use {}; there are {}", name, list));
+    }
+    uses.push_back(*found);
+  }
+  std::ranges::sort(uses);
+  const auto twice = std::ranges::unique(uses);
+  uses.erase(twice.begin(), twice.end());
+  return uses;
+}
+
+std::vector<CasePlan> plan_plain(const std::vector<Use>& uses, std::size_t count,
+                                 std::uint64_t seed) {
+  std::string name = "plain";
+  for (const Use use : uses) name += " " + std::string(to_string(use));
+  const std::uint64_t own = seed_of(name, seed);
+  std::vector<CasePlan> plans;
+  for (std::size_t i = 0; i < count; ++i) {
+    plans.push_back(plan_plain_case(own, i, uses[i % uses.size()]));
+  }
+  return plans;
 }
 
 std::vector<CasePlan> plan_population(const PopulationKind& kind, std::uint64_t seed) {

@@ -45,11 +45,24 @@ struct PopulationKind {
   int years;
 };
 
-/// "smoke" (12 cases of a year), "training" and "sealed" (200 of three years).
+/// "smoke" (12 cases of a year), "training" and "sealed" (200 of three years); "plain" is planned
+/// by `plan_plain`.
 /// @return not_found with the names for any other.
 [[nodiscard]] Result<PopulationKind> population_kind(std::string_view name);
 
 /// The same kind and seed give the same plans; case i does not depend on how many follow.
 [[nodiscard]] std::vector<CasePlan> plan_population(const PopulationKind& kind, std::uint64_t seed);
+
+/// The uses of these names, in the simulator's order, each once.
+/// @return not_found with the names there are; not_enough_data where none is given.
+[[nodiscard]] Result<std::vector<simulators::Use>> uses_named(
+    const std::vector<std::string>& names);
+
+/// Buildings that hide nothing, of the uses in turn, three years each under meters with usual care:
+/// models are compared, and the sizes of their own errors learnt, on these. What one set of uses
+/// draws, another never does, whatever the seeds; case i does not depend on how many follow.
+/// @pre uses as `uses_named` gives them
+[[nodiscard]] std::vector<CasePlan> plan_plain(const std::vector<simulators::Use>& uses,
+                                               std::size_t count, std::uint64_t seed);
 
 }  // namespace recald::blind

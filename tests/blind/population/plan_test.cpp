@@ -25,7 +25,7 @@ TEST(Plan, HasTheBlocksOfTheProtocol) {
   EXPECT_EQ(count[Block::pair], 20);
   EXPECT_EQ(plans_of("smoke", 1).size(), 12u);
   EXPECT_EQ(population_kind("secret").error().message,
-            "unknown population secret; there are smoke, training and sealed");
+            "unknown population secret; there are smoke, training, sealed and plain");
 }
 
 TEST(Plan, AsksForTheDetectabilitiesOfTheProtocol) {
@@ -138,6 +138,94 @@ TEST(Plan, SiteFilesAreWrongButPlausible) {
     EXPECT_LT(believed.heating_efficiency, 1.0);
   }
   EXPECT_GT(worst, 0.1);
+}
+
+using simulators::Use;
+
+const std::vector<Use> kToLearn{Use::laboratory, Use::office, Use::school, Use::hotel,
+                                Use::warehouse};
+const std::vector<Use> kToJudge{Use::shop, Use::clinic, Use::restaurant, Use::gym};
+
+TEST(PlainPlan, TakesUsesByNameInAnyOrderAndRefusesOthers) {
+  EXPECT_EQ(*uses_named({"shop", "office", "shop"}), (std::vector<Use>{Use::office, Use::shop}));
+  EXPECT_EQ(uses_named({"office", "palace"}).error().message,
+            "unknown use palace; there are laboratory, office, school, shop, hotel, clinic, "
+            "warehouse, restaurant, gym");
+  EXPECT_EQ(uses_named({}).error().code, ErrorCode::not_enough_data);
+}
+
+TEST(PlainPlan, HidesNothingAndTakesTheUsesInTurn) {
+  const auto plans = plan_plain(kToJudge, 60, 5);
+  ASSERT_EQ(plans.size(), 60u);
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    SCOPED_TRACE(plans[i].id);
+    const auto& scenario = plans[i].scenario;
+    EXPECT_EQ(scenario.drawings.use, kToJudge[i % 4]);
+    EXPECT_EQ(plans[i].block, Block::no_effect);
+    EXPECT_TRUE(plans[i].wanted.empty());
+    EXPECT_TRUE(scenario.effects.empty());
+    EXPECT_TRUE(scenario.decoys.empty());
+    EXPECT_EQ(scenario.care, simulators::MeterCare::usual);
+    EXPECT_EQ(scenario.period.years, 3);
+    EXPECT_FALSE(*scenario.drawings.saturday_operation);
+    EXPECT_FALSE(scenario.drawings.attendance_follows_season);
+  }
+}
+
+// Of sixty each climate and plant comes, sizes differ by a factor, and every age stands.
+TEST(PlainPlan, DrawsClimatesPlantsSizesAndAges) {
+  std::set<simulators::ClimateKind> climates;
+  std::set<simulators::CoolingPlant> coolings;
+  std::set<simulators::HeatingPlant> heatings;
+  std::set<double> walls_in_mixed;
+  double least_m2 = 1e9;
+  double most_m2 = 0.0;
+  for (const CasePlan& plan : plan_plain(kToLearn, 100, 6)) {
+    const auto& drawings = plan.scenario.drawings;
+    climates.insert(drawings.climate);
+    coolings.insert(drawings.cooling);
+    heatings.insert(drawings.heating);
+    if (drawings.climate == simulators::ClimateKind::mixed) {
+      walls_in_mixed.insert(drawings.wall_u_W_m2K);
+    }
+    least_m2 = std::min(least_m2, drawings.floor_area_m2());
+    most_m2 = std::max(most_m2, drawings.floor_area_m2());
+  }
+  EXPECT_EQ(climates.size(), 5u);
+  EXPECT_EQ(coolings.size(), 3u);
+  EXPECT_EQ(heatings.size(), 4u);
+  EXPECT_EQ(walls_in_mixed.size(), 3u);
+  EXPECT_GT(most_m2, 8.0 * least_m2);
+}
+
+TEST(PlainPlan, SameSeedSamePlansHoweverManyFollow) {
+  const auto few = plan_plain(kToJudge, 9, 11);
+  const auto many = plan_plain(kToJudge, 30, 11);
+  const auto other = plan_plain(kToJudge, 9, 12);
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    EXPECT_EQ(few[i].seed, many[i].seed);
+    EXPECT_EQ(few[i].scenario.drawings.description, many[i].scenario.drawings.description);
+    EXPECT_EQ(few[i].as_believed.wall_u_W_m2K, many[i].as_believed.wall_u_W_m2K);
+    EXPECT_NE(few[i].seed, other[i].seed);
+  }
+}
+
+// What sizes are learnt on and what they are judged by share no seed, under the same number either,
+// and none with any other population.
+TEST(PlainPlan, SetsOfUsesShareNoSeed) {
+  std::set<std::uint64_t> seeds;
+  std::size_t cases = 0;
+  const auto count = [&](const std::vector<CasePlan>& plans) {
+    for (const CasePlan& plan : plans) seeds.insert(plan.seed);
+    cases += plans.size();
+  };
+  for (const std::uint64_t seed : {7, 8}) {
+    for (const char* name : {"smoke", "training", "sealed"}) count(plans_of(name, seed));
+    count(plan_plain(kToLearn, 200, seed));
+    count(plan_plain(kToJudge, 200, seed));
+    count(plan_plain({Use::shop}, 200, seed));
+  }
+  EXPECT_EQ(seeds.size(), cases);
 }
 
 }  // namespace

@@ -100,7 +100,13 @@ INSTANTIATE_TEST_SUITE_P(
               .storeys = 1,
               .skylight_share = 0.1,
               .heavy = false},
-             900s}),
+             900s},
+        Look{"shop", {.use = Use::shop, .storeys = 1, .cooling = CoolingPlant::packaged}, 900s},
+        Look{"hotel", {.use = Use::hotel, .storeys = 5, .width_m = 18.0}, 900s},
+        Look{"clinic", {.use = Use::clinic, .climate = ClimateKind::marine, .storeys = 2}, 900s},
+        Look{"warehouse", {.use = Use::warehouse, .storeys = 1, .heavy = false}, 900s},
+        Look{"restaurant", {.use = Use::restaurant, .storeys = 1, .length_m = 26.0}, 300s},
+        Look{"gym", {.use = Use::gym, .climate = ClimateKind::hot_humid, .storeys = 1}, 900s}),
     [](const auto& tested) { return tested.param.name; });
 
 // Laboratories of the hot-humid south-east with reheat: the ranges are wide on purpose.

@@ -47,5 +47,36 @@ TEST(Calendar, SchoolsAreClosedInSummerAndOfficesAreNot) {
   }
 }
 
+TEST(Calendar, TradeRestsOnFewDaysAndRestaurantsOnMondays) {
+  EXPECT_TRUE(Calendar(Use::hotel).holidays_of(2022y).empty());
+  EXPECT_EQ(Calendar(Use::shop).holidays_of(2022y),
+            (std::vector<metering::Day>{2022y / January / 1, 2022y / July / 4,
+                                        2022y / November / 24, 2022y / December / 25}));
+  const Calendar restaurant(Use::restaurant);
+  EXPECT_EQ(restaurant.holidays_of(2022y).size(), 52u + 3u);
+  EXPECT_EQ(restaurant.kind_of(2022y / March / 7), DayKind::sunday);  // a Monday
+  EXPECT_EQ(restaurant.kind_of(2022y / March / 8), DayKind::workday);
+  EXPECT_EQ(restaurant.kind_of(2022y / March / 12), DayKind::saturday);
+  EXPECT_EQ(Calendar(Use::warehouse).kind_of(2022y / December / 26), DayKind::sunday);  // observed
+  for (const Use use : kUses) {
+    for (int y = 2015; y < 2036; ++y) {
+      const auto days = Calendar(use).holidays_of(std::chrono::year{y});
+      EXPECT_TRUE(std::ranges::is_sorted(days));
+      EXPECT_EQ(std::ranges::adjacent_find(days), days.end());
+      for (const auto day : days) EXPECT_EQ(static_cast<int>(day.year()), y);
+    }
+  }
+}
+
+TEST(Calendar, OpenDaysGrowFromWorkdaysToAll) {
+  using enum DayKind;
+  for (const OpenDays days :
+       {OpenDays::workdays, OpenDays::workdays_and_saturdays, OpenDays::every_day}) {
+    EXPECT_TRUE(is_open(days, workday));
+    EXPECT_EQ(is_open(days, saturday), days != OpenDays::workdays);
+    EXPECT_EQ(is_open(days, sunday), days == OpenDays::every_day);
+  }
+}
+
 }  // namespace
 }  // namespace recald::simulators::calendar_test

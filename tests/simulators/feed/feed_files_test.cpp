@@ -1,14 +1,19 @@
 #include "simulators/feed/feed_files.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "simulators/scenario/archetypes.hpp"
 #include "simulators/scenario/scenario_files.hpp"
 
 namespace recald::simulators::feed_files_test {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 Scenario one_year() {
   Scenario scenario;
@@ -95,6 +100,37 @@ TEST(FeedFiles, SiteFileQuotesDrawingsAndSplitsThePeriod) {
   const std::string one = site_toml(scenario);
   EXPECT_NE(one.find("calibration = { from = \"2024-01\", to = \"2024-08\" }"), std::string::npos);
   EXPECT_NE(one.find("validation = { from = \"2024-09\", to = \"2024-12\" }"), std::string::npos);
+}
+
+Scenario typical(Use use) {
+  Scenario scenario;
+  scenario.drawings = draw_up(typical_brief(use));
+  return scenario;
+}
+
+// Hours, days, densities and set-points as an engineer with the drawings would write them.
+TEST(FeedFiles, SiteFileTellsWhatRunsInEachUse) {
+  const std::string shop = site_toml(typical(Use::shop));
+  EXPECT_THAT(shop, HasSubstr("occupied_from = 7\noccupied_to = 21\nsaturday_occupied = true\n"));
+  EXPECT_THAT(shop, HasSubstr("chiller_cop = 3.3   # packaged units, in the electricity meter\n"));
+  EXPECT_THAT(shop, HasSubstr("outputs = [\"electricity\", \"gas\"]\n"));
+  EXPECT_THAT(shop, Not(HasSubstr("chilled_water")));
+  EXPECT_THAT(shop, HasSubstr("sunday = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,"));
+  const std::string hotel = site_toml(typical(Use::hotel));
+  EXPECT_THAT(hotel, HasSubstr("holidays = [   # local dates that run like Sundays\n]"));
+  EXPECT_THAT(hotel, HasSubstr("cooling_unoccupied_C = 24\n"));
+  EXPECT_THAT(hotel, HasSubstr("heating_unoccupied_C = 21\n"));
+  EXPECT_THAT(hotel,
+              HasSubstr("outdoor_air_unoccupied_fraction = 1.00   # air handlers never stop"));
+  const std::string clinic = site_toml(typical(Use::clinic));
+  EXPECT_THAT(clinic, HasSubstr("# wards run always"));
+  EXPECT_THAT(clinic, Not(HasSubstr("saturday_occupied")));
+  EXPECT_THAT(site_toml(typical(Use::warehouse)),
+              HasSubstr("cooling_occupied_C = 27\ncooling_unoccupied_C = 32\n"
+                        "heating_occupied_C = 16\nheating_unoccupied_C = 11\n"));
+  const std::string restaurant = site_toml(typical(Use::restaurant));
+  EXPECT_THAT(restaurant, HasSubstr("zone_heat_share = 0.6\n"));
+  EXPECT_THAT(restaurant, HasSubstr("\"2022-03-07\""));  // a Monday
 }
 
 TEST(FeedFiles, TruthHasTheSharedParametersAndCleanMonths) {

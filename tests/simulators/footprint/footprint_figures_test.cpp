@@ -153,7 +153,7 @@ TEST(FootprintFigures, MetersAreToldApart) {
   EXPECT_EQ(colours.size(), 3U);
 }
 
-// Two kinds and the three weeks, twice.
+// Two kinds and a week of each use, twice.
 TEST(FootprintFigures, DrawsTheSameFilesAgain) {
   std::vector<EffectKind> kinds{*find_effect_kind("weekend_operation"),
                                 *find_effect_kind("phase_lost")};
@@ -162,7 +162,7 @@ TEST(FootprintFigures, DrawsTheSameFilesAgain) {
   const auto second = draw_footprints(folder.path() / "two", kinds);
   ASSERT_TRUE(first.has_value()) << first.error().message;
   ASSERT_TRUE(second.has_value()) << second.error().message;
-  EXPECT_EQ(*first, 5U);
+  EXPECT_EQ(*first, 2U + kUses.size());
 
   const std::string list = text_of(folder.path() / "one" / "README.md");
   std::size_t files = 0;
@@ -176,7 +176,7 @@ TEST(FootprintFigures, DrawsTheSameFilesAgain) {
     EXPECT_TRUE(is_plain_xml(text));
     EXPECT_THAT(list, HasSubstr("(" + entry.path().filename().string() + ")"));
   }
-  EXPECT_EQ(files, 6U);
+  EXPECT_EQ(files, 3U + kUses.size());
   EXPECT_THAT(list, HasSubstr("## schedules"));
   EXPECT_THAT(list, HasSubstr("chilled water unchanged, electricity \u2212"));
 }

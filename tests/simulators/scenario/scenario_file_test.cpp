@@ -92,6 +92,39 @@ TEST_F(ScenarioFile, AnEmptyFileIsAnOfficeOfTheMixedClimate) {
   EXPECT_TRUE(scenario->effects.empty());
 }
 
+TEST_F(ScenarioFile, EveryUseHasSizeAndPlantOfItsOwn) {
+  for (const Use use : kUses) {
+    const auto scenario = read("[building]\nuse = \"" + std::string(to_string(use)) + "\"\n");
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    EXPECT_EQ(scenario->drawings.use, use);
+    EXPECT_EQ(scenario->drawings.calendar, use);
+  }
+  const auto shop = read("[building]\nuse = \"shop\"\nvintage = \"1980s\"\n");
+  ASSERT_TRUE(shop) << shop.error().message;
+  EXPECT_EQ(shop->drawings.cooling, CoolingPlant::packaged);
+  EXPECT_EQ(shop->drawings.heating, HeatingPlant::boiler);
+  EXPECT_EQ(shop->drawings.storeys, 1u);
+  EXPECT_GT(shop->drawings.wall_u_W_m2K, 0.6);
+  const auto warehouse =
+      read("[building]\nuse = \"warehouse\"\n[controls]\nheating_setpoint_C = 16.5\n");
+  ASSERT_TRUE(warehouse) << warehouse.error().message;
+  EXPECT_EQ(warehouse->drawings.heating_setpoint_C, 16.5);
+}
+
+TEST_F(ScenarioFile, RefusesWhatAUseDoesNotHave) {
+  EXPECT_THAT(refusal("[building]\nuse = \"hotel\"\n[controls]\noccupied_to_h = 20\n"),
+              HasSubstr("unknown key occupied_to_h in [controls]"));
+  EXPECT_THAT(refusal("[building]\nuse = \"hotel\"\n[[effect]]\nname = \"after_hours\"\n"),
+              HasSubstr("needs air handlers that stop at night"));
+  EXPECT_THAT(refusal("[building]\nuse = \"shop\"\n[[effect]]\nname = \"deep_drying\"\n"),
+              HasSubstr("needs a chilled-water meter"));
+  EXPECT_THAT(refusal("[building]\nuse = \"shop\"\n[[effect]]\nname = \"scale_fault\"\n"
+                      "from = \"2021-05-01\"\nmeter = \"chilled_water\"\n"),
+              HasSubstr("has no meter chilled_water; it has electricity, gas"));
+  EXPECT_THAT(refusal("[controls]\nheating_setpoint_C = 16\n"),
+              HasSubstr("heating_setpoint_C in [controls] must be a number from 20.3 to 21.9"));
+}
+
 TEST_F(ScenarioFile, RefusesWithOneSentence) {
   EXPECT_THAT(read_scenario(folder_ / "absent.toml").error().message, HasSubstr("check its path"));
   EXPECT_THAT(refusal("[building\n"), HasSubstr("scenario.toml:1: not TOML"));

@@ -1,0 +1,76 @@
+/// People who come and go all day: customers, guests, patients, shifts.
+///
+/// A place (a bed, a seat, room for one more customer) is taken and left by one after the other.
+/// What is drawn up is the share of places taken by hour; what happens is a chain whose expectation
+/// is just that, so that the site file's schedule says neither more nor less than what the building
+/// sees.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/random/rng.hpp"
+
+namespace recald::simulators {
+
+/// A share, 0 to 1, for each local hour.
+using HourlyShares = std::array<double, 24>;
+
+inline constexpr std::size_t kSlotsPerDay = 288;  ///< Of five minutes.
+using SlotShares = std::array<double, kSlotsPerDay>;
+
+/// Of the rooms of one kind.
+struct Visits {
+  double stay_h;         ///< Mean length of a visit.
+  HourlyShares workday;  ///< Places taken, in the middle of each hour.
+  HourlyShares saturday;
+  HourlyShares sunday;
+  HourlyShares awake;  ///< Of those present, who use lights, devices and warm water.
+};
+
+/// Straight lines between the middles of the hours; the first and the last half hour are held.
+[[nodiscard]] SlotShares shares_by_slot(const HourlyShares& shares);
+
+/// The mean of `shares_by_slot` over each hour.
+[[nodiscard]] HourlyShares hourly_means(const HourlyShares& shares);
+
+/// One day of a place, as a chain of two states in steps of five minutes. Visits end at random,
+/// with the mean length asked for, and sooner where the share falls faster than that.
+class VisitDay {
+ public:
+  /// @param shares  chance that the place is taken, by slot; below 1
+  /// @param before  the same in the last slot of the day before
+  VisitDay(const SlotShares& shares, double before, double stay_h);
+
+  /// Draws the day and calls `visit(first, end)`, slots, for each visit or part of one.
+  /// @param taken  whether the place was, as the day before ended
+  /// @return whether it is as this day ends
+  template <class Visit>
+  bool draw(bool taken, Rng& rng, const Visit& visit) const;
+
+ private:
+  /// The slot from `slot` on in which a free place is taken; `kSlotsPerDay` where it stays free.
+  [[nodiscard]] std::size_t next_taken(std::size_t slot, Rng& rng) const;
+  /// Likewise, in which a taken place is free again.
+  [[nodiscard]] std::size_t next_left(std::size_t slot, Rng& rng) const;
+
+  SlotShares taking_{};   ///< Hazard of being taken, summed over the day.
+  SlotShares leaving_{};  ///< Likewise, of being left.
+};
+
+template <class Visit>
+bool VisitDay::draw(bool taken, Rng& rng, const Visit& visit) const {
+  std::size_t first = 0;
+  if (!taken) first = next_taken(0, rng);
+  std::size_t may_leave = taken ? 0 : first + 1;
+  while (first < kSlotsPerDay) {
+    const std::size_t end = next_left(may_leave, rng);
+    visit(first, end);
+    if (end == kSlotsPerDay) return true;
+    first = next_taken(end + 1, rng);
+    may_leave = first + 1;
+  }
+  return false;
+}
+
+}  // namespace recald::simulators
