@@ -46,6 +46,12 @@ class BackgroundProcess {
     ::kill(pid_, signal);
     return wait();
   }
+  /// Whether it has; wait() then says how.
+  [[nodiscard]] bool has_ended() const {
+    siginfo_t about{};
+    return ::waitid(P_PID, static_cast<id_t>(pid_), &about, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           about.si_pid != 0;
+  }
   /// Waits until it ends by itself.
   int wait() {
     int status = 0;

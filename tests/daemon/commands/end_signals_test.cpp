@@ -72,10 +72,20 @@ class LongCommands : public ::testing::TestWithParam<LongCommand> {
     return names;
   }
 
-  /// Sends the signal once the command is at work, and waits for its end.
+  /// Sends the signal once the command is at work, and waits for its end. All of its work would
+  /// take the processor far longer than it may have now.
   int end_at_work(BackgroundProcess& process, int signal) {
+    constexpr double kFarFromDone_s = 10.0;
     EXPECT_TRUE(eventually([&] { return worked_s(process.pid()) > 0.7; }));
-    return process.end(signal);
+    const double worked_before_s = worked_s(process.pid());
+    process.signal(signal);
+    while (!process.has_ended()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{20});
+      if (worked_s(process.pid()) - worked_before_s < kFarFromDone_s) continue;
+      ADD_FAILURE() << "it works on";
+      return process.end(SIGKILL);
+    }
+    return process.wait();
   }
 
   recald::testing::TemporaryFolder folder_;
@@ -106,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
         LongCommand{"calibrate_design",
                     {"calibrate", "--doe", "DESIGN", "--sampler", "dram", "--draws", "100000000",
                      "--out", "OUT"}},
-        LongCommand{"doe", {"doe", "SITE", "--model", "hourly", "--runs", "5000", "--out", "OUT"}},
+        LongCommand{"doe", {"doe", "SITE", "--model", "hourly", "--runs", "50000", "--out", "OUT"}},
         LongCommand{"diagnose", {"diagnose", "SITE", "--out", "OUT"}},
         LongCommand{"drift",
                     {"drift", "SITE", "--learn", "6", "--particles", "100000", "--out", "OUT"}}),
