@@ -136,6 +136,11 @@ Result<Database> Database::open(const std::filesystem::path& file, const Options
                                      options.vfs.empty() ? nullptr : options.vfs.c_str());
   Database database{std::make_unique<Impl>(Impl{DatabaseHandle{raw}, file.string()})};
   if (result != SQLITE_OK) return failed(result, raw, file.string());
+  // SQLite makes do with a file that it may only read; what wants to write would wait for ever.
+  if (writes && sqlite3_db_readonly(raw, "main") == 1) {
+    return failure(ErrorCode::io_failed,
+                   "store '" + file.string() + "' cannot be opened for writing");
+  }
   sqlite3_busy_timeout(raw, kBusyTimeout_ms);
   add_row_sum(raw);
   // Reading the first page, so that a file that is no database is told here.

@@ -81,18 +81,28 @@ Result<void> put_aside(const Places& places, const fs::path& aside) {
   return {};
 }
 
-std::optional<fs::path> first_sound(const std::vector<fs::path>& backups,
-                                    const OnProgress& on_progress) {
+/// @return io_failed where one cannot be read now: it may be the one that has what is missing.
+Result<std::optional<fs::path>> first_sound(const std::vector<fs::path>& backups,
+                                            const OnProgress& on_progress) {
+  const auto is_unsound = [](const auto& asked) {
+    return !asked && asked.error().code != ErrorCode::io_failed;
+  };
   for (const fs::path& backup : backups) {
     if (on_progress) on_progress();
+    if (!is_there(backup)) continue;
     auto database = Database::open(backup, {.access = Database::Access::read_only});
-    if (!database) continue;
+    if (is_unsound(database)) continue;
+    if (!database) return tl::unexpected(database.error());
     database->on_progress(on_progress);
     const auto damage = database->quick_check();
+    if (is_unsound(damage)) continue;
+    if (!damage) return tl::unexpected(damage.error());
     const auto version = schema_version(*database);
-    if (damage && damage->empty() && version && *version > 0) return backup;
+    if (is_unsound(version)) continue;
+    if (!version) return tl::unexpected(version.error());
+    if (damage->empty() && *version > 0) return backup;
   }
-  return {};
+  return std::optional<fs::path>{};
 }
 
 /// Copies all tables out of one file. @param rows  Where a table's number of rows is entered.
@@ -162,7 +172,9 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
                        const std::vector<fs::path>& backups, metering::Instant now,
                        const OnProgress& on_progress) {
   remove_store(places.made);  // what an interrupted recovery left
-  recovery.backup = first_sound(backups, on_progress);
+  auto backup = first_sound(backups, on_progress);
+  if (!backup) return tl::unexpected(backup.error());
+  recovery.backup = std::move(*backup);
   const auto filled = [&]() -> Result<void> {
     auto made = SqliteStore::open(places.made);
     if (!made) return tl::unexpected(made.error());
