@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/calibration/emulator.hpp"
 #include "core/calibration/posterior.hpp"
 #include "core/calibration/posterior_findings.hpp"
 #include "core/design/latin_hypercube.hpp"
@@ -63,6 +64,16 @@ void check_model(const Posterior& prototype, const Eigen::MatrixXd& points,
   append(c.findings, discrepancy_findings(problem.outputs, c.normalisation, c.chains));
 }
 
+/// What is sampled in the place of a model that knows no derivative; absent: the model is.
+std::optional<Emulator> emulator_of(const MonthlyModel& prototype, const DesignRuns& design,
+                                    const CalibrationOptions& options) {
+  if (!options.emulate || prototype.has_jacobian()) return {};
+  auto emulator =
+      emulate(design.theta, design.outputs, prototype.output_count(), prototype.month_count());
+  if (!emulator) return {};  // too few runs for so many parameters
+  return std::move(*emulator);
+}
+
 }  // namespace
 
 Result<DesignRuns> run_design(const MonthlyModel& prototype, const CalibrationProblem& problem,
@@ -103,9 +114,16 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
   result.findings = range_findings(result.range, problem.outputs, problem.month_names);
   result.hyper_prior = chosen_hyper_prior(options, result.normalisation.pooled_variance);
 
+  PosteriorData data = normalise_problem(problem, result.normalisation);
+  const auto emulator = emulator_of(prototype, result.design, options);
+  if (emulator) {
+    add_emulator_error(emulator->error_sd, prototype.month_count(), data);
+    result.emulator_error_sd = emulator->error_sd;
+  }
+  const MonthlyModel* const sampled_model =
+      emulator ? static_cast<const MonthlyModel*>(&emulator->model) : &prototype;
   const auto posterior =
-      Posterior::make(prototype, problem.parameters,
-                      normalise_problem(problem, result.normalisation), result.hyper_prior);
+      Posterior::make(*sampled_model, problem.parameters, std::move(data), result.hyper_prior);
   if (!posterior) return tl::unexpected(posterior.error());
   auto sampled = sample_posterior(*posterior, problem.inputs.names, options.sampling, context);
   if (!sampled) return tl::unexpected(std::move(sampled.error()));

@@ -31,6 +31,9 @@ struct CalibrationOptions {
   std::variant<HyperPriorProfile, HyperPrior> hyper_prior = HyperPriorProfile::scaled;
   SamplingOptions sampling;
   int thinned_draws = 270;  ///< Equally spaced over the pooled chains.
+  /// Samples a polynomial fitted to the design's runs in the place of a model without a Jacobian,
+  /// where there are runs enough; its error is counted as known variance.
+  bool emulate = false;
 };
 
 /// The model at every point of a Latin hypercube through the priors.
@@ -48,6 +51,9 @@ struct Calibration {
   std::vector<Summary> parameters;       ///< (q)
   std::vector<Summary> hyperparameters;  ///< lambda_delta, lambda_eps, beta_<input> …, beta_out
   SamplingReport sampling;
+  /// (outputs * months) sd of the polynomial that stood in for the model, in units; absent: the
+  /// model itself was sampled.
+  std::optional<Eigen::VectorXd> emulator_error_sd;
   Eigen::VectorXd posterior_mean;  ///< (q) theta, the point estimate.
   ThinnedDraws thinned;
   /// log p(y) by bridge sampling; absent where it was not found. Compare models by it only where

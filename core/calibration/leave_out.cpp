@@ -1,12 +1,11 @@
 #include "core/calibration/leave_out.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "core/calibration/conditional.hpp"
 #include "core/calibration/psis.hpp"
 #include "core/calibration/summary.hpp"
 
@@ -14,27 +13,6 @@ namespace recald::calibration {
 namespace {
 
 constexpr double kParetoKMax = 0.7;  // Vehtari et al. (2024): beyond, the estimate is unreliable
-
-/// Gaussian log density of one block given the rest, from the precision of all.
-class BlockDensity {
- public:
-  BlockDensity(const Eigen::MatrixXd& precision, const Eigen::VectorXd& weighted_residual)
-      : precision_(precision), weighted_residual_(weighted_residual) {}
-
-  [[nodiscard]] double operator()(const std::vector<Eigen::Index>& block) const {
-    const Eigen::MatrixXd own = precision_(block, block);
-    const Eigen::VectorXd alpha = weighted_residual_(block);
-    const Eigen::LLT<Eigen::MatrixXd> factor(own);
-    const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-    const auto size = static_cast<double>(block.size());
-    return 0.5 * (log_determinant - alpha.dot(factor.solve(alpha)) -
-                  size * std::log(2.0 * std::numbers::pi));
-  }
-
- private:
-  const Eigen::MatrixXd& precision_;
-  const Eigen::VectorXd& weighted_residual_;
-};
 
 }  // namespace
 
@@ -80,9 +58,9 @@ Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
     const Eigen::VectorXd theta = thinned.theta.row(d);
     const Eigen::VectorXd weighted =
         precision * posterior.residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
-    const BlockDensity density(precision, weighted);
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-      scores(d, static_cast<Eigen::Index>(b)) = density(blocks[b]);
+      scores(d, static_cast<Eigen::Index>(b)) =
+          log_density_given_others(precision, weighted, blocks[b]);
     }
   }
   if (!scores.allFinite()) {

@@ -52,7 +52,14 @@ void add_weights(const PosteriorData& data, const HyperPrior& prior, Discrepancy
   }
 }
 
-/// The cheapest covariance that fits the data.
+double prior_constant(const HyperPrior& prior, Eigen::Index q, Eigen::Index kernel_dimension) {
+  return -0.5 * static_cast<double>(q) * kLogTwoPi + prior.discrepancy_precision.log_constant() +
+         prior.error_precision.log_constant() +
+         static_cast<double>(kernel_dimension) * prior.rho.log_constant_of_score();
+}
+
+}  // namespace
+
 std::unique_ptr<ErrorCovariance> make_covariance(const PosteriorData& data,
                                                  const HyperPrior& prior) {
   DiscrepancyKernel kernel(data.month_inputs, data.points);
@@ -73,13 +80,16 @@ std::unique_ptr<ErrorCovariance> make_covariance(const PosteriorData& data,
   return make_dense_covariance(std::move(kernel), std::move(fixed));
 }
 
-double prior_constant(const HyperPrior& prior, Eigen::Index q, Eigen::Index kernel_dimension) {
-  return -0.5 * static_cast<double>(q) * kLogTwoPi + prior.discrepancy_precision.log_constant() +
-         prior.error_precision.log_constant() +
-         static_cast<double>(kernel_dimension) * prior.rho.log_constant_of_score();
+bool factorise(ErrorCovariance& covariance, const Hyperparameters& hyper, bool& jittered) {
+  const auto has_factor = [&](double jitter) {
+    return covariance.factorise(hyper, jitter) &&
+           std::isfinite(covariance.log_determinant());  // Eigen lets a NaN through
+  };
+  jittered = false;
+  if (has_factor(0.0)) return true;
+  jittered = true;
+  return has_factor(kJitter);
 }
-
-}  // namespace
 
 Posterior::Posterior(const MonthlyModel& prototype, std::vector<Parameter> parameters,
                      PosteriorData data, HyperPrior prior)
@@ -133,17 +143,12 @@ Result<Posterior> Posterior::make(const MonthlyModel& prototype, std::vector<Par
 
 bool Posterior::set_hyperparameters(const Hyperparameters& hyper) {
   hyper_point_(0) = kAbsent;  // equal to no point
-  const auto factorise = [&](double jitter) {
-    has_factor_ = covariance_->factorise(hyper, jitter);
-    if (!has_factor_) return;
+  bool jittered = false;
+  has_factor_ = factorise(*covariance_, hyper, jittered);
+  if (jittered) ++jitter_count_;
+  if (has_factor_) {
     log_normaliser_ =
         -0.5 * (covariance_->log_determinant() + static_cast<double>(point_count()) * kLogTwoPi);
-    has_factor_ = std::isfinite(log_normaliser_);  // Eigen lets a NaN through
-  };
-  factorise(0.0);
-  if (!has_factor_) {
-    ++jitter_count_;
-    factorise(kJitter);
   }
   return has_factor_;
 }

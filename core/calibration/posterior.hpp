@@ -32,6 +32,16 @@ struct PosteriorData {
   std::optional<Hyperparameters> weight_reference;
 };
 
+/// Sigma of the points, as `Posterior` describes it: the cheapest form that fits them.
+[[nodiscard]] std::unique_ptr<ErrorCovariance> make_covariance(const PosteriorData& data,
+                                                               const HyperPrior& prior);
+
+/// Assembles and factorises Sigma, with a jitter of 1e-10 only after a first failure.
+/// @param jittered  Whether it took that.
+/// @return whether there is a factor.
+[[nodiscard]] bool factorise(ErrorCovariance& covariance, const Hyperparameters& hyper,
+                             bool& jittered);
+
 /// The parts of a log density, each with all its constants.
 struct LogDensityTerms {
   double log_likelihood;

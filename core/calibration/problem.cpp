@@ -148,17 +148,19 @@ Result<void> check_problem(const CalibrationProblem& problem, const MonthlyModel
   return check_point_count(problem);
 }
 
-Eigen::MatrixXd scale_inputs(const Eigen::MatrixXd& values) {
-  const Eigen::RowVectorXd low = values.colwise().minCoeff();
-  const Eigen::RowVectorXd range = values.colwise().maxCoeff() - low;
+Eigen::MatrixXd scale_inputs(const Eigen::MatrixXd& values, Eigen::Index reference_months) {
+  const auto reference = values.topRows(reference_months).colwise();
+  const Eigen::RowVectorXd low = reference.minCoeff();
+  const Eigen::RowVectorXd range = reference.maxCoeff() - low;
   assert((range.array() > 0.0).all());
   return (values.rowwise() - low).array().rowwise() / range.array();
 }
 
 PosteriorData normalise_problem(const CalibrationProblem& problem,
-                                const Normalisation& normalisation) {
+                                const Normalisation& normalisation, Eigen::Index reference_months) {
   PosteriorData data;
-  data.month_inputs = scale_inputs(problem.inputs.values);
+  const Eigen::MatrixXd& inputs = problem.inputs.values;
+  data.month_inputs = scale_inputs(inputs, reference_months > 0 ? reference_months : inputs.rows());
   data.scales = normalisation.scales;
   const int months = static_cast<int>(problem.month_names.size());
   std::vector<double> values;

@@ -46,11 +46,16 @@ struct CalibrationProblem {
                                          const MonthlyModel& model);
 
 /// The measured points on the normalised scale. Weights are relative: they are divided by the
-/// largest among the measured outputs. @pre check_problem passed
+/// largest among the measured outputs.
+/// @param reference_months  The first months, by whose range inputs are scaled; 0: all of them.
+/// @pre check_problem passed
 [[nodiscard]] PosteriorData normalise_problem(const CalibrationProblem& problem,
-                                              const Normalisation& normalisation);
+                                              const Normalisation& normalisation,
+                                              Eigen::Index reference_months = 0);
 
-/// Each column by its own min and max over the months. @pre no constant column
-[[nodiscard]] Eigen::MatrixXd scale_inputs(const Eigen::MatrixXd& values);
+/// Each column by its min and max over the first `reference_months`: later months must not change
+/// what was said of earlier ones, so they may leave [0, 1]. @pre no column is constant over them
+[[nodiscard]] Eigen::MatrixXd scale_inputs(const Eigen::MatrixXd& values,
+                                           Eigen::Index reference_months);
 
 }  // namespace recald::calibration

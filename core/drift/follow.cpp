@@ -9,8 +9,9 @@
 #include <utility>
 
 #include "core/absent.hpp"
+#include "core/calibration/emulator.hpp"
 #include "core/calibration/hyper_prior.hpp"
-#include "core/drift/emulator.hpp"
+#include "core/design/model_runs.hpp"
 
 namespace recald::drift {
 namespace {
@@ -242,8 +243,11 @@ Result<SiteDrift> follow(const FollowedSite& followed,
   if (!normalisation) return tl::unexpected(normalisation.error());
 
   // A posterior that is carried on is evaluated a million times.
-  const auto emulator =
-      emulate(followed.model, followed.site.parameters, design.theta, context.executor);
+  const auto runs =
+      design::run_model(followed.model, followed.site.parameters, design.theta, context.executor);
+  if (!runs) return tl::unexpected(runs.error());
+  const auto emulator = calibration::emulate(design.theta, *runs, followed.model.output_count(),
+                                             followed.model.month_count());
   if (!emulator) return tl::unexpected(emulator.error());
 
   const bool is_calibrated =

@@ -3,21 +3,10 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
+#include "core/calibration/emulator.hpp"
 
 namespace recald::drift {
 namespace {
-
-/// Each column by its range over the first `learning` months: later ones must not change what was
-/// said of earlier ones, so they may leave [0, 1].
-Eigen::MatrixXd scaled_by_first(const Eigen::MatrixXd& values, Eigen::Index learning) {
-  Eigen::MatrixXd scaled = values;
-  for (Eigen::Index j = 0; j < values.cols(); ++j) {
-    const auto first = values.col(j).head(learning);
-    const double low = first.minCoeff();
-    scaled.col(j) = (values.col(j).array() - low) / (first.maxCoeff() - low);
-  }
-  return scaled;
-}
 
 /// What is known of each point's error, as the mean over the outputs of its month: then the
 /// covariance comes apart by outputs, and its factor, of which a sequence takes a million, costs a
@@ -47,15 +36,9 @@ calibration::PosteriorData data_of_all(const FollowedSite& followed,
   }
   all.inputs = followed.inputs;
   all.common_errors = followed.common_errors;
-  calibration::PosteriorData data = calibration::normalise_problem(all, normalisation);
-  data.month_inputs = scaled_by_first(followed.inputs.values, followed.learning_months);
-  const auto months = static_cast<Eigen::Index>(site.month_names.size());
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    const auto& [output, month] = data.points[i];
-    const double sd = error_sd(output * months + month);
-    data.extra_variances(static_cast<Eigen::Index>(i)) +=
-        data.scales[static_cast<std::size_t>(output)].normalise_variance(sd * sd);
-  }
+  calibration::PosteriorData data =
+      calibration::normalise_problem(all, normalisation, followed.learning_months);
+  calibration::add_emulator_error(error_sd, static_cast<int>(site.month_names.size()), data);
   share_by_month(data);
   return data;
 }

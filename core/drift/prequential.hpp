@@ -6,13 +6,17 @@
 #include <utility>
 #include <vector>
 
-#include "core/drift/forecast.hpp"
-#include "core/drift/level_forecast.hpp"
+#include "core/assessment/forecast.hpp"
+#include "core/assessment/level_forecast.hpp"
+#include "core/assessment/spread.hpp"
 #include "core/drift/sequential.hpp"
-#include "core/drift/spread.hpp"
 #include "core/drift/watch.hpp"
 
 namespace recald::drift {
+
+using assessment::LevelForecast;
+using assessment::Spread;
+using assessment::Surprise;
 
 /// One output of one month, in the output's unit.
 struct ForecastRecord {

@@ -1,12 +1,12 @@
 #include "core/drift/sequential.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/calibration/conditional.hpp"
 #include "core/calibration/log_sum.hpp"
 #include "core/calibration/smc.hpp"
 #include "core/random/streams.hpp"
@@ -133,12 +133,11 @@ Result<std::vector<Forecast>> SequentialCalibration::forecast(int month) {
   assert(has_begun() && !std::ranges::binary_search(taken_, month));
   PosteriorData data = points_seen_from(taken_.back(), month);
   std::vector<Eigen::Index> ahead;
-  std::vector<Eigen::Index> behind;
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const bool is_ahead = data.points[i].month == month;
-    (is_ahead ? ahead : behind).push_back(row);
-    if (is_ahead) data.values(row) = 0.0;  // then the residual there is -f, and nobody has looked
+    if (data.points[i].month != month) continue;
+    ahead.push_back(row);
+    data.values(row) = 0.0;  // then the residual there is -f, and nobody has looked
   }
   auto joint = posterior_of(std::move(data));
   if (!joint) return tl::unexpected(joint.error());
@@ -161,15 +160,11 @@ Result<std::vector<Forecast>> SequentialCalibration::forecast(int month) {
     const Eigen::VectorXd& residual =
         joint->residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
     joint->precision(precision);
-    // Of what is normal together, what is ahead given what is behind.
-    const Eigen::MatrixXd covariance = Eigen::MatrixXd(precision(ahead, ahead)).inverse();
-    const Eigen::VectorXd mean =
-        -residual(ahead) -
-        covariance * (precision(ahead, behind) * Eigen::VectorXd(residual(behind)));
+    const auto given = calibration::condition(precision, residual, precision * residual, ahead);
     for (std::size_t i = 0; i < ahead.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      forecasts[i].means(k) = mean(row);
-      forecasts[i].sds(k) = std::sqrt(covariance(row, row));
+      forecasts[i].means(k) = given.mean(row) - residual(ahead[i]);
+      forecasts[i].sds(k) = std::sqrt(given.covariance(row, row));
     }
   }
   return forecasts;

@@ -9,13 +9,15 @@
 #include <vector>
 
 #include "core/absent.hpp"
+#include "core/assessment/forecast.hpp"
 #include "core/calibration/particles.hpp"
 #include "core/calibration/posterior.hpp"
-#include "core/drift/forecast.hpp"
 #include "core/random/rng.hpp"
 #include "core/result.hpp"
 
 namespace recald::drift {
+
+using assessment::Forecast;
 
 /// Which months a posterior believes, seen from the newest.
 struct Window {

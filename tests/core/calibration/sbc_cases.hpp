@@ -2,10 +2,12 @@
 /// calibration.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/assessment/model_errors.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/design/model_runs.hpp"
 #include "core/model/epc/epc_model.hpp"
@@ -83,7 +85,10 @@ inline OwnedSbcCase metamodel_case(int parameters, int months, int inputs, bool 
     const auto m = static_cast<Eigen::Index>(data.points.size());
     data.extra_variances = Eigen::VectorXd::Zero(m);
     for (Eigen::Index i = 0; i < m; i += 5) data.extra_variances(i) = 4e-4;
-    data.common_errors.resize(m, 0);
+    data.common_errors.resize(m, 1);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      data.common_errors(i, 0) = data.points[static_cast<std::size_t>(i)].output == 0 ? 0.04 : 0.0;
+    }
   }
   auto model = std::make_unique<model::metamodel::QuadraticModel>(coefficients);
   std::vector<Parameter> priors;
@@ -127,6 +132,21 @@ inline OwnedSbcCase epc_case(int months, int inputs) {
   for (int k = 0; k < 2; ++k) {
     const auto block = runs.middleCols(Eigen::Index{k} * months, months);
     data.scales[static_cast<std::size_t>(k)] = {block.minCoeff(), block.maxCoeff()};
+  }
+  // The model's own errors, as a calibration of a site has them by default.
+  const std::array services{assessment::Service::cooling, assessment::Service::heating};
+  const assessment::ModelErrorSizes& sizes = assessment::model_error_sizes(ModelKind::epc);
+  const auto errors = assessment::model_errors(
+      *model, priors, assessment::spreads_of(priors, sizes), services, sizes);
+  const auto m = static_cast<Eigen::Index>(data.points.size());
+  data.common_errors.resize(m, static_cast<Eigen::Index>(errors.size()));
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const PointIndex& point = data.points[static_cast<std::size_t>(i)];
+    const double range = data.scales[static_cast<std::size_t>(point.output)].range();
+    for (std::size_t g = 0; g < errors.size(); ++g) {
+      data.common_errors(i, static_cast<Eigen::Index>(g)) =
+          errors[g](point.output * months + point.month) / range;
+    }
   }
   const MonthlyModel& reference = *model;
   return {std::move(model),

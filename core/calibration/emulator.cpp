@@ -1,13 +1,12 @@
-#include "core/drift/emulator.hpp"
+#include "core/calibration/emulator.hpp"
 
 #include <Eigen/QR>
+#include <cassert>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/design/model_runs.hpp"
-
-namespace recald::drift {
+namespace recald::calibration {
 namespace {
 
 /// (runs x terms + 1): the constant first.
@@ -25,8 +24,10 @@ Eigen::MatrixXd features(const Eigen::MatrixXd& scaled,
 
 }  // namespace
 
-Result<Emulator> emulate(const MonthlyModel& model, std::span<const Parameter> parameters,
-                         const Eigen::MatrixXd& theta, const ForEachIndex& executor) {
+Result<Emulator> emulate(const Eigen::MatrixXd& theta, const Eigen::MatrixXd& outputs,
+                         int output_count, int month_count) {
+  assert(outputs.rows() == theta.rows() &&
+         outputs.cols() == Eigen::Index{output_count} * month_count);
   const std::vector<regression::Term> terms =
       regression::all_terms(static_cast<int>(theta.cols()), true);
   const auto coefficients = static_cast<Eigen::Index>(terms.size()) + 1;
@@ -36,9 +37,6 @@ Result<Emulator> emulate(const MonthlyModel& model, std::span<const Parameter> p
                        " coefficients and needs twice as many runs, not " +
                        std::to_string(theta.rows()));
   }
-  const auto outputs = design::run_model(model, parameters, theta, executor);
-  if (!outputs) return tl::unexpected(outputs.error());
-
   std::vector<regression::ColumnScale> scales;
   Eigen::MatrixXd scaled = theta;
   for (Eigen::Index j = 0; j < theta.cols(); ++j) {
@@ -48,16 +46,15 @@ Result<Emulator> emulate(const MonthlyModel& model, std::span<const Parameter> p
   const Eigen::MatrixXd x = features(scaled, terms);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr{x};
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(x.rows(), coefficients);
-  const Eigen::MatrixXd fitted = qr.solve(*outputs);
+  const Eigen::MatrixXd fitted = qr.solve(outputs);
   // Of a run that the fit has not seen: its residual over one less its leverage.
   const Eigen::ArrayXd unseen = 1.0 - q.rowwise().squaredNorm().array();
-  const Eigen::MatrixXd left = ((*outputs - x * fitted).array().colwise() / unseen).matrix();
+  const Eigen::MatrixXd left = ((outputs - x * fitted).array().colwise() / unseen).matrix();
 
-  model::metamodel::QuadraticCoefficients collected{std::move(scales), model.output_count(),
-                                                    model.month_count()};
-  for (int output = 0; output < model.output_count(); ++output) {
-    for (int month = 0; month < model.month_count(); ++month) {
-      const Eigen::Index row = output * model.month_count() + month;
+  model::metamodel::QuadraticCoefficients collected{std::move(scales), output_count, month_count};
+  for (int output = 0; output < output_count; ++output) {
+    for (int month = 0; month < month_count; ++month) {
+      const Eigen::Index row = output * month_count + month;
       collected.add_constant(output, month, fitted(0, row));
       for (std::size_t k = 0; k < terms.size(); ++k) {
         collected.add(output, month, terms[k], fitted(static_cast<Eigen::Index>(k) + 1, row));
@@ -69,4 +66,13 @@ Result<Emulator> emulate(const MonthlyModel& model, std::span<const Parameter> p
       (left.colwise().squaredNorm() / static_cast<double>(left.rows())).cwiseSqrt().transpose()};
 }
 
-}  // namespace recald::drift
+void add_emulator_error(const Eigen::VectorXd& error_sd, int month_count, PosteriorData& data) {
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const auto& [output, month] = data.points[i];
+    const double sd = error_sd(Eigen::Index{output} * month_count + month);
+    data.extra_variances(static_cast<Eigen::Index>(i)) +=
+        data.scales[static_cast<std::size_t>(output)].normalise_variance(sd * sd);
+  }
+}
+
+}  // namespace recald::calibration

@@ -1,4 +1,4 @@
-#include "core/drift/emulator.hpp"
+#include "core/calibration/emulator.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include "core/design/model_runs.hpp"
 #include "core/random/rng.hpp"
 
-namespace recald::drift {
+namespace recald::calibration::emulator_test {
 namespace {
 
 /// Two outputs of two months: the first is a polynomial of second degree, the second bends more.
@@ -36,8 +36,13 @@ Eigen::MatrixXd runs(int count, std::uint64_t seed) {
   return design::latin_hypercube(kParameters, count, rng);
 }
 
+Result<Emulator> emulate_bent(const Eigen::MatrixXd& theta) {
+  return emulate(theta, *design::run_model(Bent{}, kParameters, theta, for_each_index_serially), 2,
+                 2);
+}
+
 TEST(Emulator, IsExactWhereTheModelIsAPolynomial) {
-  auto made = emulate(Bent{}, kParameters, runs(60, 1), for_each_index_serially);
+  auto made = emulate_bent(runs(60, 1));
   ASSERT_TRUE(made.has_value()) << made.error().message;
   std::vector<double> outputs(4);
   made->model.evaluate(std::vector{1.5, 3.0}, outputs);
@@ -49,7 +54,7 @@ TEST(Emulator, IsExactWhereTheModelIsAPolynomial) {
 
 // What it says of its own error is what fresh runs find.
 TEST(Emulator, KnowsItsError) {
-  auto made = emulate(Bent{}, kParameters, runs(100, 1), for_each_index_serially);
+  auto made = emulate_bent(runs(100, 1));
   ASSERT_TRUE(made.has_value());
   const Eigen::MatrixXd fresh = runs(400, 2);
   const auto truth = design::run_model(Bent{}, kParameters, fresh, for_each_index_serially);
@@ -62,11 +67,11 @@ TEST(Emulator, KnowsItsError) {
 }
 
 TEST(Emulator, NeedsRuns) {
-  const auto made = emulate(Bent{}, kParameters, runs(11, 1), for_each_index_serially);
+  const auto made = emulate_bent(runs(11, 1));
   ASSERT_FALSE(made.has_value());
   EXPECT_EQ(made.error().code, ErrorCode::not_enough_data);
   EXPECT_THAT(made.error().message, ::testing::HasSubstr("6 coefficients"));
 }
 
 }  // namespace
-}  // namespace recald::drift
+}  // namespace recald::calibration::emulator_test
