@@ -1,11 +1,14 @@
 #include "core/assessment/assessed_calibration.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/absent.hpp"
+#include "core/assessment/given_data.hpp"
+#include "core/assessment/pooled_forecasts.hpp"
 #include "core/design/model_runs.hpp"
-#include "core/random/streams.hpp"
 #include "core/text/number_text.hpp"
 
 namespace recald::assessment {
@@ -15,24 +18,8 @@ namespace {
 // parameters that Guideline 14's tolerance of ±5 % would not also forgive.
 constexpr double kLeastResponse = 0.10;
 
-/// (draws) sd of discrepancy and error together, in the output's unit.
-Eigen::VectorXd spread_sds(const calibration::Calibration& calibration, std::size_t output,
-                           double weight) {
-  const calibration::ThinnedDraws& thinned = calibration.thinned;
-  const double range = calibration.normalisation.scales[output].range();
-  Eigen::VectorXd sd(static_cast<Eigen::Index>(thinned.chain.size()));
-  for (std::size_t d = 0; d < thinned.chain.size(); ++d) {
-    const auto& chain = calibration.chains[static_cast<std::size_t>(thinned.chain[d])];
-    const int row = thinned.iteration[d];
-    const double variance =
-        1.0 / chain.discrepancy_precision[row] + 1.0 / chain.error_precision[row];
-    // A doubted output has its own share of error on top, as in the likelihood.
-    sd[static_cast<Eigen::Index>(d)] = range * std::sqrt(variance / weight);
-  }
-  return sd;
-}
+}  // namespace
 
-/// (months) known variances of meter and model together.
 std::vector<double> known_variances(const OutputCalibration& output) {
   std::vector<double> variances = output.extra_variances;
   variances.resize(output.measured.size(), 0.0);
@@ -41,8 +28,6 @@ std::vector<double> known_variances(const OutputCalibration& output) {
   }
   return variances;
 }
-
-}  // namespace
 
 calibration::CalibrationProblem problem_of(const AssessedCalibration& result,
                                            std::size_t calibration_months) {
@@ -64,6 +49,13 @@ calibration::CalibrationProblem problem_of(const AssessedCalibration& result,
   return problem;
 }
 
+void set_aside(std::size_t output, std::string because, AssessedCalibration& result,
+               calibration::CalibrationProblem& problem) {
+  result.outputs[output].calibrated = false;
+  result.outputs[output].not_fitted_because = std::move(because);
+  std::ranges::fill(problem.outputs[output].values, kAbsent);
+}
+
 void set_aside_unresponsive(const calibration::DesignRuns& design, AssessedCalibration& result,
                             calibration::CalibrationProblem& problem) {
   const auto months = static_cast<Eigen::Index>(problem.month_names.size());
@@ -72,11 +64,10 @@ void set_aside_unresponsive(const calibration::DesignRuns& design, AssessedCalib
     const auto block = design.outputs.middleCols(static_cast<Eigen::Index>(k) * months, months);
     const double spread = (block.colwise().maxCoeff() - block.colwise().minCoeff()).maxCoeff();
     if (spread > kLeastResponse * std::abs(block.mean())) continue;
-    result.outputs[k].calibrated = false;
-    std::ranges::fill(problem.outputs[k].values, kAbsent);
-    result.warnings.push_back(result.outputs[k].name + ": the calibration parameters move it by " +
-                              percent_text(spread / std::abs(block.mean())) +
-                              " at most, so it is shown against the model and not fitted.");
+    set_aside(k,
+              "The calibration parameters move it by " +
+                  percent_text(spread / std::abs(block.mean())) + " at most.",
+              result, problem);
   }
 }
 
@@ -103,8 +94,10 @@ Result<void> calibrate_into(const MonthlyModel& model,
   return {};
 }
 
-Result<void> assess(MonthlyModel& whole_model, const calibration::RunContext& context,
-                    AssessedCalibration& result) {
+Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
+                    std::span<const std::optional<OutputForecasts>> yardsticks,
+                    const calibration::RunContext& context, AssessedCalibration& result) {
+  assert(yardsticks.empty() || yardsticks.size() == result.outputs.size());
   const std::vector<double> at_modes = evaluate(whole_model, prior_modes(result.parameters));
   const std::vector<double> at_means = evaluate(whole_model, prior_means(result.parameters));
   const Eigen::VectorXd& mean = result.calibration.posterior_mean;
@@ -113,26 +106,32 @@ Result<void> assess(MonthlyModel& whole_model, const calibration::RunContext& co
   const auto draws = design::run_model(whole_model, result.parameters,
                                        result.calibration.thinned.theta, context.executor);
   if (!draws) return tl::unexpected(draws.error());
+  auto forecasts = forecast_given_data(result, whole, *draws);
+  if (!forecasts) return tl::unexpected(forecasts.error());
 
   const std::size_t n = result.month_names.size();
-  Rng rng{context.seed, streams::kPredictive.first};
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     OutputCalibration& output = result.outputs[k];
+    OutputForecasts& forecast = (*forecasts)[k];
+    adapt_to_scatter(result, k, forecast);
+    const OutputForecasts* yardstick =
+        yardsticks.empty() || !yardsticks[k] ? nullptr : &*yardsticks[k];
+    double model_weight = 1.0;
+    if (yardstick != nullptr) forecast = pool(forecast, *yardstick, output.measured, model_weight);
     const auto part = [&](const std::vector<double>& all) {
       return std::span{all}.subspan(k * n, n);
     };
-    const Eigen::MatrixXd simulated =
-        draws->middleCols(static_cast<Eigen::Index>(k * n), static_cast<Eigen::Index>(n));
-    const Eigen::VectorXd spread = output.calibrated
-                                       ? spread_sds(result.calibration, k, output.weight)
-                                       : Eigen::VectorXd::Zero(simulated.rows()).eval();
-    output.assessment = assess_output(
-        output.measured, result.roles,
-        {.prior_mode = part(at_modes),
-         .prior_mean = part(at_means),
-         .posterior_mean = part(after),
-         .draws = simulated,
-         .predictive = add_discrepancy_and_error(simulated, spread, known_variances(output), rng)});
+    output.assessment = assess_output(output.measured, result.roles,
+                                      {.prior_mode = part(at_modes),
+                                       .prior_mean = part(at_means),
+                                       .posterior_mean = part(after),
+                                       .draws = draws->middleCols(static_cast<Eigen::Index>(k * n),
+                                                                  static_cast<Eigen::Index>(n))},
+                                      forecast, result.month_days);
+    output.assessment.model_weight = model_weight;
+    if (yardstick == nullptr) continue;
+    output.assessment.yardstick =
+        assess_forecasts(output.measured, result.roles, *yardstick, result.month_days);
   }
   return {};
 }

@@ -25,7 +25,8 @@ struct OutputCalibration {
   std::string unit;       ///< "kWh/day"
   std::size_t meter = 0;  ///< Of a site: index into the recording.
   double weight = 1.0;
-  bool calibrated = true;               ///< False: shown, not fitted; a warning says why.
+  bool calibrated = true;               ///< False: followed by its level, not fitted …
+  std::string not_fitted_because;       ///< … and why, as a sentence.
   std::vector<double> measured;         ///< (months) NaN where there is no usable figure.
   std::vector<double> extra_variances;  ///< (months) unit squared, known: estimated slots.
   /// (months) unit squared: what the model itself does not know of this output, besides the
@@ -45,9 +46,12 @@ struct MetamodelFacts {
 struct AssessedCalibration {
   ModelKind model = ModelKind::epc;
   std::vector<std::string> month_names;  ///< "2016-03", or a number for a design without years.
+  std::vector<double> month_days;        ///< (months) Empty: all months count alike.
   std::vector<MonthRole> roles;          ///< (months) calibration months come first.
   std::vector<Parameter> parameters;
   std::vector<Parameter> fixed_parameters;  ///< In the model at their prior means, not calibrated.
+  /// (parameters) sd of what each means in the model, in prior sds (model_errors.hpp); empty: none.
+  std::vector<double> parameter_errors;
   std::optional<MetamodelFacts> metamodel;
   calibration::Calibration calibration;
   std::vector<OutputCalibration> outputs;
@@ -60,9 +64,12 @@ struct AssessedCalibration {
 [[nodiscard]] calibration::CalibrationProblem problem_of(const AssessedCalibration& result,
                                                          std::size_t calibration_months);
 
-/// Outputs that the parameters hardly move are taken out of the fit, in words. Electricity fixed by
-/// its own profile is one: normalised by a range of two per cent, its harmless misfit would set the
-/// size of the discrepancy for all outputs.
+/// Takes an output out of the fit. @param because  A sentence.
+void set_aside(std::size_t output, std::string because, AssessedCalibration& result,
+               calibration::CalibrationProblem& problem);
+
+/// Outputs that the parameters hardly move are set aside: normalised by a range of two per cent,
+/// their harmless misfit would set the size of the discrepancy for all outputs.
 void set_aside_unresponsive(const calibration::DesignRuns& design, AssessedCalibration& result,
                             calibration::CalibrationProblem& problem);
 
@@ -75,8 +82,35 @@ void set_aside_unresponsive(const calibration::DesignRuns& design, AssessedCalib
                                           const calibration::RunContext& context,
                                           AssessedCalibration& result);
 
-/// Fills the outputs' assessments. @param whole_model covers all months of `result`.
-[[nodiscard]] Result<void> assess(MonthlyModel& whole_model, const calibration::RunContext& context,
+/// The most that the variance of parameter `j` could shrink, were everything else known: the
+/// model's own error in it stays.
+[[nodiscard]] inline double contraction_max(const AssessedCalibration& result, std::size_t j) {
+  if (result.parameter_errors.empty()) return 1.0;
+  return 1.0 / (1.0 + result.parameter_errors[j] * result.parameter_errors[j]);
+}
+
+/// Whether the data have settled at least half of what they could settle of parameter `j`.
+[[nodiscard]] inline bool is_identified(const AssessedCalibration& result, std::size_t j) {
+  return result.calibration.parameters[j].contraction >= 0.5 * contraction_max(result, j);
+}
+
+/// What the errors of all months have in common.
+struct WholePeriod {
+  calibration::ModelInputs inputs;             ///< As the problem's, of all months.
+  std::vector<Eigen::VectorXd> common_errors;  ///< Likewise.
+};
+
+/// (months) known variances of meter and model together.
+[[nodiscard]] std::vector<double> known_variances(const OutputCalibration& output);
+
+/// Fills the outputs' assessments.
+/// @param whole_model  Covers all months of `result`.
+/// @param yardsticks   (outputs) What regressions of the meters' days forecast, to be pooled with
+///                     the model's; empty: there are none.
+/// @return or an error of the model, or what `forecast_given_data` finds.
+[[nodiscard]] Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
+                                  std::span<const std::optional<OutputForecasts>> yardsticks,
+                                  const calibration::RunContext& context,
                                   AssessedCalibration& result);
 
 }  // namespace recald::assessment

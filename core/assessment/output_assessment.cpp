@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "core/absent.hpp"
-#include "core/statistics/quantile.hpp"
+#include "core/assessment/given_data.hpp"
+#include "core/assessment/interval_score.hpp"
 
 namespace recald::assessment {
 namespace {
@@ -38,32 +40,83 @@ std::vector<double> draw_cvrmses(std::span<const double> measured, const Eigen::
   return result;
 }
 
-std::optional<PredictiveScores> score(std::span<const double> measured,
-                                      const Eigen::MatrixXd& predictive) {
-  PredictiveScores scores{};
+/// @param least  What the meter cannot go below.
+MonthForecast summary_of(const Forecast& forecast, double least) {
+  const auto at = [&](double probability) {
+    return std::max(least, forecast.quantile(probability));
+  };
+  return {std::max(least, forecast.mean()), at(0.05), at(0.25), at(0.50), at(0.75), at(0.95)};
+}
+
+/// Zero for a meter that has never run backwards.
+double least_of(std::span<const double> measured) {
+  const bool has_run_backwards = std::ranges::any_of(measured, [](double v) { return v < 0.0; });
+  return has_run_backwards ? -std::numeric_limits<double>::infinity() : 0.0;
+}
+
+/// The forecasts of the months of `measured` that are not absent.
+ForecastFit fit_of(std::span<const double> measured, double least,
+                   const std::vector<std::optional<Forecast>>& forecasts) {
+  std::vector<double> compared(measured.begin(), measured.end());
+  std::vector<double> expected(measured.size(), 0.0);
+  ForecastScores scores{};
   for (std::size_t i = 0; i < measured.size(); ++i) {
-    if (!std::isfinite(measured[i])) continue;
-    const auto column = predictive.col(static_cast<Eigen::Index>(i));
-    std::vector<double> sorted(column.begin(), column.end());
-    std::ranges::sort(sorted);
-    const auto inside = [&](double share) {
-      return quantile_of_sorted(sorted, 0.5 - 0.5 * share) <= measured[i] &&
-             measured[i] <= quantile_of_sorted(sorted, 0.5 + 0.5 * share);
-    };
-    scores.inside_50 += inside(0.5) ? 1 : 0;
-    scores.inside_90 += inside(0.9) ? 1 : 0;
+    if (!forecasts[i]) compared[i] = kAbsent;
+    if (std::isnan(compared[i])) continue;
+    const MonthForecast month = summary_of(*forecasts[i], least);
+    expected[i] = month.mean;
     scores.months += 1;
-    scores.crps += crps(sorted, measured[i]);
+    scores.inside_50 += month.q25 <= measured[i] && measured[i] <= month.q75 ? 1 : 0;
+    scores.inside_90 += month.q05 <= measured[i] && measured[i] <= month.q95 ? 1 : 0;
+    scores.crps += surprise_of(*forecasts[i], measured[i]).crps;
+    scores.interval_score_90 += interval_score({month.q05, month.q95}, 0.9, measured[i]);
   }
   if (scores.months == 0) return {};
   scores.crps /= scores.months;
-  return scores;
+  scores.interval_score_90 /= scores.months;
+  return {metrics_or_nothing(compared, expected), scores};
+}
+
+/// @pre some validation month is measured
+double mean_of_unseen(std::span<const double> validation, std::span<const double> month_days) {
+  double sum = 0.0;
+  double days = 0.0;
+  for (std::size_t i = 0; i < validation.size(); ++i) {
+    if (std::isnan(validation[i])) continue;
+    const double share = month_days.empty() ? 1.0 : month_days[i];
+    sum += share * validation[i];
+    days += share;
+  }
+  return sum / days;
 }
 
 }  // namespace
 
+ForecastAssessment assess_forecasts(std::span<const double> measured,
+                                    std::span<const MonthRole> roles,
+                                    const OutputForecasts& forecasts,
+                                    std::span<const double> month_days) {
+  const std::vector<double> calibration = of_role(measured, roles, MonthRole::calibration);
+  const std::vector<double> validation = of_role(measured, roles, MonthRole::validation);
+  const double least = least_of(calibration);
+  ForecastAssessment forecast;
+  for (const std::optional<Forecast>& month : forecasts.months) {
+    forecast.months.push_back(month ? std::optional{summary_of(*month, least)} : std::nullopt);
+  }
+  forecast.calibration = fit_of(calibration, least, forecasts.months);
+  forecast.blocks = fit_of(calibration, least, forecasts.blocks);
+  forecast.validation = fit_of(validation, least, forecasts.months);
+  if (forecasts.unseen_mean) {
+    forecast.unseen_mean = UnseenMean{mean_of_unseen(validation, month_days),
+                                      summary_of(*forecasts.unseen_mean, least)};
+  }
+  forecast.unreliable_months = forecasts.unreliable_months;
+  return forecast;
+}
+
 OutputAssessment assess_output(std::span<const double> measured, std::span<const MonthRole> roles,
-                               const Simulations& simulations) {
+                               const Simulations& simulations, const OutputForecasts& forecasts,
+                               std::span<const double> month_days) {
   assert(measured.size() == roles.size());
   const std::vector<double> calibration = of_role(measured, roles, MonthRole::calibration);
   const std::vector<double> validation = of_role(measured, roles, MonthRole::validation);
@@ -75,30 +128,15 @@ OutputAssessment assess_output(std::span<const double> measured, std::span<const
   result.before = periods(simulations.prior_mode);
   result.prior_mean = periods(simulations.prior_mean);
   result.after = periods(simulations.posterior_mean);
+  result.simulated.assign(simulations.posterior_mean.begin(), simulations.posterior_mean.end());
   for (Eigen::Index i = 0; i < simulations.draws.cols(); ++i) {
     const auto column = simulations.draws.col(i);
     result.boxes.push_back(box_plot({column.data(), static_cast<std::size_t>(column.size())}));
   }
   result.draw_cvrmse_calibration = draw_cvrmses(calibration, simulations.draws);
   result.draw_cvrmse_validation = draw_cvrmses(validation, simulations.draws);
-  result.scores_calibration = score(calibration, simulations.predictive);
-  result.scores_validation = score(validation, simulations.predictive);
+  result.forecast = assess_forecasts(measured, roles, forecasts, month_days);
   return result;
-}
-
-Eigen::MatrixXd add_discrepancy_and_error(const Eigen::MatrixXd& draws,
-                                          const Eigen::VectorXd& spread_sd,
-                                          std::span<const double> extra_variances, Rng& rng) {
-  assert(spread_sd.size() == draws.rows());
-  Eigen::MatrixXd predictive = draws;
-  for (Eigen::Index d = 0; d < draws.rows(); ++d) {
-    for (Eigen::Index i = 0; i < draws.cols(); ++i) {
-      const double extra =
-          extra_variances.empty() ? 0.0 : extra_variances[static_cast<std::size_t>(i)];
-      predictive(d, i) += std::sqrt(spread_sd[d] * spread_sd[d] + extra) * rng.normal();
-    }
-  }
-  return predictive;
 }
 
 }  // namespace recald::assessment

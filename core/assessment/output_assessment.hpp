@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/assessment/box_plot.hpp"
 #include "core/assessment/fit_metrics.hpp"
-#include "core/assessment/predictive.hpp"
-#include "core/random/rng.hpp"
 
 namespace recald::assessment {
 
@@ -20,23 +19,58 @@ struct PeriodMetrics {
   std::optional<FitMetrics> validation;
 };
 
-/// How well predictive intervals (parameters, discrepancy and error) held what was measured.
-struct PredictiveScores {
+/// How well forecasts held what was measured.
+struct ForecastScores {
+  int months;
   int inside_50;  ///< Months within the central 50 % interval.
   int inside_90;
-  int months;
-  double crps;  ///< Mean over the months, in the output's unit.
+  double crps;               ///< Mean over the months, in the output's unit.
+  double interval_score_90;  ///< Of the 90 % interval, likewise.
+};
+
+/// Forecasts of some months held against the meter.
+struct ForecastFit {
+  std::optional<FitMetrics> metrics;  ///< Of the forecasts' means.
+  std::optional<ForecastScores> scores;
+};
+
+struct MonthForecast {
+  double mean;
+  double q05;
+  double q25;
+  double q50;
+  double q75;
+  double q95;
+};
+
+/// The mean over the unseen months that were measured: what a year will use.
+struct UnseenMean {
+  double measured;
+  MonthForecast forecast;
+};
+
+/// What the meter was expected to show by model, discrepancy and errors, given the data.
+struct ForecastAssessment {
+  std::vector<std::optional<MonthForecast>> months;  ///< (months)
+  ForecastFit calibration;  ///< Each month from the others, never in sample.
+  ForecastFit blocks;       ///< The same months, three left out together.
+  ForecastFit validation;   ///< From the calibration months alone, the whole period ahead.
+  std::optional<UnseenMean> unseen_mean;
+  int unreliable_months = 0;  ///< Calibration months whose importance weights say little.
 };
 
 struct OutputAssessment {
   PeriodMetrics before;  ///< At the prior modes: the uncalibrated model.
   PeriodMetrics prior_mean;
-  PeriodMetrics after;         ///< At the posterior mean, one simulation, as the seed does.
-  std::vector<BoxPlot> boxes;  ///< (months) of the simulated draws: parameters alone.
+  PeriodMetrics after;            ///< At the posterior mean, one simulation, as the seed does.
+  std::vector<double> simulated;  ///< (months) That simulation.
+  std::vector<BoxPlot> boxes;     ///< (months) of the simulated draws: parameters alone.
   std::vector<double> draw_cvrmse_calibration;  ///< One a draw.
   std::vector<double> draw_cvrmse_validation;
-  std::optional<PredictiveScores> scores_calibration;
-  std::optional<PredictiveScores> scores_validation;
+  ForecastAssessment forecast;
+  double model_weight = 1.0;  ///< Of the model in the forecast; the rest is the yardstick's.
+  /// The same by a regression of the meter's days on temperature alone.
+  std::optional<ForecastAssessment> yardstick;
 };
 
 /// Simulations of one output at points and draws. All in the output's unit, (months) each.
@@ -44,23 +78,23 @@ struct Simulations {
   std::span<const double> prior_mode;
   std::span<const double> prior_mean;
   std::span<const double> posterior_mean;
-  Eigen::MatrixXd draws;       ///< (draws x months)
-  Eigen::MatrixXd predictive;  ///< (draws x months) the same with discrepancy and error added.
+  Eigen::MatrixXd draws;  ///< (draws x months)
 };
 
-/// @param measured  (months) NaN: not measured or not usable.
+struct OutputForecasts;
+
+/// Forecasts held against the meter. @param measured, month_days  As below.
+[[nodiscard]] ForecastAssessment assess_forecasts(std::span<const double> measured,
+                                                  std::span<const MonthRole> roles,
+                                                  const OutputForecasts& forecasts,
+                                                  std::span<const double> month_days);
+
+/// @param measured    (months) NaN: not measured or not usable.
+/// @param month_days  (months) Empty: all months count alike.
 [[nodiscard]] OutputAssessment assess_output(std::span<const double> measured,
                                              std::span<const MonthRole> roles,
-                                             const Simulations& simulations);
-
-/// Adds one draw of discrepancy and error to each simulated value, independent from month to month:
-/// the discrepancy is not extrapolated, only its size is.
-/// @param draws            (draws x months) output's unit.
-/// @param spread_sd        (draws) sd of discrepancy and error together, output's unit.
-/// @param extra_variances  (months) known, unit squared; or empty.
-[[nodiscard]] Eigen::MatrixXd add_discrepancy_and_error(const Eigen::MatrixXd& draws,
-                                                        const Eigen::VectorXd& spread_sd,
-                                                        std::span<const double> extra_variances,
-                                                        Rng& rng);
+                                             const Simulations& simulations,
+                                             const OutputForecasts& forecasts,
+                                             std::span<const double> month_days);
 
 }  // namespace recald::assessment

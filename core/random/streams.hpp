@@ -27,8 +27,7 @@ inline constexpr std::uint64_t kMonthsMax = 100'000;
 inline constexpr std::uint64_t kPassesMax = 1'000;
 
 inline constexpr Block kChains{0, kChainsMax};
-inline constexpr Block kPredictive{1'000'000, 1};  ///< Noise of predicted months.
-inline constexpr Block kFolds{2'000'000, 1};       ///< Of a design's runs, for cross-validation.
+inline constexpr Block kFolds{2'000'000, 1};  ///< Of a design's runs, for cross-validation.
 inline constexpr Block kScreening{3'000'000, 1};
 inline constexpr Block kDesign{1ULL << 32, 1};           ///< Of a calibration.
 inline constexpr Block kPilots{1ULL << 33, kChainsMax};  ///< One a chain.
@@ -43,8 +42,8 @@ inline constexpr Block kVote{1ULL << 41, 1};          ///< Resampled months of a
 inline constexpr Block kMonths{0, 2 * kMonthsMax};
 inline constexpr Block kPasses{0, kPassesMax};  ///< Of a diagnosis.
 
-inline constexpr std::array kOfCalibration{kChains, kPredictive,  kFolds,  kScreening, kDesign,
-                                           kPilots, kPopulations, kBridge, kCut,       kHypercube};
+inline constexpr std::array kOfCalibration{kChains,      kFolds,  kScreening, kDesign,   kPilots,
+                                           kPopulations, kBridge, kCut,       kHypercube};
 inline constexpr std::array kOfDiagnosis{kPasses, kVote};
 inline constexpr std::array kOfFollowing{kMonths, kDesign, kCauses};
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/absent.hpp"
+#include "core/assessment/given_data.hpp"
 
 namespace recald::assessment::output_assessment_test {
 namespace {
@@ -28,13 +29,29 @@ Eigen::MatrixXd five_draws() {
   return draws;
 }
 
+Forecast normal(double mean, double sd) {
+  return {Eigen::VectorXd::Constant(1, mean), Eigen::VectorXd::Constant(1, sd),
+          Eigen::VectorXd::Ones(1)};
+}
+
+/// Exact in the middle, sd 1 kWh; in blocks 2 kWh too high.
+OutputForecasts forecasts() {
+  OutputForecasts all;
+  for (std::size_t i = 0; i < 6; ++i) {
+    all.months.emplace_back(normal(kExact[i], 1.0));
+    all.blocks.emplace_back();
+    if (i < 3) all.blocks.back() = normal(kExact[i] + 2.0, 1.0);
+  }
+  all.unseen_mean = normal(35.0, 0.8);
+  all.unreliable_months = 1;
+  return all;
+}
+
 OutputAssessment assess(const std::array<double, 6>& measured = kMeasured) {
-  return assess_output(measured, kRoles,
-                       {.prior_mode = kHigh,
-                        .prior_mean = kExact,
-                        .posterior_mean = kExact,
-                        .draws = five_draws(),
-                        .predictive = five_draws()});
+  return assess_output(
+      measured, kRoles,
+      {.prior_mode = kHigh, .prior_mean = kExact, .posterior_mean = kExact, .draws = five_draws()},
+      forecasts(), {});
 }
 
 // n = 2, mean 15, excess 1 + 2, p = 1: NMBE 3 / 15, CV(RMSE) √5 / 15; likewise 7 / 35 and 5 / 35.
@@ -85,71 +102,45 @@ TEST(AssessOutput, EveryDrawHasItsScatter) {
   EXPECT_NEAR(assessment.draw_cvrmse_validation[4], 2.0 * std::sqrt(2.0) / 35.0, 1e-12);
 }
 
-// Quartiles lie 1 kWh, the 5 % and 95 % quantiles 1.8 kWh from the middle draw.
-TEST(AssessOutput, CountsMonthsInsideThePredictiveIntervals) {
-  const auto scores = assess({10.9, 21.7, kAbsent, 27.9, 40.0, 99.0});
-  ASSERT_TRUE(scores.scores_calibration && scores.scores_validation);
-  EXPECT_EQ(scores.scores_calibration->months, 2);
-  EXPECT_EQ(scores.scores_calibration->inside_50, 1);
-  EXPECT_EQ(scores.scores_calibration->inside_90, 2);
-  EXPECT_EQ(scores.scores_validation->months, 2);
-  EXPECT_EQ(scores.scores_validation->inside_50, 1);
-  EXPECT_EQ(scores.scores_validation->inside_90, 1);
+// Quartiles lie 0.67 kWh, the 5 % and 95 % quantiles 1.64 kWh from the middle.
+TEST(AssessOutput, CountsMonthsInsideTheForecastsIntervals) {
+  const ForecastAssessment forecast = assess({10.6, 21.5, kAbsent, 27.9, 40.0, 99.0}).forecast;
+  ASSERT_TRUE(forecast.calibration.scores && forecast.validation.scores);
+  EXPECT_EQ(forecast.calibration.scores->months, 2);
+  EXPECT_EQ(forecast.calibration.scores->inside_50, 1);
+  EXPECT_EQ(forecast.calibration.scores->inside_90, 2);
+  EXPECT_EQ(forecast.validation.scores->months, 2);
+  EXPECT_EQ(forecast.validation.scores->inside_50, 1);
+  EXPECT_EQ(forecast.validation.scores->inside_90, 1);
 }
 
-// Against the middle draw: (2 + 1 + 0 + 1 + 2) / 5 − 40 / 25 / 2 = 0.4, in both months.
+// A month in the middle: CRPS 0.2337 sd (Gneiting, Raftery 2007, eq. 20), width of 90 % 3.2897 sd.
 TEST(AssessOutput, ScoresAreMeansOverTheMonths) {
-  EXPECT_NEAR(assess().scores_calibration->crps, 0.4, 1e-12);
+  const ForecastFit fit = assess().forecast.validation;
+  EXPECT_NEAR(fit.scores->crps, 0.23370, 1e-5);
+  EXPECT_NEAR(fit.scores->interval_score_90, 3.28971, 1e-5);
+  EXPECT_NEAR(fit.metrics->cvrmse, 0.0, 1e-12);
+}
+
+TEST(AssessOutput, BlocksAreJudgedOnCalibrationMonths) {
+  const ForecastFit fit = assess().forecast.blocks;
+  ASSERT_TRUE(fit.metrics && fit.scores);
+  EXPECT_EQ(fit.scores->months, 2);
+  EXPECT_NEAR(fit.metrics->nmbe_sim_minus_meas, 4.0 / 15.0, 1e-12);  // 2 + 2 over (n - 1) mean
+  EXPECT_EQ(fit.scores->inside_90, 0);
+}
+
+TEST(AssessOutput, TheMeanOfUnseenMonthsIsOfThoseMeasured) {
+  const auto& unseen = assess().forecast.unseen_mean;
+  ASSERT_TRUE(unseen.has_value());
+  EXPECT_DOUBLE_EQ(unseen->measured, 35.0);
+  EXPECT_NEAR(unseen->forecast.q95, 35.0 + 0.8 * 1.644854, 1e-5);
 }
 
 TEST(AssessOutput, PeriodWithoutAMeasuredMonthHasNoScores) {
   const auto assessment = assess({10.0, 20.0, kAbsent, kAbsent, kAbsent, 99.0});
-  EXPECT_TRUE(assessment.scores_calibration);
-  EXPECT_FALSE(assessment.scores_validation);
-}
-
-TEST(AddDiscrepancyAndError, AddsNothingWhereNothingIsUncertain) {
-  Rng rng{1};
-  const Eigen::MatrixXd draws = five_draws();
-  EXPECT_EQ(add_discrepancy_and_error(draws, Eigen::VectorXd::Zero(5), {}, rng), draws);
-}
-
-// Variances add: sd 3 alone, with a known variance of 16 on top it is 5. The bound is four standard
-// errors of a standard deviation, sd / √(2 n).
-TEST(AddDiscrepancyAndError, SpreadsByTheSumOfVariances) {
-  constexpr int kDraws = 20'000;
-  Rng rng{5};
-  const Eigen::MatrixXd draws = Eigen::MatrixXd::Constant(kDraws, 2, 100.0);
-  const std::array extra = {0.0, 16.0};
-  const Eigen::MatrixXd spread =
-      add_discrepancy_and_error(draws, Eigen::VectorXd::Constant(kDraws, 3.0), extra, rng);
-  const Eigen::VectorXd first = spread.col(0).array() - spread.col(0).mean();
-  const Eigen::VectorXd second = spread.col(1).array() - spread.col(1).mean();
-  const double sd_first = std::sqrt(first.squaredNorm() / kDraws);
-  const double sd_second = std::sqrt(second.squaredNorm() / kDraws);
-  EXPECT_NEAR(sd_first, 3.0, 4.0 * 3.0 / std::sqrt(2.0 * kDraws));
-  EXPECT_NEAR(sd_second, 5.0, 4.0 * 5.0 / std::sqrt(2.0 * kDraws));
-  EXPECT_NEAR(spread.col(0).mean(), 100.0, 4.0 * 3.0 / std::sqrt(kDraws));
-  // Months are independent.
-  EXPECT_NEAR(first.dot(second) / kDraws / (sd_first * sd_second), 0.0, 4.0 / std::sqrt(kDraws));
-}
-
-TEST(AddDiscrepancyAndError, EachDrawHasItsOwnSpread) {
-  Rng rng{5};
-  Eigen::VectorXd sd(2);
-  sd << 0.0, 10.0;
-  const Eigen::MatrixXd spread =
-      add_discrepancy_and_error(Eigen::MatrixXd::Zero(2, 50), sd, {}, rng);
-  EXPECT_EQ(spread.row(0).cwiseAbs().maxCoeff(), 0.0);
-  EXPECT_GT(spread.row(1).cwiseAbs().minCoeff(), 0.0);
-}
-
-TEST(AddDiscrepancyAndError, SameSeedSameNumbers) {
-  Rng one{9};
-  Rng other{9};
-  const Eigen::VectorXd sd = Eigen::VectorXd::Constant(5, 2.0);
-  EXPECT_EQ(add_discrepancy_and_error(five_draws(), sd, {}, one),
-            add_discrepancy_and_error(five_draws(), sd, {}, other));
+  EXPECT_TRUE(assessment.forecast.calibration.scores);
+  EXPECT_FALSE(assessment.forecast.validation.scores);
 }
 
 }  // namespace

@@ -20,10 +20,4 @@ struct BoxPlot {
 /// @param draws  Any order, finite, not empty.
 [[nodiscard]] BoxPlot box_plot(std::span<const double> draws);
 
-/// Continuous ranked probability score of an ensemble, in the unit of the draws; 0 is perfect, and
-/// for one draw it is the absolute error.
-/// @param sorted  Ascending, not empty.
-/// @see Gneiting, Raftery (2007), J. Am. Stat. Assoc. 102(477), eq. (21).
-[[nodiscard]] double crps(std::span<const double> sorted, double measured);
-
 }  // namespace recald::assessment

@@ -1,8 +1,6 @@
-#include "core/assessment/predictive.hpp"
+#include "core/assessment/box_plot.hpp"
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <numeric>
 
 #include "core/statistics/quantile.hpp"
@@ -22,18 +20,6 @@ BoxPlot box_plot(std::span<const double> draws) {
   box.mean =
       std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
   return box;
-}
-
-double crps(std::span<const double> sorted, double measured) {
-  assert(!sorted.empty());
-  const double n = static_cast<double>(sorted.size());
-  double to_measured = 0.0;
-  double between = 0.0;  // Σ_i Σ_j |x_i − x_j| / 2 from ranks: one pass over sorted draws
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    to_measured += std::abs(sorted[i] - measured);
-    between += (2.0 * static_cast<double>(i) + 1.0 - n) * sorted[i];
-  }
-  return to_measured / n - between / (n * n);
 }
 
 }  // namespace recald::assessment
