@@ -72,6 +72,12 @@ json box_json(const std::optional<assessment::BoxPlot>& box) {
       std::array{box->low_whisker, box->q25, box->q50, box->q75, box->high_whisker});
 }
 
+json forecast_json(const std::optional<assessment::MonthForecast>& forecast) {
+  if (!forecast) return nullptr;
+  return json_numbers(
+      std::array{forecast->q05, forecast->q25, forecast->q50, forecast->q75, forecast->q95});
+}
+
 json month_json(const OutputMonth& month) {
   return {{"month", month_key(month.figure.month)},
           {"role", role_text(month.role)},
@@ -79,7 +85,8 @@ json month_json(const OutputMonth& month) {
           {"usable", month.figure.usable},
           {"filled", json_number(month.figure.filled_share, 4)},
           {"different", month.flagged_different},
-          {"box", box_json(month.box)}};
+          {"box", box_json(month.box)},
+          {"forecast", forecast_json(month.forecast)}};
 }
 
 json metric_histogram_json(const std::vector<double>& values) {

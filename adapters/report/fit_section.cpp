@@ -12,9 +12,9 @@ namespace recald::report {
 namespace {
 
 using assessment::FitMetrics;
+using assessment::ForecastFit;
 using assessment::kMonthlyLimits;
 using assessment::MonthRole;
-using assessment::PredictiveScores;
 
 Cell judged_cell(const std::string& text, double magnitude, double limit) {
   if (!std::isfinite(magnitude)) return {"–", "number"};
@@ -35,72 +35,90 @@ void add_metric_cells(std::vector<Cell>& cells, const std::optional<FitMetrics>&
       judged_cell(percent_text(metrics->cvrmse), metrics->cvrmse, kMonthlyLimits.cvrmse));
 }
 
-/// Tables 3 and 4 of the seed in one, with the prior mean as the second "before".
+void add_stage(Table& table, const char* stage, const std::optional<FitMetrics>& calibration,
+               const std::optional<FitMetrics>& validation) {
+  std::vector<Cell> cells{{stage}};
+  add_metric_cells(cells, calibration);
+  add_metric_cells(cells, validation);
+  table.row(std::move(cells));
+}
+
+/// Tables 3 and 4 of the seed in one, led by the forecasts, with the prior mean as a second
+/// "before".
 void write_metrics(Html& html, const std::vector<OutputResult>& outputs) {
   Table table(
       "Bias and scatter of the monthly daily averages. ✓ within and ✕ outside the limits of "
       "Guideline 14");
   table.column_groups({{"", 1}, {"Calibration months", 3}, {"Validation months", 3}});
-  const std::string model_high = "NMBE, model\u00a0−\u00a0meter";
-  const std::string meter_high = "NMBE, meter\u00a0−\u00a0model";
+  const std::string model_high = "NMBE, expected\u00a0−\u00a0meter";
+  const std::string meter_high = "NMBE, meter\u00a0−\u00a0expected";
   table.columns(
-      {"Model run at", model_high, meter_high, "CV(RMSE)", model_high, meter_high, "CV(RMSE)"});
+      {"Expected by", model_high, meter_high, "CV(RMSE)", model_high, meter_high, "CV(RMSE)"});
   for (const OutputResult& output : outputs) {
     if (!output.assessment) continue;
+    const assessment::OutputAssessment& fit = *output.assessment;
     table.group(output.label);
-    const auto row = [&table](const char* stage, const assessment::PeriodMetrics& metrics) {
-      std::vector<Cell> cells{{stage}};
-      add_metric_cells(cells, metrics.calibration);
-      add_metric_cells(cells, metrics.validation);
-      table.row(std::move(cells));
-    };
-    row("Before (prior mode)", output.assessment->before);
-    row("Prior mean", output.assessment->prior_mean);
-    row("After", output.assessment->after);
+    add_stage(table, "Forecast", fit.forecast.calibration.metrics, fit.forecast.validation.metrics);
+    if (fit.yardstick) {
+      add_stage(table, "Regression of days", fit.yardstick->calibration.metrics,
+                fit.yardstick->validation.metrics);
+    }
+    add_stage(table, "Model, before (prior mode)", fit.before.calibration, fit.before.validation);
+    add_stage(table, "Model, prior mean", fit.prior_mean.calibration, fit.prior_mean.validation);
+    add_stage(table, "Model, after", fit.after.calibration, fit.after.validation);
   }
-  html.element("h3", "Before and after");
+  html.element("h3", "Forecast and model against the meters");
   html.element(
       "p",
       "NMBE is the mean bias and CV(RMSE) the scatter, both as a share of the mean measured "
-      "consumption. Model − meter is positive where the model is too high; Guideline 14 "
-      "itself writes meter − model, so both are given. The prior mean is the second "
-      "yardstick: a calibration that beats only the prior mode has learnt little.");
+      "consumption. Expected − meter is positive where too much is expected; Guideline 14 itself "
+      "writes meter − expected, so both are given. The forecast is the model with what the "
+      "calibration months say of its error; a calibration month is forecast from the others. The "
+      "regression takes the meter's days and the outdoor temperature alone. The model alone is "
+      "what "
+      "savings and diagnoses are computed with.");
   table.write(html);
 }
 
-void add_score_cells(std::vector<Cell>& cells, const std::optional<PredictiveScores>& scores) {
-  if (!scores) {
-    cells.insert(cells.end(), 3, Cell{"–", "number"});
+void add_score_cells(std::vector<Cell>& cells, const ForecastFit& fit) {
+  if (!fit.scores) {
+    cells.insert(cells.end(), 4, Cell{"–", "number"});
     return;
   }
-  const double months = scores->months;
-  cells.push_back({percent_text(scores->inside_50 / months, 0), "number"});
-  cells.push_back({percent_text(scores->inside_90 / months, 0), "number"});
-  cells.push_back({number_text(scores->crps), "number"});
+  const double months = fit.scores->months;
+  cells.push_back({percent_text(fit.scores->inside_50 / months, 0), "number"});
+  cells.push_back({percent_text(fit.scores->inside_90 / months, 0), "number"});
+  cells.push_back({number_text(fit.scores->crps), "number"});
+  cells.push_back({number_text(fit.scores->interval_score_90), "number"});
 }
 
 void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
   const bool any = std::any_of(outputs.begin(), outputs.end(), [](const OutputResult& output) {
     const auto& fit = output.assessment;
-    return fit && (fit->scores_calibration || fit->scores_validation);
+    return fit && (fit->forecast.calibration.scores || fit->forecast.validation.scores);
   });
   if (!any) return;
-  Table table("Measured months inside the predictive intervals, and the mean CRPS in kWh/day");
-  table.column_groups({{"", 1}, {"Calibration months", 3}, {"Validation months", 3}});
-  table.columns(
-      {"Output", "Inside 50 %", "Inside 90 %", "CRPS", "Inside 50 %", "Inside 90 %", "CRPS"});
+  Table table("Measured months inside the forecasts' intervals, and their scores in kWh/day");
+  table.column_groups({{"", 1}, {"Calibration months", 4}, {"Validation months", 4}});
+  table.columns({"Output", "Inside 50 %", "Inside 90 %", "CRPS", "Score of 90 %", "Inside 50 %",
+                 "Inside 90 %", "CRPS", "Score of 90 %"});
   for (const OutputResult& output : outputs) {
-    std::vector<Cell> cells{{output.label}};
-    const auto& fit = output.assessment;
-    add_score_cells(cells, fit ? fit->scores_calibration : std::nullopt);
-    add_score_cells(cells, fit ? fit->scores_validation : std::nullopt);
-    table.row(std::move(cells));
+    if (!output.assessment) continue;
+    const auto row = [&](const std::string& name, const assessment::ForecastAssessment& forecast) {
+      std::vector<Cell> cells{{name}};
+      add_score_cells(cells, forecast.calibration);
+      add_score_cells(cells, forecast.validation);
+      table.row(std::move(cells));
+    };
+    row(output.label, output.assessment->forecast);
+    if (output.assessment->yardstick) row("  Regression of days", *output.assessment->yardstick);
   }
   html.element("h3", "Is the stated uncertainty honest?");
   html.element(
       "p",
       "If it is, about half of the measured months fall inside the 50 % interval and nine "
-      "of ten inside the 90 % interval. CRPS rewards intervals that are both narrow and right.");
+      "of ten inside the 90 % interval. CRPS and the interval score reward what is both narrow and "
+      "right: smaller is better.");
   table.write(html);
 }
 
@@ -118,8 +136,8 @@ std::string role_word(MonthRole role) {
 
 Table month_table(const OutputResult& output) {
   Table table(output.label + ": daily average consumption by month, kWh/day");
-  table.columns({"Month", "Role", "Measured", "Remark", "Estimated", "Model: low whisker", "25 %",
-                 "Median", "75 %", "High whisker", "Mean"});
+  table.columns({"Month", "Role", "Measured", "Remark", "Estimated", "Forecast: mean", "5 %",
+                 "95 %", "Model: 25 %", "Median", "75 %"});
   for (const OutputMonth& month : output.months) {
     std::vector<Cell> cells{{month_text(month.figure.month)},
                             {role_word(month.role)},
@@ -129,8 +147,10 @@ Table month_table(const OutputResult& output) {
     cells.push_back({remark, "nowrap"});
     cells.push_back({percent_text(month.figure.filled_share), "number"});
     const auto box = month.box.value_or(assessment::BoxPlot{NAN, NAN, NAN, NAN, NAN, NAN});
+    const auto forecast =
+        month.forecast.value_or(assessment::MonthForecast{NAN, NAN, NAN, NAN, NAN, NAN});
     for (const double value :
-         {box.low_whisker, box.q25, box.q50, box.q75, box.high_whisker, box.mean}) {
+         {forecast.mean, forecast.q05, forecast.q95, box.q25, box.q50, box.q75}) {
       cells.push_back({number_text(value), "number"});
     }
     table.row(std::move(cells));
@@ -149,25 +169,25 @@ std::string months_caption(const OutputResult& output) {
       [](const OutputMonth& month) { return std::isfinite(month.figure.daily_average_kWh); });
   std::string caption = any_measured ? "" : "Nothing was measured in these months. ";
   caption += modelled(output)
-                 ? "Box: the middle half of the posterior draws run through the model; "
-                   "whiskers: up to 1.5 times the box's height beyond it. "
+                 ? "Box: the middle half of what was expected; whiskers: nine tenths of it. A "
+                   "calibration month is forecast from the others. Dash: the model alone. "
                  : "There is no calibrated model yet: measurements only. ";
   return caption +
          "The number under a month is the share of its intervals that are estimated, not measured.";
 }
 
 void write_months_figure(Html& html, const OutputResult& output, int index) {
-  write_figure(html,
-               {.kind = "months",
-                .index = index,
-                .title = output.label + ", month by month",
-                .description =
-                    fmt::format("Monthly daily average consumption of {}, {} months: "
-                                "measured values{}.",
-                                output.label, output.months.size(),
-                                modelled(output) ? " against box plots of the model's draws" : ""),
-                .caption = months_caption(output)},
-               month_table(output));
+  write_figure(
+      html,
+      {.kind = "months",
+       .index = index,
+       .title = output.label + ", month by month",
+       .description = fmt::format("Monthly daily average consumption of {}, {} months: "
+                                  "measured values{}.",
+                                  output.label, output.months.size(),
+                                  modelled(output) ? " against box plots of the forecasts" : ""),
+       .caption = months_caption(output)},
+      month_table(output));
 }
 
 double share_within_limit(const std::vector<double>& draws) {
@@ -244,7 +264,7 @@ void write_fit_section(Html& html, const ReportData& data) {
   if (judged) write_metrics(html, data.outputs);
   html.element("h3", "Monthly consumption").markup("<p class=\"key\" aria-hidden=\"true\">");
   if (has_model(data)) {
-    html.markup("<span><i class=\"sign box\"></i>model draws</span>");
+    html.markup("<span><i class=\"sign box\"></i>forecast</span>");
   }
   html.markup(kMonthsKey);
   for (std::size_t i = 0; i < data.outputs.size(); ++i) {

@@ -67,8 +67,9 @@ struct ParameterResult {
 struct OutputMonth {
   metering::MonthlyFigure figure;  ///< Coverage 0 and NaN where the meter has no such month.
   assessment::MonthRole role = assessment::MonthRole::unused;
-  std::optional<assessment::BoxPlot> box;  ///< Of the posterior draws, kWh/day.
-  bool flagged_different = false;          ///< Measured apart from what the model expects.
+  std::optional<assessment::BoxPlot> box;             ///< Of the posterior draws, kWh/day.
+  std::optional<assessment::MonthForecast> forecast;  ///< What the meter was expected to show.
+  bool flagged_different = false;  ///< Measured apart from what the model expects.
 };
 
 /// One meter's monthly consumption, measured and modelled.

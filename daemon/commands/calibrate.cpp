@@ -22,7 +22,9 @@ tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments&
   auto calibration = calibration_options(arguments, console);
   if (!calibration) return tl::unexpected(calibration.error());
   calibration->design_runs = arguments.design_runs;
-  const CalibrateOptions options{std::move(*calibration), arguments.prior_sensitivity};
+  const CalibrateOptions options{
+      std::move(*calibration), arguments.prior_sensitivity,
+      arguments.discrepancy == "seed" ? DiscrepancyForm::seed : DiscrepancyForm::sound};
   auto modelled = open_modelled_site(arguments.site, console, arguments.model);
   if (!modelled) return tl::unexpected(modelled.error());
 

@@ -68,6 +68,11 @@ void add_calibration(CLI::App& command, CalibrateArguments& arguments) {
   command.add_option("--design-runs", arguments.design_runs, "Runs of a site's Latin hypercube")
       ->check(CLI::Range(20, 100'000))
       ->capture_default_str();
+  command
+      .add_option("--discrepancy", arguments.discrepancy,
+                  "sound: with the model's own errors; seed: the paper's discrepancy alone")
+      ->check(CLI::IsMember({"sound", "seed"}))
+      ->capture_default_str();
   add_sampling(command, arguments);
 }
 

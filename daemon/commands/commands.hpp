@@ -59,6 +59,7 @@ struct CalibrateArguments : SiteArguments, SamplingArguments {
   std::filesystem::path out;           ///< Folder; for `report` the page itself.
   std::optional<ModelKind> model;      ///< Absent: as site or design say.
   int design_runs = 200;               ///< Of a site.
+  std::string discrepancy = "sound";   ///< Of a site; or "seed".
   DesignArguments design;              ///< `folder` empty: a site.
   std::filesystem::path metamodel;     ///< Given regression, or empty.
   std::filesystem::path measurements;  ///< Empty: measurements.csv of the folder.

@@ -239,14 +239,40 @@ TEST_F(EndToEnd, AFailedCalibrationDoesNotReplaceAGoodOne) {
 }
 
 // The sampler sees two years of chilled water, so the posterior must know more than the prior about
-// the air that is cooled most of all.
+// the air that is cooled most of all: most of what the monthly model's own errors leave to be
+// known.
 TEST_F(EndToEnd, CalibrationLearnsTheOutdoorAir) {
   const Outcome outcome = calibrate("out", {"--json"});
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   const Json json = Json::parse(outcome.out);
   const Json& airflow = json["parameters"][1];
   ASSERT_EQ(airflow["name"], "outdoor_airflow");
-  EXPECT_GT(airflow["contraction"], 0.5);
+  EXPECT_GT(airflow["contraction"], 0.5 * airflow["contraction_max"].get<double>());
+  EXPECT_EQ(airflow["identified"], true);
+  EXPECT_NEAR(airflow["contraction_max"], 1.0 / (1.0 + 1.5 * 1.5), 1e-9);
+}
+
+// What the seed had: no errors of the model's own, every meter fitted, and so more is "known".
+TEST_F(EndToEnd, TheSeedsDiscrepancyIsOneOptionAway) {
+  const Outcome outcome = calibrate("out", {"--json", "--discrepancy", "seed"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["parameters"][1]["contraction_max"], 1.0);
+  EXPECT_GT(json["parameters"][1]["contraction"], 0.5);
+}
+
+// The forecast knows what the calibration months said of the model's error; the model alone does
+// not.
+TEST_F(EndToEnd, ForecastsOfUnseenMonthsAreBetterThanTheModelAlone) {
+  const Outcome outcome = calibrate("out", {"--json"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  const Json& forecast = json["forecast"]["validation"]["chilled_water_daily_kWh"];
+  ASSERT_FALSE(forecast.is_null());
+  EXPECT_LT(forecast["cvrmse"], json["after"]["validation"]["chilled_water_daily_kWh"]["cvrmse"]);
+  EXPECT_FALSE(json["yardstick"]["validation"]["chilled_water_daily_kWh"].is_null());
+  const std::size_t outputs = json["outputs"].size();
+  EXPECT_EQ(json["predictions"].size(), outputs * json["months"].size());
 }
 
 TEST_F(EndToEnd, MonthWithoutWeatherIsLeftOutAndNamed) {

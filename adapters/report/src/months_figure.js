@@ -1,4 +1,4 @@
-// Monthly box plots of the model's draws against the measured months (figures 4 to 6 of the seed).
+// Monthly box plots of the forecasts against the measured months (after figures 4 to 6 of the seed).
 import { mount } from "./echarts.js";
 import { monthText, numberText, percentText } from "./format.js";
 import { monthAxis, monthSlotWidth } from "./month_axis.js";
@@ -38,7 +38,7 @@ function runsOf(months) {
 /** Zero where that leaves room to see anything; otherwise the axis says that it starts elsewhere. */
 function verticalAxis(months) {
   const values = months
-    .flatMap(({ measured, box }) => [measured, ...(box ?? [])])
+    .flatMap(({ measured, forecast, box }) => [measured, ...(forecast ?? []), ...(box ?? [])])
     .filter(Number.isFinite);
   const low = Math.min(...values);
   const high = Math.max(...values);
@@ -68,14 +68,15 @@ function tooltipText(month) {
     `Measured ${numberText(month.measured)} kWh/day${month.usable ? "" : " (not usable)"}`,
     `Estimated intervals ${percentText(month.filled)}`,
   ];
-  if (month.box) {
-    const [low, q25, q50, q75, high] = month.box.map(numberText);
+  if (month.forecast) {
+    const [low, q25, q50, q75, high] = month.forecast.map(numberText);
     lines.push(
-      `Model median ${q50}`,
-      `Half of the draws ${q25} to ${q75}`,
-      `Whiskers ${low} to ${high}`,
+      `Forecast median ${q50}`,
+      `Half of it ${q25} to ${q75}`,
+      `90 % of it ${low} to ${high}`,
     );
   }
+  if (month.box) lines.push(`Model alone, median ${numberText(month.box[2])}`);
   if (month.different) lines.push("Flagged as different");
   return lines.join("\n");
 }
@@ -110,7 +111,15 @@ export function drawMonths(place, data) {
         z: 2,
         boxWidth: [6, 18],
         itemStyle: { color: modelFill, borderColor: modelLine, borderWidth: 1.3 },
-        data: months.map(({ box }) => box ?? empty),
+        data: months.map(({ forecast }) => forecast ?? empty),
+      },
+      {
+        type: "scatter",
+        z: 3,
+        symbol: "rect",
+        symbolSize: [14, 2],
+        itemStyle: { color: mutedInk, opacity: 1 },
+        data: months.map(({ box }) => box?.[2] ?? null),
       },
       measuredSeries(months, (m) => m.usable && !m.different, {
         symbol: star,

@@ -10,6 +10,7 @@
 #include "adapters/doe/metamodel_file.hpp"
 #include "core/absent.hpp"
 #include "core/assessment/common_errors.hpp"
+#include "core/assessment/given_data.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "core/random/streams.hpp"
 #include "core/text/nearest.hpp"
@@ -27,7 +28,7 @@ struct Metamodel {
   std::unique_ptr<MonthlyModel> whole;        ///< The design's months, then those that validate.
   std::vector<double> sigma_calibration;      ///< (outputs) or empty: free of error.
   std::vector<double> sigma_validation;
-  calibration::ModelInputs inputs;  ///< Of the design's months, for the discrepancy.
+  calibration::ModelInputs inputs;  ///< Of all months, for the discrepancy.
   assessment::MetamodelFacts facts;
 };
 
@@ -89,7 +90,7 @@ Result<Metamodel> given_metamodel(const std::filesystem::path& file,
   Metamodel result;
   result.calibration = std::move(*calibration);
   result.whole = std::move(*whole);
-  result.inputs = {covered.names, covered.values};
+  result.inputs = {all.names, all.values};
   result.facts = {.form = "given",
                   .why = fmt::format("'{}', taken as it is and as free of error.", file.string())};
   return result;
@@ -121,8 +122,7 @@ Result<Metamodel> metamodel_of(const FittedMetamodel& fitted, const MetamodelOpt
                                                        on_heap(std::move(*validation)));
     result.sigma_validation = fitted.sigma_r(MetamodelForm::seed);
   }
-  const auto columns =
-      regression::input_columns(covered.names, covered.values, options.wind_in_degrees);
+  const auto columns = regression::input_columns(all.names, all.values, options.wind_in_degrees);
   result.inputs = {columns.names, columns.values};
   result.facts = {.form = std::string{to_string(fitted.form)},
                   .why = fitted.why,
@@ -238,9 +238,9 @@ void fix_the_others(const std::vector<Parameter>& parameters, const std::vector<
   }
 }
 
-/// What the model does not know of each output and month besides its discrepancy.
-void add_model_variances(const Metamodel& metamodel, const std::vector<Eigen::VectorXd>& moves,
-                         std::size_t calibration_months, DesignCalibration& result) {
+/// The regression's own error in each output and month.
+void add_model_variances(const Metamodel& metamodel, std::size_t calibration_months,
+                         DesignCalibration& result) {
   const std::size_t n = result.month_names.size();
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     std::vector<double> variances(n, 0.0);
@@ -248,10 +248,6 @@ void add_model_variances(const Metamodel& metamodel, const std::vector<Eigen::Ve
       const auto& sigma =
           i < calibration_months ? metamodel.sigma_calibration : metamodel.sigma_validation;
       if (!sigma.empty()) variances[i] += sigma[k] * sigma[k];
-      for (const Eigen::VectorXd& move : moves) {
-        const double shift = move[static_cast<Eigen::Index>(k * n + i)];
-        variances[i] += shift * shift;
-      }
     }
     result.outputs[k].model_variances = std::move(variances);
   }
@@ -354,13 +350,15 @@ Result<DesignCalibration> calibrate_design(const doe::DesignFolder& whole_design
 
   const std::size_t calibration_months = design.months.size();
   auto problem = assessment::problem_of(result, calibration_months);
-  problem.inputs = metamodel->inputs;
+  const assessment::WholePeriod whole_period{
+      metamodel->inputs,
+      assessment::held_parameter_errors(*metamodel->whole, design.parameters, *free)};
+  problem.inputs = {metamodel->inputs.names, metamodel->inputs.values.topRows(
+                                                 static_cast<Eigen::Index>(calibration_months))};
   problem.model_error_sd = metamodel->sigma_calibration;
   problem.common_errors =
       assessment::held_parameter_errors(*metamodel->calibration, design.parameters, *free);
-  add_model_variances(
-      *metamodel, assessment::held_parameter_errors(*metamodel->whole, design.parameters, *free),
-      calibration_months, result);
+  add_model_variances(*metamodel, calibration_months, result);
   const std::vector<double> means = prior_means(design.parameters);
   const FixedParametersModel model{std::move(metamodel->calibration), means, *free};
   FixedParametersModel whole{std::move(metamodel->whole), means, *free};
@@ -374,7 +372,7 @@ Result<DesignCalibration> calibrate_design(const doe::DesignFolder& whole_design
       !done) {
     return tl::unexpected(done.error());
   }
-  if (auto assessed = assessment::assess(whole, context, result); !assessed) {
+  if (auto assessed = assessment::assess(whole, whole_period, {}, context, result); !assessed) {
     return tl::unexpected(assessed.error());
   }
   return result;

@@ -3,15 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 
 #include "core/assessment/common_errors.hpp"
+#include "core/assessment/level_forecast.hpp"
 #include "core/assessment/metered_outputs.hpp"
+#include "core/assessment/model_errors.hpp"
 #include "core/model/epc/prepare.hpp"
 #include "core/model/hourly/prepare.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/effects_calibration.hpp"
+#include "daemon/site/calibrate/yardstick.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
 #include "daemon/site/model/site_model.hpp"
 #include "daemon/site/model/site_parts.hpp"
@@ -181,7 +186,10 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   }
   result.model = site.model->kind;
   result.months = months.all;
-  for (const Month month : months.all) result.month_names.push_back(metering::to_string(month));
+  for (const Month month : months.all) {
+    result.month_names.push_back(metering::to_string(month));
+    result.month_days.push_back(metering::days_in(month));
+  }
   result.roles = months.roles;
   auto chosen = site_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
@@ -231,6 +239,120 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   return prepared;
 }
 
+namespace {
+
+assessment::Service service_of(metering::Utility utility) {
+  switch (utility) {
+    case metering::Utility::electricity:
+      return assessment::Service::electricity;
+    case metering::Utility::chilled_water:
+      return assessment::Service::cooling;
+    default:
+      return assessment::Service::heating;
+  }
+}
+
+/// Whether a meter also counts what the weather and the parameters move.
+bool counts_plant(const model::Building& building, const model::MeterMap& map) {
+  using enum model::EndUse;
+  if (building.chiller_cop && map[chiller] > 0.0) return true;
+  return std::ranges::any_of(std::array{zone_heating, reheat, preheat, humidification, hot_water},
+                             [&](model::EndUse use) { return map[use] > 0.0; });
+}
+
+/// Lights and plugs are not the same in every month, which no schedule tells.
+void add_use_scatter(std::size_t k, SiteCalibration& result,
+                     calibration::CalibrationProblem& problem) {
+  assessment::OutputCalibration& output = result.outputs[k];
+  double sum = 0.0;
+  for (const double value : problem.outputs[k].values) sum += std::isnan(value) ? 0.0 : value;
+  const int months = problem.outputs[k].measured_months();
+  if (months == 0) return;
+  const double sd = assessment::kProfiledLevel.scatter * sum / months;
+  for (auto* variances : {&output.extra_variances, &problem.outputs[k].extra_variances}) {
+    for (double& variance : *variances) variance += sd * sd;
+  }
+}
+
+/// The meter that lights and plugs were read off is met by construction: what it shows of them is
+/// no evidence. Where plant hangs on it, too, it is fitted, with the profile's doubt as an error
+/// common to all meters.
+Result<void> doubt_profiled_meter(const SiteConfig& site, const assessment::ModelErrorSizes& sizes,
+                                  PreparedSite& prepared) {
+  SiteCalibration& result = prepared.so_far;
+  const auto profiled = profile_meter(site);
+  const auto maps = meter_maps(site);
+  if (!maps) return tl::unexpected(maps.error());
+  const bool is_only = std::ranges::all_of(
+      result.outputs, [&](const auto& output) { return output.meter == *profiled; });
+  bool is_fitted = false;
+  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
+    if (result.outputs[k].meter != *profiled) continue;
+    const std::string& id = site.meters[*profiled].meter.id;
+    const auto place = std::ranges::find(site.model->outputs, id) - site.model->outputs.begin();
+    if (is_only || counts_plant(*site.building, (*maps)[static_cast<std::size_t>(place)])) {
+      is_fitted = true;
+      add_use_scatter(k, result, prepared.problem);
+      continue;
+    }
+    assessment::set_aside(k,
+                          "The model's lights and plugs were read off this meter, so it is no "
+                          "evidence for the model; it is followed by its level.",
+                          result, prepared.problem);
+  }
+  if (!is_fitted) return {};
+  const auto& use = prepared.electricity_use;
+  prepared.common_errors.emplace_back(
+      sizes.electricity_level *
+      Eigen::Map<const Eigen::VectorXd>(use.data(), static_cast<Eigen::Index>(use.size())));
+  return {};
+}
+
+/// A model's error in a parameter is of the size of what is usual, which the library knows. Who
+/// gives a wider prior knows less; a floor area that nobody has told is no error of the model, and
+/// neither is an effect that was added to it.
+std::vector<double> parameter_spreads(const SiteConfig& site,
+                                      const assessment::ModelErrorSizes& sizes,
+                                      SiteCalibration& result) {
+  std::vector<double> spreads(result.parameters.size(), 0.0);
+  result.parameter_errors.assign(result.parameters.size(), 0.0);
+  for (std::size_t j = 0; j < site.model->parameters.size(); ++j) {
+    const model::ParameterDefinition& definition = *result.definitions[j];
+    if (definition.group == "geometry") continue;
+    const double own = std::sqrt(result.parameters[j].prior.variance());
+    const auto usual = model::make_parameter(definition, *site.building);
+    const double known = usual ? std::sqrt(usual->prior.variance()) : own;
+    spreads[j] = sizes.parameter_share * std::min(own, known);
+    result.parameter_errors[j] = spreads[j] / own;
+  }
+  return spreads;
+}
+
+/// What the seed's discrepancy leaves out: see assessment/model_errors.hpp.
+Result<void> add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
+  SiteCalibration& result = prepared.so_far;
+  const assessment::ModelErrorSizes& sizes = assessment::model_error_sizes(result.model);
+  const std::vector<double> spreads = parameter_spreads(site, sizes, result);
+  const std::size_t known = prepared.common_errors.size();
+  if (auto done = doubt_profiled_meter(site, sizes, prepared); !done) return done;
+  std::vector<assessment::Service> services;
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    services.push_back(service_of(site.meters[output.meter].meter.utility));
+  }
+  auto errors =
+      assessment::model_errors(*prepared.whole_model, result.parameters, spreads, services, sizes);
+  prepared.common_errors.insert(prepared.common_errors.end(), errors.begin(), errors.end());
+  const auto all = static_cast<Eigen::Index>(result.months.size());
+  const auto first = static_cast<Eigen::Index>(prepared.problem.month_names.size());
+  for (std::size_t g = known; g < prepared.common_errors.size(); ++g) {
+    prepared.problem.common_errors.push_back(
+        assessment::leading_months(prepared.common_errors[g], all, first));
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<void> calibrate_all(PreparedSite& prepared, const CalibrateOptions& options,
                            const calibration::RunContext& context, SiteCalibration& result) {
   auto design = calibration::run_design(*prepared.model, prepared.problem,
@@ -249,11 +371,24 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
                                        std::vector<diagnosis::AddedEffect> added) {
   auto prepared = prepare_site(site, calendar, recording, weather, std::move(added));
   if (!prepared) return tl::unexpected(prepared.error());
+  CalibrateOptions how = options;
+  if (options.discrepancy == DiscrepancyForm::sound) {
+    if (auto added_errors = add_model_errors(site, *prepared); !added_errors) {
+      return tl::unexpected(added_errors.error());
+    }
+    // Whoever names a sampler gets the model itself in the chains.
+    how.calibration.emulate = options.calibration.sampling.sampler == nullptr;
+  }
   SiteCalibration result = std::move(prepared->so_far);
-  auto done = result.effects ? calibrate_with_effects(*prepared, options, context, result)
-                             : calibrate_all(*prepared, options, context, result);
+  auto done = result.effects ? calibrate_with_effects(*prepared, how, context, result)
+                             : calibrate_all(*prepared, how, context, result);
   if (!done) return tl::unexpected(done.error());
-  if (auto assessed = assessment::assess(*prepared->whole_model, context, result); !assessed) {
+  const assessment::WholePeriod whole{{prepared->inputs.names, prepared->inputs.values},
+                                      std::move(prepared->common_errors)};
+  const auto yardsticks = yardsticks_of(site, calendar, recording, weather, result);
+  if (auto assessed =
+          assessment::assess(*prepared->whole_model, whole, yardsticks, context, result);
+      !assessed) {
     return tl::unexpected(assessed.error());
   }
   add_words(recording, weather, result);

@@ -41,9 +41,17 @@ struct PreparedSite {
   std::vector<double> electricity_use;
 };
 
+/// What separates the model from the meters, besides noise.
+enum class DiscrepancyForm {
+  sound,  ///< The seed's discrepancy, the model's own errors, and no meter that a profile was read
+          ///< off.
+  seed,   ///< The seed's discrepancy alone, over all outputs, with the model itself in the chains.
+};
+
 struct CalibrateOptions {
   calibration::CalibrationOptions calibration;
   bool prior_sensitivity = false;
+  DiscrepancyForm discrepancy = DiscrepancyForm::sound;
 };
 
 /// Profile, model and measurements.

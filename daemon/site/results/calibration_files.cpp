@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "adapters/results/job_result_json.hpp"
+#include "core/absent.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -55,6 +58,8 @@ Json parameters_json(const assessment::AssessedCalibration& result) {
   Json list = Json::array();
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     Json entry = summary_json(result.calibration.parameters[j]);
+    entry["contraction_max"] = results::number(assessment::contraction_max(result, j));
+    entry["identified"] = assessment::is_identified(result, j);
     entry["prior"] = prior_json(result.parameters[j].prior);
     list.push_back(std::move(entry));
   }
@@ -142,13 +147,93 @@ std::string with_unit(const char* name, const assessment::OutputCalibration& out
   return unit.empty() ? name : fmt::format("{}_{}", name, unit);
 }
 
-Json scores_json(const std::optional<assessment::PredictiveScores>& scores,
-                 const assessment::OutputCalibration& output) {
-  if (!scores) return nullptr;
-  return {{"months", scores->months},
-          {"inside_50", scores->inside_50},
-          {"inside_90", scores->inside_90},
-          {with_unit("crps", output), results::number(scores->crps)}};
+/// CV(RMSE) and NMBE of the expected months, and how many of them the bands held.
+Json forecast_fit_json(const assessment::ForecastFit& fit,
+                       const assessment::OutputCalibration& output) {
+  if (!fit.scores) return nullptr;
+  Json json = metrics_json(fit.metrics);
+  if (json.is_null()) json = Json::object();
+  json["months"] = fit.scores->months;
+  json["inside_50"] = fit.scores->inside_50;
+  json["inside_90"] = fit.scores->inside_90;
+  json[with_unit("crps", output)] = results::number(fit.scores->crps);
+  json[with_unit("interval_score_90", output)] = results::number(fit.scores->interval_score_90);
+  return json;
+}
+
+Json unseen_mean_json(const assessment::ForecastAssessment& forecast) {
+  if (!forecast.unseen_mean) return nullptr;
+  const auto& [measured, month] = *forecast.unseen_mean;
+  return {{"measured", results::number(measured)},
+          {"mean", results::number(month.mean)},
+          {"q05", results::number(month.q05)},
+          {"q50", results::number(month.q50)},
+          {"q95", results::number(month.q95)}};
+}
+
+/// @param of  The output's forecast or yardstick; null: it has none.
+Json forecast_json(const assessment::AssessedCalibration& result,
+                   const std::function<const assessment::ForecastAssessment*(
+                       const assessment::OutputCalibration&)>& of) {
+  Json calibration = Json::object();
+  Json blocks = Json::object();
+  Json validation = Json::object();
+  Json unseen_mean = Json::object();
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    const assessment::ForecastAssessment* forecast = of(output);
+    if (forecast == nullptr) continue;
+    calibration[output.name] = forecast_fit_json(forecast->calibration, output);
+    blocks[output.name] = forecast_fit_json(forecast->blocks, output);
+    validation[output.name] = forecast_fit_json(forecast->validation, output);
+    unseen_mean[output.name] = unseen_mean_json(*forecast);
+  }
+  return {{"calibration", calibration},
+          {"three_months_left_out", blocks},
+          {"validation", validation},
+          {"unseen_mean", unseen_mean}};
+}
+
+/// One entry an output and month.
+Json predictions_json(const assessment::AssessedCalibration& result) {
+  Json list = Json::array();
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    for (std::size_t i = 0; i < result.month_names.size(); ++i) {
+      const auto& month = output.assessment.forecast.months[i];
+      const auto number = [&](double assessment::MonthForecast::*value) {
+        return results::number(month ? (*month).*value : kAbsent);
+      };
+      list.push_back({{"output", output.name},
+                      {"month", result.month_names[i]},
+                      {"role", role_word(result.roles[i])},
+                      {"measured", results::number(output.measured[i])},
+                      {"simulated", results::number(output.assessment.simulated[i])},
+                      {"mean", number(&assessment::MonthForecast::mean)},
+                      {"q05", number(&assessment::MonthForecast::q05)},
+                      {"q50", number(&assessment::MonthForecast::q50)},
+                      {"q95", number(&assessment::MonthForecast::q95)}});
+    }
+  }
+  return list;
+}
+
+/// The limits of Guideline 14 held against months that the forecast has not seen.
+Json unseen_limits_json(const assessment::AssessedCalibration& result) {
+  Json outputs = Json::object();
+  bool pass = true;
+  const bool has_validation = std::ranges::any_of(result.outputs, [](const auto& output) {
+    return output.assessment.forecast.validation.metrics.has_value();
+  });
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    const assessment::ForecastAssessment& forecast = output.assessment.forecast;
+    const auto& metrics = has_validation ? forecast.validation.metrics : forecast.blocks.metrics;
+    if (!metrics) continue;
+    const auto verdict = assessment::guideline14_verdict(*metrics);
+    outputs[output.name] = {{"pass", verdict.pass}, {"why", verdict.why}};
+    pass = pass && verdict.pass;
+  }
+  return {{"months", has_validation ? "validation" : "three_months_left_out"},
+          {"pass", outputs.empty() ? Json(nullptr) : Json(pass)},
+          {"outputs", outputs}};
 }
 
 Json outputs_json(const assessment::AssessedCalibration& result) {
@@ -164,15 +249,17 @@ Json outputs_json(const assessment::AssessedCalibration& result) {
                         {"draws_q50", results::number(box.q50)},
                         {"draws_q75", results::number(box.q75)}});
     }
-    list.push_back({{"name", output.name},
-                    {"meter", output.label},
-                    {"unit", output.unit},
-                    {"weight", output.weight},
-                    {"calibrated", output.calibrated},
-                    {"predictive",
-                     {{"calibration", scores_json(output.assessment.scores_calibration, output)},
-                      {"validation", scores_json(output.assessment.scores_validation, output)}}},
-                    {"months", months}});
+    list.push_back(
+        {{"name", output.name},
+         {"meter", output.label},
+         {"unit", output.unit},
+         {"weight", output.weight},
+         {"calibrated", output.calibrated},
+         {"not_fitted_because",
+          output.not_fitted_because.empty() ? Json(nullptr) : Json(output.not_fitted_because)},
+         {"model_weight", results::number(output.assessment.model_weight)},
+         {"unreliable_months", output.assessment.forecast.unreliable_months},
+         {"months", months}});
   }
   return list;
 }
@@ -305,35 +392,45 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
     hyperparameters.push_back(std::move(entry));
   }
   const auto& calibration = result.calibration;
-  Json json = {{"model", name_of(result.model)},
-               {"status", calibration.converged ? "converged" : "unconverged"},
-               {"months", months},
-               {"parameters", parameters_json(result)},
-               {"fixed_parameters", fixed_parameters_json(result)},
-               {"hyperparameters", hyperparameters},
-               {"metamodel", metamodel_json(result)},
-               {"before", stage_json(result, &assessment::OutputAssessment::before)},
-               {"prior_mean", stage_json(result, &assessment::OutputAssessment::prior_mean)},
-               {"after", stage_json(result, &assessment::OutputAssessment::after)},
-               {"guideline14", guideline_json(result)},
-               {"extrapolation", range_json(result, calibration.range.extrapolation)},
-               {"range_fail", range_json(result, calibration.range.by_month)},
-               {"prior_sensitivity", sensitivity_json(result)},
-               {"warnings", result.warnings},
-               {"outputs", outputs_json(result)},
-               {"sampler", facts.sampler},
-               {"hyper_prior", calibration.hyper_prior.name},
-               {"iterations", facts.iterations},
-               {"burn_in", facts.burn_in},
-               {"chains", facts.chains},
-               {"design_runs", facts.design_runs},
-               {"seed", facts.seed},
-               {"data_revision", facts.data_revision},
-               {"model_version", facts.model_version},
-               {"recald_version", facts.recald_version},
-               {"tzdata", facts.time_zone_data},
-               {"weather_values", facts.weather_values},
-               {"wall_s", facts.wall_s}};
+  Json json = {
+      {"model", name_of(result.model)},
+      {"status", calibration.converged ? "converged" : "unconverged"},
+      {"months", months},
+      {"parameters", parameters_json(result)},
+      {"fixed_parameters", fixed_parameters_json(result)},
+      {"hyperparameters", hyperparameters},
+      {"metamodel", metamodel_json(result)},
+      {"forecast",
+       forecast_json(result, [](const auto& output) { return &output.assessment.forecast; })},
+      {"yardstick", forecast_json(result,
+                                  [](const auto& output) {
+                                    const auto& yardstick = output.assessment.yardstick;
+                                    return yardstick ? &*yardstick : nullptr;
+                                  })},
+      {"before", stage_json(result, &assessment::OutputAssessment::before)},
+      {"prior_mean", stage_json(result, &assessment::OutputAssessment::prior_mean)},
+      {"after", stage_json(result, &assessment::OutputAssessment::after)},
+      {"guideline14", guideline_json(result)},
+      {"unseen_months_within_limits", unseen_limits_json(result)},
+      {"predictions", predictions_json(result)},
+      {"extrapolation", range_json(result, calibration.range.extrapolation)},
+      {"range_fail", range_json(result, calibration.range.by_month)},
+      {"prior_sensitivity", sensitivity_json(result)},
+      {"warnings", result.warnings},
+      {"outputs", outputs_json(result)},
+      {"sampler", facts.sampler},
+      {"hyper_prior", calibration.hyper_prior.name},
+      {"iterations", facts.iterations},
+      {"burn_in", facts.burn_in},
+      {"chains", facts.chains},
+      {"design_runs", facts.design_runs},
+      {"seed", facts.seed},
+      {"data_revision", facts.data_revision},
+      {"model_version", facts.model_version},
+      {"recald_version", facts.recald_version},
+      {"tzdata", facts.time_zone_data},
+      {"weather_values", facts.weather_values},
+      {"wall_s", facts.wall_s}};
   json["sampling"] = sampling_json(calibration.sampling);
   json["evidence"] = evidence_json(calibration);
   json["leave_out"] = leave_out_json(calibration);

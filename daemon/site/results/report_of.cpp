@@ -56,11 +56,12 @@ std::vector<report::OutputMonth> months_of(const Recording& recording,
                        ? *figure
                        : metering::MonthlyFigure{.month = month, .daily_average_kWh = kAbsent},
          .role = result.roles[i],
-         .box = output.assessment.boxes[i]});
+         .box = output.assessment.boxes[i],
+         .forecast = output.assessment.forecast.months[i]});
   }
   for (const metering::MonthlyFigure& figure : record.figures) {
     if (std::ranges::find(result.months, figure.month) != result.months.end()) continue;
-    months.push_back({.figure = figure, .box = {}});
+    months.push_back({.figure = figure, .box = {}, .forecast = {}});
   }
   for (report::OutputMonth& month : months) {
     month.flagged_different = is_site_different(recording, month.figure.month);
@@ -121,51 +122,103 @@ report::DayTypeProfile day_profile_of(const profile::ElectricityProfile& profile
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
+/// "CV(RMSE) 3.4 % and NMBE +0.7 %, 11 of 12 inside the 90 % band"
+std::string fit_words(const assessment::ForecastFit& fit) {
+  return fmt::format("CV(RMSE) {} and NMBE {:+.1f} %, {} of {} inside the 90 % band",
+                     percent(fit.metrics->cvrmse), 100.0 * fit.metrics->nmbe_sim_minus_meas,
+                     fit.scores->inside_90, fit.scores->months);
+}
+
+/// Forecast, yardstick and the model alone, of the months that say most: unseen ones where there
+/// are any, else blocks left out. Empty where nothing can be compared.
+std::string forecast_sentence(const std::string& meter, const assessment::OutputAssessment& a) {
+  const bool has_unseen = a.forecast.validation.metrics.has_value();
+  const auto fit_of = [&](const assessment::ForecastAssessment& forecast) {
+    return has_unseen ? forecast.validation : forecast.blocks;
+  };
+  const assessment::ForecastFit fit = fit_of(a.forecast);
+  if (!fit.metrics || !fit.scores) return "";
+  std::string text = fmt::format(
+      "{}: forecast of {}: {}", meter,
+      has_unseen ? "months it has not seen" : "each three months from the others", fit_words(fit));
+  if (a.yardstick) {
+    const assessment::ForecastFit yardstick = fit_of(*a.yardstick);
+    if (yardstick.metrics) {
+      text += fmt::format(". A regression of the meter's days on temperature: CV(RMSE) {}",
+                          percent(yardstick.metrics->cvrmse));
+    }
+  }
+  return text + ".";
+}
+
+std::string model_sentence(const std::string& meter, const assessment::OutputAssessment& a) {
+  const auto& before = a.before.validation ? a.before.validation : a.before.calibration;
+  const auto& after = a.after.validation ? a.after.validation : a.after.calibration;
+  if (!before || !after) return "";
+  return fmt::format(
+      "{}, the model alone, which retrofits and diagnosis use: NMBE {:+.1f} % before calibration "
+      "and "
+      "{:+.1f} % after; CV(RMSE) {} and {}.",
+      meter, 100.0 * before->nmbe_sim_minus_meas, 100.0 * after->nmbe_sim_minus_meas,
+      percent(before->cvrmse), percent(after->cvrmse));
+}
+
+/// A calibrated model that is further off than the drawings had it is the first thing to say.
+bool has_become_worse(const assessment::OutputAssessment& a) {
+  constexpr double noticeable = 0.01;
+  const auto& before = a.before.validation ? a.before.validation : a.before.calibration;
+  const auto& after = a.after.validation ? a.after.validation : a.after.calibration;
+  return before && after &&
+         std::abs(after->nmbe_sim_minus_meas) > std::abs(before->nmbe_sim_minus_meas) + noticeable;
+}
+
 void add_headlines(const Recording& recording, const SiteCalibration& result,
                    report::ReportData& data) {
-  int passing = 0;
-  int judged = 0;
+  std::string worse;
+  std::vector<std::string> forecasts;
+  std::vector<std::string> models;
   for (const assessment::OutputCalibration& output : result.outputs) {
-    const auto& after = output.assessment.after.calibration;
+    if (is_peak(output)) continue;
+    const std::string meter = meter_label(recording.meters[output.meter].meter.id);
+    if (auto text = forecast_sentence(meter, output.assessment); !text.empty()) {
+      forecasts.push_back(std::move(text));
+    }
+    if (!output.calibrated) continue;
+    if (has_become_worse(output.assessment)) worse += (worse.empty() ? "" : ", ") + meter;
+    if (auto text = model_sentence(meter, output.assessment); !text.empty()) {
+      models.push_back(std::move(text));
+    }
     // Electricity that its own profile reproduces is no evidence for the model.
-    if (!after || !output.calibrated || is_peak(output)) continue;
-    const auto verdict = assessment::guideline14_verdict(*after);
-    data.verdicts.push_back({meter_label(recording.meters[output.meter].meter.id), verdict});
-    judged += 1;
-    passing += verdict.pass ? 1 : 0;
+    if (const auto& after = output.assessment.after.calibration) {
+      data.verdicts.push_back({meter, assessment::guideline14_verdict(*after)});
+    }
   }
-  const bool converged = result.calibration.converged;
-  data.headlines.push_back(
-      judged == 0
-          ? "No output had enough measured months to judge the model."
-          : fmt::format("{} of {} fitted meters are met within the monthly limits of ASHRAE "
-                        "Guideline 14 after calibration{}.",
-                        passing, judged, converged ? "" : ", but the sampler has not converged"));
-  for (const assessment::OutputCalibration& output : result.outputs) {
-    const auto& a = output.assessment;
-    if (is_peak(output) || !a.before.calibration || !a.prior_mean.calibration ||
-        !a.after.calibration) {
-      continue;
-    }
-    std::string line = fmt::format(
-        "{}: CV(RMSE) {} before calibration, {} at the prior mean, {} after",
-        meter_label(recording.meters[output.meter].meter.id), percent(a.before.calibration->cvrmse),
-        percent(a.prior_mean.calibration->cvrmse), percent(a.after.calibration->cvrmse));
-    if (a.after.validation) {
-      line += fmt::format("; on months it has not seen {}", percent(a.after.validation->cvrmse));
-    }
-    data.headlines.push_back(line + ".");
+  if (!result.calibration.converged) {
+    data.headlines.emplace_back("The sampler has not converged: treat all figures as rough.");
+  }
+  if (!worse.empty()) {
+    data.headlines.push_back(fmt::format(
+        "Calibrating has moved the model itself away from the meter of {}: its mean is further off "
+        "than before. The forecasts correct for that; savings computed from the model do not.",
+        worse));
+  }
+  data.headlines.insert(data.headlines.end(), forecasts.begin(), forecasts.end());
+  data.headlines.insert(data.headlines.end(), models.begin(), models.end());
+  if (data.headlines.empty()) {
+    data.headlines.emplace_back("No output had enough measured months to judge the model.");
   }
 }
 
 void add_not_known(const SiteCalibration& result, report::ReportData& data) {
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    if (assessment::is_identified(result, j)) continue;
     const calibration::Summary& s = result.calibration.parameters[j];
-    if (s.contraction > 0.25) continue;
-    data.not_known.push_back(fmt::format(
-        "{}: the measurements narrow it by {:.0f} % of its variance at most; its value is what "
-        "was assumed.",
-        result.definitions[j]->label, 100.0 * std::max(s.contraction, 0.0)));
+    data.not_known.push_back(
+        fmt::format("{}: not identified. The measurements narrow its variance by {:.0f} %, and "
+                    "could by {:.0f} % "
+                    "at most; its value is mostly what was assumed.",
+                    result.definitions[j]->label, 100.0 * std::max(s.contraction, 0.0),
+                    100.0 * assessment::contraction_max(result, j)));
   }
   data.not_known.emplace_back(
       "A parameter that fits is not a parameter that was measured: another combination of values, "

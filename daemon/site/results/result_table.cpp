@@ -38,9 +38,54 @@ std::string fit_lines(const assessment::AssessedCalibration& result) {
   const std::string heads = fmt::format("{:>8}{:>8}{:>9}", "sim-meas", "G14", "CV(RMSE)");
   text += line("output", "NMBE:", heads, heads);
   for (const assessment::OutputCalibration& output : result.outputs) {
-    text += stage_line(output.label, "prior mode", output.assessment.before);
-    text += stage_line("", "prior mean", output.assessment.prior_mean);
-    text += stage_line("", "after", output.assessment.after);
+    const assessment::OutputAssessment& a = output.assessment;
+    const auto forecast_line = [&](const std::string& label, const char* stage,
+                                   const assessment::ForecastAssessment& forecast) {
+      return line(label, stage, cells(forecast.calibration.metrics),
+                  cells(forecast.validation.metrics));
+    };
+    text += forecast_line(output.label, "forecast", a.forecast);
+    if (a.yardstick) text += forecast_line("", "yardstick", *a.yardstick);
+    text += stage_line("", "prior mode", a.before);
+    text += stage_line("", "prior mean", a.prior_mean);
+    text += stage_line("", "after", a.after);
+  }
+  return text;
+}
+
+/// How honest the bands were, on the months that say most.
+std::string band_lines(const assessment::AssessedCalibration& result) {
+  std::string text;
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    const assessment::ForecastAssessment& forecast = output.assessment.forecast;
+    const bool unseen = forecast.validation.scores.has_value();
+    const auto& scores = unseen ? forecast.validation.scores : forecast.blocks.scores;
+    if (!scores) continue;
+    text +=
+        fmt::format("{}: {} of {} {} inside the 90 % bands", output.label, scores->inside_90,
+                    scores->months, unseen ? "unseen months" : "months, three left out at a time,");
+    if (forecast.unseen_mean) {
+      const auto& [measured, mean] = *forecast.unseen_mean;
+      text += fmt::format("; their mean {:.4g} to {:.4g} {}, measured {:.4g}", mean.q05, mean.q95,
+                          output.unit, measured);
+    }
+    text += ".\n";
+  }
+  return text.empty() ? "" : text + "\n";
+}
+
+/// Outputs that are followed and not fitted, parameters that the data leave as they were.
+std::string unsettled_lines(const assessment::AssessedCalibration& result) {
+  std::string text;
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    if (output.not_fitted_because.empty()) continue;
+    text += fmt::format("{} is not fitted. {}\n", output.label, output.not_fitted_because);
+  }
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    if (assessment::is_identified(result, j)) continue;
+    const calibration::Summary& s = result.calibration.parameters[j];
+    text += fmt::format("{} is not identified: contraction {:.2f}, at most {:.2f} was possible.\n",
+                        s.name, s.contraction, assessment::contraction_max(result, j));
   }
   return text;
 }
@@ -78,7 +123,12 @@ std::string parameter_lines(const assessment::AssessedCalibration& result) {
 
 std::string result_table(const assessment::AssessedCalibration& result) {
   std::string text = fit_lines(result);
-  text += "\n" + parameter_lines(result) + "\n";
+  text +=
+      "forecast: the model and what the calibration months say of its error; a calibration month "
+      "from "
+      "the others.\nprior mode, prior mean, after: the model alone, which savings and diagnoses "
+      "use.\n\n";
+  text += band_lines(result) + parameter_lines(result) + "\n" + unsettled_lines(result);
   for (const assessment::OutputCalibration& output : result.outputs) {
     const auto& after = output.assessment.after.calibration;
     if (!after || !output.calibrated) continue;

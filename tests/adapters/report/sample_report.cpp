@@ -55,6 +55,9 @@ OutputMonth output_month(const MeterShape& meter, int index, Rng& rng) {
   figure.filled_share = rng.uniform() < 0.4 ? rng.uniform(0.001, 0.06) : 0.0;
   figure.coverage = 1.0 - figure.filled_share;
   result.box = box_around(truth * (1.0 + 0.03 * rng.normal()), 0.035 * meter.mean_kWh);
+  const double sd = 0.05 * meter.mean_kWh;
+  result.forecast = assessment::MonthForecast{truth, truth - 1.64 * sd, truth - 0.67 * sd,
+                                              truth, truth + 0.67 * sd, truth + 1.64 * sd};
   return result;
 }
 
@@ -101,8 +104,15 @@ OutputResult output_result(const MeterShape& meter, Rng& rng) {
   fit.after = {metrics(0.012, 0.098), metrics(-0.028, 0.118)};
   fit.draw_cvrmse_calibration = scatter_draws(0.095 * scale, 0.018, rng);
   fit.draw_cvrmse_validation = scatter_draws(0.112 * scale, 0.024, rng);
-  fit.scores_calibration = {13, 22, 24, 0.05 * meter.mean_kWh};
-  fit.scores_validation = {5, 10, 12, 0.07 * meter.mean_kWh};
+  fit.forecast.calibration = {
+      metrics(0.003, 0.041),
+      assessment::ForecastScores{24, 13, 22, 0.02 * meter.mean_kWh, 0.15 * meter.mean_kWh}};
+  fit.forecast.validation = {
+      metrics(0.007, 0.052),
+      assessment::ForecastScores{12, 5, 10, 0.03 * meter.mean_kWh, 0.19 * meter.mean_kWh}};
+  fit.yardstick.emplace().validation = {
+      metrics(0.009, 0.083),
+      assessment::ForecastScores{12, 6, 11, 0.05 * meter.mean_kWh, 0.31 * meter.mean_kWh}};
   return result;
 }
 
