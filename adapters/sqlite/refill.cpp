@@ -58,6 +58,9 @@ Result<StoreBatch> batch_for(SqliteStore& store, const MeterRow& meter, const Re
       meter.number, state.field,
       [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
   if (!read) return tl::unexpected(read.error());
+  // The counter remembers the last sample that it believed, which may be lost with its interval.
+  const metering::RegisterSample& last = state.counter.baseline;
+  if (!samples.empty() && samples.back().time < last.time) samples.push_back(last);
   StoreBatch batch;
   for (const metering::Reading& reading :
        metering::readings_from_register(meter.number, samples, meter.interval, state.settings)) {

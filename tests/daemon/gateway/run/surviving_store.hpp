@@ -59,7 +59,10 @@ inline std::string what_is_wrong(Store& store, std::uint32_t meters,
       return fmt::format("meter {} has intervals and no state", meter);
     }
     if (states->front().book.next != readings.back().start + std::chrono::seconds{900}) {
-      return fmt::format("meter {}: the state does not stand with the last interval", meter);
+      const auto& next = states->front().book.next;
+      return fmt::format("meter {}: the state stands at {}, the last interval begins at {}", meter,
+                         next ? metering::to_string(*next) : "nothing",
+                         metering::to_string(readings.back().start));
     }
   }
   for (const Promise& one : promises) {
