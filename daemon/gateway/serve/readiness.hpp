@@ -13,7 +13,7 @@ namespace recald::daemon {
 [[nodiscard]] std::vector<std::string> reasons_not_ready(const GatewayStatus& status);
 
 /// What deserves a look without making the daemon unready, in sentences: registers that a device
-/// refuses.
+/// refuses, weather sensors that are silent or stand still.
 [[nodiscard]] std::vector<std::string> reasons_to_look(const GatewayStatus& status);
 
 /// /healthz: 200 as long as the loop turns.
