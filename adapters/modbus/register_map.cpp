@@ -74,6 +74,7 @@ std::vector<RegisterField> metered_fields(const RegisterMap& map) {
   };
   std::vector<std::string> names = map.energy;
   if (map.power) names.push_back(*map.power);
+  names.insert(names.end(), map.weather.begin(), map.weather.end());
   names.insert(names.end(), map.identity.begin(), map.identity.end());
   for (const std::string& name : names) {
     if (const auto factor = add(name)) (void)add(*factor);

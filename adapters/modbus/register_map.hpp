@@ -51,6 +51,7 @@ struct RegisterMap {
   std::vector<RegisterField> fields;
   std::vector<std::string> energy;    ///< Counters whose sum is the meter's energy.
   std::optional<std::string> power;   ///< Field with the momentary or mean power.
+  std::vector<std::string> weather;   ///< What a weather sensor measures: "dry_bulb_C".
   std::vector<std::string> identity;  ///< Other contents mean another device.
 
   [[nodiscard]] const RegisterField* find(std::string_view field_name) const;
@@ -58,7 +59,8 @@ struct RegisterMap {
   bool operator==(const RegisterMap&) const = default;
 };
 
-/// The fields that are the meter: its energy, power and identity, with their scale factors.
+/// The fields that are the meter: its energy, power, weather and identity, with their scale
+/// factors.
 [[nodiscard]] std::vector<RegisterField> metered_fields(const RegisterMap& map);
 
 /// One read, and which of the fields it brings.

@@ -2,6 +2,7 @@
 /// read.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,10 +71,19 @@ struct DriftSummary {
   std::vector<ChangedMeter> changed_meters;
 };
 
+/// The weather of a month that a calibration was asked for.
+struct MonthWeather {
+  std::string month;   ///< "2024-03"
+  double known = 0.0;  ///< Share measured or interpolated, 0…1, of what the model knows least.
+  /// Shares by where they are from: a sensor, a file, "interpolated", "typical".
+  std::map<std::string, double> from = {};
+};
+
 struct JobResult {
-  std::string document;               ///< calibration.json or diagnosis.json; empty: not done.
-  double rhat_max = kAbsent;          ///< Of a calibration's parameters and hyper-parameters.
-  std::optional<DriftSummary> drift;  ///< Of a calibration whose site could be followed.
+  std::string document;                    ///< calibration.json or diagnosis.json; empty: not done.
+  double rhat_max = kAbsent;               ///< Of a calibration's parameters and hyper-parameters.
+  std::optional<DriftSummary> drift;       ///< Of a calibration whose site could be followed.
+  std::vector<MonthWeather> weather = {};  ///< Of a calibration, by month.
 };
 
 }  // namespace recald

@@ -74,7 +74,7 @@ struct StoredJob {
   std::int64_t number = 0;  ///< Given by the store; 1, 2, 3 …
   JobKind kind = JobKind::calibration;
   JobState state = JobState::waiting;
-  std::string asked_by;  ///< "month", "schedule", "api", "signal", "drift"
+  std::string asked_by;  ///< "month", "weather", "schedule", "api", "signal", "drift"
   metering::Instant asked;
   std::optional<metering::Instant> started;
   std::optional<metering::Instant> ended;

@@ -147,6 +147,16 @@ ChangedMeter read_changed_meter(const Reader& from) {
           .sentence = from.text("sentence")};
 }
 
+MonthWeather read_weather(const Reader& from) {
+  MonthWeather month{.month = from.text("month"), .known = from.number("known")};
+  if (const Json* shares = from.object("from")) {
+    for (const auto& [name, share] : shares->items()) {
+      if (share.is_number()) month.from[name] = share.get<double>();
+    }
+  }
+  return month;
+}
+
 }  // namespace
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -198,6 +208,16 @@ Json changed_meters_json(const DriftSummary& drift) {
   return list;
 }
 
+Json weather_json(const std::vector<MonthWeather>& months) {
+  Json list = Json::array();
+  for (const MonthWeather& one : months) {
+    Json from = Json::object();
+    for (const auto& [name, share] : one.from) from[name] = number(share);
+    list.push_back({{"month", one.month}, {"known", number(one.known)}, {"from", from}});
+  }
+  return list;
+}
+
 JobResult read_job_result(std::string document) {
   JobResult result{.document = std::move(document), .rhat_max = kAbsent, .drift = {}};
   const Json json = Json::parse(result.document, nullptr, false);
@@ -209,6 +229,7 @@ JobResult read_job_result(std::string document) {
       result.rhat_max = std::fmax(result.rhat_max, rhat);
     }
   }
+  result.weather = from.list("weather", read_weather);
   if (from.array("drift") == nullptr && from.array("alarms") == nullptr) return result;
   result.drift = DriftSummary{.outputs = from.list("drift", read_output),
                               .alarms = from.list("alarms", read_alarm),

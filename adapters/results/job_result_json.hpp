@@ -16,6 +16,8 @@ namespace recald::results {
 [[nodiscard]] nlohmann::ordered_json alarms_json(const DriftSummary& drift);
 [[nodiscard]] nlohmann::ordered_json changed_meters_json(const DriftSummary& drift);
 
+[[nodiscard]] nlohmann::ordered_json weather_json(const std::vector<MonthWeather>& months);
+
 /// A result from its document, as a store keeps it. What the document does not say, or says in
 /// another type, is absent.
 [[nodiscard]] JobResult read_job_result(std::string document);

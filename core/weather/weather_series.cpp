@@ -294,6 +294,13 @@ Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds 
   return series;
 }
 
+WeatherGrade grade_of(double known_share) {
+  constexpr double kLeastShare = 0.5;
+  constexpr double kGoodShare = 0.9;
+  if (known_share < kLeastShare) return WeatherGrade::unknown;
+  return known_share < kGoodShare ? WeatherGrade::patchy : WeatherGrade::good;
+}
+
 FilledWeather fill_gaps(const WeatherSeries& series, const LocalCalendar& calendar,
                         seconds interpolate_max) {
   assert(!series.hours.empty());

@@ -84,6 +84,14 @@ struct WeatherCoverage {
   std::array<double, kWeatherVariables.size()> typical{};  ///< By hour-of-day mean of the month.
 };
 
+/// What a month's weather is good for, by the share of it that was measured or interpolated.
+enum class WeatherGrade : std::uint8_t {
+  unknown,  ///< Less than half: mostly invented, it cannot be held against a model.
+  patchy,   ///< Good enough to be used, with a warning.
+  good,     ///< 90 % and more.
+};
+[[nodiscard]] WeatherGrade grade_of(double known_share);
+
 struct FilledWeather {
   WeatherSeries series;
   std::vector<WeatherCoverage> coverage;  ///< One entry per local month, in order.

@@ -9,6 +9,7 @@
 #include "daemon/commands/check_meters.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
 #include "daemon/site/model/site_parts.hpp"
 #include "daemon/site/replay/site_weather.hpp"
 
@@ -50,6 +51,27 @@ void print_meters(const SiteConfig& site, const Console& console) {
   }
 }
 
+/// "dry_bulb_C, ghi_W_m2" of a sensor that is polled.
+std::string quantity_names(const MeterConfig& sensor) {
+  std::string names;
+  for (const auto* const quantity : quantities_of(sensor)) {
+    names += (names.empty() ? "" : ", ") + std::string{quantity->name};
+  }
+  return names;
+}
+
+void print_sensors(const SiteConfig& site, const Console& console) {
+  for (const MeterConfig& sensor : site.sensors) {
+    const std::string how =
+        sensor.live ? fmt::format("unit {} on bus '{}', {}: {}, every {}", sensor.live->unit,
+                                  sensor.live->bus, sensor.live->map.title, quantity_names(sensor),
+                                  duration_words(sensor.live->poll))
+                    : fmt::format("as it is sent, interval {}; units {}",
+                                  duration_words(sensor.meter.interval), weather::quantity_units());
+    console.out << fmt::format("  meter {:<16} {:<14} {}\n", sensor.meter.id, "weather", how);
+  }
+}
+
 void print_weather(const WeatherConfig& config, const weather::ValuesTaken& taken,
                    const Console& console) {
   console.out << fmt::format(
@@ -65,8 +87,10 @@ std::vector<std::string> check_buses(const SiteConfig& site, const Console& cons
   constexpr double kCrowded = 0.7;
   std::vector<std::string> problems;
   std::map<std::string_view, std::vector<const LiveMeterConfig*>> meters;  // by bus
-  for (const MeterConfig& meter : site.meters) {
-    if (meter.live) meters[meter.live->bus].push_back(&*meter.live);
+  for (const auto* const list : {&site.meters, &site.sensors}) {
+    for (const MeterConfig& meter : *list) {
+      if (meter.live) meters[meter.live->bus].push_back(&*meter.live);
+    }
   }
   for (const BusConfig& bus : site.buses) {
     double busy = 0.0;
@@ -117,14 +141,19 @@ std::vector<std::string> check_model(const SiteConfig& site, const Console& cons
 
 /// Pushed meters come in by HTTP alone.
 std::vector<std::string> check_pushed(const SiteConfig& site) {
-  const auto pushed = std::ranges::find(site.meters, MeterSource::http, &MeterConfig::source);
-  if (site.http || pushed == site.meters.end()) return {};
-  return {nowhere_to_push(site, *pushed)};
+  if (site.http) return {};
+  for (const auto* const list : {&site.meters, &site.sensors}) {
+    const auto pushed = std::ranges::find(*list, MeterSource::http, &MeterConfig::source);
+    if (pushed != list->end()) return {nowhere_to_push(site, *pushed)};
+  }
+  return {};
 }
 
 /// What the models will miss in the weather: a problem where the site has one, else good to know.
 std::vector<std::string> check_weather(const SiteConfig& site, const Console& console) {
-  if (!site.weather || !system::require_file(site.weather->file, "the weather file")) return {};
+  if (!site.weather) return {};
+  const std::filesystem::path& file = site.weather->file;
+  if (!file.empty() && !system::require_file(file, "the weather file")) return {};
   const auto lack = lack_of_weather(site);
   if (!lack) return {site.file.filename().string() + ": " + lack.error().message};
   if (lack->sentence.empty()) return {};
@@ -133,6 +162,10 @@ std::vector<std::string> check_weather(const SiteConfig& site, const Console& co
   }
   console.err << "recald: " << lack->sentence << "\n";
   return {};
+}
+
+bool has_weather_file(const SiteConfig& site) {
+  return site.weather && !site.weather->file.empty();
 }
 
 std::vector<std::string> check_files(const SiteConfig& site) {
@@ -147,7 +180,7 @@ std::vector<std::string> check_files(const SiteConfig& site) {
     if (config.source != MeterSource::csv) continue;
     require(config.file, fmt::format("the file of meter '{}',", config.meter.id));
   }
-  if (site.weather) require(site.weather->file, "the weather file");
+  if (has_weather_file(site)) require(site.weather->file, "the weather file");
   return problems;
 }
 
@@ -157,7 +190,7 @@ int run_check(const CheckArguments& arguments, const Console& console) {
   const auto site = load_site(arguments.site);
   std::vector<std::string> problems = site ? check_files(*site) : site.error();
   std::optional<weather::ValuesTaken> weather;
-  if (site && site->weather && problems.empty()) {
+  if (site && has_weather_file(*site) && problems.empty()) {
     const auto taken = weather_values(*site);
     if (taken) weather = *taken;
     if (!taken) problems.push_back(site->file.filename().string() + ": " + taken.error().message);
@@ -165,6 +198,7 @@ int run_check(const CheckArguments& arguments, const Console& console) {
   if (site && !arguments.json) {
     console.out << fmt::format("{} ({}), {}\n", site->name, site->id, site->timezone);
     print_meters(*site, console);
+    print_sensors(*site, console);
     if (weather) print_weather(*site->weather, *weather, console);
   }
   if (site) {

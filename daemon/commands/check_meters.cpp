@@ -24,12 +24,14 @@ std::vector<TriedMeter> try_meters(const SiteConfig& site,
   for (const BusConfig& bus : site.buses) {
     const auto taken = why_bus_is_taken(bus);
     BusAccess access{bus};
-    for (const MeterConfig& meter : site.meters) {
-      if (!meter.live || meter.live->bus != bus.name) continue;
-      tried.push_back({&meter, &bus,
-                       taken ? MeterTrial{.failures = {"was not tried: " + *taken}}
-                             : try_on(bus, access, meter)});
-      tell(tried.back());
+    for (const auto* const list : {&site.meters, &site.sensors}) {
+      for (const MeterConfig& meter : *list) {
+        if (!meter.live || meter.live->bus != bus.name) continue;
+        tried.push_back({&meter, &bus,
+                         taken ? MeterTrial{.failures = {"was not tried: " + *taken}}
+                               : try_on(bus, access, meter)});
+        tell(tried.back());
+      }
     }
   }
   return tried;

@@ -12,18 +12,21 @@ namespace recald::daemon {
 int run_run(const RunArguments& arguments, const Console& console) {
   auto site = open_site(arguments.site);
   if (!site) return console.fail(site.error());
-  const auto& meters = site->config.meters;
-  if (std::ranges::none_of(meters, &MeterConfig::is_stored)) {
+  const SiteConfig& config = site->config;
+  const auto any = [&](auto is_it) {
+    return std::ranges::any_of(config.meters, is_it) || std::ranges::any_of(config.sensors, is_it);
+  };
+  if (!any(&MeterConfig::is_stored)) {
     return console.fail(
         fmt::format("{}: no [[meter]] has source = \"modbus\" or \"http\", so there is nothing to "
                     "poll or to receive; use recald replay for recorded readings",
                     arguments.site.filename().string()));
   }
-  const bool polls =
-      std::ranges::any_of(meters, [](const MeterConfig& meter) { return meter.live.has_value(); });
-  if (!polls && !site->config.http) {
-    const auto pushed = std::ranges::find(meters, MeterSource::http, &MeterConfig::source);
-    return console.fail(nowhere_to_push(site->config, *pushed));
+  const bool polls = any([](const MeterConfig& meter) { return meter.live.has_value(); });
+  if (!polls && !config.http) {
+    const auto pushed = std::ranges::find(config.meters, MeterSource::http, &MeterConfig::source);
+    return console.fail(
+        nowhere_to_push(config, pushed == config.meters.end() ? config.sensors.front() : *pushed));
   }
   ServiceOptions options;
   if (!arguments.clock.empty()) {

@@ -16,9 +16,11 @@ using Json = nlohmann::ordered_json;
 
 std::vector<std::string> meters_of(const SiteConfig& site, const std::string& bus, int unit) {
   std::vector<std::string> ids;
-  for (const MeterConfig& meter : site.meters) {
-    if (meter.live && meter.live->bus == bus && meter.live->unit == unit) {
-      ids.push_back(meter.meter.id);
+  for (const auto* const list : {&site.meters, &site.sensors}) {
+    for (const MeterConfig& meter : *list) {
+      if (meter.live && meter.live->bus == bus && meter.live->unit == unit) {
+        ids.push_back(meter.meter.id);
+      }
     }
   }
   return ids;

@@ -104,6 +104,9 @@ std::string status_words(const Json& site, const Json& ready, const Json& meters
   for (const Json& reason : ready.value("reasons", Json::array())) {
     if (reason.is_string()) text += "  ! " + reason.get<std::string>() + "\n";
   }
+  for (const Json& look : ready.value("look_at", Json::array())) {
+    if (look.is_string()) text += "  - " + look.get<std::string>() + "\n";
+  }
   text += fmt::format("{:<24} {:<9} {:>10} {:>14} {:<21} {:>8}\n", "meter", "state", "kW", "kWh",
                       "last answer", "coverage");
   for (const Json& meter : meters) {

@@ -8,6 +8,7 @@
 #include "adapters/modbus/frame.hpp"
 #include "adapters/modbus/sunspec.hpp"
 #include "core/metering/units.hpp"
+#include "core/weather/sensor_quantities.hpp"
 #include "daemon/commands/register_doubts.hpp"
 
 namespace recald::daemon {
@@ -128,6 +129,13 @@ class Attempt {
         return &fields_[one.field] == found.field;
       });
       if (value == values.end()) continue;  // read along, and not asked for
+      if (meter_.role == MeterRole::weather && value->value) {
+        const auto* const quantity = weather::find_quantity(found.field->name);
+        if (quantity != nullptr && !weather::is_plausible(*quantity, value->value->value)) {
+          trial_.warnings.push_back(weather::why_not_plausible(*quantity, value->value->value) +
+                                    "; check its address, type, scale and order in the map");
+        }
+      }
       if (meter_.meter.rated_kW) {
         const std::string doubt =
             doubt_about(*found.field, {read.address, words}, value->power_of_ten, limits());

@@ -14,14 +14,16 @@ namespace recald::testing {
 
 inline constexpr int kDepotYear_h = 8760;
 
-/// Writes readings.csv, weather.csv and site.toml.
+inline constexpr metering::Instant kDepotBegin =
+    std::chrono::sys_days{std::chrono::year{2020} / 12 / 31} + std::chrono::hours{23};
+
+/// Writes readings.csv, weather.csv and site.toml. @param begin  Of its first year, in UTC.
 inline void write_depot_year(const std::filesystem::path& folder,
-                             const std::string& site = sample_site(), int hours = kDepotYear_h) {
+                             const std::string& site = sample_site(), int hours = kDepotYear_h,
+                             metering::Instant begin = kDepotBegin) {
   std::string readings = "timestamp,meter,value,unit\n";
   std::string weather =
       "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2\n";
-  const metering::Instant begin =
-      std::chrono::sys_days{std::chrono::year{2020} / 12 / 31} + std::chrono::hours{23};
   for (int h = 0; h < hours; ++h) {
     const std::string stamp = metering::to_string(begin + std::chrono::hours{h});
     const double day = h / 24.0;

@@ -18,6 +18,8 @@ struct CounterDevice {
   std::function<bool(std::chrono::milliseconds)> is_silent = [](std::chrono::milliseconds) {
     return false;
   };
+  /// What stands in its registers from address 0 on, in the place of a counter. Absent: a counter.
+  std::function<modbus::Words(std::chrono::milliseconds)> registers = {};
   /// With which Modbus exception it answers; 0: none.
   std::function<int(std::chrono::milliseconds)> exception = [](std::chrono::milliseconds) {
     return 0;
@@ -43,6 +45,13 @@ class CounterBus final : public Bus {
       const modbus::ReadFailure refusal{modbus::ReadFault::exception,
                                         static_cast<std::uint8_t>(code)};
       loop_.after(kLatency, [=] { done(tl::unexpected(refusal), kLatency); });
+      return;
+    }
+    if (device->second.registers) {
+      const modbus::Words all = device->second.registers(now);
+      modbus::Words words(all.begin() + request.address,
+                          all.begin() + request.address + request.count);
+      loop_.after(kLatency, [done = std::move(done), words] { done(words, kLatency); });
       return;
     }
     const auto raw = static_cast<std::uint32_t>(std::floor(10.0 * device->second.energy_kWh(now)));

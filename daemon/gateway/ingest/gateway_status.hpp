@@ -12,6 +12,7 @@
 #include "daemon/gateway/ingest/meter_progress.hpp"
 #include "daemon/gateway/ingest/meter_track.hpp"
 #include "daemon/gateway/ingest/refusal_watch.hpp"
+#include "daemon/gateway/ingest/sensor_watch.hpp"
 #include "daemon/gateway/poll/bus_counters.hpp"
 #include "daemon/gateway/poll/latency_histogram.hpp"
 #include "daemon/gateway/poll/unit_health.hpp"
@@ -27,7 +28,17 @@ struct PollStatus {
   std::vector<RefusedRegisters> refused;  ///< At present.
 };
 
-/// One meter whose readings the store keeps, as people see it.
+/// One quantity of a weather sensor.
+struct QuantityStatus {
+  const weather::SensorQuantity* quantity;
+  std::optional<double> now;                       ///< In its unit; of a polled sensor.
+  std::optional<metering::Reading> last_interval;  ///< Committed.
+  std::optional<metering::Instant> known_until;    ///< End of the last interval that is believed.
+  double open_month_coverage = 0.0;                ///< As MeterStatus's.
+  ChannelState state;
+};
+
+/// One meter or weather sensor whose readings the store keeps, as people see it.
 struct MeterStatus {
   std::string id;
   std::optional<PollStatus> poll;  ///< Absent: its readings are pushed.
@@ -35,6 +46,8 @@ struct MeterStatus {
   std::optional<metering::Reading> last_interval;  ///< Committed.
   MeterCounters counters;
   double open_month_coverage = 0.0;  ///< 0…1; NaN before the month's first interval has ended.
+  /// Of a weather sensor: then its counters are the sum, and the coverage is the least of them.
+  std::vector<QuantityStatus> weather = {};
 };
 
 struct BusStatus {

@@ -22,8 +22,7 @@ Result<MeterProgress> MeterProgress::open(
     const metering::TimeSpan recent{(*extent)->end - kUsualDays, metering::Instant::max()};
     const auto read = store.for_each_interval(*number, recent, [&](const StoredInterval& stored) {
       if (remember) remember(stored.reading);
-      progress.open_month.observe(stored.reading);
-      progress.last_interval = stored.reading;
+      progress.recall(stored.reading);
     });
     if (!read) return tl::unexpected(read.error());
   }
@@ -35,9 +34,20 @@ Result<MeterProgress> MeterProgress::open(
   return progress;
 }
 
-void MeterProgress::note(const metering::Reading& reading) {
+void MeterProgress::recall(const metering::Reading& reading) {
   if (!last_interval || reading.start >= last_interval->start) last_interval = reading;
   open_month.observe(reading);
+  if (reading.validity != metering::Validity::ok) return;
+  const metering::TimeSpan span{reading.start, reading.start + stored.meter.interval};
+  if (same_value && span.end <= same_value->end) return;  // late, or put right
+  const bool goes_on = same_value && same_value->end == span.begin &&
+                       weather::is_same_value(reading.mean_kW, same_value_is);
+  same_value = {goes_on ? same_value->begin : span.begin, span.end};
+  same_value_is = reading.mean_kW;
+}
+
+void MeterProgress::note(const metering::Reading& reading) {
+  recall(reading);
   ++counters.intervals[static_cast<std::size_t>(reading.validity)];
   if (reading.late) ++counters.late;
 }

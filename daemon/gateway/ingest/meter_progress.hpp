@@ -11,6 +11,7 @@
 #include "adapters/ports/store.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 #include "daemon/gateway/ingest/open_month.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {
 
@@ -23,10 +24,20 @@ struct MeterCounters {
 
 struct MeterProgress {
   StoredMeter stored;
+  /// Of a quantity of a weather sensor; absent: a meter, whose months close.
+  std::optional<WeatherChannel> channel = {};
   OpenMonth open_month;
   MeterCounters counters{};
-  std::optional<metering::Reading> last_interval;             ///< Committed.
+  std::optional<metering::Reading> last_interval = {};        ///< Committed.
   metering::Instant closed_until = metering::Instant::min();  ///< End of the last closed month.
+  /// The latest intervals without a hole that are believed and have the same value.
+  std::optional<metering::TimeSpan> same_value = {};
+  double same_value_is = 0.0;
+
+  /// End of the latest interval that is believed; nothing before the first, or for a month.
+  [[nodiscard]] std::optional<metering::Instant> known_until() const {
+    return same_value ? std::optional{same_value->end} : std::nullopt;
+  }
 
   /// Registers the meter with the store and looks up what a restart would otherwise forget: its
   /// last interval and its closed months.
@@ -38,6 +49,9 @@ struct MeterProgress {
 
   /// An interval was committed.
   void note(const metering::Reading& reading);
+
+  /// The same of one that the store had already.
+  void recall(const metering::Reading& reading);
 
   /// Marks what belongs to a closed month as late; months that depend on it are to be closed again.
   void mark_late(StoreBatch& batch, const metering::LocalCalendar& calendar) const;

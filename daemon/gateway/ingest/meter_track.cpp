@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/metering/units.hpp"
+#include "daemon/gateway/ingest/read_reasons.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -25,23 +26,6 @@ constexpr std::chrono::seconds kNearBoundary{60};
 constexpr std::chrono::seconds kKeepPowerEvery{60};
 /// A clock that is kept right steps back no further.
 constexpr std::chrono::seconds kClockSlew{2};
-
-Reason reason_of(const modbus::ReadFailure& failure) {
-  switch (failure.fault) {
-    case modbus::ReadFault::timeout:
-    case modbus::ReadFault::refused:
-    case modbus::ReadFault::closed:
-      return Reason::timeout;
-    case modbus::ReadFault::exception:
-      return Reason::exception;
-    case modbus::ReadFault::mismatch:
-      return Reason::mismatch;
-    case modbus::ReadFault::crc:
-      return Reason::crc;
-  }
-  assert(false && "every fault has a reason");
-  return Reason::none;
-}
 
 /// kW or kWh per unit of the field; maps are checked to have such units where they are used.
 double unit_factor(const RegisterField& field) {
@@ -122,7 +106,7 @@ void MeterTrack::note_fault(const RegisterField& field, modbus::ValueFault fault
   const bool counts = std::ranges::find(meter_.map.energy, field.name) != meter_.map.energy.end();
   const bool is_averaged = meter_.map.energy.empty() && meter_.map.power == field.name;
   if (!counts && !is_averaged) return;
-  since_sample_ |= fault == modbus::ValueFault::absent ? Reason::sentinel : Reason::nan;
+  since_sample_ |= reason_of(fault);
 }
 
 StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadResult& result,

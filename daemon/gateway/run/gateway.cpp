@@ -29,10 +29,14 @@ constexpr std::size_t kMonthsAtATime = 12;    // of one meter, in one step of th
 CommitRules rules_for(const SiteConfig& site) {
   CommitRules rules;
   std::size_t intervals_a_day = 0;
+  const auto of_a_day = [](const MeterConfig& meter) {
+    return static_cast<std::size_t>(hours{24} / meter.meter.interval);
+  };
   for (const MeterConfig& meter : site.meters) {
-    if (meter.is_stored()) {
-      intervals_a_day += static_cast<std::size_t>(hours{24} / meter.meter.interval);
-    }
+    if (meter.is_stored()) intervals_a_day += of_a_day(meter);
+  }
+  for (const MeterConfig& sensor : site.sensors) {
+    intervals_a_day += quantities_of(sensor).size() * of_a_day(sensor);
   }
   rules.intervals_max = std::max(rules.intervals_max, intervals_a_day);
   return rules;
@@ -62,6 +66,7 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
   if (!buses) return tl::unexpected(buses.error());
   gateway->buses_ = std::move(*buses);
   if (auto opened = gateway->open_pushed(site); !opened) return tl::unexpected(opened.error());
+  gateway->watch_sensors_of(site);
   return gateway;
 }
 
@@ -81,22 +86,50 @@ Result<std::vector<std::unique_ptr<LiveBus>>> Gateway::open_buses(
 
 Result<void> Gateway::open_pushed(const SiteConfig& site) {
   std::vector<PushedMeter> opened;
+  const auto open = [&](const metering::Meter& meter,
+                        std::optional<WeatherChannel> channel) -> Result<void> {
+    auto progress = MeterProgress::open(meter, calendar_, ports_.store);
+    if (!progress) return tl::unexpected(progress.error());
+    progress->channel = std::move(channel);
+    opened.push_back(again_pushed(std::move(*progress)));
+    return {};
+  };
   for (const MeterConfig& config : site.meters) {
     if (config.source != MeterSource::http) continue;
-    auto progress = MeterProgress::open(config.meter, calendar_, ports_.store);
-    if (!progress) return tl::unexpected(progress.error());
-    PushedMeter meter{.progress = std::move(*progress)};
-    const auto known =
-        std::ranges::find(pushed_, meter.progress.stored.number,
-                          [](const auto& one) { return one.progress.stored.number; });
-    if (known != pushed_.end()) {
-      meter.progress.counters = known->progress.counters;
-      meter.heard_at = known->heard_at;
+    if (auto done = open(config.meter, {}); !done) return done;
+  }
+  for (const MeterConfig& sensor : site.sensors) {
+    if (sensor.source != MeterSource::http) continue;
+    for (const WeatherChannel& channel : channels_of(sensor)) {
+      if (auto done = open(stored_meter(sensor, channel), channel); !done) return done;
     }
-    opened.push_back(std::move(meter));
   }
   pushed_ = std::move(opened);
   return {};
+}
+
+Gateway::PushedMeter Gateway::again_pushed(MeterProgress progress) const {
+  PushedMeter meter{.progress = std::move(progress)};
+  const auto known =
+      std::ranges::find(pushed_, meter.progress.stored.number,
+                        [](const PushedMeter& one) { return one.progress.stored.number; });
+  if (known != pushed_.end()) {
+    meter.progress.counters = known->progress.counters;
+    meter.heard_at = known->heard_at;
+  }
+  return meter;
+}
+
+void Gateway::watch_sensors_of(const SiteConfig& site) {
+  std::map<std::string, SensorWatch> watches;
+  for (const MeterConfig& sensor : site.sensors) {
+    const std::string& id = sensor.meter.id;
+    const auto known = watches_.find(id);
+    const bool is_polled = sensor.live.has_value();
+    const bool goes_on = known != watches_.end() && known->second.is_polled() == is_polled;
+    watches.emplace(id, goes_on ? known->second : SensorWatch{id, is_polled});
+  }
+  watches_ = std::move(watches);
 }
 
 Result<void> Gateway::take_over(Store& memory, const std::function<void()>& on_progress) {
@@ -131,8 +164,8 @@ Result<void> Gateway::take_over_all(Store& memory, const std::function<void()>& 
 Result<void> Gateway::take_over_samples(LiveMeter& meter,
                                         std::span<const metering::RegisterSample> samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    StoreBatch batch = meter.track.take_kept(samples[i]);
-    meter.progress.mark_late(batch, calendar_);
+    StoreBatch batch = std::get<MeterTrack>(meter.track).take_kept(samples[i]);
+    meter.progress.front().mark_late(batch, calendar_);
     committer_.add(std::move(batch));
     if ((i + 1) % kSamplesAtATime != 0) continue;
     if (auto flushed = committer_.flush(); !flushed) return flushed;
@@ -164,11 +197,10 @@ void Gateway::start(LiveBus& bus) {
   bus.start(ports_of(bus), [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
   for (LiveMeter& meter : bus.meters()) {
     if (meter.doubt.empty()) continue;
-    const std::string& id = meter.progress.stored.meter.id;
-    note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", id,
+    note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", meter.id,
           fmt::format("meter '{}': {}; its counter starts anew, and what it counted since the last "
                       "interval is not known",
-                      id, std::exchange(meter.doubt, {}))});
+                      meter.id, std::exchange(meter.doubt, {}))});
   }
 }
 
@@ -206,6 +238,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
     start(*bus);
     buses_.push_back(std::move(bus));
   }
+  watch_sensors_of(site);
   keeper_.set_options(site.closing);
   // Rules that changed close months anew, but not before the reload has ended.
   ports_.loop.post([weak = std::weak_ptr{self_}] {
@@ -215,9 +248,10 @@ Result<void> Gateway::reload(const SiteConfig& site) {
 }
 
 LiveMeter* Gateway::find_meter(std::uint32_t number) {
+  const auto is_it = [&](const MeterProgress& one) { return one.stored.number == number; };
   for (const auto& bus : buses_) {
     for (LiveMeter& meter : bus->meters()) {
-      if (meter.progress.stored.number == number) return &meter;
+      if (std::ranges::any_of(meter.progress, is_it)) return &meter;
     }
   }
   return nullptr;
@@ -226,14 +260,19 @@ LiveMeter* Gateway::find_meter(std::uint32_t number) {
 std::vector<MeterProgress*> Gateway::all_progress() {
   std::vector<MeterProgress*> all;
   for (const auto& bus : buses_) {
-    for (LiveMeter& meter : bus->meters()) all.push_back(&meter.progress);
+    for (LiveMeter& meter : bus->meters()) {
+      for (MeterProgress& progress : meter.progress) all.push_back(&progress);
+    }
   }
   for (PushedMeter& meter : pushed_) all.push_back(&meter.progress);
   return all;
 }
 
 MeterProgress* Gateway::find_progress(std::uint32_t number) {
-  if (LiveMeter* const meter = find_meter(number)) return &meter->progress;
+  if (LiveMeter* const meter = find_meter(number)) {
+    return &*std::ranges::find(meter->progress, number,
+                               [](const MeterProgress& one) { return one.stored.number; });
+  }
   const auto pushed = std::ranges::find(
       pushed_, number, [](const PushedMeter& one) { return one.progress.stored.number; });
   return pushed == pushed_.end() ? nullptr : &pushed->progress;
@@ -254,7 +293,7 @@ void Gateway::watch_clock(const Moment& now) {
   }
   if (moved <= kClockSet && -moved <= kClockSet) return;
   for (const auto& bus : buses_) {
-    for (LiveMeter& meter : bus->meters()) meter.track.clock_was_set();
+    for (LiveMeter& meter : bus->meters()) meter.clock_was_set();
   }
   note({now.instant(), Severity::warning, "clock_set", "",
         fmt::format("the system clock was set {} by {} s; the time between is missing from all "
@@ -283,13 +322,12 @@ void Gateway::take(LiveMeter& meter, const PolledRead& read) {
     return;
   }
   if (held_.size() >= kHeldMax) held_.pop_front();
-  held_.push_back({meter.progress.stored.number, read});
+  held_.push_back({meter.progress.front().stored.number, read});
 }
 
 void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
-  StoreBatch batch =
-      meter.track.take(meter.reads[read.order.read], read.result, read.order.due, at);
-  meter.progress.mark_late(batch, calendar_);
+  StoreBatch batch = meter.take(read, at);
+  meter.progress.front().mark_late(batch, calendar_);
   hand_in(std::move(batch));
 }
 
@@ -369,7 +407,11 @@ void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts
   for (const StoreEvent& event : batch.events) {
     ++events_[static_cast<std::size_t>(event.severity)];
     for (MeterProgress* const progress : all_progress()) {
-      if (progress->stored.meter.id == event.subject) ++progress->counters.events[event.kind];
+      const bool is_of_it = progress->channel ? progress->channel->sensor == event.subject
+                                              : progress->stored.meter.id == event.subject;
+      if (!is_of_it) continue;
+      ++progress->counters.events[event.kind];
+      break;  // one quantity counts for its sensor
     }
   }
 }
@@ -381,7 +423,7 @@ void Gateway::close_months() {
   if (!committer_.flush()) return;
   std::vector<std::uint32_t> meters;
   for (const MeterProgress* const progress : all_progress()) {
-    meters.push_back(progress->stored.number);
+    if (!progress->channel) meters.push_back(progress->stored.number);
   }
   std::ranges::reverse(meters);
   close_months_of(std::move(meters));
@@ -422,8 +464,24 @@ bool Gateway::close_months_of(const MeterProgress& meter) {
 void Gateway::close_months_every_hour() {
   close_months();
   ports_.loop.after(kMonthsEvery, [weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->close_months_every_hour();
+    const auto self = weak.lock();
+    if (!self) return;
+    // Not at the start: what was silent before has not been asked yet.
+    (*self)->judge_sensors();
+    (*self)->close_months_every_hour();
   });
+}
+
+void Gateway::judge_sensors() {
+  watch_clock(ports_.loop.now());
+  if (!clock_ok_) return;
+  for (auto& [sensor, watch] : watches_) {
+    std::vector<const MeterProgress*> channels;
+    for (const MeterProgress* const progress : all_progress()) {
+      if (progress->channel && progress->channel->sensor == sensor) channels.push_back(progress);
+    }
+    hand_in({.events = watch.judge(channels, ports_.loop.now().instant())});
+  }
 }
 
 GatewayStatus Gateway::status() const {
@@ -440,7 +498,12 @@ GatewayStatus Gateway::status() const {
       status.meters.push_back(status_of(*bus, unit, *runner));
     }
   }
-  for (const PushedMeter& meter : pushed_) status.meters.push_back(status_of(meter));
+  for (const PushedMeter& meter : pushed_) {
+    if (!meter.progress.channel) status.meters.push_back(status_of(meter));
+  }
+  for (const auto& [sensor, watch] : watches_) {
+    if (!watch.is_polled()) status.meters.push_back(status_of_pushed_sensor(sensor));
+  }
   return status;
 }
 
@@ -449,12 +512,15 @@ std::optional<MeterStatus> Gateway::meter_status(std::string_view id) const {
     const BusRunner* const runner = bus->runner();
     if (runner == nullptr) continue;
     const auto meters = std::span{bus->meters()};
-    const auto found = std::ranges::find(meters, id, [](const LiveMeter& one) {
-      return std::string_view{one.progress.stored.meter.id};
-    });
+    const auto found = std::ranges::find(
+        meters, id, [](const LiveMeter& one) { return std::string_view{one.id}; });
     if (found != meters.end()) {
       return status_of(*bus, static_cast<std::size_t>(found - meters.begin()), *runner);
     }
+  }
+  const auto watch = watches_.find(std::string{id});
+  if (watch != watches_.end() && !watch->second.is_polled()) {
+    return status_of_pushed_sensor(watch->first);
   }
   const auto pushed = std::ranges::find(pushed_, id, [](const PushedMeter& one) {
     return std::string_view{one.progress.stored.meter.id};
@@ -466,16 +532,29 @@ std::optional<MeterStatus> Gateway::meter_status(std::string_view id) const {
 MeterStatus Gateway::status_of(const LiveBus& bus, std::size_t unit,
                                const BusRunner& runner) const {
   const LiveMeter& meter = bus.meters()[unit];
-  return {.id = meter.progress.stored.meter.id,
-          .poll = PollStatus{.bus = bus.config().name,
-                             .state = runner.poller().state(unit),
-                             .skipped = runner.poller().skipped(unit),
-                             .requests = runner.counters().requests[unit],
-                             .refused = meter.track.refused()},
-          .live = meter.track.live(),
-          .last_interval = meter.progress.last_interval,
-          .counters = meter.progress.counters,
-          .open_month_coverage = coverage_of(meter.progress)};
+  MeterStatus status{.id = meter.id,
+                     .poll = PollStatus{.bus = bus.config().name,
+                                        .state = runner.poller().state(unit),
+                                        .skipped = runner.poller().skipped(unit),
+                                        .requests = runner.counters().requests[unit],
+                                        .refused = meter.refused()},
+                     .live = {},
+                     .last_interval = {},
+                     .counters = {}};
+  if (const auto* const sensor = std::get_if<WeatherTrack>(&meter.track)) {
+    status.live.read_at = sensor->read_at();
+    status.open_month_coverage = kAbsent;
+    for (const MeterProgress& progress : meter.progress) {
+      add_quantity(status, progress, sensor->now(progress.stored.number));
+    }
+    return status;
+  }
+  const MeterProgress& progress = meter.progress.front();
+  status.live = std::get<MeterTrack>(meter.track).live();
+  status.last_interval = progress.last_interval;
+  status.counters = progress.counters;
+  status.open_month_coverage = coverage_of(progress);
+  return status;
 }
 
 MeterStatus Gateway::status_of(const PushedMeter& meter) const {
@@ -485,6 +564,44 @@ MeterStatus Gateway::status_of(const PushedMeter& meter) const {
           .last_interval = meter.progress.last_interval,
           .counters = meter.progress.counters,
           .open_month_coverage = coverage_of(meter.progress)};
+}
+
+MeterStatus Gateway::status_of_pushed_sensor(const std::string& sensor) const {
+  MeterStatus status{.id = sensor,
+                     .poll = std::nullopt,
+                     .live = {},
+                     .last_interval = {},
+                     .counters = {},
+                     .open_month_coverage = kAbsent};
+  for (const PushedMeter& meter : pushed_) {
+    if (!meter.progress.channel || meter.progress.channel->sensor != sensor) continue;
+    status.live.read_at = std::max(status.live.read_at, meter.heard_at);
+    add_quantity(status, meter.progress, {});
+  }
+  return status;
+}
+
+void Gateway::add_quantity(MeterStatus& status, const MeterProgress& progress,
+                           std::optional<double> now) const {
+  ChannelState state;
+  if (const auto watch = watches_.find(progress.channel->sensor);
+      clock_ok_ && watch != watches_.end()) {
+    state = watch->second.state_of(progress, ports_.loop.now().instant());
+  }
+  // What a sensor never sends is none of its quantities, unless it is missed.
+  if (!status.poll && !progress.known_until() && !state.silent_since) return;
+  const double coverage = coverage_of(progress);
+  status.open_month_coverage = std::fmin(status.open_month_coverage, coverage);
+  for (std::size_t i = 0; i < status.counters.intervals.size(); ++i) {
+    status.counters.intervals[i] += progress.counters.intervals[i];
+  }
+  for (const auto& [kind, count] : progress.counters.events) status.counters.events[kind] += count;
+  status.weather.push_back({.quantity = progress.channel->quantity,
+                            .now = now,
+                            .last_interval = progress.last_interval,
+                            .known_until = progress.known_until(),
+                            .open_month_coverage = coverage,
+                            .state = state});
 }
 
 double Gateway::coverage_of(const MeterProgress& progress) const {

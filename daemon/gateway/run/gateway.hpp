@@ -8,6 +8,7 @@
 #include <array>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -78,7 +79,8 @@ class Gateway {
   /// refusals are forgotten. Counters go on.
   void begin_buses_anew();
 
-  /// Pushed readings, of a meter with source = "http". They are stored when it answers.
+  /// Pushed readings, of a meter with source = "http" or of a channel of such a weather sensor
+  /// ("roof.dry_bulb_C"). They are stored when it answers.
   /// @param readings    Their `meter` is not looked at.
   /// @param correction  With one they take the place of good readings too, as an edit.
   /// @return not_found for a meter that takes none, or the store's failure; then nothing is stored.
@@ -98,7 +100,7 @@ class Gateway {
   [[nodiscard]] std::optional<MeterStatus> meter_status(std::string_view id) const;
 
  private:
-  /// A meter with source = "http": its readings come in by HTTP.
+  /// A meter with source = "http", or a quantity of such a sensor: its readings come in by HTTP.
   struct PushedMeter {
     MeterProgress progress;
     std::optional<metering::Instant> heard_at;  ///< Since the process began.
@@ -118,8 +120,12 @@ class Gateway {
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
   [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
-  /// Opens the pushed meters of `site`; what is known of them stays.
+  /// Opens the pushed meters and weather sensors of `site`; what is known of them stays.
   Result<void> open_pushed(const SiteConfig& site);
+  [[nodiscard]] PushedMeter again_pushed(MeterProgress progress) const;
+  /// Weather sensors that stay are watched on.
+  void watch_sensors_of(const SiteConfig& site);
+  void judge_sensors();
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
@@ -144,6 +150,9 @@ class Gateway {
   [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
                                       const BusRunner& runner) const;
   [[nodiscard]] MeterStatus status_of(const PushedMeter& meter) const;
+  [[nodiscard]] MeterStatus status_of_pushed_sensor(const std::string& sensor) const;
+  void add_quantity(MeterStatus& status, const MeterProgress& progress,
+                    std::optional<double> now) const;
   [[nodiscard]] double coverage_of(const MeterProgress& progress) const;
   void close_months();
   void close_months_of(std::vector<std::uint32_t> meters);
@@ -159,6 +168,7 @@ class Gateway {
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
   std::vector<PushedMeter> pushed_;
+  std::map<std::string, SensorWatch> watches_;  ///< By id of a weather sensor.
   bool clock_ok_ = false;
   std::array<std::uint64_t, 3> events_{};  ///< Committed, by Severity.
   std::deque<HeldRead> held_;

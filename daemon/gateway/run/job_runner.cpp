@@ -145,7 +145,7 @@ void JobRunner::begin_next() {
 void JobRunner::finish(Result<JobOutcome> outcome) {
   current_.ended = ports_.loop.now().instant();
   if (outcome) {
-    current_.state = JobState::done;
+    current_.state = outcome->failed ? JobState::failed : JobState::done;
     current_.accepted = outcome->accepted;
     current_.message = std::move(outcome->message);
     current_.folder = std::move(outcome->folder);

@@ -19,7 +19,8 @@ namespace recald::daemon {
 
 struct JobOutcome {
   bool accepted = false;  ///< Its gates hold: this is the result in use from now on.
-  std::string message;    ///< Which gate failed; else empty.
+  bool failed = false;    ///< It could not be done: `message` says why, `result` what it lacked.
+  std::string message;    ///< Which gate failed, or what it was made without; else empty.
   std::string folder;     ///< With its files.
   JobResult result;
   std::vector<StoredForecast> forecasts;  ///< For the record.

@@ -12,11 +12,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The site's meters on the bus of that name, in order of the file.
+/// The site's meters on the bus of that name, and its weather sensors there, in order of the file.
 std::vector<const MeterConfig*> meters_on(const SiteConfig& site, const std::string& bus) {
   std::vector<const MeterConfig*> meters;
-  for (const MeterConfig& meter : site.meters) {
-    if (meter.live && meter.live->bus == bus) meters.push_back(&meter);
+  for (const auto* const list : {&site.meters, &site.sensors}) {
+    for (const MeterConfig& meter : *list) {
+      if (meter.live && meter.live->bus == bus) meters.push_back(&meter);
+    }
   }
   return meters;
 }
@@ -32,16 +34,49 @@ Result<std::string> lost_state(Store& store, std::uint32_t meter, const std::str
   return lost;
 }
 
+Result<std::vector<modbus::PlannedRead>> planned_reads(const MeterConfig& config) {
+  const modbus::RegisterMap& map = config.live->map;
+  auto reads = plan_reads(metered_fields(map), map.function, map.limits);
+  if (reads) return reads;
+  return failure(reads.error().code,
+                 fmt::format("meter '{}': {}", config.meter.id, reads.error().message));
+}
+
+/// States of a meter's registers; those that cannot be read begin anew, and `doubt` says why.
+Result<std::vector<RegisterState>> stored_states(Store& store, std::uint32_t number,
+                                                 std::string& doubt) {
+  auto states = store.registers(number);
+  if (states || states.error().code != ErrorCode::malformed) return states;
+  doubt = states.error().message;
+  return std::vector<RegisterState>{};
+}
+
 }  // namespace
+
+StoreBatch LiveMeter::take(const PolledRead& read, metering::Instant at) {
+  const modbus::PlannedRead& planned = reads[read.order.read];
+  if (auto* const sensor = std::get_if<WeatherTrack>(&track)) {
+    return sensor->take(planned, read.result, at);
+  }
+  return std::get<MeterTrack>(track).take(planned, read.result, read.order.due, at);
+}
+
+void LiveMeter::clock_was_set() {
+  std::visit([](auto& one) { one.clock_was_set(); }, track);
+}
+
+std::vector<RefusedRegisters> LiveMeter::refused() const {
+  return std::visit([](const auto& one) { return one.refused(); }, track);
+}
 
 Result<std::unique_ptr<LiveBus>> LiveBus::open(const SiteConfig& site, const BusConfig& bus,
                                                const metering::LocalCalendar& calendar,
                                                Store& store) {
   std::unique_ptr<LiveBus> live{new LiveBus{bus}};
   for (const MeterConfig* meter : meters_on(site, bus.name)) {
-    if (auto added = live->add_meter(*meter, calendar, store); !added) {
-      return tl::unexpected(added.error());
-    }
+    auto added = meter->role == MeterRole::weather ? live->add_sensor(*meter, calendar, store)
+                                                   : live->add_meter(*meter, calendar, store);
+    if (!added) return tl::unexpected(added.error());
   }
   return live;
 }
@@ -49,22 +84,15 @@ Result<std::unique_ptr<LiveBus>> LiveBus::open(const SiteConfig& site, const Bus
 Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::LocalCalendar& calendar,
                                 Store& store) {
   const LiveMeterConfig& live = *config.live;
-  auto reads = plan_reads(metered_fields(live.map), live.map.function, live.map.limits);
-  if (!reads) {
-    return failure(reads.error().code,
-                   fmt::format("meter '{}': {}", config.meter.id, reads.error().message));
-  }
+  auto reads = planned_reads(config);
+  if (!reads) return tl::unexpected(reads.error());
   std::vector<metering::Reading> recent;
   auto progress = MeterProgress::open(config.meter, calendar, store,
                                       [&](const metering::Reading& one) { recent.push_back(one); });
   if (!progress) return tl::unexpected(progress.error());
   const std::uint32_t number = progress->stored.number;
-  auto states = store.registers(number);
   std::string doubt;
-  if (!states && states.error().code == ErrorCode::malformed) {
-    doubt = states.error().message;
-    states = std::vector<RegisterState>{};
-  }
+  const auto states = stored_states(store, number, doubt);
   if (!states) return tl::unexpected(states.error());
 
   TrackedMeter tracked{
@@ -85,14 +113,49 @@ Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::Local
     if (!lost) return tl::unexpected(lost.error());
     doubt = std::move(*lost);
   }
-  LiveMeter meter{.progress = std::move(*progress),
-                  .config = live,
-                  .text = config.text,
-                  .track = MeterTrack{std::move(tracked), calendar, state},
-                  .reads = std::move(*reads),
-                  .doubt = std::move(doubt)};
-  for (const metering::Reading& one : recent) meter.track.remember(one);
-  meters_.push_back(std::move(meter));
+  MeterTrack track{std::move(tracked), calendar, state};
+  for (const metering::Reading& one : recent) track.remember(one);
+  std::vector<MeterProgress> own;
+  own.push_back(std::move(*progress));
+  meters_.push_back({.id = config.meter.id,
+                     .progress = std::move(own),
+                     .config = live,
+                     .text = config.text,
+                     .track = std::move(track),
+                     .reads = std::move(*reads),
+                     .doubt = std::move(doubt)});
+  return {};
+}
+
+Result<void> LiveBus::add_sensor(const MeterConfig& config, const metering::LocalCalendar& calendar,
+                                 Store& store) {
+  const LiveMeterConfig& live = *config.live;
+  auto reads = planned_reads(config);
+  if (!reads) return tl::unexpected(reads.error());
+  TrackedSensor tracked{
+      .id = config.meter.id,
+      .map = live.map,
+      .averaging = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll},
+      .quantities = {}};
+  std::vector<MeterProgress> all;
+  std::string doubt;
+  for (WeatherChannel& channel : channels_of(config)) {
+    auto progress = MeterProgress::open(stored_meter(config, channel), calendar, store);
+    if (!progress) return tl::unexpected(progress.error());
+    const std::uint32_t number = progress->stored.number;
+    auto states = stored_states(store, number, doubt);
+    if (!states) return tl::unexpected(states.error());
+    tracked.quantities.push_back({number, channel.quantity, std::move(*states)});
+    progress->channel = std::move(channel);
+    all.push_back(std::move(*progress));
+  }
+  meters_.push_back({.id = config.meter.id,
+                     .progress = std::move(all),
+                     .config = live,
+                     .text = config.text,
+                     .track = WeatherTrack{std::move(tracked)},
+                     .reads = std::move(*reads),
+                     .doubt = std::move(doubt)});
   return {};
 }
 
@@ -112,11 +175,11 @@ std::vector<PolledUnit> LiveBus::polled_units() const {
   std::vector<PolledUnit> units;
   for (const LiveMeter& meter : meters_) {
     const LiveMeterConfig& live = meter.config;
-    units.push_back({.meter = meter.progress.stored.meter.id,
+    units.push_back({.meter = meter.id,
                      .unit = live.unit,
                      .reads = meter.reads,
                      .period = live.poll,
-                     .interval = meter.progress.stored.meter.interval,
+                     .interval = meter.interval(),
                      .timeout = live.timeout > milliseconds{0} ? live.timeout : config_.timeout});
   }
   return units;
@@ -146,7 +209,7 @@ bool LiveBus::is_described_by(const SiteConfig& site) const {
   return std::ranges::equal(meters_, meters_on(site, config_.name),
                             [](const LiveMeter& now, const MeterConfig* then) {
                               return now.text == then->text && now.config == *then->live &&
-                                     now.progress.stored.meter.interval == then->meter.interval;
+                                     now.interval() == then->meter.interval;
                             });
 }
 

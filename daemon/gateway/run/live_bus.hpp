@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "adapters/ports/bus.hpp"
@@ -12,18 +13,28 @@
 #include "adapters/ports/store.hpp"
 #include "daemon/gateway/ingest/meter_progress.hpp"
 #include "daemon/gateway/ingest/meter_track.hpp"
+#include "daemon/gateway/ingest/weather_track.hpp"
 #include "daemon/gateway/poll/bus_runner.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
 
+/// A meter or a weather sensor.
 struct LiveMeter {
-  MeterProgress progress;
+  std::string id;
+  std::vector<MeterProgress> progress;  ///< A meter's one, or those of a sensor's quantities.
   LiveMeterConfig config;
   std::string text;  ///< As MeterConfig's.
-  MeterTrack track;
+  std::variant<MeterTrack, WeatherTrack> track;
   std::vector<modbus::PlannedRead> reads;
-  std::string doubt;  ///< What was wrong with what the store had of its counter; empty: nothing.
+  std::string doubt = {};  ///< What was wrong with what the store had of it; empty: nothing.
+
+  [[nodiscard]] StoreBatch take(const PolledRead& read, metering::Instant at);
+  void clock_was_set();
+  [[nodiscard]] std::vector<RefusedRegisters> refused() const;
+  [[nodiscard]] std::chrono::seconds interval() const {
+    return progress.front().stored.meter.interval;
+  }
 };
 
 class LiveBus {
@@ -60,6 +71,8 @@ class LiveBus {
   explicit LiveBus(BusConfig config) : config_(std::move(config)) {}
   [[nodiscard]] Result<void> add_meter(const MeterConfig& meter,
                                        const metering::LocalCalendar& calendar, Store& store);
+  [[nodiscard]] Result<void> add_sensor(const MeterConfig& sensor,
+                                        const metering::LocalCalendar& calendar, Store& store);
   [[nodiscard]] std::unique_ptr<Bus> make_bus(const Ports& ports) const;
   [[nodiscard]] std::vector<PolledUnit> polled_units() const;
 

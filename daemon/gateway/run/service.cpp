@@ -33,6 +33,7 @@
 #include "daemon/gateway/run/signals.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
 #include "daemon/gateway/run/watchdog.hpp"
+#include "daemon/gateway/run/weather_wait.hpp"
 #include "daemon/gateway/serve/site_server.hpp"
 #include "daemon/gateway/upkeep/upkeep.hpp"
 
@@ -83,9 +84,12 @@ class Service {
         loop_(context_, options.trial),
         worker_(loop_),
         checker_(loop_),
+        looker_(loop_),
         options_(options),
         jobs_({loop_, *store_, worker_}, make_site_work(site_),
               [](const StoredJob& job) { log_job(job); }),
+        weather_wait_({loop_, *store_, looker_}, make_weather_look(site_),
+                      [this] { calibrate_with_weather(); }),
         upkeep_(*store_, checker_, upkeep_of(site_.config.store, running_), site_.calendar,
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }) {}
@@ -135,6 +139,7 @@ class Service {
     schedule();
     catch_up();
     gateway_->start();
+    weather_wait_.start();
     keep_up();
     if (!running_.missing.empty()) stand_in();
     loop_.post([this] { watchdog_.ready(); });
@@ -283,6 +288,7 @@ class Service {
     upkeep_.set_config(upkeep_of(config->store, running_));
     site_.config = std::move(*config);
     jobs_.set_work(make_site_work(site_));
+    weather_wait_.set_look(make_weather_look(site_));
     schedule();
     // A month that closed within the last minute was to be asked for by the old schedule.
     catch_up();
@@ -310,6 +316,11 @@ class Service {
       spdlog::warn("event=calibration_not_begun asked_by={} why=\"{}\"", asked_by,
                    asked.error().message);
     }
+  }
+
+  /// Of a site that is not calibrated by itself nothing is made again either.
+  void calibrate_with_weather() {
+    if (!site_.config.recalibration.schedule.is_never()) calibrate("weather");
   }
 
   static void log_month(const metering::Meter& meter, const metering::MonthlyFigure& figure) {
@@ -344,8 +355,10 @@ class Service {
   asio::AsioLoop loop_;
   system::WorkerThread worker_;
   system::WorkerThread checker_;  ///< Of backups.
+  system::WorkerThread looker_;   ///< At the weather.
   ServiceOptions options_;
   JobRunner jobs_;  ///< Tells the worker's work to stop before the worker waits for it.
+  WeatherWait weather_wait_;
   std::unique_ptr<Recalibration> recalibration_;
   Upkeep upkeep_;
   Watchdog watchdog_;

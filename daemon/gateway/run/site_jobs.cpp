@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "adapters/results/job_result_json.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
@@ -12,6 +14,7 @@
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/drift/site_drift.hpp"
 #include "daemon/site/model/active_effects.hpp"
+#include "daemon/site/replay/stored_readings.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
 #include "daemon/site/results/diagnosis_files.hpp"
@@ -26,13 +29,29 @@ namespace {
 constexpr int kDriftParticles = 256;
 constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
 
+/// "not all weather is known of 2024-03 (12 %)"; empty: all of it is.
+std::string lacking_words(const std::vector<MonthWeather>& months, const SiteConfig& site) {
+  std::string words;
+  for (const MonthWeather& one : months) {
+    if (weather::grade_of(one.known) == weather::WeatherGrade::good) continue;
+    words +=
+        fmt::format("{}{} ({:.0f} %)", words.empty() ? "" : ", ", one.month, 100.0 * one.known);
+  }
+  if (words.empty()) return "";
+  const bool is_made_again = !site.recalibration.schedule.is_never();
+  return fmt::format("not all weather is known of {}{}", words,
+                     is_made_again ? "; it is calibrated again when more of it comes" : "");
+}
+
 JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const RunFacts& facts,
-                      const std::filesystem::path& folder) {
+                      const SiteConfig& site, const std::filesystem::path& folder) {
   JobOutcome outcome{.accepted = calibration.calibration.converged,
                      .folder = folder.string(),
                      .result = calibration_result(calibration, facts)};
+  outcome.message = lacking_words(facts.weather, site);
   if (!outcome.accepted) {
-    outcome.message = "the chains have not converged, so the result before stays in use";
+    outcome.message = "the chains have not converged, so the result before stays in use" +
+                      (outcome.message.empty() ? std::string{} : "; " + outcome.message);
   }
   return outcome;
 }
@@ -43,7 +62,7 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
                                        const calibration::RunContext& context) {
   const auto done = calibrate_on_metamodel(modelled, design, context);
   if (!done) return tl::unexpected(done.error());
-  JobOutcome outcome = outcome_of(done->calibration, done->facts, folder);
+  JobOutcome outcome = outcome_of(done->calibration, done->facts, modelled.site.config, folder);
   if (auto written = write_calibration(*done, outcome.result.document, folder); !written) {
     return tl::unexpected(written.error());
   }
@@ -126,7 +145,8 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   }
   const auto done = finish_calibration(std::move(*modelled), {}, context);
   if (!done) return tl::unexpected(done.error());
-  JobOutcome outcome = outcome_of(done->calibration, done->modelled.facts, folder);
+  JobOutcome outcome =
+      outcome_of(done->calibration, done->modelled.facts, done->modelled.site.config, folder);
   const auto written =
       write_calibration(*done, outcome.result.document, metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
@@ -137,6 +157,36 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   const FollowUp follow_up = std::move(followed).map_error(&Error::message);
   outcome.result = calibration_result(done->calibration, done->modelled.facts, &follow_up);
   return outcome;
+}
+
+/// A calibration that failed, with the weather of the months that it would have taken: it may have
+/// failed for want of it, and is made again when it comes.
+Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
+                                      metering::Instant now) {
+  if (error.code == ErrorCode::cancelled || !site.config.weather) return tl::unexpected(error);
+  const metering::Month last = metering::previous_month(site.calendar.month_of(now));
+  const metering::MonthRange months{
+      last - std::chrono::months{site.config.recalibration.months - 1}, last};
+  auto known = make_weather_look(site)(months);
+  if (!known) {  // a file that is being written, perhaps: nothing is known
+    known.emplace();
+    for (metering::Month month = months.first; month <= last; month = metering::next_month(month)) {
+      known->push_back({.month = metering::to_string(month)});
+    }
+  }
+  if (lacking_words(*known, site.config).empty()) return tl::unexpected(error);
+  const bool is_all_unknown = std::ranges::all_of(*known, [](const MonthWeather& month) {
+    return weather::grade_of(month.known) == weather::WeatherGrade::unknown;
+  });
+  const bool is_made_again = is_all_unknown && !site.config.recalibration.schedule.is_never();
+  const nlohmann::ordered_json document = {{"weather", results::weather_json(*known)}};
+  return JobOutcome{
+      .failed = true,
+      .message = error.message + (is_made_again ? "; it is tried again when weather comes" : ""),
+      .folder = {},
+      .result = {.document = document.dump(2) + "\n"},
+      .forecasts = {},
+      .next = {}};
 }
 
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
@@ -172,8 +222,19 @@ DoJob make_site_work(OpenSite site) {
     }
     OpenSite latest = site;
     latest.config.period.reset();
-    return job.kind == JobKind::calibration ? calibrate(std::move(latest), job, now, goes_on)
-                                            : diagnose(std::move(latest), job, now, goes_on);
+    if (job.kind == JobKind::diagnosis) return diagnose(std::move(latest), job, now, goes_on);
+    auto outcome = calibrate(std::move(latest), job, now, goes_on);
+    return outcome ? outcome : with_known_weather(outcome.error(), site, now);
+  };
+}
+
+LookAtWeather make_weather_look(OpenSite site) {
+  return [site = std::move(site)](
+             const metering::MonthRange& months) -> Result<std::vector<MonthWeather>> {
+    if (!site.config.weather) return std::vector<MonthWeather>{};
+    const auto live = open_sensors(site.config);
+    if (!live) return tl::unexpected(live.error());
+    return known_weather(site.config, site.calendar, months, live->get());
   };
 }
 

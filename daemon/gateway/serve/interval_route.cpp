@@ -6,6 +6,7 @@
 #include "daemon/gateway/serve/api.hpp"
 #include "daemon/gateway/serve/parameters.hpp"
 #include "daemon/gateway/serve/shapes.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -33,8 +34,38 @@ Checked<TimeSpan> span_from_cursor(const http::Request& request) {
   return span;
 }
 
-Result<Page> read_page(Store& store, std::uint32_t number, const metering::Meter& meter,
-                       TimeSpan span, int limit) {
+/// What a query asks the intervals of: a meter, or a quantity of a weather sensor.
+struct Queried {
+  metering::Meter meter;  ///< As the store knows it.
+  const weather::SensorQuantity* quantity = nullptr;
+  bool is_stored = false;
+};
+
+Checked<Queried> queried(const SiteConfig& site, const http::Request& request) {
+  const std::string id = text_of(request, "meter").value_or("");
+  if (id.empty()) {
+    return refusal(400, "missing_parameter",
+                   "'meter' is needed; GET /api/v1/meters lists the meters", "meter");
+  }
+  if (const auto channel = find_channel(site, id)) {
+    return Queried{stored_meter(*site.find_sensor(channel->sensor), *channel), channel->quantity,
+                   true};
+  }
+  const auto meter = meter_of(site, id);
+  if (!meter) return tl::unexpected(meter.error());
+  if ((*meter)->role == MeterRole::weather) {
+    return refusal(400, "invalid_value",
+                   fmt::format("'{}' is a weather sensor, which has intervals by quantity: name "
+                               "{}.dry_bulb_C, for example",
+                               id, id),
+                   "meter");
+  }
+  return Queried{(*meter)->meter, nullptr, (*meter)->is_stored()};
+}
+
+Result<Page> read_page(Store& store, std::uint32_t number, const Queried& asked, TimeSpan span,
+                       int limit) {
+  const metering::Meter& meter = asked.meter;
   Page page;
   const auto extent = store.interval_extent(number);
   if (!extent) return tl::unexpected(extent.error());
@@ -51,7 +82,8 @@ Result<Page> read_page(Store& store, std::uint32_t number, const metering::Meter
             return;
           }
           if (page.count++ > 0) page.intervals += ',';
-          page.intervals += interval_json(interval, meter.interval);
+          page.intervals += asked.quantity != nullptr ? weather_interval_json(interval)
+                                                      : interval_json(interval, meter.interval);
         });
     if (!read) return tl::unexpected(read.error());
   }
@@ -65,31 +97,29 @@ http::Response get_intervals(const Served& served, const http::Request& request)
       !checked) {
     return checked.error();
   }
-  const auto meter = queried_meter(served.site, request);
-  if (!meter) return meter.error();
-  if (*meter == nullptr) {
-    return http::error_response(400, "missing_parameter",
-                                "'meter' is needed; GET /api/v1/meters lists the meters", "meter");
-  }
+  const auto asked = queried(served.site, request);
+  if (!asked) return asked.error();
   const auto span = span_from_cursor(request);
   if (!span) return span.error();
   const auto limit = limit_of(request);
   if (!limit) return limit.error();
 
-  const metering::Meter& described = (*meter)->meter;
+  const metering::Meter& described = asked->meter;
   Page page;
   // Asking would enter a meter that is read from its file; what was imported of it is for replays.
-  if ((*meter)->is_stored()) {
+  if (asked->is_stored) {
     const auto number = served.store.meter_number(described.id, described.interval);
     if (!number) return refusal(number.error()).value();
-    auto read = read_page(served.store, *number, described, *span, *limit);
+    auto read = read_page(served.store, *number, *asked, *span, *limit);
     if (!read) return refusal(read.error()).value();
     page = std::move(*read);
   }
+  const std::string unit =
+      asked->quantity == nullptr ? "" : fmt::format(R"("unit":"{}",)", asked->quantity->unit);
   return http::json_response(
-      fmt::format(R"({{"meter":"{}","interval_s":{},"intervals":[{}],"next":{}}})"
+      fmt::format(R"({{"meter":"{}","interval_s":{},{}"intervals":[{}],"next":{}}})"
                   "\n",
-                  described.id, described.interval.count(), page.intervals,
+                  described.id, described.interval.count(), unit, page.intervals,
                   page.next ? "\"" + metering::to_string(*page.next) + "\"" : "null"));
 }
 

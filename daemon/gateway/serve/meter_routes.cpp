@@ -22,6 +22,7 @@ http::Response get_sites(const Served& served, const http::Request& request) {
                      {"timezone", served.site.timezone},
                      {"interval_s", served.site.interval.count()},
                      {"meters", served.site.meters.size()},
+                     {"weather_sensors", served.site.sensors.size()},
                      {"version", kVersion},
                      {"started_at", metering::to_string(served.started)},
                      {"now", metering::to_string(served.now())}};
@@ -34,9 +35,11 @@ http::Response get_meters(const Served& served, const http::Request& request) {
   GatewayStatus all = served.status();
   for (MeterStatus& status : all.meters) known.emplace(status.id, std::move(status));
   Json meters = Json::array();
-  for (const MeterConfig& config : served.site.meters) {
-    const auto status = known.find(config.meter.id);
-    meters.push_back(meter_json(config, status == known.end() ? nullptr : &status->second));
+  for (const auto* const list : {&served.site.meters, &served.site.sensors}) {
+    for (const MeterConfig& config : *list) {
+      const auto status = known.find(config.meter.id);
+      meters.push_back(meter_json(config, status == known.end() ? nullptr : &status->second));
+    }
   }
   return json_answer({{"meters", meters}, {"next", nullptr}});
 }

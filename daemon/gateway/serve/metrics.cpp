@@ -68,6 +68,19 @@ void write_meters(PrometheusText& text, const GatewayStatus& status) {
   }
 }
 
+void write_weather(PrometheusText& text, const GatewayStatus& status) {
+  text.begin("recald_weather_known_until_seconds", "gauge",
+             "End of the last interval of a weather sensor's quantity that is believed, since "
+             "1970.");
+  for (const MeterStatus& meter : status.meters) {
+    for (const QuantityStatus& one : meter.weather) {
+      if (!one.known_until) continue;
+      text.sample(seconds_of(*one.known_until),
+                  {{"meter", meter.id}, {"quantity", one.quantity->name}});
+    }
+  }
+}
+
 void write_intervals(PrometheusText& text, const GatewayStatus& status) {
   text.begin("recald_intervals_total", "counter", "Intervals committed, by validity.");
   for (const MeterStatus& meter : status.meters) {
@@ -171,6 +184,7 @@ http::Response metrics(const Served& served) {
   write_process(text, served, status);
   write_buses(text, status);
   write_meters(text, status);
+  write_weather(text, status);
   write_intervals(text, status);
   write_store(text, served, status);
   write_calibration(text, served);

@@ -116,6 +116,7 @@ std::optional<std::string> text_of(const http::Request& request, const std::stri
 
 Checked<const MeterConfig*> meter_of(const SiteConfig& site, const std::string& id) {
   if (const auto index = site.meter_index(id)) return &site.meters[*index];
+  if (const MeterConfig* const sensor = site.find_sensor(id)) return sensor;
   return refusal(404, "not_found",
                  fmt::format("site '{}' has no meter {}; GET /api/v1/meters lists those it has",
                              site.id, csv::in_quotes(id)),

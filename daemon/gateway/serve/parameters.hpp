@@ -51,7 +51,7 @@ inline constexpr int kLimitUsual = 1'000;
 [[nodiscard]] std::optional<std::string> text_of(const http::Request& request,
                                                  const std::string& name);
 
-/// The site's meter of that id, or 404.
+/// The site's meter or weather sensor of that id, or 404.
 [[nodiscard]] Checked<const MeterConfig*> meter_of(const SiteConfig& site, const std::string& id);
 
 /// The `meter` of the query; nothing where it is absent.

@@ -70,12 +70,28 @@ Checked<const MeterConfig*> pushed_meter(const nlohmann::json& body, const SiteC
                  "meter");
 }
 
-Checked<metering::UnitConversion> unit_of(const nlohmann::json& body, const MeterConfig& meter) {
+/// What the numbers of a body are.
+struct PushedUnit {
+  metering::UnitConversion power{};                   ///< Of a meter.
+  const weather::SensorQuantity* quantity = nullptr;  ///< Of a weather sensor; else null.
+};
+
+Checked<PushedUnit> unit_of(const nlohmann::json& body, const MeterConfig& meter) {
   const auto unit = text_in(body, "unit");
+  if (meter.role == MeterRole::weather) {
+    if (!unit) return malformed("'unit' is needed, such as degC", "unit");
+    if (const auto* const quantity = weather::find_quantity_of_unit(*unit)) {
+      return PushedUnit{.quantity = quantity};
+    }
+    return refusal(400, "invalid_value",
+                   fmt::format("unit {} is none of the weather's; use {}", csv::in_quotes(*unit),
+                               weather::quantity_units()),
+                   "unit");
+  }
   if (!unit) return malformed("'unit' is needed, such as kWh", "unit");
   const auto conversion = metering::find_unit(*unit, meter.meter.utility, meter.units);
   if (!conversion) return refusal(400, "invalid_value", conversion.error().message, "unit");
-  return *conversion;
+  return PushedUnit{.power = *conversion};
 }
 
 /// Absent without a reason.
@@ -109,7 +125,7 @@ Checked<std::optional<Correction>> correction_in(const nlohmann::json& body,
 class Elements {
  public:
   Elements(const MeterConfig& meter, const metering::ValidationOptions& validation,
-           metering::UnitConversion unit, bool is_end_stamped, Instant now)
+           const PushedUnit& unit, bool is_end_stamped, Instant now)
       : meter_(meter),
         validation_(validation),
         unit_(unit),
@@ -134,12 +150,18 @@ class Elements {
       reading.validity = metering::Validity::missing;
       return reading;
     }
-    reading.reasons = metering::doubt_of(*mean_kW, meter_.meter, validation_);
+    reading.reasons = doubt_of(*mean_kW);
     if (reading.reasons != metering::Reason::none) reading.validity = metering::Validity::suspect;
     return reading;
   }
 
  private:
+  [[nodiscard]] metering::Reason doubt_of(double mean) const {
+    if (unit_.quantity == nullptr) return metering::doubt_of(mean, meter_.meter, validation_);
+    return weather::is_plausible(*unit_.quantity, mean) ? metering::Reason::none
+                                                        : metering::Reason::range;
+  }
+
   [[nodiscard]] Checked<Instant> start_of(const nlohmann::json& element,
                                           const std::string& place) const {
     const auto text = text_in(element, "time");
@@ -188,17 +210,23 @@ class Elements {
     if (!(std::abs(number) <= kValueMax)) {
       return refusal(400, "invalid_value", place + " is more than any meter counts", place);
     }
-    return unit_.mean_kW(number, meter_.meter.interval) * meter_.multiplier;
+    if (unit_.quantity != nullptr) return number;
+    return unit_.power.mean_kW(number, meter_.meter.interval) * meter_.multiplier;
   }
 
   const MeterConfig& meter_;
   const metering::ValidationOptions& validation_;
-  metering::UnitConversion unit_;
+  PushedUnit unit_;
   bool is_end_stamped_;
   Instant now_;
 };
 
 }  // namespace
+
+std::string PushedReadings::stored_id() const {
+  const std::string& id = meter->meter.id;
+  return quantity == nullptr ? id : WeatherChannel{id, quantity}.id();
+}
 
 Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& site, Instant now) {
   if (is_nested_deeper(body, kDepthMax)) {
@@ -227,7 +255,10 @@ Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& si
   auto correction = correction_in(json, body);
   if (!correction) return tl::unexpected(correction.error());
   const Elements elements{**meter, site.closing.closing.validation, *unit, stamps == "end", now};
-  PushedReadings pushed{.meter = *meter, .readings = {}, .correction = std::move(*correction)};
+  PushedReadings pushed{.meter = *meter,
+                        .quantity = unit->quantity,
+                        .readings = {},
+                        .correction = std::move(*correction)};
   pushed.readings.reserve(list->size());
   for (std::size_t i = 0; i < list->size(); ++i) {
     auto reading = elements.read((*list)[i], i);

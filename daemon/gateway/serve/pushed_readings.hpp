@@ -8,15 +8,20 @@
 #include "core/metering/reading.hpp"
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/serve/parameters.hpp"
-#include "daemon/site/config/site_config.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {
 
 struct PushedReadings {
   const MeterConfig* meter;
+  /// What a weather sensor has sent, as its unit says; null for a meter.
+  const weather::SensorQuantity* quantity = nullptr;
   /// At least one; `meter` is 0. What the meter cannot read is `suspect`, with its reason.
   std::vector<metering::Reading> readings;
   std::optional<Correction> correction;  ///< Puts right what is stored.
+
+  /// Under which the store keeps them: a meter's, or a channel's.
+  [[nodiscard]] std::string stored_id() const;
 };
 
 /// @param body

@@ -32,6 +32,15 @@ std::vector<std::string> reasons_not_ready(const GatewayStatus& status) {
 std::vector<std::string> reasons_to_look(const GatewayStatus& status) {
   std::vector<std::string> reasons;
   for (const MeterStatus& meter : status.meters) {
+    for (const QuantityStatus& one : meter.weather) {
+      const std::string_view name = one.quantity->name;
+      if (one.state.silent_since) {
+        reasons.push_back(silence_words(meter.id, name, *one.state.silent_since));
+      }
+      if (one.state.frozen_since) {
+        reasons.push_back(frozen_words(meter.id, name, *one.state.frozen_since));
+      }
+    }
     if (!meter.poll) continue;
     for (const RefusedRegisters& refused : meter.poll->refused) {
       reasons.push_back(sentence_of(meter.id, refused));

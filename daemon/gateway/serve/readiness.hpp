@@ -13,7 +13,8 @@ namespace recald::daemon {
 [[nodiscard]] std::vector<std::string> reasons_not_ready(const GatewayStatus& status);
 
 /// What deserves a look without making the daemon unready, in sentences: registers that a device
-/// refuses, or is too busy for, and devices that their gateway does not reach.
+/// refuses, or is too busy for, devices that their gateway does not reach, and weather sensors that
+/// are silent or stand still.
 [[nodiscard]] std::vector<std::string> reasons_to_look(const GatewayStatus& status);
 
 /// /healthz: 200 as long as the loop turns.

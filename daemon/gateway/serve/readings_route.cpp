@@ -25,14 +25,16 @@ std::string why_doubted(const metering::Reading& reading, const metering::Meter&
                      value_kW, options.range_factor, *meter.rated_kW);
 }
 
-nlohmann::ordered_json suspect_json(const std::vector<metering::Reading>& readings,
-                                    const metering::Meter& meter,
+nlohmann::ordered_json suspect_json(const PushedReadings& pushed,
                                     const metering::ValidationOptions& options) {
   auto suspect = nlohmann::ordered_json::array();
-  for (const metering::Reading& reading : readings) {
+  for (const metering::Reading& reading : pushed.readings) {
     if (reading.validity != metering::Validity::suspect) continue;
-    suspect.push_back({{"start", metering::to_string(reading.start)},
-                       {"why", why_doubted(reading, meter, options)}});
+    const std::string why = pushed.quantity != nullptr
+                                ? weather::why_not_plausible(*pushed.quantity, reading.mean_kW) +
+                                      "; check the unit, and the sensor"
+                                : why_doubted(reading, pushed.meter->meter, options);
+    suspect.push_back({{"start", metering::to_string(reading.start)}, {"why", why}});
   }
   return suspect;
 }
@@ -56,9 +58,9 @@ http::Response post_readings(const Served& served, const http::Request& request)
     return http::error_response(
         409, "not_possible", fmt::format("no readings of meter '{}' are taken here", id), "meter");
   }
-  const auto suspect =
-      suspect_json(pushed->readings, pushed->meter->meter, served.site.closing.closing.validation);
-  const auto counts = served.take_readings(id, std::move(pushed->readings), pushed->correction);
+  const auto suspect = suspect_json(*pushed, served.site.closing.closing.validation);
+  const auto counts =
+      served.take_readings(pushed->stored_id(), std::move(pushed->readings), pushed->correction);
   if (!counts) {
     return not_taken("nothing was stored, send it again: " + counts.error().message);
   }

@@ -49,6 +49,40 @@ Json refused_json(const std::vector<RefusedRegisters>& all) {
   return list;
 }
 
+Json quantities_json(const std::vector<QuantityStatus>& quantities) {
+  Json all = Json::object();
+  for (const QuantityStatus& one : quantities) {
+    Json last;
+    if (one.last_interval) {
+      last = Json::parse(weather_interval_json({.reading = *one.last_interval}));
+      last.erase("revision");
+    }
+    all[std::string{one.quantity->name}] = {
+        {"unit", one.quantity->unit},
+        {"now", or_null(one.now)},
+        {"known_until", or_null(one.known_until)},
+        {"silent_since", or_null(one.state.silent_since)},
+        {"frozen_since", or_null(one.state.frozen_since)},
+        {"open_month_coverage", or_null(one.open_month_coverage)},
+        {"last_interval", last}};
+  }
+  return all;
+}
+
+/// Of a weather sensor.
+Json sensor_status_json(const MeterStatus& status) {
+  Json json;
+  if (status.poll) {
+    json = {{"state", name_of(status.poll->state)},
+            {"skipped_polls", status.poll->skipped},
+            {"refused", refused_json(status.poll->refused)}};
+  }
+  json["read_at"] = or_null(status.live.read_at);
+  json["open_month_coverage"] = or_null(status.open_month_coverage);
+  json["weather"] = quantities_json(status.weather);
+  return json;
+}
+
 Json status_json(const MeterStatus& status, std::chrono::seconds length) {
   Json last;
   if (status.last_interval) {
@@ -82,18 +116,34 @@ std::string_view name_of(Severity severity) {
 }
 
 Json meter_json(const MeterConfig& config, const MeterStatus* status) {
-  Json json = {{"id", config.meter.id},
-               {"utility", to_string(config.meter.utility)},
-               {"interval_s", config.meter.interval.count()},
-               {"rated_kW", or_null(config.meter.rated_kW)},
-               {"source", name_of(config.source)}};
+  const bool is_weather = config.role == MeterRole::weather;
+  Json json = {{"id", config.meter.id}};
+  if (is_weather) {
+    json["role"] = "weather";
+  } else {
+    json["utility"] = to_string(config.meter.utility);
+  }
+  json["interval_s"] = config.meter.interval.count();
+  if (!is_weather) json["rated_kW"] = or_null(config.meter.rated_kW);
+  json["source"] = name_of(config.source);
   if (config.live) {
     json["bus"] = config.live->bus;
     json["unit"] = config.live->unit;
     json["poll_s"] = config.live->poll.count();
   }
-  if (status != nullptr) json.update(status_json(*status, config.meter.interval));
+  if (status != nullptr) {
+    json.update(is_weather ? sensor_status_json(*status)
+                           : status_json(*status, config.meter.interval));
+  }
   return json;
+}
+
+std::string weather_interval_json(const StoredInterval& interval) {
+  const metering::Reading& reading = interval.reading;
+  return fmt::format(
+      R"({{"start":"{}","mean":{},"validity":"{}","late":{},"reasons":{},"revision":{}}})",
+      to_string(reading.start), number_or_null(reading.mean_kW), to_string(reading.validity),
+      reading.late, reasons_list(reading.reasons), interval.revision);
 }
 
 std::string interval_json(const StoredInterval& interval, std::chrono::seconds length) {

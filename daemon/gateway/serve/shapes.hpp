@@ -22,6 +22,8 @@ namespace recald::daemon {
 /// One object as text. Written by hand: ten thousand of them are one answer.
 [[nodiscard]] std::string interval_json(const StoredInterval& interval,
                                         std::chrono::seconds length);
+/// The same of a quantity of a weather sensor, which has a mean in its own unit and no energy.
+[[nodiscard]] std::string weather_interval_json(const StoredInterval& interval);
 
 [[nodiscard]] nlohmann::ordered_json month_json(const std::string& meter,
                                                 const metering::MonthlyFigure& figure);

@@ -8,6 +8,8 @@
 
 #include "adapters/report/format.hpp"
 #include "adapters/report/html.hpp"
+#include "core/absent.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/gateway/serve/readiness.hpp"
 #include "daemon/gateway/serve/shapes.hpp"
 #include "daemon/gateway/serve/status_style.hpp"
@@ -24,6 +26,7 @@ using report::Table;
 constexpr int kEventsShown = 20;
 constexpr int kJobsShown = 5;
 constexpr double kCoverageGood = 0.9;
+constexpr int kWeatherDigits = 3;
 
 /// A sign beside each word, so that nothing is said by colour alone.
 Cell state_cell(const MeterStatus* status) {
@@ -40,16 +43,34 @@ Cell state_cell(const MeterStatus* status) {
   return {"✖ down", "bad"};
 }
 
+/// "12.3 degC, 61 %", the last of each that is known.
+std::string weather_text(const std::vector<QuantityStatus>& quantities) {
+  std::string text;
+  for (const QuantityStatus& one : quantities) {
+    const double last = one.last_interval ? one.last_interval->mean_kW : kAbsent;
+    const double value = one.now.value_or(last);
+    if (!std::isfinite(value)) continue;
+    if (!text.empty()) text += ", ";
+    text += number_text(value, kWeatherDigits) + " " + std::string{one.quantity->unit};
+  }
+  return text.empty() ? "–" : text;
+}
+
 std::string value_text(const MeterStatus* status) {
   if (status == nullptr) return "–";
+  if (!status->weather.empty()) return weather_text(status->weather);
   if (status->live.power_kW) return report::number_text(*status->live.power_kW) + " kW";
   if (!status->last_interval) return "–";
   return report::number_text(status->last_interval->mean_kW) + " kW";
 }
 
 Cell last_interval_cell(const MeterStatus* status, const Served& served) {
-  if (status == nullptr || !status->last_interval) return {"–", "muted"};
-  const metering::Reading& reading = *status->last_interval;
+  if (status == nullptr) return {"–", "muted"};
+  // Of a sensor its dry bulb's, which comes first.
+  const auto& last =
+      status->weather.empty() ? status->last_interval : status->weather.front().last_interval;
+  if (!last) return {"–", "muted"};
+  const metering::Reading& reading = *last;
   const bool is_good = reading.validity == metering::Validity::ok;
   return {fmt::format("{} {}", site_time_text(served.calendar, reading.start),
                       metering::to_string(reading.validity)),
@@ -66,16 +87,18 @@ Cell coverage_cell(const MeterStatus* status) {
 void write_meters(Html& html, const Served& served, const GatewayStatus& status) {
   Table table{"Meters"};
   table.columns({"Meter", "State", "Load", "Last answer", "Last interval", "This month measured"});
-  for (const MeterConfig& config : served.site.meters) {
-    const auto found = std::ranges::find(status.meters, config.meter.id, &MeterStatus::id);
-    const MeterStatus* const meter = found == status.meters.end() ? nullptr : &*found;
-    const bool has_answered = meter != nullptr && meter->live.read_at;
-    table.row({{config.meter.id},
-               state_cell(meter),
-               {value_text(meter), "number"},
-               {has_answered ? age_text(served.now() - *meter->live.read_at) + " ago" : "never"},
-               last_interval_cell(meter, served),
-               coverage_cell(meter)});
+  for (const auto* const list : {&served.site.meters, &served.site.sensors}) {
+    for (const MeterConfig& config : *list) {
+      const auto found = std::ranges::find(status.meters, config.meter.id, &MeterStatus::id);
+      const MeterStatus* const meter = found == status.meters.end() ? nullptr : &*found;
+      const bool has_answered = meter != nullptr && meter->live.read_at;
+      table.row({{config.meter.id},
+                 state_cell(meter),
+                 {value_text(meter), "number"},
+                 {has_answered ? age_text(served.now() - *meter->live.read_at) + " ago" : "never"},
+                 last_interval_cell(meter, served),
+                 coverage_cell(meter)});
+    }
   }
   table.write(html);
 }

@@ -89,6 +89,32 @@ seconds read_poll(TomlReader& table, const modbus::RegisterMap& map) {
   return usual;
 }
 
+/// Slower than a load, but averaged as well.
+seconds read_sensor_poll(TomlReader& table) {
+  constexpr seconds kUsual{60};
+  const seconds poll = table.duration("poll").value_or(kUsual);
+  if (poll > seconds{0} && poll <= seconds{120}) return poll;
+  table.problem_at("poll", "'poll' must lie between \"1s\" and \"2m\": the weather is averaged");
+  return kUsual;
+}
+
+/// Bus, address and map of any device.
+LiveMeterConfig read_device(TomlReader& table, RegisterMaps& maps) {
+  LiveMeterConfig device;
+  device.bus = table.required_text("bus");
+  if (!table.has("unit")) table.problem("'unit' is missing: the device's Modbus address");
+  device.unit = static_cast<std::uint8_t>(table.whole_number_or("unit", 1, kUnits));
+  if (const std::string name = table.required_text("map"); !name.empty()) {
+    if (const auto& map = maps.find(name)) {
+      device.map = *map;
+    } else {
+      for (const std::string& problem : map.error()) table.problem_at("map", problem);
+    }
+  }
+  device.timeout = table.milliseconds("timeout").value_or(device.timeout);
+  return device;
+}
+
 }  // namespace
 
 BusConfig read_bus(TomlReader& table, const std::string& name) {
@@ -109,21 +135,30 @@ BusConfig read_bus(TomlReader& table, const std::string& name) {
 }
 
 LiveMeterConfig read_live_meter(TomlReader& table, RegisterMaps& maps) {
-  LiveMeterConfig meter;
-  meter.bus = table.required_text("bus");
-  if (!table.has("unit")) table.problem("'unit' is missing: the device's Modbus address");
-  meter.unit = static_cast<std::uint8_t>(table.whole_number_or("unit", 1, kUnits));
-  if (const std::string name = table.required_text("map"); !name.empty()) {
-    if (const auto& map = maps.find(name)) {
-      meter.map = *map;
-    } else {
-      for (const std::string& problem : map.error()) table.problem_at("map", problem);
-    }
-  }
+  LiveMeterConfig meter = read_device(table, maps);
   read_overrides(table, meter.map);
+  const bool is_metered = !meter.map.energy.empty() || meter.map.power;
+  if (!is_metered && !meter.map.weather.empty()) {
+    table.problem_at(
+        "map",
+        fmt::format("map '{}' describes a weather sensor; add role = \"weather\"", meter.map.name));
+  }
+  meter.map.weather.clear();
   meter.poll = read_poll(table, meter.map);
-  meter.timeout = table.milliseconds("timeout").value_or(meter.timeout);
   return meter;
+}
+
+LiveMeterConfig read_live_sensor(TomlReader& table, RegisterMaps& maps) {
+  LiveMeterConfig sensor = read_device(table, maps);
+  if (!sensor.map.name.empty() && sensor.map.weather.empty()) {
+    table.problem_at("map", fmt::format("map '{}' names no registers of the weather; see 'weather' "
+                                        "in adapters/modbus/maps/README.md",
+                                        sensor.map.name));
+  }
+  sensor.map.energy.clear();
+  sensor.map.power.reset();
+  sensor.poll = read_sensor_poll(table);
+  return sensor;
 }
 
 milliseconds poll_time(const BusConfig& bus, const LiveMeterConfig& meter) {

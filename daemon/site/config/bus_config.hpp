@@ -28,7 +28,8 @@ struct BusConfig {
 struct LiveMeterConfig {
   std::string bus;
   std::uint8_t unit = 1;
-  modbus::RegisterMap map;               ///< Its `energy` and `power` as the meter overrides them.
+  /// Its `energy` and `power` as the meter overrides them; of a weather sensor its `weather` alone.
+  modbus::RegisterMap map;
   std::chrono::seconds poll{60};         ///< Default 15 s where the map has a power and no counter.
   std::chrono::milliseconds timeout{0};  ///< Zero: the bus's.
 
@@ -39,6 +40,9 @@ struct LiveMeterConfig {
 
 /// Asks for the keys of a live meter; problems are recorded at the table.
 [[nodiscard]] LiveMeterConfig read_live_meter(TomlReader& table, RegisterMaps& maps);
+
+/// The same of a weather sensor that is polled.
+[[nodiscard]] LiveMeterConfig read_live_sensor(TomlReader& table, RegisterMaps& maps);
 
 /// Bus time that a poll of the meter takes if all goes well, for the budget that `recald check`
 /// shows: line time of requests and replies, 3.5 silent characters each, 60 ms until the device

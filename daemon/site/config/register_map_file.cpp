@@ -12,6 +12,7 @@
 #include "adapters/system/regular_file.hpp"
 #include "core/metering/units.hpp"
 #include "core/text/nearest.hpp"
+#include "core/weather/sensor_quantities.hpp"
 #include "daemon/site/config/shipped_register_maps.hpp"
 
 namespace recald::daemon {
@@ -140,6 +141,22 @@ void require_unit(TomlReader& root, std::string_view key, const RegisterField& f
                        is_rate ? "kW" : "kWh"));
 }
 
+/// A register of the weather is called like what it measures and has that unit.
+void require_quantity(TomlReader& root, const std::string& name, const RegisterMap& map) {
+  const weather::SensorQuantity* const quantity = weather::find_quantity(name);
+  if (quantity == nullptr) {
+    root.problem_at("weather", fmt::format("'weather' names '{}'; a weather sensor measures {}",
+                                           name, weather::quantity_units()));
+    return;
+  }
+  const RegisterField* const field = require_field(root, "weather", name, map);
+  if (field == nullptr || field->unit == quantity->unit) return;
+  root.problem_at("weather",
+                  fmt::format("'weather' names '{}', whose unit is \"{}\"; it must be \"{}\" "
+                              "('scale' and 'offset' convert others)",
+                              name, field->unit, quantity->unit));
+}
+
 /// A counter that is named twice would be summed twice.
 void require_once(TomlReader& root, const std::vector<std::string>& energy) {
   std::set<std::string> seen;
@@ -170,6 +187,7 @@ void read_uses(TomlReader& root, RegisterMap& map) {
   const auto energy = root.texts("energy");
   map.energy = energy.value_or(std::vector<std::string>{});
   map.power = root.text("power");
+  map.weather = root.texts("weather").value_or(std::vector<std::string>{});
   map.identity = root.texts("identity").value_or(std::vector<std::string>{});
   for (const std::string& name : map.energy) {
     if (const auto* field = require_field(root, "energy", name, map)) {
@@ -182,9 +200,12 @@ void read_uses(TomlReader& root, RegisterMap& map) {
     }
   }
   for (const std::string& name : map.identity) (void)require_field(root, "identity", name, map);
-  if (!root.has("energy") && !root.has("power")) {
-    root.problem("names neither 'energy' nor 'power': nothing of it could be metered");
-  } else if (energy && energy->empty() && !root.has("power")) {
+  for (const std::string& name : map.weather) require_quantity(root, name, map);
+  const bool is_weather = root.has("weather");
+  if (!root.has("energy") && !root.has("power") && !is_weather) {
+    root.problem(
+        "names neither 'energy' nor 'power' nor 'weather': nothing of it could be metered");
+  } else if (energy && energy->empty() && !root.has("power") && !is_weather) {
     root.problem_at("energy", "'energy' names no register: nothing of the map could be metered");
   }
   require_once(root, map.energy);

@@ -29,6 +29,8 @@ struct CalendarTimes {
 struct Schedule {
   bool when_a_month_closes = false;
   std::optional<CalendarTimes> times;
+
+  [[nodiscard]] bool is_never() const { return !when_a_month_closes && !times; }
 };
 
 /// "monthly" (when a month closes), "never", or five fields "minute hour day month weekday" with

@@ -13,6 +13,7 @@
 #include "daemon/site/config/building_config.hpp"
 #include "daemon/site/config/site_path.hpp"
 #include "daemon/site/config/toml_reader.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -82,9 +83,13 @@ void read_site(TomlReader table, SiteConfig& config) {
   table.finish();
 }
 
-WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_file) {
+/// @param has_sensors  Then a file is only needed for the time before them.
+WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_file,
+                           bool has_sensors) {
   WeatherConfig weather;
-  weather.file = resolve(site_file, table.required_text("file"), "file", table);
+  const bool has_none = has_sensors && !table.has("file");
+  const std::string file = has_none ? table.text_or("file", "") : table.required_text("file");
+  if (!has_none) weather.file = resolve(site_file, file, "file", table);
   weather.format =
       table.word("format", {"csv", "epw"}) == "epw" ? WeatherFormat::epw : WeatherFormat::csv;
   weather.stamps = read_stamps(table);
@@ -155,14 +160,37 @@ std::vector<SumPart> read_sum(TomlReader& table) {
   return parts;
 }
 
+std::string read_meter_id(TomlReader& table) {
+  std::string id = table.required_text("id");
+  if (!id.empty() && !is_identifier(id)) {
+    table.problem_at("id", fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", id));
+  }
+  return id;
+}
+
+/// A [[meter]] with role = "weather".
+MeterConfig read_sensor(TomlReader& table, const SiteConfig& site, RegisterMaps& maps) {
+  MeterConfig config{.role = MeterRole::weather};
+  config.meter.id = read_meter_id(table);
+  config.source = read_source(table);
+  if (config.source == MeterSource::modbus) {
+    config.live = read_live_sensor(table, maps);
+  } else if (config.source == MeterSource::csv) {
+    table.problem(
+        "a weather sensor is polled (source = \"modbus\") or sends (source = \"http\"); a file of "
+        "the weather, which may grow, is named by [weather] file");
+  }
+  config.interval = read_interval(table, "interval");
+  config.meter.interval = config.interval.value_or(site.interval);
+  config.text = table.toml();
+  table.finish();
+  return config;
+}
+
 MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& maps) {
   MeterConfig config;
   metering::Meter& meter = config.meter;
-  meter.id = table.required_text("id");
-  if (!meter.id.empty() && !is_identifier(meter.id)) {
-    table.problem_at("id",
-                     fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", meter.id));
-  }
+  meter.id = read_meter_id(table);
   config.sum_of = read_sum(table);
   config.source = table.has("sum_of") ? MeterSource::sum : read_source(table);
   const bool is_live = config.source == MeterSource::modbus;
@@ -263,21 +291,25 @@ class BusAddresses {
     for (const BusConfig& bus : buses) buses_.insert(bus.name);
   }
 
-  /// A live meter's bus is described, and no other meter answers to its address there.
-  void add(const MeterConfig& meter, const SiteConfig& site, TomlReader& table) {
+  /// The bus of the last of these live meters or sensors is described, and no other one answers to
+  /// its address there. @param meters  Stays where it is.
+  void add_last_of(const std::vector<MeterConfig>& meters, TomlReader& table) {
+    const MeterConfig& meter = meters.back();
     if (!meter.live || meter.live->bus.empty()) return;
     if (!buses_.contains(meter.live->bus)) {
       table.problem_at(
           "bus", fmt::format("'bus' names '{0}', but there is no [bus.{0}]", meter.live->bus));
     }
-    std::vector<std::size_t>& others = meters_[{meter.live->bus, meter.live->unit}];
-    for (const std::size_t other : others) {
-      if (!can_share(site.meters[other], meter, table)) break;  // one of them says it
+    std::vector<Place>& others = meters_[{meter.live->bus, meter.live->unit}];
+    for (const auto& [list, index] : others) {
+      if (!can_share((*list)[index], meter, table)) break;  // one of them says it
     }
-    others.push_back(site.meters.size() - 1);
+    others.emplace_back(&meters, meters.size() - 1);
   }
 
  private:
+  using Place = std::pair<const std::vector<MeterConfig>*, std::size_t>;
+
   /// @pre both have the same unit of the same bus
   static bool can_share(const MeterConfig& other, const MeterConfig& meter, TomlReader& table) {
     bool can = true;
@@ -290,6 +322,7 @@ class BusAddresses {
     }
     const bool is_same =
         other.live->map.energy == meter.live->map.energy &&
+        other.live->map.weather == meter.live->map.weather &&
         (!meter.live->map.energy.empty() || other.live->map.power == meter.live->map.power);
     if (!is_same) return can;
     table.problem_at(
@@ -300,7 +333,7 @@ class BusAddresses {
   }
 
   std::set<std::string> buses_;
-  std::map<std::pair<std::string, std::uint8_t>, std::vector<std::size_t>> meters_;
+  std::map<std::pair<std::string, std::uint8_t>, std::vector<Place>> meters_;
 };
 
 std::optional<metering::MonthRange> read_range(TomlReader table) {
@@ -396,6 +429,57 @@ ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
   return config;
 }
 
+/// Meters with their addresses on buses, and weather sensors. @param tables  All [[meter]].
+void read_meters(std::vector<TomlReader>& tables, SiteConfig& config) {
+  const auto first_sensor = std::stable_partition(
+      tables.begin(), tables.end(),
+      [](TomlReader& table) { return table.word("role", {"weather"}) != "weather"; });
+  std::set<std::string> ids;
+  BusAddresses addresses{config.buses};
+  RegisterMaps maps{config.file.parent_path()};
+  for (auto table = tables.begin(); table != tables.end(); ++table) {
+    const bool is_sensor = table >= first_sensor;
+    std::vector<MeterConfig>& list = is_sensor ? config.sensors : config.meters;
+    list.push_back(is_sensor ? read_sensor(*table, config, maps)
+                             : read_meter(*table, config, maps));
+    addresses.add_last_of(list, *table);
+    const std::string& id = list.back().meter.id;
+    if (!id.empty() && !ids.insert(id).second) {
+      table->problem(fmt::format("a second meter has the id '{}'", id));
+    }
+  }
+  for (std::size_t i = 0; i < config.meters.size(); ++i) {
+    MeterConfig& meter = config.meters[i];
+    if (meter.source != MeterSource::sum) continue;
+    require_parts(tables[i], config, meter);
+    // Recorded parts show theirs in their files.
+    if (config.comes_from_store(meter)) {
+      const auto part = config.meter_index(meter.sum_of.front().meter);
+      meter.meter.interval = config.meters[*part].meter.interval;
+    }
+  }
+}
+
+/// A file, sensors, or both.
+void read_whole_weather(TomlReader& root, SiteConfig& config) {
+  if (auto weather = root.table("weather")) {
+    config.weather = read_weather(*weather, config.file, !config.sensors.empty());
+  } else if (!config.sensors.empty()) {
+    config.weather.emplace();
+  }
+  const auto may_measure_dry_bulb = [](const MeterConfig& sensor) {
+    return std::ranges::any_of(quantities_of(sensor), [](const auto* quantity) {
+      return weather::is_dry_bulb(*quantity);
+    });
+  };
+  if (config.sensors.empty() || root.has("weather")) return;
+  if (std::ranges::none_of(config.sensors, may_measure_dry_bulb)) {
+    root.problem(
+        "no weather sensor measures dry_bulb_C; add one that does, or a [weather] file that has "
+        "it");
+  }
+}
+
 void read_root(TomlReader root, SiteConfig& config) {
   const auto site = root.table("site");
   if (site) {
@@ -403,7 +487,6 @@ void read_root(TomlReader root, SiteConfig& config) {
   } else {
     root.problem("[site] is missing");
   }
-  if (auto weather = root.table("weather")) config.weather = read_weather(*weather, config.file);
   config.store = default_store(config.file);
   if (auto store = root.table("store")) config.store = read_store(*store, config.file);
   if (auto http = root.table("http")) config.http = read_http(*http, config.file);
@@ -415,28 +498,13 @@ void read_root(TomlReader root, SiteConfig& config) {
       if (auto bus = buses->table(name)) config.buses.push_back(read_bus(*bus, name));
     }
   }
-  std::set<std::string> ids;
-  BusAddresses addresses{config.buses};
-  RegisterMaps maps{config.file.parent_path()};
   std::vector<TomlReader> tables = root.tables("meter");
-  for (TomlReader& meter : tables) {
-    config.meters.push_back(read_meter(meter, config, maps));
-    addresses.add(config.meters.back(), config, meter);
-    const std::string& id = config.meters.back().meter.id;
-    if (!id.empty() && !ids.insert(id).second)
-      meter.problem(fmt::format("a second meter has the id '{}'", id));
+  read_meters(tables, config);
+  if (config.meters.empty()) {
+    root.problem(config.sensors.empty() ? "no [[meter]] is described"
+                                        : "no [[meter]] but weather sensors is described");
   }
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    MeterConfig& meter = config.meters[i];
-    if (meter.source != MeterSource::sum) continue;
-    require_parts(tables[i], config, meter);
-    // Recorded parts show theirs in their files.
-    if (config.comes_from_store(meter)) {
-      const auto part = config.meter_index(meter.sum_of.front().meter);
-      meter.meter.interval = config.meters[*part].meter.interval;
-    }
-  }
-  if (config.meters.empty()) root.problem("no [[meter]] is described");
+  read_whole_weather(root, config);
   if (auto period = root.table("period")) config.period = read_period(*period);
   if (auto building = root.table("building")) config.building = read_building(*building);
   std::vector<TomlReader> models = root.tables("model");
@@ -449,7 +517,9 @@ void read_root(TomlReader root, SiteConfig& config) {
     const bool has_store = std::ranges::any_of(config.meters, &MeterConfig::is_stored);
     // A store has its latest months.
     if (!root.has("period") && !has_store) model.problem("needs a [period]");
-    if (!root.has("weather")) model.problem("needs [weather]");
+    if (!root.has("weather") && config.sensors.empty()) {
+      model.problem("needs [weather], or a [[meter]] with role = \"weather\"");
+    }
     const bool located = site && site->has("latitude_deg") && site->has("longitude_deg");
     if (!located) model.problem("needs latitude_deg and longitude_deg in [site]");
   }
@@ -500,6 +570,12 @@ std::optional<std::size_t> SiteConfig::meter_index(const std::string& meter_id) 
     if (meters[i].meter.id == meter_id) return i;
   }
   return {};
+}
+
+const MeterConfig* SiteConfig::find_sensor(std::string_view sensor_id) const {
+  const auto found = std::ranges::find_if(
+      sensors, [&](const MeterConfig& sensor) { return sensor.meter.id == sensor_id; });
+  return found == sensors.end() ? nullptr : &*found;
 }
 
 tl::expected<SiteConfig, std::vector<std::string>> parse_site(std::string_view text,

@@ -33,6 +33,9 @@ enum class MeterSource : std::uint8_t { csv, modbus, http, sum };
 /// "csv", "modbus", "http", "sum"
 [[nodiscard]] std::string_view name_of(MeterSource source);
 
+/// What a [[meter]] measures.
+enum class MeterRole : std::uint8_t { energy, weather };
+
 /// A meter that a sum adds, or takes away.
 struct SumPart {
   std::string meter;  ///< Its id.
@@ -41,6 +44,7 @@ struct SumPart {
 
 struct MeterConfig {
   metering::Meter meter;
+  MeterRole role = MeterRole::energy;
   MeterSource source = MeterSource::csv;
   std::filesystem::path file;  ///< source = "csv"; else empty.
   std::string name_in_file;    ///< In the file's `meter` column.
@@ -63,7 +67,7 @@ struct MeterConfig {
 enum class WeatherFormat { csv, epw };
 
 struct WeatherConfig {
-  std::filesystem::path file;
+  std::filesystem::path file;  ///< Empty: the weather comes from the site's sensors alone.
   WeatherFormat format = WeatherFormat::csv;
   csv::Stamps stamps = csv::Stamps::start;
   std::optional<weather::RecordedValues> values;  ///< Absent: as the file shows or usually is.
@@ -102,13 +106,17 @@ struct SiteConfig {
   RecalibrationConfig recalibration;
   std::vector<BusConfig> buses;
   std::vector<MeterConfig> meters;
-  std::optional<WeatherConfig> weather;
+  /// Those [[meter]] with role = "weather". They are no meters otherwise: no months, no outputs.
+  std::vector<MeterConfig> sensors;
+  std::optional<WeatherConfig> weather;  ///< There where the site has a file or a sensor.
   std::optional<PeriodConfig> period;
   std::optional<ModelConfig> model;
   std::optional<model::Building> building;
 
   /// Index of a meter by its id.
   [[nodiscard]] std::optional<std::size_t> meter_index(const std::string& meter_id) const;
+  /// Null where no weather sensor has that id.
+  [[nodiscard]] const MeterConfig* find_sensor(std::string_view sensor_id) const;
 
   /// Whether a meter's readings are in the store, or those of a sum's parts.
   [[nodiscard]] bool comes_from_store(const MeterConfig& meter) const;

@@ -43,9 +43,9 @@ Result<void> require_live_months(const SiteConfig& site, const Recording& record
   return {};
 }
 
-/// Null for a site without live meters.
+/// Null for a site without live meters and sensors.
 Result<std::unique_ptr<StoredReadings>> open_live_readings(const SiteConfig& site) {
-  if (!has_stored_meters(site)) return nullptr;
+  if (!has_stored_meters(site)) return open_sensors(site);
   return StoredReadings::open(site);
 }
 
@@ -108,11 +108,12 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
         take_hours(site.config, site.calendar, whole_period(site.config), **live, *recording);
     if (!taken) return tl::unexpected(taken.error());
   }
+  auto weather = load_weather(site.config, site.calendar, whole_period(site.config), live->get());
+  if (!weather) return tl::unexpected(weather.error());
   auto facts = facts_of(site.config, *live ? (*live)->digest() : "");
   if (!facts) return tl::unexpected(facts.error());
-  auto weather = load_weather(site.config, site.calendar, whole_period(site.config));
-  if (!weather) return tl::unexpected(weather.error());
   facts->weather_values = to_string(weather->values);
+  facts->weather = known_weather(*weather);
   return ModelledSite{std::move(site), std::move(*recording), std::move(*weather),
                       std::move(*facts)};
 }

@@ -17,7 +17,7 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
   for (const MeterConfig& meter : site.meters) {
     if (meter.source == MeterSource::csv) files.insert(meter.file);
   }
-  if (site.weather) files.insert(site.weather->file);
+  if (site.weather && !site.weather->file.empty()) files.insert(site.weather->file);
   for (const auto& file : files) {
     if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/ports/job_result.hpp"
 #include "core/calibration/calibration.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"
@@ -18,6 +19,7 @@ struct RunFacts {
   std::string model_version;  ///< Kind of model and SHA-256 of the site file, shortened.
   std::string time_zone_data;
   std::string weather_values;  ///< What temperatures were taken for; empty without weather.
+  std::vector<MonthWeather> weather = {};  ///< Of the months that were asked for.
   std::string sampler;
   std::string hyper_prior_profile;
   std::uint64_t seed = 1;

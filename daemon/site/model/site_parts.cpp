@@ -10,9 +10,11 @@ namespace {
 using assessment::MonthRole;
 using metering::Month;
 
-// A month whose weather is mostly invented cannot be held against a model.
-constexpr double kLeastWeatherCoverage = 0.5;
-constexpr double kGoodWeatherCoverage = 0.9;
+/// " Sensor 'roof' was silent from …"; empty where there is nothing to say.
+std::string silence_in(const SiteWeather& weather, Month month) {
+  const auto silence = weather.silence.find(month);
+  return silence == weather.silence.end() ? "" : " " + silence->second;
+}
 
 }  // namespace
 
@@ -30,18 +32,20 @@ SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
   const auto take = [&](const metering::MonthRange& range, MonthRole role) {
     for (Month month = range.first; month <= range.last; month = metering::next_month(month)) {
       const double coverage = weather_coverage(weather.filled, month);
-      if (coverage < kLeastWeatherCoverage) {
+      const weather::WeatherGrade grade = weather::grade_of(coverage);
+      if (grade == weather::WeatherGrade::unknown) {
         warnings.push_back(
-            fmt::format("{} is left out: only {:.0f} % of its weather ({}) is known.",
+            fmt::format("{} is left out: only {:.0f} % of its weather ({}) is known.{}",
                         metering::to_string(month), 100.0 * coverage,
-                        least_known_variable(weather.filled, month)));
+                        least_known_variable(weather.filled, month), silence_in(weather, month)));
         continue;
       }
-      if (coverage < kGoodWeatherCoverage) {
+      if (grade == weather::WeatherGrade::patchy) {
         warnings.push_back(fmt::format(
-            "{}: only {:.0f} % of the weather ({}) was measured; the rest is typical of the month.",
+            "{}: only {:.0f} % of the weather ({}) was measured; the rest is typical of the "
+            "month.{}",
             metering::to_string(month), 100.0 * coverage,
-            least_known_variable(weather.filled, month)));
+            least_known_variable(weather.filled, month), silence_in(weather, month)));
       }
       months.all.push_back(month);
       months.roles.push_back(role);

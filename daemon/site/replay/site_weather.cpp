@@ -6,17 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "adapters/csv/weather_csv.hpp"
 #include "adapters/epw/epw.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
+#include "daemon/site/replay/sensor_weather.hpp"
 
 namespace recald::daemon {
 namespace {
 
-/// Positions in `weather::kWeatherVariables` of what a building model cannot do without.
-constexpr std::array<std::size_t, 4> kNeeded = {0, 1, 2, 4};
-constexpr std::size_t kSun = 4;
+constexpr std::size_t kSun = 4;  // in `weather::kWeatherVariables`
 
 Result<csv::WeatherCsv> read_csv(const WeatherConfig& config) {
   return csv::read_weather(config.file, {.stamps = config.stamps, .values = config.values});
@@ -47,16 +48,15 @@ weather::ValuesTaken epw_values(const WeatherConfig& config) {
 
 /// One calendar year after the other from the same file. A typical year stands for each of them; a
 /// recorded year only for itself.
-Result<weather::WeatherSeries> read_epw_years(const WeatherConfig& config,
-                                              const metering::MonthRange& months,
-                                              SiteWeather& result) {
+Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::MonthRange& months,
+                                   SiteWeather& result) {
   result.values = epw_values(config);
   std::vector<std::string>& notes = result.notes;
   const auto own = epw::read_epw(config.file, {}, result.values.values);
   if (!own) return tl::unexpected(own.error());
   if (!own->typical) {
     notes.insert(notes.end(), own->notes.begin(), own->notes.end());
-    return own->series;
+    return FileWeather{own->series};
   }
   notes.push_back(
       "The weather is a typical year, not the weather of the measured months: misfit of single "
@@ -70,7 +70,16 @@ Result<weather::WeatherSeries> read_epw_years(const WeatherConfig& config,
     if (all.hours.empty()) all.begin = one->series.begin;
     all.hours.insert(all.hours.end(), one->series.hours.begin(), one->series.hours.end());
   }
-  return all;
+  return FileWeather{std::move(all), true};
+}
+
+/// @pre the site has a file
+Result<FileWeather> read_file(const WeatherConfig& config, const metering::MonthRange& months,
+                              SiteWeather& result) {
+  if (config.format == WeatherFormat::epw) return read_epw_years(config, months, result);
+  auto series = read_csv(config, result);
+  if (!series) return tl::unexpected(series.error());
+  return FileWeather{std::move(*series)};
 }
 
 struct KnownShare {
@@ -82,9 +91,9 @@ struct KnownShare {
 /// touch.
 KnownShare least_known(const weather::FilledWeather& filled, metering::Month month) {
   const auto found = std::ranges::find(filled.coverage, month, &weather::WeatherCoverage::month);
-  if (found == filled.coverage.end()) return {0.0, kNeeded.front()};
-  KnownShare least{1.0, kNeeded.front()};
-  for (const std::size_t variable : kNeeded) {
+  if (found == filled.coverage.end()) return {0.0, kNeededWeather.front()};
+  KnownShare least{1.0, kNeededWeather.front()};
+  for (const std::size_t variable : kNeededWeather) {
     const double share = found->measured[variable] + found->interpolated[variable];
     if (share < least.share) least = {share, variable};
   }
@@ -97,15 +106,18 @@ bool has_any(const weather::WeatherSeries& series, std::size_t variable) {
       series.hours, [&](const weather::WeatherHour& hour) { return std::isfinite(hour.*member); });
 }
 
-WeatherLack lack_of(const weather::WeatherSeries& series, const std::filesystem::path& file) {
+/// @param is_absent  Of a needed variable.
+/// @param whose      "the weather in weather.csv"
+template <class IsAbsent>
+WeatherLack lack_of(IsAbsent is_absent, const std::string& whose) {
   std::vector<std::string_view> absent;
-  for (const std::size_t variable : kNeeded) {
-    if (!has_any(series, variable)) absent.push_back(weather::kWeatherVariables[variable].name);
+  for (const std::size_t variable : kNeededWeather) {
+    if (is_absent(variable)) absent.push_back(weather::kWeatherVariables[variable].name);
   }
   if (absent.empty()) return {};
-  const bool no_sun = !has_any(series, kSun);
-  return {fmt::format("the weather in {} has no {}. {} Add what is missing, or give an EPW file",
-                      file.filename().string(), fmt::join(absent, ", "),
+  const bool no_sun = is_absent(kSun);
+  return {fmt::format("{} has no {}. {} Add what is missing, or give an EPW file", whose,
+                      fmt::join(absent, ", "),
                       no_sun ? "Without the sun no model can be run: calibrate, report, profile, "
                                "doe, drift and diagnose do not work. replay, run, import and "
                                "export do."
@@ -114,27 +126,126 @@ WeatherLack lack_of(const weather::WeatherSeries& series, const std::filesystem:
           no_sun};
 }
 
+std::string whose_weather(const SiteConfig& site) {
+  if (site.sensors.empty()) return "the weather in " + site.weather->file.filename().string();
+  std::string whose = "the weather of " + sensor_words(site);
+  if (!site.weather->file.empty()) {
+    whose += " and in " + site.weather->file.filename().string();
+  }
+  return whose;
+}
+
+bool is_measured(const SiteConfig& site, std::size_t variable) {
+  const std::string_view name = weather::kWeatherVariables[variable].name;
+  return std::ranges::any_of(site.sensors, [&](const MeterConfig& sensor) {
+    return std::ranges::any_of(quantities_of(sensor),
+                               [&](const auto* quantity) { return quantity->name == name; });
+  });
+}
+
+/// Of a file alone: what it has, and where it ends before a month does.
+void describe_file(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                   const metering::MonthRange& months, const weather::WeatherSeries& series,
+                   SiteWeather& result) {
+  const std::string name = site.weather->file.filename().string();
+  for (metering::Month month = months.first; month <= months.last;
+       month = metering::next_month(month)) {
+    const auto found =
+        std::ranges::find(result.filled.coverage, month, &weather::WeatherCoverage::month);
+    double measured = 0.0;
+    for (const std::size_t variable : kNeededWeather) {
+      if (found == result.filled.coverage.end()) break;
+      measured += found->measured[variable] / static_cast<double>(kNeededWeather.size());
+    }
+    result.from[month][name] = measured;
+    if (series.end() >= calendar.month_span(month).end) continue;
+    result.silence[month] = fmt::format("{} ends at {}.", name, metering::to_string(series.end()));
+  }
+}
+
+/// What was filled, beside what the sources have.
+void add_filled_shares(SiteWeather& result) {
+  for (auto& [month, from] : result.from) {
+    const auto found =
+        std::ranges::find(result.filled.coverage, month, &weather::WeatherCoverage::month);
+    if (found == result.filled.coverage.end()) continue;
+    for (const std::size_t variable : kNeededWeather) {
+      from["interpolated"] +=
+          found->interpolated[variable] / static_cast<double>(kNeededWeather.size());
+      from["typical"] += found->typical[variable] / static_cast<double>(kNeededWeather.size());
+    }
+  }
+}
+
+/// @pre site.weather
+Result<SiteWeather> read_all(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                             const metering::MonthRange& months, LiveReadings* live) {
+  SiteWeather result;
+  if (site.sensors.empty()) {
+    const auto file = read_file(*site.weather, months, result);
+    if (!file) return tl::unexpected(file.error());
+    result.filled = weather::fill_gaps(file->series, calendar);
+    describe_file(site, calendar, months, file->series, result);
+  } else {
+    std::optional<FileWeather> file;
+    if (!site.weather->file.empty()) {
+      auto read = read_file(*site.weather, months, result);
+      if (!read) return tl::unexpected(read.error());
+      file = std::move(*read);
+    }
+    const auto series = merge_with_sensors(site, calendar, months, file, live, result);
+    if (!series) return tl::unexpected(series.error());
+    result.filled = weather::fill_gaps(*series, calendar);
+  }
+  add_filled_shares(result);
+  return result;
+}
+
 }  // namespace
 
 Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
-  if (site.weather->format == WeatherFormat::epw) return WeatherLack{};  // has all of it
-  const auto read = read_csv(*site.weather);
-  if (!read) return tl::unexpected(read.error());
-  return lack_of(read->series, site.weather->file);
+  const WeatherConfig& config = *site.weather;
+  weather::WeatherSeries series;
+  if (!config.file.empty()) {
+    if (config.format == WeatherFormat::epw) return WeatherLack{};  // has all of it
+    auto read = read_csv(config);
+    if (!read) return tl::unexpected(read.error());
+    series = std::move(read->series);
+  }
+  return lack_of(
+      [&](std::size_t variable) {
+        return !has_any(series, variable) && !is_measured(site, variable);
+      },
+      whose_weather(site));
 }
 
 Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCalendar& calendar,
-                                 const metering::MonthRange& months) {
-  SiteWeather result;
-  const auto series = site.weather->format == WeatherFormat::epw
-                          ? read_epw_years(*site.weather, months, result)
-                          : read_csv(*site.weather, result);
-  if (!series) return tl::unexpected(series.error());
-  WeatherLack lack = lack_of(*series, site.weather->file);
+                                 const metering::MonthRange& months, LiveReadings* live) {
+  auto result = read_all(site, calendar, months, live);
+  if (!result) return result;
+  WeatherLack lack =
+      lack_of([&](std::size_t variable) { return !has_any(result->filled.series, variable); },
+              whose_weather(site));
   if (lack.stops_all) return failure(ErrorCode::not_enough_data, std::move(lack.sentence));
-  result.lack = std::move(lack.sentence);
-  result.filled = weather::fill_gaps(*series, calendar);
+  result->lack = std::move(lack.sentence);
   return result;
+}
+
+Result<std::vector<MonthWeather>> known_weather(const SiteConfig& site,
+                                                const metering::LocalCalendar& calendar,
+                                                const metering::MonthRange& months,
+                                                LiveReadings* live) {
+  const auto read = read_all(site, calendar, months, live);
+  if (!read) return tl::unexpected(read.error());
+  return known_weather(*read);
+}
+
+std::vector<MonthWeather> known_weather(const SiteWeather& weather) {
+  std::vector<MonthWeather> months;
+  for (const auto& [month, from] : weather.from) {
+    months.push_back({metering::to_string(month), weather_coverage(weather.filled, month), from});
+  }
+  return months;
 }
 
 Result<weather::ValuesTaken> weather_values(const SiteConfig& site) {

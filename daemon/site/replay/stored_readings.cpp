@@ -110,4 +110,10 @@ Result<std::uint64_t> StoredReadings::for_each(const MeterConfig& meter,
 
 std::string StoredReadings::digest() { return impl_->digest.hex(); }
 
+Result<std::unique_ptr<StoredReadings>> open_sensors(const SiteConfig& site) {
+  std::error_code ignored;
+  if (site.sensors.empty() || !std::filesystem::exists(site.store.file, ignored)) return nullptr;
+  return StoredReadings::open(site);
+}
+
 }  // namespace recald::daemon

@@ -32,4 +32,9 @@ class StoredReadings final : public LiveReadings {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Where the site's weather sensors have left theirs. Null for a site without sensors, or one whose
+/// daemon has not run yet: a weather file may do.
+/// @return or as StoredReadings::open.
+[[nodiscard]] Result<std::unique_ptr<StoredReadings>> open_sensors(const SiteConfig& site);
+
 }  // namespace recald::daemon

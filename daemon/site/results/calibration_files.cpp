@@ -430,6 +430,7 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
       {"recald_version", facts.recald_version},
       {"tzdata", facts.time_zone_data},
       {"weather_values", facts.weather_values},
+      {"weather", results::weather_json(facts.weather)},
       {"wall_s", facts.wall_s}};
   json["sampling"] = sampling_json(calibration.sampling);
   json["evidence"] = evidence_json(calibration);

@@ -269,6 +269,7 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"recald_version", facts.recald_version},
                {"data_revision", facts.data_revision},
                {"weather_values", facts.weather_values},
+               {"weather", results::weather_json(facts.weather)},
                {"model_version", facts.model_version},
                {"wall_s", facts.wall_s}};
   if (!d.added.empty()) json["located_after"] = located_json(site, d.passes.back().located);

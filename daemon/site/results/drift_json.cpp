@@ -131,6 +131,7 @@ std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
                      {"recald_version", facts.recald_version},
                      {"tzdata", facts.time_zone_data},
                      {"weather_values", facts.weather_values},
+                     {"weather", results::weather_json(facts.weather)},
                      {"wall_s", facts.wall_s}};
   return json.dump(2) + "\n";
 }

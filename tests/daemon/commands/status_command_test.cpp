@@ -86,6 +86,15 @@ TEST_F(StatusCommand, ADaemonThatIsNotReadySaysWhy) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("tower: not ready"), HasSubstr("! the store refuses")));
 }
 
+TEST_F(StatusCommand, WhatDeservesALookIsShown) {
+  devices_[1].exception = [](std::chrono::milliseconds) { return 2; };
+  begin();
+  loop_.run_for(std::chrono::hours{1});
+  RunningServer server{handler()};
+  const auto outcome = run({"status", "--url", url(server)});
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("tower: ready"), HasSubstr("- meter 'main' refuses")));
+}
+
 TEST_F(StatusCommand, NobodyThere) {
   std::string where;
   {

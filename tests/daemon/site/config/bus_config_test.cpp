@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "daemon/site/config/site_config.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -191,6 +191,77 @@ power = "power_heating"
 )");
   ASSERT_FALSE(twice.has_value());
   EXPECT_THAT(twice.error(), Contains(HasSubstr("meters 'heat' and 'again' are the same")));
+}
+
+constexpr const char* kRoof = R"(
+[[meter]]
+id = "roof"
+role = "weather"
+source = "modbus"
+bus = "cellar"
+unit = 9
+map = "sunspec-weather"
+)";
+
+TEST(BusConfig, AWeatherSensorIsNoMeter) {
+  const auto site = loaded(kSite + kRoof + "poll = \"30s\"\ninterval = \"10m\"\n");
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  EXPECT_EQ(site->meters.size(), 3U);
+  EXPECT_FALSE(site->meter_index("roof").has_value());
+  ASSERT_EQ(site->sensors.size(), 1U);
+  const MeterConfig& roof = site->sensors[0];
+  EXPECT_EQ(roof.role, MeterRole::weather);
+  EXPECT_EQ(roof.live->unit, 9);
+  EXPECT_EQ(roof.live->poll, seconds{30});
+  EXPECT_EQ(roof.meter.interval, std::chrono::minutes{10});
+  ASSERT_TRUE(site->weather.has_value());  // without a [weather] table
+  EXPECT_TRUE(site->weather->file.empty());
+  ASSERT_EQ(channels_of(roof).size(), 4U);
+  EXPECT_EQ(channels_of(roof)[0].id(), "roof.dry_bulb_C");
+  EXPECT_EQ(find_channel(*site, "roof.wind_dir_deg")->quantity->unit, "deg");
+  EXPECT_FALSE(find_channel(*site, "roof.ghi_W_m2").has_value());
+  EXPECT_FALSE(find_channel(*site, "roof").has_value());
+  EXPECT_EQ(loaded(kSite + kRoof)->sensors[0].live->poll, seconds{60});
+}
+
+TEST(BusConfig, EveryMistakeOfAWeatherSensorHasItsSentence) {
+  const std::string site = kSite + kRoof;
+  const std::vector<Mistake> mistakes{
+      {"role = \"weather\"", "role = \"sub\"", "'role' is \"sub\"; it must be one of weather"},
+      {"role = \"weather\"\n", "utility = \"heating\"\nrated_kW = 1\n",
+       "map 'sunspec-weather' describes a weather sensor; add role = \"weather\""},
+      {"role = \"weather\"\n", "role = \"weather\"\nutility = \"heating\"\n",
+       "unknown key 'utility'"},
+      {"map = \"sunspec-weather\"", "map = \"abb-b23\"",
+       "map 'abb-b23' names no registers of the weather"},
+      {"map = \"sunspec-weather\"", "map = \"sunspec-irradiance\"",
+       "no weather sensor measures dry_bulb_C; add one that does, or a [weather] file"},
+      {"map = \"sunspec-weather\"\n", "map = \"sunspec-weather\"\npoll = \"5m\"\n",
+       "'poll' must lie between \"1s\" and \"2m\": the weather is averaged"},
+      {"role = \"weather\"\nsource = \"modbus\"", "role = \"weather\"\nsource = \"csv\"",
+       "a file of the weather, which may grow, is named by [weather] file"},
+      {"id = \"roof\"", "id = \"main\"", "a second meter has the id 'main'"},
+      {"unit = 9", "unit = 3", "with SunSpec models of their own"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    SCOPED_TRACE(mistake.to);
+    const auto found = loaded(edited(site, mistake.from, mistake.to));
+    ASSERT_FALSE(found.has_value());
+    EXPECT_THAT(found.error(), Contains(HasSubstr(mistake.said)));
+  }
+  EXPECT_THAT(loaded(site + edited(kRoof, "id = \"roof\"", "id = \"roof2\"")).error(),
+              Contains(HasSubstr("meters 'roof' and 'roof2' are the same registers of unit 9")));
+}
+
+// A file is only for the time before.
+TEST(BusConfig, AWeatherSensorAndAFile) {
+  const auto site = loaded(kSite + kRoof + "\n[weather]\nfile = \"before.csv\"\n");
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  EXPECT_EQ(site->weather->file.filename(), "before.csv");
+  const auto sun =
+      loaded(edited(kSite + kRoof, "map = \"sunspec-weather\"", "map = \"sunspec-irradiance\"") +
+             "\n[weather]\nfile = \"before.csv\"\n");
+  EXPECT_TRUE(sun.has_value()) << sun.error().front();
 }
 
 TEST(BusConfig, SunSpecDevicesShareNoUnitWithOtherMaps) {

@@ -104,9 +104,9 @@ TEST(RegisterMapFile, SaysWhatTheFileSays) {
 }
 
 // Every shipped map decodes the registers that its document describes, and each register that is
-// energy or power is among them.
+// energy, power or weather is among them.
 TEST(RegisterMapFile, ShippedMapsDecodeTheirGoldenReplies) {
-  EXPECT_THAT(shipped_register_maps(), SizeIs(10));
+  EXPECT_THAT(shipped_register_maps(), SizeIs(12));
   for (const std::string_view name : shipped_register_maps()) {
     SCOPED_TRACE(name);
     const auto file = parse_register_map(*shipped_register_map(name), std::string{name});
@@ -132,7 +132,11 @@ TEST(RegisterMapFile, ShippedMapsDecodeTheirGoldenReplies) {
       }
     }
     for (const std::string& energy : map.energy) EXPECT_THAT(decoded, Contains(energy));
-    EXPECT_THAT(decoded, Contains(map.power.value()));
+    for (const std::string& weather : map.weather) EXPECT_THAT(decoded, Contains(weather));
+    if (map.power) {
+      EXPECT_THAT(decoded, Contains(*map.power));
+    }
+    EXPECT_TRUE(map.power.has_value() || !map.weather.empty());
   }
 }
 
@@ -236,6 +240,44 @@ TEST(RegisterMapFile, EveryMistakeHasItsSentence) {
   EXPECT_THAT(problems_of("base = 0\nsource = \"x\"\n"),
               Contains(HasSubstr("no [register.NAME] is described")));
   EXPECT_THAT(problems_of(kMap), IsEmpty());
+}
+
+const std::string kStation = R"(source = "its manual"
+base = 0
+weather = ["dry_bulb_C", "ghi_W_m2"]
+
+[register.dry_bulb_C]
+at = 1
+type = "i16"
+scale = 0.5555556
+offset = -17.777778
+unit = "degC"
+
+[register.ghi_W_m2]
+at = 2
+type = "u16"
+unit = "W/m2"
+)";
+
+TEST(RegisterMapFile, AWeatherSensorNamesWhatItMeasures) {
+  const auto file = parse_register_map(kStation, "ours");
+  ASSERT_TRUE(file.has_value()) << file.error().front();
+  EXPECT_THAT(file->map.weather, ElementsAre("dry_bulb_C", "ghi_W_m2"));
+  EXPECT_THAT(metered_fields(file->map), SizeIs(2));
+  const std::vector<Mistake> mistakes{
+      {"\"dry_bulb_C\", \"ghi_W_m2\"", "\"dry_bulb_C\", \"dew_point_C\"",
+       "'weather' names 'dew_point_C'; a weather sensor measures degC (dry_bulb_C), %"},
+      {"[register.ghi_W_m2]", "[register.sun]", "there is no [register.ghi_W_m2]"},
+      {"unit = \"degC\"", "unit = \"F\"",
+       "'weather' names 'dry_bulb_C', whose unit is \"F\"; it must be \"degC\""},
+      {"weather = [\"dry_bulb_C\", \"ghi_W_m2\"]\n", "",
+       "names neither 'energy' nor 'power' nor 'weather'"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    SCOPED_TRACE(mistake.to);
+    EXPECT_THAT(problems_of(edited(kStation, mistake.from, mistake.to)),
+                Contains(HasSubstr(mistake.said)));
+  }
 }
 
 TEST(RegisterMapFile, SeveralMistakesAreAllSaid) {

@@ -322,7 +322,8 @@ TEST(SiteConfig, ModelNamesWhatItLacks) {
   };
   lacking(without("[building]", ""), "needs a [building]");
   lacking(without("[period]", "[[model]]"), "needs a [period]");
-  lacking(without("[weather]", "[period]"), "needs [weather]");
+  lacking(without("[weather]", "[period]"),
+          "needs [weather], or a [[meter]] with role = \"weather\"");
   lacking(without("latitude_deg", "altitude_m"), "needs latitude_deg and longitude_deg in [site]");
 }
 

@@ -1,0 +1,13 @@
+/// Why an interval has a hole, by what became of a read.
+#pragma once
+
+#include "adapters/modbus/register_value.hpp"
+#include "adapters/ports/register_read.hpp"
+#include "core/metering/reading.hpp"
+
+namespace recald::daemon {
+
+[[nodiscard]] metering::Reason reason_of(const modbus::ReadFailure& failure);
+[[nodiscard]] metering::Reason reason_of(modbus::ValueFault fault);
+
+}  // namespace recald::daemon

@@ -1,0 +1,62 @@
+/// Whether a weather sensor still gives what it used to, and what people are told of it.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/ports/store.hpp"
+#include "daemon/gateway/ingest/meter_progress.hpp"
+
+namespace recald::daemon {
+
+/// A hole that is longer is filled with typical hours instead of a straight line
+/// (`weather::fill_gaps`).
+inline constexpr std::chrono::hours kPolledSilenceMax{6};
+/// Others may send the weather of a day at a time.
+inline constexpr std::chrono::hours kPushedSilenceMax{36};
+
+/// What is wrong with one quantity of a sensor.
+struct ChannelState {
+  std::optional<metering::Instant> silent_since;  ///< Absent: it is not.
+  std::optional<metering::Instant> frozen_since;
+};
+
+/// Of one sensor, polled or pushed. That quantities are silent is an event, and so is that they are
+/// there again, or that the dry bulb stands still.
+class SensorWatch {
+ public:
+  SensorWatch(std::string sensor, bool is_polled)
+      : sensor_(std::move(sensor)), is_polled_(is_polled) {}
+
+  [[nodiscard]] bool is_polled() const { return is_polled_; }
+  [[nodiscard]] ChannelState state_of(const MeterProgress& channel, metering::Instant now) const;
+
+  /// @param channels  Of this sensor. Of one that sends, only what it has ever sent is missed, and
+  ///                  the dry bulb.
+  [[nodiscard]] std::vector<StoreEvent> judge(std::span<const MeterProgress* const> channels,
+                                              metering::Instant now);
+
+ private:
+  [[nodiscard]] StoreEvent event(Severity severity, std::string_view kind, std::string text,
+                                 metering::Instant now) const;
+
+  std::string sensor_;
+  bool is_polled_;
+  std::optional<metering::Instant>
+      begun_;                          ///< First judged: what was never known counts from here.
+  std::set<std::string_view> silent_;  ///< Quantities of which people were told.
+  std::set<std::string_view> frozen_;
+};
+
+/// "weather sensor 'roof' has given no dry_bulb_C since 2024-03-01T12:00:00Z"
+[[nodiscard]] std::string silence_words(std::string_view sensor, std::string_view quantity,
+                                        metering::Instant since);
+/// "weather sensor 'roof' has shown the same dry_bulb_C since 2024-03-01T12:00:00Z"
+[[nodiscard]] std::string frozen_words(std::string_view sensor, std::string_view quantity,
+                                       metering::Instant since);
+
+}  // namespace recald::daemon

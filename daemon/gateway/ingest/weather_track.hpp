@@ -1,0 +1,78 @@
+/// One polled weather sensor: from what its registers said to stored interval means.
+///
+/// Like `MeterTrack` it knows no bus and no store: it is given the outcome of each read and answers
+/// with what must be committed together. Its values are of a moment; there is no counter.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/modbus/register_map.hpp"
+#include "adapters/ports/store.hpp"
+#include "core/weather/sensor_quantities.hpp"
+#include "daemon/gateway/ingest/refusal_watch.hpp"
+
+namespace recald::daemon {
+
+/// What a sensor measures of one quantity.
+struct TrackedQuantity {
+  std::uint32_t number = 0;  ///< In the store.
+  const weather::SensorQuantity* quantity = nullptr;
+  std::vector<RegisterState> restored = {};  ///< As it was stored; empty: never seen.
+};
+
+struct TrackedSensor {
+  std::string id;
+  modbus::RegisterMap map;  ///< Its `weather` registers are read.
+  metering::PowerRules averaging;
+  std::vector<TrackedQuantity> quantities;
+};
+
+class WeatherTrack {
+ public:
+  explicit WeatherTrack(TrackedSensor sensor);
+
+  /// The outcome of one read, planned over `modbus::metered_fields`. A value that cannot be is no
+  /// value; that the sensor gives such is told once an hour.
+  [[nodiscard]] StoreBatch take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
+                                metering::Instant at);
+
+  /// Somebody set the clock: what the weather did meanwhile belongs to no interval.
+  void clock_was_set();
+
+  /// The last value, in the quantity's unit; nothing where the last read had none.
+  [[nodiscard]] std::optional<double> now(std::uint32_t number) const;
+  [[nodiscard]] std::optional<metering::Instant> read_at() const { return read_at_; }
+  [[nodiscard]] std::vector<RefusedRegisters> refused() const { return refusals_.refused(); }
+
+ private:
+  /// A quantity and the mean of its open interval; of a direction those of east and north.
+  struct Channel {
+    std::uint32_t number;
+    const weather::SensorQuantity* quantity;
+    std::array<metering::PowerBook, 2> books{};
+    metering::Reason since = metering::Reason::none;  ///< Why there was no value since the last.
+    std::optional<double> now = {};
+    metering::Instant relived_until =
+        metering::Instant::min();                       ///< Stamps before a clock set back.
+    metering::Instant told = metering::Instant::min();  ///< Of a value that cannot be.
+  };
+
+  [[nodiscard]] Channel* channel_of(const std::string& field);
+  void take_value(StoreBatch& batch, Channel& channel, double value, metering::Instant at);
+  void book(StoreBatch& batch, Channel& channel, double value, metering::Instant at) const;
+  void tell(StoreBatch& batch, Channel& channel, double value, metering::Instant at) const;
+  void put_states(StoreBatch& batch) const;
+
+  std::string id_;
+  std::vector<modbus::RegisterField> fields_;
+  metering::PowerRules averaging_;
+  std::vector<Channel> channels_;
+  RefusalWatch refusals_;
+  std::optional<metering::Instant> read_at_;  ///< Of the last good read.
+  metering::Instant kept_{};                  ///< When the open intervals were last handed out.
+};
+
+}  // namespace recald::daemon

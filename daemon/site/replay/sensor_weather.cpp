@@ -1,0 +1,194 @@
+#include "daemon/site/replay/sensor_weather.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/weather/merged_weather.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using metering::Month;
+using std::chrono::hours;
+using weather::SensorQuantity;
+using weather::SensorValue;
+using weather::WeatherHour;
+
+constexpr hours kBridged{6};  // by a straight line: `weather::fill_gaps`
+
+double within_bounds(const SensorQuantity& quantity, double value) {
+  if (quantity.member == &WeatherHour::rel_humidity_pct) return std::min(value, 100.0);
+  if (quantity.member == &WeatherHour::ghi_W_m2) return std::max(value, 0.0);
+  return value;
+}
+
+Result<std::vector<SensorValue>> read_values(const MeterConfig& sensor,
+                                             const WeatherChannel& channel,
+                                             const metering::TimeSpan& span, LiveReadings& live) {
+  MeterConfig as_stored = sensor;
+  as_stored.meter = stored_meter(sensor, channel);
+  std::vector<SensorValue> values;
+  const auto count = live.for_each(as_stored, span, [&](const metering::Reading& reading) {
+    if (reading.validity == metering::Validity::ok && std::isfinite(reading.mean_kW)) {
+      values.push_back({reading.start, reading.mean_kW});
+    }
+  });
+  if (!count) return tl::unexpected(count.error());
+  return values;
+}
+
+/// What the sources have of one month.
+std::map<std::string, double> shares_of(const weather::MergedWeather& merged,
+                                        const metering::TimeSpan& month,
+                                        const std::vector<std::string>& names) {
+  std::map<std::string, double> shares;
+  double hours_in_month = 0.0;
+  for (std::size_t i = 0; i < merged.source.size(); ++i) {
+    // An hour belongs where its middle lies.
+    if (!month.contains(merged.series.begin + hours{i} + std::chrono::minutes{30})) continue;
+    hours_in_month += 1.0;
+    for (const std::size_t variable : kNeededWeather) {
+      const std::size_t source = merged.source[i][variable];
+      if (source > 0) shares[names[source - 1]] += 1.0;
+    }
+  }
+  for (auto& [name, share] : shares) {
+    share /= hours_in_month * static_cast<double>(kNeededWeather.size());
+  }
+  return shares;
+}
+
+/// "Sensor 'roof' was silent from … to … (dry_bulb_C)."; empty: no hole that matters.
+std::string silence_of(const weather::WeatherSeries& series, const metering::TimeSpan& month,
+                       const SiteConfig& site) {
+  std::vector<weather::WeatherHole> worst;  // of the variable with the longest one
+  const auto longest = [](const std::vector<weather::WeatherHole>& holes) {
+    return std::ranges::max_element(
+        holes, {}, [](const weather::WeatherHole& hole) { return hole.span.length(); });
+  };
+  for (const std::size_t variable : kNeededWeather) {
+    auto holes = weather::holes_in(series, variable, month, kBridged);
+    if (holes.empty()) continue;
+    if (worst.empty() || longest(holes)->span.length() > longest(worst)->span.length()) {
+      worst = std::move(holes);
+    }
+  }
+  if (worst.empty()) return "";
+  const weather::WeatherHole& hole = *longest(worst);
+  std::string words = sensor_words(site);
+  words.front() = 'S';
+  return fmt::format(
+      "{} {} silent from {} to {} ({}){}.", words, site.sensors.size() == 1 ? "was" : "were",
+      metering::to_string(hole.span.begin), metering::to_string(hole.span.end),
+      weather::kWeatherVariables[hole.variable].name,
+      worst.size() > 1 ? fmt::format(" and at {} other times", worst.size() - 1) : "");
+}
+
+/// "Weather: 2024-01 to 2024-03 from weather.csv; 2024-04 from weather.csv and sensor 'roof'."
+std::string source_words(const std::map<Month, std::map<std::string, double>>& from) {
+  struct Run {
+    Month first;
+    Month last;
+    std::string words;
+  };
+  std::vector<Run> runs;
+  for (const auto& [month, shares] : from) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, share] : shares) names.push_back(name);
+    std::string words =
+        names.empty() ? "from nowhere" : fmt::format("from {}", fmt::join(names, " and "));
+    if (!runs.empty() && runs.back().words == words) {
+      runs.back().last = month;
+    } else {
+      runs.push_back({month, month, std::move(words)});
+    }
+  }
+  std::string text = "Weather: ";
+  for (const Run& run : runs) {
+    if (&run != &runs.front()) text += "; ";
+    text += metering::to_string(run.first);
+    if (run.last != run.first) text += " to " + metering::to_string(run.last);
+    text += " " + run.words;
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+Result<SensorWeather> read_sensor(const MeterConfig& sensor, const metering::TimeSpan& span,
+                                  LiveReadings& live) {
+  const std::chrono::seconds interval = sensor.meter.interval;
+  std::vector<weather::WeatherRecord> records;
+  records.reserve(static_cast<std::size_t>(span.length() / interval));
+  for (Instant start = span.begin; start < span.end; start += interval) {
+    records.push_back({start, {}});
+  }
+  SensorWeather read;
+  for (const WeatherChannel& channel : channels_of(sensor)) {
+    auto values = read_values(sensor, channel, span, live);
+    if (!values) return tl::unexpected(values.error());
+    if (is_dry_bulb(*channel.quantity)) {
+      read.frozen_intervals += weather::forget_frozen(*values, interval);
+    }
+    for (const SensorValue& one : *values) {
+      const auto slot = static_cast<std::size_t>((one.start - span.begin) / interval);
+      if (!std::isfinite(one.value) || slot >= records.size()) continue;
+      records[slot].values.*channel.quantity->member = within_bounds(*channel.quantity, one.value);
+    }
+  }
+  auto series = weather::to_hourly(records, interval);
+  if (!series) return tl::unexpected(series.error());
+  read.series = std::move(*series);
+  return read;
+}
+
+Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
+                                                  const metering::LocalCalendar& calendar,
+                                                  const metering::MonthRange& months,
+                                                  const std::optional<FileWeather>& file,
+                                                  LiveReadings* live, SiteWeather& result) {
+  const metering::TimeSpan span{
+      std::chrono::floor<hours>(calendar.month_span(months.first).begin) - hours{24},
+      std::chrono::ceil<hours>(calendar.month_span(months.last).end) + hours{24}};
+  std::vector<SensorWeather> sensors;
+  std::vector<std::string> names;  // by source
+  for (const MeterConfig& sensor : site.sensors) {
+    if (live == nullptr) continue;
+    auto read = read_sensor(sensor, span, *live);
+    if (!read) return tl::unexpected(read.error());
+    names.push_back("sensor '" + sensor.meter.id + "'");
+    if (read->frozen_intervals > 0) {
+      result.notes.push_back(
+          fmt::format("Sensor '{}': {} intervals of a dry bulb that stood still are not used.",
+                      sensor.meter.id, read->frozen_intervals));
+    }
+    sensors.push_back(std::move(*read));
+  }
+  std::vector<weather::WeatherSource> sources;
+  for (const SensorWeather& sensor : sensors) sources.push_back({&sensor.series, true});
+  if (file) {
+    sources.push_back({&file->series, false, file->is_typical_year});
+    names.push_back(site.weather->file.filename().string());
+  }
+  weather::MergedWeather merged = weather::merge_weather(span, sources);
+  for (Month month = months.first; month <= months.last; month = metering::next_month(month)) {
+    const metering::TimeSpan of_month = calendar.month_span(month);
+    result.from[month] = shares_of(merged, of_month, names);
+    if (std::string silence = silence_of(merged.series, of_month, site); !silence.empty()) {
+      result.silence[month] = std::move(silence);
+    }
+  }
+  result.notes.push_back(source_words(result.from));
+  return std::move(merged.series);
+}
+
+}  // namespace recald::daemon
