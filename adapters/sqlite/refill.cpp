@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,11 +34,12 @@ Result<std::vector<MeterRow>> meters_of(Database& database) {
 }
 
 /// Where intervals are missing, in order of time.
-/// @param next  Start of the first interval that the meter's counter has not booked.
+/// @param first  Start of the first interval that there ever was, as far as samples tell.
+/// @param next   Start of the first interval that the meter's counter has not booked.
 Result<std::vector<TimeSpan>> gaps_of(SqliteStore& store, const MeterRow& meter,
-                                      std::optional<Instant> next) {
+                                      std::optional<Instant> first, std::optional<Instant> next) {
   std::vector<TimeSpan> gaps;
-  std::optional<Instant> expected;
+  std::optional<Instant> expected = first;
   const auto read = store.for_each_interval(meter.number, {Instant::min(), Instant::max()},
                                             [&](const StoredInterval& interval) {
                                               if (expected && interval.reading.start > *expected) {
@@ -50,9 +52,9 @@ Result<std::vector<TimeSpan>> gaps_of(SqliteStore& store, const MeterRow& meter,
   return gaps;
 }
 
-/// What the samples say of the gaps, as a batch.
-Result<StoreBatch> batch_for(SqliteStore& store, const MeterRow& meter, const RegisterState& state,
-                             const std::vector<TimeSpan>& gaps) {
+/// What the meter's counter has seen, as far as it is kept.
+Result<std::vector<metering::RegisterSample>> samples_of(SqliteStore& store, const MeterRow& meter,
+                                                         const RegisterState& state) {
   std::vector<metering::RegisterSample> samples;
   const auto read = store.for_each_sample(
       meter.number, state.field,
@@ -61,14 +63,64 @@ Result<StoreBatch> batch_for(SqliteStore& store, const MeterRow& meter, const Re
   // The counter remembers the last sample that it believed, which may be lost with its interval.
   const metering::RegisterSample& last = state.counter.baseline;
   if (!samples.empty() && samples.back().time < last.time) samples.push_back(last);
+  return samples;
+}
+
+/// The readings that lie in gaps.
+StoreBatch batch_for(std::span<const metering::Reading> readings,
+                     const std::vector<TimeSpan>& gaps) {
   StoreBatch batch;
-  for (const metering::Reading& reading :
-       metering::readings_from_register(meter.number, samples, meter.interval, state.settings)) {
+  for (const metering::Reading& reading : readings) {
     const bool is_lost =
         std::ranges::any_of(gaps, [&](const TimeSpan& gap) { return gap.contains(reading.start); });
     if (is_lost && std::isfinite(reading.mean_kW)) batch.intervals.push_back({reading});
   }
   return batch;
+}
+
+/// The first boundary with a sample before it: no earlier interval can be missing.
+Result<std::optional<Instant>> first_boundary(SqliteStore& store, const MeterRow& meter) {
+  auto query =
+      store.database().prepare("SELECT (min(t) + ?2 - 1) / ?2 * ?2 FROM sample WHERE meter = ?1");
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, static_cast<std::int64_t>(meter.number));
+  query->bind(1, static_cast<std::int64_t>(meter.interval.count()));
+  if (auto row = query->step(); !row) return tl::unexpected(row.error());
+  if (query->is_null(0)) return std::nullopt;
+  return instant_of(query->integer(0));
+}
+
+/// Adds what became of one meter.
+Result<void> refill(SqliteStore& store, const MeterRow& meter, Refilled& refilled) {
+  // A state that cannot be read says nothing about samples; the daemon begins it anew.
+  const auto states = store.registers(meter.number);
+  const RegisterState* state = states && !states->empty() ? &states->front() : nullptr;
+  const auto next = state ? state->book.next : std::nullopt;
+  const auto begin = first_boundary(store, meter);
+  if (!begin) return tl::unexpected(begin.error());
+  auto gaps = gaps_of(store, meter, *begin, next);
+  if (!gaps) return tl::unexpected(gaps.error());
+  if (gaps->empty()) return {};
+
+  std::vector<metering::Reading> readings;
+  if (state != nullptr) {
+    const auto samples = samples_of(store, meter, *state);
+    if (!samples) return tl::unexpected(samples.error());
+    readings =
+        metering::readings_from_register(meter.number, *samples, meter.interval, state->settings);
+  }
+  // Of a meter that has lost its first intervals the samples alone say where they began.
+  const auto first = readings.empty() ? std::nullopt : std::optional{readings.front().start};
+  gaps = gaps_of(store, meter, first, next);
+  if (!gaps) return tl::unexpected(gaps.error());
+  for (const TimeSpan& gap : *gaps) refilled.still_missing += gap.length() / meter.interval;
+  const StoreBatch batch = batch_for(readings, *gaps);
+  if (batch.intervals.empty()) return {};
+  const auto counts = store.commit(batch);
+  if (!counts) return tl::unexpected(counts.error());
+  refilled.from_samples += counts->taken;
+  refilled.still_missing -= counts->taken;
+  return {};
 }
 
 }  // namespace
@@ -78,21 +130,7 @@ Result<Refilled> refill_intervals(SqliteStore& store) {
   const auto meters = meters_of(store.database());
   if (!meters) return tl::unexpected(meters.error());
   for (const MeterRow& meter : *meters) {
-    // A state that cannot be read says nothing about samples; the daemon begins it anew.
-    const auto states = store.registers(meter.number);
-    const bool is_known = states && !states->empty();
-    const auto gaps = gaps_of(store, meter, is_known ? states->front().book.next : std::nullopt);
-    if (!gaps) return tl::unexpected(gaps.error());
-    if (gaps->empty()) continue;
-    for (const TimeSpan& gap : *gaps) refilled.still_missing += gap.length() / meter.interval;
-    if (!is_known) continue;
-    const auto batch = batch_for(store, meter, states->front(), *gaps);
-    if (!batch) return tl::unexpected(batch.error());
-    if (batch->intervals.empty()) continue;
-    const auto counts = store.commit(*batch);
-    if (!counts) return tl::unexpected(counts.error());
-    refilled.from_samples += counts->taken;
-    refilled.still_missing -= counts->taken;
+    if (auto done = refill(store, meter, refilled); !done) return tl::unexpected(done.error());
   }
   return refilled;
 }

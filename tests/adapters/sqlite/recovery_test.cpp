@@ -119,6 +119,16 @@ TEST_F(RecoveryTest, APageOfReadingsCostsThatPage) {
   EXPECT_THAT(recovery.sentence(), HasSubstr("there was no sound backup"));
 }
 
+// The first intervals of a store, and all of one that is some hours old, stand on its first page.
+TEST_F(RecoveryTest, TheFirstIntervalsComeBackFromSamplesToo) {
+  recald::testing::damage_leaf(file(), "interval", 0);
+  CheckedStore opened = open(file());
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_GT(opened.recovery->from_samples, 0);
+  EXPECT_EQ(opened.recovery->lost_intervals, 0);
+  EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
+}
+
 TEST_F(RecoveryTest, ABackupFillsTheHole) {
   const auto backup = folder_ / "backup.db";
   const auto bad_backup = folder_ / "bad.db";
@@ -227,8 +237,8 @@ TEST_F(RecoveryTest, AFlippedValueIsFoundByItsSum) {
   CheckedStore opened = open(file());
   ASSERT_TRUE(opened.recovery.has_value());
   EXPECT_EQ(opened.recovery->refused, 32);
-  EXPECT_EQ(opened.recovery->from_samples, 31);  // nothing lies before the first
-  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters - 1);
+  EXPECT_EQ(opened.recovery->from_samples, 32);
+  EXPECT_EQ(right_intervals(opened.store, 0), kQuarters);
 }
 
 // The newest commits are in the log when a daemon is killed.
