@@ -302,6 +302,13 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
   EXPECT_TRUE(outcome->forecasts.empty());
 }
 
+/// Of a job that failed, whether or not what is known of its weather came with it; empty: it did
+/// not.
+std::string why_failed(const Result<JobOutcome>& outcome) {
+  if (!outcome) return outcome.error().message;
+  return outcome->failed ? outcome->message : "";
+}
+
 TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   import_history();
   ASSERT_EQ(run({"doe", path("live.toml"), "--runs", "60", "--out", path("doe")}).exit_code, 0);
@@ -331,8 +338,7 @@ TEST_F(LiveSite, ADesignOfAnotherSiteIsRefused) {
   const auto calendar = metering::LocalCalendar::open(config.timezone).value();
   const auto outcome = make_site_work({config, calendar})(
       {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
-  ASSERT_FALSE(outcome.has_value());
-  EXPECT_THAT(outcome.error().message, HasSubstr("not for this site"));
+  EXPECT_THAT(why_failed(outcome), HasSubstr("not for this site"));
 }
 
 TEST_F(LiveSite, AJobSaysThatItsDesignIsMissing) {
@@ -342,8 +348,7 @@ TEST_F(LiveSite, AJobSaysThatItsDesignIsMissing) {
   const auto calendar = metering::LocalCalendar::open(config.timezone).value();
   const auto outcome = make_site_work({config, calendar})(
       {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
-  ASSERT_FALSE(outcome.has_value());
-  EXPECT_THAT(outcome.error().message, HasSubstr("nowhere"));
+  EXPECT_THAT(why_failed(outcome), HasSubstr("nowhere"));
 }
 
 TEST_F(LiveSite, AJobThatIsToldToStopStops) {
@@ -449,8 +454,7 @@ TEST_F(LiveSite, AJobBeforeAnyMonthHasClosedSaysSo) {
       make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
   const auto outcome =
       work({}, std::chrono::sys_days{std::chrono::year{2021} / 1 / 20}, [] { return true; });
-  ASSERT_FALSE(outcome.has_value());
-  EXPECT_THAT(outcome.error().message, HasSubstr("has no usable closed month yet"));
+  EXPECT_THAT(why_failed(outcome), HasSubstr("has no usable closed month yet"));
 }
 
 }  // namespace
