@@ -69,7 +69,7 @@ void write_meters(PrometheusText& text, const GatewayStatus& status) {
 }
 
 void write_weather(PrometheusText& text, const GatewayStatus& status) {
-  text.begin("recald_weather_known_until_seconds", "gauge",
+  text.begin("recald_weather_known_until_timestamp_seconds", "gauge",
              "End of the last interval of a weather sensor's quantity that is believed, since "
              "1970.");
   for (const MeterStatus& meter : status.meters) {

@@ -127,7 +127,8 @@ TEST_F(PushedWeather, SilenceIsSeenEverywhere) {
   const auto metrics = recald::testing::parse_prometheus(get("/metrics").body);
   EXPECT_THAT(metrics.problems, IsEmpty());
   EXPECT_EQ(
-      metrics.sample("recald_weather_known_until_seconds{meter=\"roof\",quantity=\"dry_bulb_C\"}"),
+      metrics.sample(
+          "recald_weather_known_until_timestamp_seconds{meter=\"roof\",quantity=\"dry_bulb_C\"}"),
       1711793700.0);
   EXPECT_EQ(metrics.sample("recald_intervals_total{meter=\"roof\",validity=\"ok\"}"), 1);
 }
