@@ -54,7 +54,7 @@ std::size_t forget_frozen(std::span<SensorValue> values, std::chrono::seconds in
            is_same_value(values[end].value, values[begin].value)) {
       ++end;
     }
-    if (interval * static_cast<std::int64_t>(end - begin) > kSameDryBulbMax) {
+    if (is_frozen(interval * static_cast<std::int64_t>(end - begin), interval)) {
       for (SensorValue& frozen : values.subspan(begin, end - begin)) frozen.value = kAbsent;
       forgotten += end - begin;
     }

@@ -29,8 +29,14 @@ inline constexpr std::array<SensorQuantity, 5> kSensorQuantities{{
     {"ghi_W_m2", "W/m2", &WeatherHour::ghi_W_m2, -10.0, 1600.0},
 }};
 
-/// A dry bulb that shows the same value to the last digit for longer than this is a frozen one.
+/// A dry bulb that shows the same value to the last digit for longer than this, and this often in a
+/// row, is a frozen one. Of hourly values some are often equal: on foggy days, or in whole degrees.
 inline constexpr std::chrono::hours kSameDryBulbMax{6};
+inline constexpr int kSameDryBulbValuesMin = 24;
+/// @param length  Of a run of equal values, one an interval.
+[[nodiscard]] constexpr bool is_frozen(std::chrono::seconds length, std::chrono::seconds interval) {
+  return length > kSameDryBulbMax && length / interval >= kSameDryBulbValuesMin;
+}
 
 /// Null where no quantity has that name, or that unit.
 [[nodiscard]] const SensorQuantity* find_quantity(std::string_view name);
@@ -63,8 +69,8 @@ struct SensorValue {
   double value;  ///< In the quantity's unit; NaN: none that is believed.
 };
 
-/// Takes the values away that a frozen dry bulb has shown: all of each run that is longer than
-/// `kSameDryBulbMax`. A hole ends a run.
+/// Takes the values away that a frozen dry bulb has shown: all of each run that `is_frozen`. A hole
+/// ends a run.
 /// @param values  In order of time.
 /// @return how many were taken away.
 std::size_t forget_frozen(std::span<SensorValue> values, std::chrono::seconds interval);

@@ -28,7 +28,7 @@ ChannelState SensorWatch::state_of(const MeterProgress& channel, Instant now) co
   if (is_missed && now - since > (is_polled_ ? kPolledSilenceMax : kPushedSilenceMax)) {
     state.silent_since = since;
   } else if (is_dry_bulb(*channel.channel->quantity) && channel.same_value &&
-             channel.same_value->length() > weather::kSameDryBulbMax) {
+             weather::is_frozen(channel.same_value->length(), channel.stored.meter.interval)) {
     state.frozen_since = channel.same_value->begin;
   }
   return state;

@@ -69,6 +69,20 @@ TEST(FrozenSensor, LongerThanSixHoursIsForgotten) {
   EXPECT_EQ(known(longer), 0);
 }
 
+// Twelve equal hours of whole degrees are a foggy day; twenty-four are none.
+TEST(FrozenSensor, OfCoarseDataItTakesMoreThanSixHours) {
+  const auto hourly = [](int count) {
+    auto values = quarters(count, 3.0);
+    for (int i = 0; i < count; ++i) values[static_cast<std::size_t>(i)].start = kStart + hours{i};
+    return values;
+  };
+  auto foggy = hourly(23);
+  EXPECT_EQ(forget_frozen(foggy, hours{1}), 0U);
+  EXPECT_EQ(known(foggy), 23);
+  auto frozen = hourly(24);
+  EXPECT_EQ(forget_frozen(frozen, hours{1}), 24U);
+}
+
 TEST(FrozenSensor, WhatMovesOnIsLeft) {
   auto values = quarters(60, 3.2);
   for (int i = 0; i < 60; ++i) values[static_cast<std::size_t>(i)].value += i < 20 ? 0.1 * i : 0.0;

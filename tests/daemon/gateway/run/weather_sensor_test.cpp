@@ -196,10 +196,11 @@ TEST_F(WeatherSensor, AReloadAddsAndRemovesIt) {
 /// The same sensor, sending.
 class SendingSensor : public WeatherSensor {
  protected:
-  SendingSensor() {
+  explicit SendingSensor(const std::string& interval = "15m") {
     site_ =
         load(testing::site_head("America/Chicago", "watermark = \"2h\"\n") + testing::kMainMeter +
-             "\n[http]\n[[meter]]\nid = \"roof\"\nrole = \"weather\"\nsource = \"http\"\n");
+             "\n[http]\n[[meter]]\nid = \"roof\"\nrole = \"weather\"\nsource = \"http\"\n" +
+             "interval = \"" + interval + "\"\n");
     begin();
   }
   void send_day(Instant start) {
@@ -233,6 +234,27 @@ TEST_F(SendingSensor, ThatNeverSentIsTold) {
   loop_.run_for(hours{40});
   ASSERT_THAT(events_of("weather_silent"), SizeIs(1));
   EXPECT_THAT(roof().weather, SizeIs(1));
+}
+
+class SendingEachHour : public SendingSensor {
+ protected:
+  SendingEachHour() : SendingSensor("1h") {}
+};
+
+// Whole degrees of a foggy night stand still for half a day.
+TEST_F(SendingEachHour, CoarseValuesAreNotFrozenAtOnce) {
+  auto send_until_hour = [&, hour = 0](int end) mutable {
+    std::vector<metering::Reading> readings;
+    for (; hour < end; ++hour) {
+      readings.push_back({.meter = 0, .start = kStart + hours{hour}, .mean_kW = 3.0});
+    }
+    loop_.run_for(kStart + hours{end} - loop_.now().instant());
+    ASSERT_TRUE(gateway_->take_pushed("roof.dry_bulb_C", std::move(readings)).has_value());
+  };
+  send_until_hour(23);
+  EXPECT_FALSE(roof().weather[0].state.frozen_since.has_value());
+  send_until_hour(24);
+  EXPECT_EQ(roof().weather[0].state.frozen_since, kStart);
 }
 
 }  // namespace
