@@ -63,11 +63,14 @@ std::string quantity_names(const MeterConfig& sensor) {
 void print_sensors(const SiteConfig& site, const Console& console) {
   for (const MeterConfig& sensor : site.sensors) {
     const std::string how =
-        sensor.live ? fmt::format("unit {} on bus '{}', {}: {}, every {}", sensor.live->unit,
-                                  sensor.live->bus, sensor.live->map.title, quantity_names(sensor),
-                                  duration_words(sensor.live->poll))
-                    : fmt::format("as it is sent, interval {}; units {}",
-                                  duration_words(sensor.meter.interval), weather::quantity_units());
+        sensor.live
+            ? fmt::format("unit {} on bus '{}', {}: {}, every {}", sensor.live->unit,
+                          sensor.live->bus, sensor.live->map.title, quantity_names(sensor),
+                          duration_words(sensor.live->poll))
+            : fmt::format(
+                  "as it is sent, interval {}{}; units {}", duration_words(sensor.meter.interval),
+                  sensor.values == weather::RecordedValues::instant ? ", values at the stamp" : "",
+                  weather::quantity_units());
     console.out << fmt::format("  meter {:<16} {:<14} {}\n", sensor.meter.id, "weather", how);
   }
 }

@@ -180,18 +180,23 @@ class Elements {
                                  place, csv::in_quotes(*text), interval.count()),
                      place);
     }
-    if (start + interval > now_ + kClocksDiffer) {
-      return refusal(400, "invalid_value",
-                     fmt::format("{} is {}: that interval ends after now, {}", place,
-                                 csv::in_quotes(*text), metering::to_string(now_)),
-                     place);
+    const bool is_instant = meter_.values == weather::RecordedValues::instant;
+    if (start + (is_instant ? seconds{0} : interval) > now_ + kClocksDiffer) {
+      return refusal(
+          400, "invalid_value",
+          fmt::format("{} is {}{} after now, {}", place, csv::in_quotes(*text),
+                      is_instant ? "," : ": that interval ends", metering::to_string(now_)),
+          place);
     }
     if (start < now_ - kOldest) {
-      return refusal(400, "invalid_value",
-                     fmt::format("{} is {}, more than {} days ago; readings from before are "
-                                 "imported: recald import",
-                                 place, csv::in_quotes(*text), kOldest.count()),
-                     place);
+      return refusal(
+          400, "invalid_value",
+          fmt::format("{} is {}, more than {} days ago; {}", place, csv::in_quotes(*text),
+                      kOldest.count(),
+                      unit_.quantity == nullptr
+                          ? "readings from before are imported: recald import"
+                          : "weather from before belongs in the file that [weather] file names"),
+          place);
     }
     return start;
   }
@@ -247,6 +252,13 @@ Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& si
       json.contains("stamps") ? text_in(json, "stamps").value_or("") : "start";
   if (stamps != "start" && stamps != "end") {
     return refusal(400, "invalid_value", R"('stamps' is neither "start" nor "end")", "stamps");
+  }
+  if (stamps == "end" && (*meter)->values == weather::RecordedValues::instant) {
+    return refusal(400, "invalid_value",
+                   fmt::format("sensor '{}' has values = \"instant\": 'time' is when a value was "
+                               "measured, so leave out 'stamps'",
+                               (*meter)->meter.id),
+                   "stamps");
   }
   const auto list = json.find("readings");
   if (list == json.end() || !list->is_array() || list->empty()) {

@@ -33,6 +33,12 @@ csv::Stamps read_stamps(TomlReader& table) {
   return table.word("stamps", {"start", "end"}) == "end" ? csv::Stamps::end : csv::Stamps::start;
 }
 
+std::optional<weather::RecordedValues> read_values(TomlReader& table) {
+  const auto word = table.word("values", {"instant", "mean"});
+  if (!word) return {};
+  return *word == "mean" ? weather::RecordedValues::mean : weather::RecordedValues::instant;
+}
+
 std::optional<seconds> read_interval(TomlReader& table, std::string_view key) {
   const auto interval = table.duration(key);
   if (!interval) return {};
@@ -93,9 +99,12 @@ WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_f
   weather.format =
       table.word("format", {"csv", "epw"}) == "epw" ? WeatherFormat::epw : WeatherFormat::csv;
   weather.stamps = read_stamps(table);
-  if (const auto values = table.word("values", {"instant", "mean"})) {
-    weather.values =
-        *values == "mean" ? weather::RecordedValues::mean : weather::RecordedValues::instant;
+  weather.values = read_values(table);
+  for (const std::string_view key : {"stamps", "values"}) {
+    if (!has_none || !table.has(key)) continue;
+    table.problem_at(key, fmt::format("'{}' describes a file, but no 'file' is named; 'values' of "
+                                      "a weather sensor that sends belongs in its [[meter]]",
+                                      key));
   }
   table.finish();
   return weather;
@@ -179,6 +188,13 @@ MeterConfig read_sensor(TomlReader& table, const SiteConfig& site, RegisterMaps&
     table.problem(
         "a weather sensor is polled (source = \"modbus\") or sends (source = \"http\"); a file of "
         "the weather, which may grow, is named by [weather] file");
+  } else {
+    if (!table.has("interval")) {
+      table.problem(
+          "a weather sensor that sends needs an 'interval': how far apart its values are, such as "
+          "\"1h\"");
+    }
+    config.values = read_values(table).value_or(config.values);
   }
   config.interval = read_interval(table, "interval");
   config.meter.interval = config.interval.value_or(site.interval);

@@ -49,6 +49,8 @@ struct MeterConfig {
   std::filesystem::path file;  ///< source = "csv"; else empty.
   std::string name_in_file;    ///< In the file's `meter` column.
   csv::Stamps stamps = csv::Stamps::start;
+  /// Of a weather sensor that sends: instants are values at the start of their interval.
+  weather::RecordedValues values = weather::RecordedValues::mean;
   std::optional<std::chrono::seconds> interval;  ///< Declared; absent: as the file shows.
   double multiplier = 1.0;
   metering::UnitFactors units;

@@ -145,7 +145,10 @@ Result<SensorWeather> read_sensor(const MeterConfig& sensor, const metering::Tim
       records[slot].values.*channel.quantity->member = within_bounds(*channel.quantity, one.value);
     }
   }
-  auto series = weather::to_hourly(records, interval);
+  const bool instants = sensor.values == weather::RecordedValues::instant;
+  auto series = weather::to_hourly(
+      records, interval,
+      instants ? weather::ValuesStand::at_its_start : weather::ValuesStand::over_the_record);
   if (!series) return tl::unexpected(series.error());
   read.series = std::move(*series);
   return read;

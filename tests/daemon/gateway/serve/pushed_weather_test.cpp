@@ -22,8 +22,12 @@ using ::testing::SizeIs;
 
 class PushedWeather : public ServedSite {
  protected:
-  PushedWeather()
-      : ServedSite("\n[[meter]]\nid = \"roof\"\nrole = \"weather\"\nsource = \"http\"\n") {}
+  /// @param more  Of the sensor's table.
+  explicit PushedWeather(const std::string& more = "")
+      : ServedSite(
+            "\n[[meter]]\nid = \"roof\"\nrole = \"weather\"\nsource = \"http\"\n"
+            "interval = \"15m\"\n" +
+            more) {}
 
   http::Response post(const std::string& body) {
     return answer(served_,
@@ -140,6 +144,32 @@ TEST_F(PushedWeather, AReasonPutsItRight) {
   EXPECT_EQ(taken(body)["stored"], 1);
   EXPECT_EQ(intervals("dry_bulb_C")["intervals"][0]["mean"], 5.5);
   EXPECT_EQ(intervals("dry_bulb_C")["intervals"][0]["revision"], 1);
+}
+
+TEST_F(PushedWeather, WhatIsTooOldBelongsInAFile) {
+  const http::Response response =
+      post(body_of("degC", R"({"time":"2022-03-30T10:00:00Z","value":7.5})"));
+  EXPECT_EQ(in_short(response), "400 invalid_value readings[0].time");
+  EXPECT_THAT(response.body, AllOf(HasSubstr("belongs in the file that [weather] file names"),
+                                   Not(HasSubstr("recald import"))));
+}
+
+class PushedInstants : public PushedWeather {
+ protected:
+  PushedInstants() : PushedWeather("values = \"instant\"\n") {}
+};
+
+TEST_F(PushedInstants, StandAtTheirTime) {
+  // It is noon: the quarter of an hour that begins has not passed, but the value is there.
+  EXPECT_EQ(taken(body_of("degC", R"({"time":"2024-03-30T12:00:00Z","value":7.5})"))["stored"], 1);
+  const http::Response early =
+      post(body_of("degC", R"({"time":"2024-03-30T12:15:00Z","value":7.5})"));
+  EXPECT_EQ(in_short(early), "400 invalid_value readings[0].time");
+  EXPECT_THAT(early.body, HasSubstr("after now"));
+  std::string body = body_of("degC", at_ten(5.5));
+  body.insert(1, R"("stamps":"end",)");
+  EXPECT_EQ(in_short(post(body)), "400 invalid_value stamps");
+  EXPECT_THAT(post(body).body, HasSubstr("leave out 'stamps'"));
 }
 
 /// A station on the bus beside the meters.

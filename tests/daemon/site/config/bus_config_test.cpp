@@ -240,6 +240,15 @@ TEST(BusConfig, EveryMistakeOfAWeatherSensorHasItsSentence) {
        "'poll' must lie between \"1s\" and \"2m\": the weather is averaged"},
       {"role = \"weather\"\nsource = \"modbus\"", "role = \"weather\"\nsource = \"csv\"",
        "a file of the weather, which may grow, is named by [weather] file"},
+      {"source = \"modbus\"\nbus = \"cellar\"\nunit = 9\nmap = \"sunspec-weather\"\n",
+       "source = \"http\"\n", "a weather sensor that sends needs an 'interval'"},
+      {"map = \"sunspec-weather\"\n", "map = \"sunspec-weather\"\nvalues = \"instant\"\n",
+       "unknown key 'values'"},
+      {"map = \"sunspec-weather\"\n",
+       "map = \"sunspec-weather\"\n[weather]\nvalues = \"instant\"\n",
+       "'values' describes a file, but no 'file' is named"},
+      {"map = \"sunspec-weather\"\n", "map = \"sunspec-weather\"\n[weather]\nstamps = \"end\"\n",
+       "'stamps' describes a file, but no 'file' is named"},
       {"id = \"roof\"", "id = \"main\"", "a second meter has the id 'main'"},
       {"unit = 9", "unit = 3", "with SunSpec models of their own"},
   };
@@ -251,6 +260,14 @@ TEST(BusConfig, EveryMistakeOfAWeatherSensorHasItsSentence) {
   }
   EXPECT_THAT(loaded(site + edited(kRoof, "id = \"roof\"", "id = \"roof2\"")).error(),
               Contains(HasSubstr("meters 'roof' and 'roof2' are the same registers of unit 9")));
+}
+
+TEST(BusConfig, AWeatherSensorThatSendsSaysWhatItsValuesAre) {
+  const std::string sender =
+      "\n[[meter]]\nid = \"web\"\nrole = \"weather\"\nsource = \"http\"\ninterval = \"1h\"\n";
+  EXPECT_EQ(loaded(kSite + sender)->sensors[0].values, weather::RecordedValues::mean);
+  EXPECT_EQ(loaded(kSite + sender + "values = \"instant\"\n")->sensors[0].values,
+            weather::RecordedValues::instant);
 }
 
 // A file is only for the time before.
