@@ -1,5 +1,6 @@
 #include "core/weather/merged_weather.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -17,19 +18,23 @@ bool is_beam_or_diffuse(const WeatherVariable& variable) {
   return variable.member == &WeatherHour::dni_W_m2 || variable.member == &WeatherHour::dhi_W_m2;
 }
 
-/// One variable from one source, where none before it has any.
-void take(MergedWeather& merged, std::size_t variable, const WeatherSource& from,
-          std::uint8_t number) {
+/// One variable from the source `s`, where none before it has any.
+void take(MergedWeather& merged, std::size_t variable, std::span<const WeatherSource> sources,
+          std::size_t s) {
   const auto member = kWeatherVariables[variable].member;
-  bool is_known_before = false;  // by an earlier source
+  const auto is_measured_at = [&](Instant t) {
+    return std::ranges::any_of(sources.first(s), [&](const WeatherSource& earlier) {
+      return earlier.begun[variable] && *earlier.begun[variable] <= t;
+    });
+  };
   for (std::size_t i = 0; i < merged.series.hours.size(); ++i) {
-    std::uint8_t& source = merged.source[i][variable];
-    is_known_before = is_known_before || source > 0;
-    if (source > 0 || (from.is_typical_year && is_known_before)) continue;
-    const WeatherHour* const hour = from.series->find(merged.series.begin + hours{i});
+    const Instant t = merged.series.begin + hours{i};
+    if (merged.source[i][variable] > 0) continue;
+    if (sources[s].is_typical_year && is_measured_at(t)) continue;
+    const WeatherHour* const hour = sources[s].series->find(t);
     if (hour == nullptr || !std::isfinite(hour->*member)) continue;
     merged.series.hours[i].*member = hour->*member;
-    source = number;
+    merged.source[i][variable] = static_cast<std::uint8_t>(s + 1);
   }
 }
 
@@ -61,7 +66,7 @@ MergedWeather merge_weather(const metering::TimeSpan& span,
   merged.source.resize(merged.series.hours.size());
   for (std::size_t s = 0; s < sources.size(); ++s) {
     for (std::size_t v = 0; v < kWeatherVariables.size(); ++v) {
-      take(merged, v, sources[s], static_cast<std::uint8_t>(s + 1));
+      take(merged, v, sources, s);
     }
   }
   if (!is_sun_from_a_sensor(merged, sources)) return merged;

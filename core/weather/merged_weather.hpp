@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,9 +16,12 @@ namespace recald::weather {
 struct WeatherSource {
   const WeatherSeries* series;
   bool is_sensor = false;
-  /// The weather of no year in particular: it stands for a variable before the first hour that an
-  /// earlier source has of it, and fills no gap afterwards.
+  /// The weather of no year in particular: it stands for a variable until an earlier source begins
+  /// to measure it, and fills no gap afterwards.
   bool is_typical_year = false;
+  /// When it began to measure each variable, be it long before the span: the same hour is merged
+  /// alike whatever span is asked for. Absent: not yet.
+  std::array<std::optional<Instant>, kWeatherVariables.size()> begun = {};
 };
 
 struct MergedWeather {

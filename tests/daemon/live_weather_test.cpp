@@ -9,6 +9,7 @@
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
 #include "daemon/gateway/serve/served.hpp"
+#include "daemon/site/replay/sensor_weather.hpp"
 #include "daemon/site/replay/site_weather.hpp"
 #include "daemon/site/replay/stored_readings.hpp"
 #include "tests/daemon/command_line.hpp"
@@ -397,3 +398,63 @@ TEST_F(Sent, AFrozenThermometerIsNotBelieved) {
 
 }  // namespace
 }  // namespace recald::daemon::live_weather_test
+// It talks, but is not believed: that is no silence.
+TEST_F(Sent, AHoleThatIsNoSilenceIsNotCalledOne) {
+  describe("", kSender);
+  begin();
+  const Instant june = calendar_.month_span(year{2025} / 6).begin;
+  for (Instant t = kNovember + days{4}; t < kNovember + days{6}; t += hours{1}) {
+    truth_.hours[static_cast<std::size_t>((t - truth_.begin) / hours{1})].dry_bulb_C = 12.5;
+  }
+  send(june + days{10}, kDecember);
+  const auto live = open_sensors(site_).value();
+  const metering::Month november{year{2025} / 11};
+  const auto read = load_weather(site_, calendar_, {year{2025} / 6, november}, live.get());
+  ASSERT_TRUE(read.has_value()) << read.error().message;
+  EXPECT_EQ(read->silence.at(november),
+            "Nothing is known from 2025-11-04T23:00:00Z to 2025-11-06T23:00:00Z (dry_bulb_C).");
+  // Nor is the time before it was connected.
+  EXPECT_THAT(read->silence.at(year{2025} / 6), HasSubstr("Nothing is known from"));
+}
+
+// The month that lacked weather is known as well by itself as among all others: a calibration that
+// cannot be better is not asked for again.
+TEST_F(Sent, ATypicalYearFillsAlikeHoweverManyMonthsAreLookedAt) {
+  describe("", kSender);
+  begin();
+  const metering::Month june{year{2025} / 6};
+  const metering::Month november{year{2025} / 11};
+  send(calendar_.month_span(june).begin + days{10}, kNovember - days{2});
+  const FileWeather typical{truth_, true};
+  const auto live = open_sensors(site_).value();
+  for (const metering::Month first : {june, november}) {
+    SiteWeather result;
+    const auto merged =
+        merge_with_sensors(site_, calendar_, {first, november}, typical, live.get(), result);
+    ASSERT_TRUE(merged.has_value()) << merged.error().message;
+    EXPECT_TRUE(result.from.at(november).empty()) << metering::to_string(first);
+    if (first == june) {  // before the sensor
+      EXPECT_NEAR(result.from.at(june).at(""), 1.0 / 3.0, 1e-9);
+    }
+  }
+}
+
+// Values at the stamp, an hour apart: the mean of an hour lies between two of them.
+TEST_F(Sent, InstantsAreNotTakenForMeans) {
+  describe("", std::string{kSender} + "values = \"instant\"\n");
+  begin();
+  for (std::size_t i = 0; i < truth_.hours.size(); ++i) {
+    truth_.hours[i].dry_bulb_C = 0.004 * static_cast<double>(i) - 10.0;
+  }
+  send(kNovember, kDecember);
+  const auto live = open_sensors(site_).value();
+  const metering::Month month{year{2025} / 11};
+  const auto read = load_weather(site_, calendar_, {month, month}, live.get());
+  ASSERT_TRUE(read.has_value()) << read.error().message;
+  for (Instant t = kNovember; t < kDecember - hours{1}; t += hours{1}) {
+    ASSERT_NEAR(read->filled.series.find(t)->dry_bulb_C, truth_.find(t)->dry_bulb_C + 0.002, 1e-9);
+    // The sun is a mean anyway.
+    ASSERT_NEAR(read->filled.series.find(t)->ghi_W_m2, truth_.find(t)->ghi_W_m2, 1e-9);
+  }
+}
+

@@ -38,11 +38,11 @@ std::optional<WeatherChannel> find_channel(const SiteConfig& site, std::string_v
   return {};
 }
 
-std::string sensor_words(const SiteConfig& site) {
-  std::string words = site.sensors.size() == 1 ? "sensor " : "sensors ";
-  for (std::size_t i = 0; i < site.sensors.size(); ++i) {
-    if (i > 0) words += i + 1 == site.sensors.size() ? " and " : ", ";
-    words += "'" + site.sensors[i].meter.id + "'";
+std::string sensor_words(std::span<const MeterConfig> sensors) {
+  std::string words = sensors.size() == 1 ? "sensor " : "sensors ";
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (i > 0) words += i + 1 == sensors.size() ? " and " : ", ";
+    words += "'" + sensors[i].meter.id + "'";
   }
   return words;
 }

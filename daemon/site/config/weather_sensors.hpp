@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +40,7 @@ struct WeatherChannel {
 [[nodiscard]] std::optional<WeatherChannel> find_channel(const SiteConfig& site,
                                                          std::string_view id);
 
-/// "sensor 'roof'", "sensors 'roof' and 'sun'". @pre the site has one
-[[nodiscard]] std::string sensor_words(const SiteConfig& site);
+/// "sensor 'roof'", "sensors 'roof' and 'sun'". @pre there is one
+[[nodiscard]] std::string sensor_words(std::span<const MeterConfig> sensors);
 
 }  // namespace recald::daemon

@@ -72,6 +72,9 @@ class LiveReadings {
   /// The readings of one meter that start in the span, in order of time. @return how many.
   virtual Result<std::uint64_t> for_each(const MeterConfig& meter, const metering::TimeSpan& span,
                                          const ReadingSink& sink) = 0;
+
+  /// Start of the first of them; nothing where there is none.
+  virtual Result<std::optional<metering::Instant>> first_start(const MeterConfig& meter) = 0;
 };
 
 /// Whether some meter of the site is read live.

@@ -31,19 +31,42 @@ double within_bounds(const SensorQuantity& quantity, double value) {
   return value;
 }
 
+/// As the store knows one quantity of a sensor.
+MeterConfig as_stored(const MeterConfig& sensor, const WeatherChannel& channel) {
+  MeterConfig stored = sensor;
+  stored.meter = stored_meter(sensor, channel);
+  return stored;
+}
+
+bool is_of(const WeatherChannel& channel, std::size_t variable) {
+  return channel.quantity->member == weather::kWeatherVariables[variable].member;
+}
+
 Result<std::vector<SensorValue>> read_values(const MeterConfig& sensor,
                                              const WeatherChannel& channel,
                                              const metering::TimeSpan& span, LiveReadings& live) {
-  MeterConfig as_stored = sensor;
-  as_stored.meter = stored_meter(sensor, channel);
   std::vector<SensorValue> values;
-  const auto count = live.for_each(as_stored, span, [&](const metering::Reading& reading) {
+  const MeterConfig stored = as_stored(sensor, channel);
+  const auto count = live.for_each(stored, span, [&](const metering::Reading& reading) {
     if (reading.validity == metering::Validity::ok && std::isfinite(reading.mean_kW)) {
       values.push_back({reading.start, reading.mean_kW});
     }
   });
   if (!count) return tl::unexpected(count.error());
   return values;
+}
+
+/// When a sensor began to measure each variable.
+Result<void> take_beginnings(const MeterConfig& sensor, LiveReadings& live,
+                             weather::WeatherSource& source) {
+  for (const WeatherChannel& channel : channels_of(sensor)) {
+    const auto begun = live.first_start(as_stored(sensor, channel));
+    if (!begun) return tl::unexpected(begun.error());
+    for (std::size_t v = 0; v < source.begun.size(); ++v) {
+      if (is_of(channel, v)) source.begun[v] = *begun;
+    }
+  }
+  return {};
 }
 
 /// What the sources have of one month.
@@ -67,9 +90,54 @@ std::map<std::string, double> shares_of(const weather::MergedWeather& merged,
   return shares;
 }
 
+/// Whether it had begun to measure the variable and left nothing at all in the hole, not even what
+/// is not believed.
+Result<bool> is_silent_in(const weather::WeatherHole& hole, const MeterConfig& sensor,
+                          LiveReadings& live) {
+  for (const WeatherChannel& channel : channels_of(sensor)) {
+    if (!is_of(channel, hole.variable)) continue;
+    const MeterConfig stored = as_stored(sensor, channel);
+    const auto begun = live.first_start(stored);
+    if (!begun) return tl::unexpected(begun.error());
+    if (!*begun || **begun >= hole.span.begin) return false;
+    // A hole begins and ends on the hour, of which the sensor may have up to a half.
+    const metering::TimeSpan inner{hole.span.begin + hours{1}, hole.span.end - hours{1}};
+    bool is_silent = true;
+    const auto count = live.for_each(stored, inner, [&](const metering::Reading& reading) {
+      is_silent = is_silent && reading.validity == metering::Validity::missing;
+    });
+    if (!count) return tl::unexpected(count.error());
+    return is_silent;
+  }
+  return false;
+}
+
+/// "Sensor 'roof' was silent", or "Nothing is known" where silence is not why.
+Result<std::string> reason_of(const weather::WeatherHole& hole, const SiteConfig& site,
+                              LiveReadings* live) {
+  std::vector<MeterConfig> silent;
+  for (const MeterConfig& sensor : site.sensors) {
+    if (live == nullptr) break;
+    const auto is_silent = is_silent_in(hole, sensor, *live);
+    if (!is_silent) return tl::unexpected(is_silent.error());
+    if (*is_silent) silent.push_back(sensor);
+  }
+  const auto measures = [&](const MeterConfig& sensor) {
+    return std::ranges::any_of(channels_of(sensor), [&](const WeatherChannel& channel) {
+      return is_of(channel, hole.variable);
+    });
+  };
+  const auto measuring = std::ranges::count_if(site.sensors, measures);
+  if (silent.empty() || std::ssize(silent) < measuring) return "Nothing is known";
+  std::string words = sensor_words(silent);
+  words.front() = 'S';
+  return words + (silent.size() == 1 ? " was silent" : " were silent");
+}
+
 /// "Sensor 'roof' was silent from … to … (dry_bulb_C)."; empty: no hole that matters.
-std::string silence_of(const weather::WeatherSeries& series, const metering::TimeSpan& month,
-                       const SiteConfig& site) {
+Result<std::string> silence_of(const weather::WeatherSeries& series,
+                               const metering::TimeSpan& month, const SiteConfig& site,
+                               LiveReadings* live) {
   std::vector<weather::WeatherHole> worst;  // of the variable with the longest one
   const auto longest = [](const std::vector<weather::WeatherHole>& holes) {
     return std::ranges::max_element(
@@ -84,12 +152,11 @@ std::string silence_of(const weather::WeatherSeries& series, const metering::Tim
   }
   if (worst.empty()) return "";
   const weather::WeatherHole& hole = *longest(worst);
-  std::string words = sensor_words(site);
-  words.front() = 'S';
+  const auto reason = reason_of(hole, site, live);
+  if (!reason) return reason;
   return fmt::format(
-      "{} {} silent from {} to {} ({}){}.", words, site.sensors.size() == 1 ? "was" : "were",
-      metering::to_string(hole.span.begin), metering::to_string(hole.span.end),
-      weather::kWeatherVariables[hole.variable].name,
+      "{} from {} to {} ({}){}.", *reason, metering::to_string(hole.span.begin),
+      metering::to_string(hole.span.end), weather::kWeatherVariables[hole.variable].name,
       worst.size() > 1 ? fmt::format(" and at {} other times", worst.size() - 1) : "");
 }
 
@@ -177,7 +244,12 @@ Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
     sensors.push_back(std::move(*read));
   }
   std::vector<weather::WeatherSource> sources;
-  for (const SensorWeather& sensor : sensors) sources.push_back({&sensor.series, true});
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    sources.push_back({&sensors[i].series, true});
+    if (!file || !file->is_typical_year) continue;
+    const auto taken = take_beginnings(site.sensors[i], *live, sources.back());
+    if (!taken) return tl::unexpected(taken.error());
+  }
   if (file) {
     sources.push_back({&file->series, false, file->is_typical_year});
     names.push_back(site.weather->file.filename().string());
@@ -186,9 +258,9 @@ Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
   for (Month month = months.first; month <= months.last; month = metering::next_month(month)) {
     const metering::TimeSpan of_month = calendar.month_span(month);
     result.from[month] = shares_of(merged, of_month, names);
-    if (std::string silence = silence_of(merged.series, of_month, site); !silence.empty()) {
-      result.silence[month] = std::move(silence);
-    }
+    auto silence = silence_of(merged.series, of_month, site, live);
+    if (!silence) return tl::unexpected(silence.error());
+    if (!silence->empty()) result.silence[month] = std::move(*silence);
   }
   result.notes.push_back(source_words(result.from));
   return std::move(merged.series);

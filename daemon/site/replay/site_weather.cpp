@@ -128,7 +128,7 @@ WeatherLack lack_of(IsAbsent is_absent, const std::string& whose) {
 
 std::string whose_weather(const SiteConfig& site) {
   if (site.sensors.empty()) return "the weather in " + site.weather->file.filename().string();
-  std::string whose = "the weather of " + sensor_words(site);
+  std::string whose = "the weather of " + sensor_words(site.sensors);
   if (!site.weather->file.empty()) {
     whose += " and in " + site.weather->file.filename().string();
   }

@@ -108,6 +108,18 @@ Result<std::uint64_t> StoredReadings::for_each(const MeterConfig& meter,
   return count;
 }
 
+Result<std::optional<metering::Instant>> StoredReadings::first_start(const MeterConfig& meter) {
+  const auto number = impl_->store->find_meter(meter.meter.id);
+  if (!number) return tl::unexpected(number.error());
+  if (!*number) return std::optional<metering::Instant>{};
+  const auto extent = impl_->store->interval_extent(**number);
+  if (!extent) return tl::unexpected(extent.error());
+  if (!*extent) return std::optional<metering::Instant>{};
+  impl_->digest.add(meter.meter.id);
+  impl_->digest.add(metering::to_string((*extent)->begin));
+  return std::optional{(*extent)->begin};
+}
+
 std::string StoredReadings::digest() { return impl_->digest.hex(); }
 
 Result<std::unique_ptr<StoredReadings>> open_sensors(const SiteConfig& site) {

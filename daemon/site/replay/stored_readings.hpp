@@ -22,6 +22,7 @@ class StoredReadings final : public LiveReadings {
   Result<int> waiting_months(const MeterConfig& meter) override;
   Result<std::uint64_t> for_each(const MeterConfig& meter, const metering::TimeSpan& span,
                                  const ReadingSink& sink) override;
+  Result<std::optional<metering::Instant>> first_start(const MeterConfig& meter) override;
 
   /// SHA-256 of all months and readings that have been handed out. Ends the digest.
   [[nodiscard]] std::string digest();

@@ -52,7 +52,8 @@ TEST(MergedWeather, ATypicalYearStandsBeforeTheSensorAlone) {
   sensor.hours[4].dry_bulb_C = kAbsent;
   WeatherSeries file = series(0, 24, 2.0);
   for (WeatherHour& hour : file.hours) hour.wind_speed_m_s = 3.0;
-  const std::array<WeatherSource, 2> sources{{{&sensor, true}, {&file, false, true}}};
+  std::array<WeatherSource, 2> sources{{{&sensor, true}, {&file, false, true}}};
+  sources[0].begun[0] = kStart + hours{6};
   const MergedWeather merged = merge_weather(kDay, sources);
   EXPECT_EQ(dry_bulb_C(merged, 5), 2.0);
   EXPECT_TRUE(std::isnan(dry_bulb_C(merged, 10)));
@@ -60,6 +61,16 @@ TEST(MergedWeather, ATypicalYearStandsBeforeTheSensorAlone) {
   // What no sensor measures at all it has all along.
   EXPECT_EQ(merged.series.hours[10].wind_speed_m_s, 3.0);
   EXPECT_EQ(merged.series.hours[22].wind_speed_m_s, 3.0);
+}
+
+// A sensor that was silent all through the span had begun all the same.
+TEST(MergedWeather, ATypicalYearFillsNoGapThatIsAsLongAsTheSpan) {
+  const WeatherSeries sensor = series(0, 8, 1.0);
+  const WeatherSeries file = series(0, 24, 2.0);
+  std::array<WeatherSource, 2> sources{{{&sensor, true}, {&file, false, true}}};
+  sources[0].begun[0] = kStart;
+  const MergedWeather late = merge_weather({kStart + hours{10}, kStart + hours{20}}, sources);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_TRUE(std::isnan(dry_bulb_C(late, i))) << i;
 }
 
 TEST(MergedWeather, BeamOfAFileDoesNotStandBesideASensorsSun) {
