@@ -355,7 +355,9 @@ TEST_F(Sent, WithoutAnyWeatherItFailsAndIsMadeWhenItComes) {
   ASSERT_THAT(ended_, SizeIs(1));
   EXPECT_EQ(ended_[0].state, JobState::failed);
   EXPECT_THAT(ended_[0].message, HasSubstr("the weather of sensor 'roof' has no dry_bulb_C"));
-  EXPECT_THAT(ended_[0].message, HasSubstr("it is tried again when weather comes"));
+  EXPECT_THAT(ended_[0].message,
+              HasSubstr("; not all weather is known of 2025-06 to 2025-11 (0 %); it is calibrated "
+                        "again when more of it comes"));
   send(calendar_.month_span(year{2025} / 6).begin, kDecember);
   loop_.run_for(hours{2});
   ASSERT_THAT(ended_, SizeIs(2));
@@ -396,8 +398,6 @@ TEST_F(Sent, AFrozenThermometerIsNotBelieved) {
                                     "are not used."));
 }
 
-}  // namespace
-}  // namespace recald::daemon::live_weather_test
 // It talks, but is not believed: that is no silence.
 TEST_F(Sent, AHoleThatIsNoSilenceIsNotCalledOne) {
   describe("", kSender);
@@ -458,3 +458,5 @@ TEST_F(Sent, InstantsAreNotTakenForMeans) {
   }
 }
 
+}  // namespace
+}  // namespace recald::daemon::live_weather_test

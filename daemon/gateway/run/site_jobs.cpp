@@ -29,13 +29,22 @@ namespace {
 constexpr int kDriftParticles = 256;
 constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
 
-/// "not all weather is known of 2024-03 (12 %)"; empty: all of it is.
+/// "not all weather is known of 2024-03 (12 %), 2024-05 to 2024-07 (0 %)"; empty: all of it is.
 std::string lacking_words(const std::vector<MonthWeather>& months, const SiteConfig& site) {
   std::string words;
-  for (const MonthWeather& one : months) {
-    if (weather::grade_of(one.known) == weather::WeatherGrade::good) continue;
-    words +=
-        fmt::format("{}{} ({:.0f} %)", words.empty() ? "" : ", ", one.month, 100.0 * one.known);
+  const auto known_words = [](const MonthWeather& one) {
+    return weather::grade_of(one.known) == weather::WeatherGrade::good
+               ? ""
+               : fmt::format(" ({:.0f} %)", 100.0 * one.known);
+  };
+  for (std::size_t first = 0, last = 0; first < months.size(); first = ++last) {
+    const std::string known = known_words(months[first]);
+    while (last + 1 < months.size() && known_words(months[last + 1]) == known) ++last;
+    if (known.empty()) continue;
+    if (!words.empty()) words += ", ";
+    words += months[first].month;
+    if (last > first) words += " to " + months[last].month;
+    words += known;
   }
   if (words.empty()) return "";
   const bool is_made_again = !site.recalibration.schedule.is_never();
@@ -174,19 +183,15 @@ Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
       known->push_back({.month = metering::to_string(month)});
     }
   }
-  if (lacking_words(*known, site.config).empty()) return tl::unexpected(error);
-  const bool is_all_unknown = std::ranges::all_of(*known, [](const MonthWeather& month) {
-    return weather::grade_of(month.known) == weather::WeatherGrade::unknown;
-  });
-  const bool is_made_again = is_all_unknown && !site.config.recalibration.schedule.is_never();
+  const std::string lacking = lacking_words(*known, site.config);
+  if (lacking.empty()) return tl::unexpected(error);
   const nlohmann::ordered_json document = {{"weather", results::weather_json(*known)}};
-  return JobOutcome{
-      .failed = true,
-      .message = error.message + (is_made_again ? "; it is tried again when weather comes" : ""),
-      .folder = {},
-      .result = {.document = document.dump(2) + "\n"},
-      .forecasts = {},
-      .next = {}};
+  return JobOutcome{.failed = true,
+                    .message = error.message + "; " + lacking,
+                    .folder = {},
+                    .result = {.document = document.dump(2) + "\n"},
+                    .forecasts = {},
+                    .next = {}};
 }
 
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,

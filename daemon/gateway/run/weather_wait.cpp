@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -15,26 +14,14 @@ using weather::grade_of;
 using weather::WeatherGrade;
 
 constexpr std::chrono::hours kLookEvery{1};
+/// Looking reads all the weather of years, and what has not come for so long will hardly come now.
+constexpr std::chrono::days kHopedFor{60};
+constexpr std::chrono::hours kLookAtOldEvery{24};
+constexpr int kJobsMax = 20;  // that are looked through for one that knew its weather
 
-/// The months of the newest calibration whose weather is not all known. Empty while one waits or
-/// runs: it will see what there is.
-Result<std::vector<MonthWeather>> lacking_months(Store& store) {
-  const auto jobs = store.jobs(JobKind::calibration, 1);
-  if (!jobs) return tl::unexpected(jobs.error());
-  std::vector<MonthWeather> lacking;
-  if (jobs->empty()) return lacking;
-  const JobState state = jobs->front().state;
-  if (state != JobState::done && state != JobState::failed) return lacking;
-  const auto job = store.job(jobs->front().number);
-  if (!job) return tl::unexpected(job.error());
-  if (!*job) return lacking;
-  std::ranges::copy_if(
-      (*job)->result.weather, std::back_inserter(lacking),
-      [](const MonthWeather& month) { return grade_of(month.known) < WeatherGrade::good; });
-  return lacking;
-}
+bool is_lacking(const MonthWeather& month) { return grade_of(month.known) < WeatherGrade::good; }
 
-/// From the first of them to the last; months in between are looked at too.
+/// From the first of them to the last.
 std::optional<metering::MonthRange> range_of(const std::vector<MonthWeather>& months) {
   std::optional<metering::MonthRange> range;
   for (const MonthWeather& one : months) {
@@ -45,6 +32,15 @@ std::optional<metering::MonthRange> range_of(const std::vector<MonthWeather>& mo
     range->last = std::max(range->last, *month);
   }
   return range;
+}
+
+/// Whether one of the months that lack weather has ended not long ago.
+bool has_recent_lack(const std::vector<MonthWeather>& months, metering::Instant now) {
+  return std::ranges::any_of(months, [&](const MonthWeather& one) {
+    const auto month = metering::parse_month(one.month);
+    if (!month || !is_lacking(one)) return false;
+    return now - std::chrono::sys_days{metering::next_month(*month) / 1} < kHopedFor;
+  });
 }
 
 /// What looking throws is no weather.
@@ -74,30 +70,55 @@ void WeatherWait::look_every_hour() {
   });
 }
 
+/// Nothing while one waits or runs: it will see what there is. One that was cancelled, or failed
+/// for another reason, says nothing of the weather.
+std::optional<WeatherWait::Known> WeatherWait::last_known() const {
+  const auto jobs = ports_.store.jobs(JobKind::calibration, kJobsMax);
+  if (!jobs) return {};
+  for (const StoredJob& one : *jobs) {
+    if (one.state == JobState::cancelled) continue;
+    if (one.state != JobState::done && one.state != JobState::failed) return {};
+    if (asked_ && asked_->job == one.number) return asked_;
+    auto job = ports_.store.job(one.number);
+    if (!job || !*job) return {};
+    std::vector<MonthWeather>& months = (*job)->result.weather;
+    if (!months.empty()) return Known{one.number, std::move(months)};
+    if (one.state == JobState::done) return {};
+  }
+  return {};
+}
+
 void WeatherWait::look_again() {
   if (is_looking_) return;
-  const auto lacking = lacking_months(ports_.store);
-  const auto months = lacking ? range_of(*lacking) : std::nullopt;
+  auto known = last_known();
+  if (!known || std::ranges::none_of(known->months, is_lacking)) return;
+  // All months, as the calibration: what one of them has may depend on its neighbours.
+  const auto months = range_of(known->months);
   if (!months) return;
+  const Moment now = ports_.loop.now();
+  const bool is_old = !has_recent_lack(known->months, now.instant());
+  if (is_old && looked_at_ && now.monotonic - *looked_at_ < kLookAtOldEvery) return;
+  looked_at_ = now.monotonic;
   is_looking_ = true;
   // The work may outlive this: it has copies of all it uses.
   const auto found = std::make_shared<Result<std::vector<MonthWeather>>>();
   ports_.worker.run([look = look_, months = *months, found] { *found = look_safely(look, months); },
-                    [weak = std::weak_ptr{self_}, then = *lacking, found] {
+                    [weak = std::weak_ptr{self_}, then = std::move(*known), found] {
                       const auto self = weak.lock();
                       if (!self) return;
                       (*self)->is_looking_ = false;
-                      if (*found) (*self)->compare(then, **found);
+                      if (*found) (*self)->compare(then, std::move(**found));
                     });
 }
 
-void WeatherWait::compare(const std::vector<MonthWeather>& then,
-                          const std::vector<MonthWeather>& now) const {
-  const bool is_better = std::ranges::any_of(then, [&](const MonthWeather& before) {
+void WeatherWait::compare(const Known& then, std::vector<MonthWeather> now) {
+  const bool is_better = std::ranges::any_of(then.months, [&](const MonthWeather& before) {
     const auto found = std::ranges::find(now, before.month, &MonthWeather::month);
     return found != now.end() && grade_of(found->known) > grade_of(before.known);
   });
-  if (is_better) ask_();
+  if (!is_better) return;
+  asked_ = Known{then.job, std::move(now)};
+  ask_();
 }
 
 }  // namespace recald::daemon

@@ -1,8 +1,11 @@
 /// A calibration that lacked weather is made again when more of it has come.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "adapters/ports/loop.hpp"
@@ -16,9 +19,9 @@ namespace recald::daemon {
 using LookAtWeather =
     std::function<Result<std::vector<MonthWeather>>(const metering::MonthRange& months)>;
 
-/// Once an hour, as long as the newest calibration has months whose weather is not all known. It is
-/// asked for again when one of them gets from unknown to patchy, or to good: twice a month at most,
-/// however often a file grows.
+/// Once an hour, as long as the newest calibration has months whose weather is not all known; once
+/// a day where all of these ended long ago. It is asked for again when one of them gets from
+/// unknown to patchy, or to good: twice a month at most, however often a file grows.
 class WeatherWait {
  public:
   struct Ports {
@@ -33,17 +36,30 @@ class WeatherWait {
 
   void start();
   /// Another site file holds from now on.
-  void set_look(LookAtWeather look) { look_ = std::move(look); }
+  void set_look(LookAtWeather look) {
+    look_ = std::move(look);
+    looked_at_.reset();
+  }
 
  private:
+  /// What was known of the weather when a calibration was made, or asked for again on its account.
+  struct Known {
+    std::int64_t job;
+    std::vector<MonthWeather> months;
+  };
+
   void look_every_hour();
   void look_again();
-  void compare(const std::vector<MonthWeather>& then, const std::vector<MonthWeather>& now) const;
+  [[nodiscard]] std::optional<Known> last_known() const;
+  void compare(const Known& then, std::vector<MonthWeather> now);
 
   Ports ports_;
   LookAtWeather look_;
   std::function<void()> ask_;
   bool is_looking_ = false;
+  std::optional<std::chrono::milliseconds> looked_at_;  ///< Monotonic.
+  /// Whatever becomes of what was asked for, it is not asked for again with the same weather.
+  std::optional<Known> asked_;
   std::shared_ptr<WeatherWait*> self_;
 };
 

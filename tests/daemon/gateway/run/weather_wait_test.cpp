@@ -63,7 +63,7 @@ TEST_F(WeatherWaitTest, TheMonthThatLackedItIsAReasonWhenItHasCome) {
   calibrated(0.3);
   begin();
   loop_.run_for(minutes{3});
-  EXPECT_THAT(looked_, ElementsAre("2026-03 2026-03"));
+  EXPECT_THAT(looked_, ElementsAre("2026-02 2026-03"));  // as the calibration
   known_ = 0.49;
   loop_.run_for(hours{2});
   EXPECT_EQ(asked_, 0);  // still mostly invented
@@ -121,8 +121,54 @@ TEST_F(WeatherWaitTest, OneLookAtATime) {
                    [this](const metering::MonthRange& months) { return look(months); },
                    [this] { ++asked_; }};
   wait.start();
-  loop_.run_for(hours{3} + minutes{30});
-  EXPECT_EQ(looked_.size(), 1U);
+  loop_.run_for(hours{5} + minutes{30});
+  EXPECT_EQ(looked_.size(), 1U);  // the next one began after three hours; two more were due before
+}
+
+TEST_F(WeatherWaitTest, OneThatWasCancelledOrFailedOtherwiseEndsNoWaiting) {
+  calibrated(0.3);
+  ASSERT_TRUE(store_.add_job({.kind = JobKind::calibration, .state = JobState::failed}));
+  ASSERT_TRUE(store_.add_job({.kind = JobKind::calibration, .state = JobState::cancelled}));
+  begin();
+  loop_.run_for(hours{1} + minutes{5});
+  EXPECT_EQ(looked_.size(), 2U);
+  EXPECT_EQ(asked_, 0);
+  known_ = 1.0;
+  loop_.run_for(hours{1});
+  EXPECT_EQ(asked_, 1);
+  // What was asked for fails, for whatever reason: the same weather is no reason to ask again.
+  ASSERT_TRUE(store_.add_job({.kind = JobKind::calibration, .state = JobState::failed}));
+  loop_.run_for(hours{50});
+  EXPECT_EQ(asked_, 1);
+}
+
+TEST_F(WeatherWaitTest, WhatIsAskedForWithPatchyWeatherIsAskedForOnceMoreWithGood) {
+  calibrated(0.3);
+  known_ = 0.6;
+  begin();
+  loop_.run_for(hours{1});
+  EXPECT_EQ(asked_, 1);
+  ASSERT_TRUE(store_.add_job({.kind = JobKind::calibration, .state = JobState::failed}));
+  loop_.run_for(hours{5});
+  EXPECT_EQ(asked_, 1);
+  known_ = 1.0;
+  loop_.run_for(hours{5});
+  EXPECT_EQ(asked_, 2);
+}
+
+// What has not come for two months is looked for once a day.
+TEST_F(WeatherWaitTest, AnOldHoleCostsALookADay) {
+  calibrated(0.3);
+  begin();
+  loop_.run_for(hours{24 * 56} - minutes{30});  // until the end of May
+  EXPECT_EQ(looked_.size(), 24U * 56U);
+  loop_.run_for(hours{24 * 2});
+  looked_.clear();
+  loop_.run_for(hours{24 * 10});
+  EXPECT_EQ(looked_.size(), 10U);
+  wait_->set_look([this](const metering::MonthRange& months) { return look(months); });
+  loop_.run_for(hours{1});
+  EXPECT_EQ(looked_.size(), 11U);
 }
 
 }  // namespace
