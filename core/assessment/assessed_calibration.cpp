@@ -49,9 +49,10 @@ calibration::CalibrationProblem problem_of(const AssessedCalibration& result,
   return problem;
 }
 
-void set_aside(std::size_t output, std::string because, AssessedCalibration& result,
-               calibration::CalibrationProblem& problem) {
+void set_aside(std::size_t output, std::string because, Following following,
+               AssessedCalibration& result, calibration::CalibrationProblem& problem) {
   result.outputs[output].calibrated = false;
+  result.outputs[output].following = following;
   result.outputs[output].not_fitted_because = std::move(because);
   std::ranges::fill(problem.outputs[output].values, kAbsent);
 }
@@ -67,7 +68,7 @@ void set_aside_unresponsive(const calibration::DesignRuns& design, AssessedCalib
     set_aside(k,
               "The calibration parameters move it by " +
                   percent_text(spread / std::abs(block.mean())) + " at most.",
-              result, problem);
+              Following::level, result, problem);
   }
 }
 

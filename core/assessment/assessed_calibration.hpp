@@ -19,14 +19,21 @@
 namespace recald::assessment {
 
 /// One modelled output over all months of calibration and validation.
+/// How an output that is not fitted is forecast.
+enum class Following {
+  level,   ///< By its meter's level against what the model has of it.
+  errors,  ///< By the model's errors, given its own months and those of the fitted outputs.
+};
+
 struct OutputCalibration {
   std::string name;       ///< As files write it: "steam_daily_kWh".
   std::string label;      ///< As tables write it: "steam".
   std::string unit;       ///< "kWh/day"
   std::size_t meter = 0;  ///< Of a site: index into the recording.
   double weight = 1.0;
-  bool calibrated = true;               ///< False: followed by its level, not fitted …
-  std::string not_fitted_because;       ///< … and why, as a sentence.
+  bool calibrated = true;          ///< False: not fitted …
+  std::string not_fitted_because;  ///< … and why, as a sentence.
+  Following following = Following::level;
   std::vector<double> measured;         ///< (months) NaN where there is no usable figure.
   std::vector<double> extra_variances;  ///< (months) unit squared, known: estimated slots.
   /// (months) unit squared: what the model itself does not know of this output, besides the
@@ -65,8 +72,8 @@ struct AssessedCalibration {
                                                          std::size_t calibration_months);
 
 /// Takes an output out of the fit. @param because  A sentence.
-void set_aside(std::size_t output, std::string because, AssessedCalibration& result,
-               calibration::CalibrationProblem& problem);
+void set_aside(std::size_t output, std::string because, Following following,
+               AssessedCalibration& result, calibration::CalibrationProblem& problem);
 
 /// Outputs that the parameters hardly move are set aside: normalised by a range of two per cent,
 /// their harmless misfit would set the size of the discrepancy for all outputs.

@@ -26,30 +26,67 @@ bool is_given(const AssessedCalibration& result, const OutputCalibration& output
   return result.roles[i] == MonthRole::calibration && !std::isnan(output.measured[i]);
 }
 
-/// Fitted, and to something.
-bool is_fitted(const AssessedCalibration& result, const OutputCalibration& output) {
-  if (!output.calibrated) return false;
+/// Whether it has months to learn from.
+bool is_measured(const AssessedCalibration& result, const OutputCalibration& output) {
   for (std::size_t i = 0; i < result.roles.size(); ++i) {
     if (is_given(result, output, i)) return true;
   }
   return false;
 }
 
+bool is_fitted(const AssessedCalibration& result, const OutputCalibration& output) {
+  return output.calibrated && is_measured(result, output);
+}
+
+/// Forecast by the model's errors.
+bool has_errors(const AssessedCalibration& result, const OutputCalibration& output) {
+  return is_measured(result, output) &&
+         (output.calibrated || output.following == Following::errors);
+}
+
+/// Outputs whose months are given together. The draws have seen those of fitted outputs alone.
+struct Group {
+  std::vector<bool> given;  ///< (outputs)
+  std::vector<bool> asked;  ///< (outputs) Of the given ones those that are forecast.
+  bool is_fitted;
+};
+
+/// All fitted outputs; then every other one that has errors, together with them: it tells them
+/// nothing, as it told the draws nothing. Where one output alone is fitted it stands alone, too,
+/// since the draws do not say how outputs hang together.
+std::vector<Group> groups_of(const AssessedCalibration& result) {
+  std::vector<bool> fitted;
+  for (const OutputCalibration& output : result.outputs) {
+    fitted.push_back(is_fitted(result, output));
+  }
+  std::vector<Group> groups;
+  const auto count = std::ranges::count(fitted, true);
+  if (count == 0) return groups;
+  groups.push_back({fitted, fitted, true});
+  const std::vector<bool> none(fitted.size(), false);
+  for (std::size_t k = 0; k < fitted.size(); ++k) {
+    if (fitted[k] || !has_errors(result, result.outputs[k])) continue;
+    Group& group = groups.emplace_back(count > 1 ? fitted : none, none, false);
+    group.given[k] = true;
+    group.asked[k] = true;
+  }
+  return groups;
+}
+
 Index calibration_months(const AssessedCalibration& result) {
   return std::ranges::count(result.roles, MonthRole::calibration);
 }
 
-/// The points that are given and, if `with_asked`, all others of the fitted outputs, whose values
+/// The points that are given and, if `with_asked`, all others of the outputs asked, whose values
 /// stand for nothing.
 PosteriorData points_of(const AssessedCalibration& result, const WholePeriod& whole,
-                        bool with_asked) {
+                        const Group& group, bool with_asked) {
   calibration::CalibrationProblem all = problem_of(result, result.month_names.size());
   for (std::size_t k = 0; k < all.outputs.size(); ++k) {
     const OutputCalibration& output = result.outputs[k];
-    const bool fitted = is_fitted(result, output);
     for (std::size_t i = 0; i < result.roles.size(); ++i) {
-      if (fitted && is_given(result, output, i)) continue;
-      all.outputs[k].values[i] = fitted && with_asked ? 0.0 : kAbsent;
+      if (group.given[k] && is_given(result, output, i)) continue;
+      all.outputs[k].values[i] = group.asked[k] && with_asked ? 0.0 : kAbsent;
     }
     all.outputs[k].extra_variances = known_variances(output);
   }
@@ -138,11 +175,11 @@ Eigen::VectorXd weights_of_unseen(const AssessedCalibration& result,
   return weights;
 }
 
-/// Unseen months of all fitted outputs, together.
+/// Unseen months of a group's outputs, together.
 Result<void> forecast_unseen(const AssessedCalibration& result, const WholePeriod& whole,
-                             const Eigen::MatrixXd& simulated,
+                             const Group& group, const Eigen::MatrixXd& simulated,
                              std::vector<OutputForecasts>& forecasts) {
-  DrawnErrors errors(result, points_of(result, whole, true), simulated);
+  DrawnErrors errors(result, points_of(result, whole, group, true), simulated);
   const auto& points = errors.data().points;
   std::vector<Index> asked;
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -240,11 +277,11 @@ struct LeftOut {
   std::vector<Forecast> by_point;
 };
 
-/// Calibration months of all fitted outputs, as if they had not been seen.
+/// Calibration months of a group's outputs, as if they had not been seen.
 Result<void> forecast_seen(const AssessedCalibration& result, const WholePeriod& whole,
-                           const Eigen::MatrixXd& simulated,
+                           const Group& group, const Eigen::MatrixXd& simulated,
                            std::vector<OutputForecasts>& forecasts) {
-  DrawnErrors errors(result, points_of(result, whole, false), simulated);
+  DrawnErrors errors(result, points_of(result, whole, group, false), simulated);
   const auto& points = errors.data().points;
   const auto left_out = [&](int months) {
     return LeftOut{calibration::blocks_of_months(points, months), std::ssize(points),
@@ -260,9 +297,14 @@ Result<void> forecast_seen(const AssessedCalibration& result, const WholePeriod&
     one.take(errors, d);
     if (has_blocks) three.take(errors, d);
   }
-  const std::vector<double> pareto_k = one.reweight();
-  if (has_blocks) (void)three.reweight();
+  // Draws that have not seen an output's months need no weights to forget them.
+  std::vector<double> pareto_k;
+  if (group.is_fitted) {
+    pareto_k = one.reweight();
+    if (has_blocks) (void)three.reweight();
+  }
   for (std::size_t p = 0; p < points.size(); ++p) {
+    if (!group.asked[static_cast<std::size_t>(points[p].output)]) continue;
     OutputForecasts& output = forecasts[static_cast<std::size_t>(points[p].output)];
     const auto month = static_cast<std::size_t>(points[p].month);
     output.months[month] = std::move(one.by_point[p]);
@@ -270,7 +312,7 @@ Result<void> forecast_seen(const AssessedCalibration& result, const WholePeriod&
   }
   const auto unreliable = std::ranges::count_if(pareto_k, [](double k) { return k > kParetoKMax; });
   for (std::size_t k = 0; k < forecasts.size(); ++k) {
-    if (is_fitted(result, result.outputs[k])) {
+    if (group.is_fitted && group.asked[k]) {
       forecasts[k].unreliable_months = static_cast<int>(unreliable);
     }
   }
@@ -322,18 +364,17 @@ Result<std::vector<OutputForecasts>> forecast_given_data(const AssessedCalibrati
     output.months.resize(months);
     output.blocks.resize(months);
   }
-  const bool any_fitted = std::ranges::any_of(
-      result.outputs, [&](const OutputCalibration& output) { return is_fitted(result, output); });
-  if (any_fitted) {
-    if (auto done = forecast_unseen(result, whole, simulated, forecasts); !done) {
+  const std::vector<Group> groups = groups_of(result);
+  for (const Group& group : groups) {
+    if (auto done = forecast_unseen(result, whole, group, simulated, forecasts); !done) {
       return tl::unexpected(done.error());
     }
-    if (auto done = forecast_seen(result, whole, simulated, forecasts); !done) {
+    if (auto done = forecast_seen(result, whole, group, simulated, forecasts); !done) {
       return tl::unexpected(done.error());
     }
   }
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
-    if (is_fitted(result, result.outputs[k])) continue;
+    if (!groups.empty() && has_errors(result, result.outputs[k])) continue;
     const auto first = static_cast<Index>(k * months);
     const Eigen::VectorXd modelled =
         simulated.middleCols(first, static_cast<Index>(months)).colwise().mean();
@@ -345,7 +386,7 @@ Result<std::vector<OutputForecasts>> forecast_given_data(const AssessedCalibrati
 void adapt_to_scatter(const AssessedCalibration& result, std::size_t k,
                       OutputForecasts& forecasts) {
   const OutputCalibration& output = result.outputs[k];
-  if (!is_fitted(result, output)) return;
+  if (!has_errors(result, output)) return;
   const OutputForecasts plain = forecasts;
   const double full = result.calibration.normalisation.scales[k].max;
   const auto level_of = [&](const Forecast& forecast) { return forecast.mean() / full; };

@@ -29,7 +29,7 @@ struct OutputForecasts {
 ///     y_* | y_t ~ N( f_* + S_*t (S_tt + N)^-1 (y - f)_t,  S_** - S_*t (S_tt + N)^-1 S_t* + N )
 ///
 /// for all months together, and a mixture of these over the draws. A month is left out by
-/// importance weights (PSIS). An output that is not fitted is followed by its level.
+/// importance weights (PSIS). An output that is not fitted is followed as it says.
 ///
 /// @param simulated  (draws x outputs * months) f at `result.calibration.thinned`, in units.
 /// @return one a modelled output; not_positive_definite when a draw's covariance has no factor;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 
@@ -252,14 +251,6 @@ assessment::Service service_of(metering::Utility utility) {
   }
 }
 
-/// Whether a meter also counts what the weather and the parameters move.
-bool counts_plant(const model::Building& building, const model::MeterMap& map) {
-  using enum model::EndUse;
-  if (building.chiller_cop && map[chiller] > 0.0) return true;
-  return std::ranges::any_of(std::array{zone_heating, reheat, preheat, humidification, hot_water},
-                             [&](model::EndUse use) { return map[use] > 0.0; });
-}
-
 /// Lights and plugs are not the same in every month, which no schedule tells.
 void add_use_scatter(std::size_t k, SiteCalibration& result,
                      calibration::CalibrationProblem& problem) {
@@ -274,38 +265,43 @@ void add_use_scatter(std::size_t k, SiteCalibration& result,
   }
 }
 
-/// The meter that lights and plugs were read off is met by construction: what it shows of them is
-/// no evidence. Where plant hangs on it, too, it is fitted, with the profile's doubt as an error
-/// common to all meters.
-Result<void> doubt_profiled_meter(const SiteConfig& site, const assessment::ModelErrorSizes& sizes,
-                                  PreparedSite& prepared) {
-  SiteCalibration& result = prepared.so_far;
-  const auto profiled = profile_meter(site);
-  const auto maps = meter_maps(site);
-  if (!maps) return tl::unexpected(maps.error());
-  const bool is_only = std::ranges::all_of(
-      result.outputs, [&](const auto& output) { return output.meter == *profiled; });
-  bool is_fitted = false;
-  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
-    if (result.outputs[k].meter != *profiled) continue;
-    const std::string& id = site.meters[*profiled].meter.id;
-    const auto place = std::ranges::find(site.model->outputs, id) - site.model->outputs.begin();
-    if (is_only || counts_plant(*site.building, (*maps)[static_cast<std::size_t>(place)])) {
-      is_fitted = true;
-      add_use_scatter(k, result, prepared.problem);
-      continue;
-    }
-    assessment::set_aside(k,
-                          "The model's lights and plugs were read off this meter, so it is no "
-                          "evidence for the model; it is followed by its level.",
-                          result, prepared.problem);
+/// Whether an output is no evidence for the model, and why.
+/// Lights and plugs that were read off a meter fit it by construction, and plant behind it was
+/// taken from it as the drawings have it. A month's highest quarter hour is no mean day.
+std::optional<std::string> why_no_evidence(const assessment::OutputCalibration& output,
+                                           std::size_t profiled) {
+  if (output.unit == "kW") {
+    return "A month's peak stands out of the mean days that schedules are, so it is no evidence "
+           "for "
+           "the model; it is forecast from the months before.";
   }
-  if (!is_fitted) return {};
-  const auto& use = prepared.electricity_use;
-  prepared.common_errors.emplace_back(
-      sizes.electricity_level *
-      Eigen::Map<const Eigen::VectorXd>(use.data(), static_cast<Eigen::Index>(use.size())));
-  return {};
+  if (output.meter != profiled) return std::nullopt;
+  return "The model's lights and plugs were read off this meter, so it is no evidence for the "
+         "model; "
+         "it is followed by its level.";
+}
+
+/// Sets aside what is no evidence. Where nothing else is metered, the meter that was read is fitted
+/// all the same, with the profile's doubt as a common error.
+void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& sizes,
+                   PreparedSite& prepared) {
+  SiteCalibration& result = prepared.so_far;
+  const std::size_t profiled = *profile_meter(site);
+  const bool is_only = std::ranges::all_of(
+      result.outputs, [&](const auto& output) { return output.meter == profiled; });
+  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
+    const bool is_peak = result.outputs[k].unit == "kW";
+    if (is_only && !is_peak) {
+      add_use_scatter(k, result, prepared.problem);
+      const auto& use = prepared.electricity_use;
+      prepared.common_errors.emplace_back(
+          sizes.electricity_level *
+          Eigen::Map<const Eigen::VectorXd>(use.data(), static_cast<Eigen::Index>(use.size())));
+    } else if (auto why = why_no_evidence(result.outputs[k], profiled)) {
+      using enum assessment::Following;
+      assessment::set_aside(k, std::move(*why), is_peak ? errors : level, result, prepared.problem);
+    }
+  }
 }
 
 /// A model's error in a parameter is of the size of what is usual, which the library knows. Who
@@ -329,12 +325,12 @@ std::vector<double> parameter_spreads(const SiteConfig& site,
 }
 
 /// What the seed's discrepancy leaves out: see assessment/model_errors.hpp.
-Result<void> add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
+void add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
   const assessment::ModelErrorSizes& sizes = assessment::model_error_sizes(result.model);
   const std::vector<double> spreads = parameter_spreads(site, sizes, result);
   const std::size_t known = prepared.common_errors.size();
-  if (auto done = doubt_profiled_meter(site, sizes, prepared); !done) return done;
+  take_evidence(site, sizes, prepared);
   std::vector<assessment::Service> services;
   for (const assessment::OutputCalibration& output : result.outputs) {
     services.push_back(service_of(site.meters[output.meter].meter.utility));
@@ -348,7 +344,6 @@ Result<void> add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
     prepared.problem.common_errors.push_back(
         assessment::leading_months(prepared.common_errors[g], all, first));
   }
-  return {};
 }
 
 }  // namespace
@@ -373,9 +368,7 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
   if (!prepared) return tl::unexpected(prepared.error());
   CalibrateOptions how = options;
   if (options.discrepancy == DiscrepancyForm::sound) {
-    if (auto added_errors = add_model_errors(site, *prepared); !added_errors) {
-      return tl::unexpected(added_errors.error());
-    }
+    add_model_errors(site, *prepared);
     // Whoever names a sampler gets the model itself in the chains.
     how.calibration.emulate = options.calibration.sampling.sampler == nullptr;
   }
