@@ -148,15 +148,9 @@ Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
   const auto meter = electricity_meter(site, recording);
   if (!meter) return tl::unexpected(meter.error());
   const std::vector<profile::HourlyLoad> loads = loads_of(**meter, months);
-  if (is_hourly(site)) {
+  // What an own chiller draws is not told from lights and plugs by months, only by hours.
+  if (is_hourly(site) || site.building->chiller_cop) {
     return model::hourly::fit_profile_without_plant(loads, *site.building, place, months);
-  }
-  if (site.building->chiller_cop) {
-    return failure(
-        ErrorCode::unsupported,
-        "[building.cooling] chiller_cop: the monthly model's electricity profile cannot tell an "
-        "own chiller from lights and plugs, and would count it twice; take kind = \"hourly\" "
-        "(or --model hourly), or leave it out and do not model the cooling");
   }
   return model::epc::fit_profile_with_fans(loads, *site.building, place, months);
 }
