@@ -199,5 +199,40 @@ TEST(GivenData, AnOutputThatIsNotFittedIsFollowedByItsLevel) {
               1e-9);
 }
 
+/// The second meter is not fitted, and followed by the model's errors. One output is left to the
+/// draws.
+AssessedCalibration one_fitted() {
+  AssessedCalibration result = two_meters(1);
+  result.outputs[1].calibrated = false;
+  result.outputs[1].following = Following::errors;
+  result.calibration.chains[0].beta = Eigen::MatrixXd::Constant(1, 1, 0.7);
+  return result;
+}
+
+TEST(GivenData, AnOutputThatIsNotFittedMayBeFollowedByTheModelsErrors) {
+  const AssessedCalibration result = one_fitted();
+  const WholePeriod whole = whole_period();
+  const auto forecasts = forecast_given_data(result, whole, simulated(1));
+  ASSERT_TRUE(forecasts.has_value()) << forecasts.error().message;
+  const Normal unseen = by_hand(result, whole, {10, 11}, {6, 8, 9});
+  EXPECT_NEAR((*forecasts)[1].months[4]->mean(), unseen.mean(0), 1e-8);
+  EXPECT_NEAR((*forecasts)[1].months[5]->sd(), std::sqrt(unseen.covariance(1, 1)), 1e-8);
+  const Normal seen = by_hand(result, whole, {8}, {6, 9});
+  EXPECT_NEAR((*forecasts)[1].months[2]->mean(), seen.mean(0), 1e-8);
+}
+
+// A fitted output is what it would be without it.
+TEST(GivenData, WhatIsFollowedTellsNothingToTheOthers) {
+  AssessedCalibration result = one_fitted();
+  const WholePeriod whole = whole_period();
+  const auto before = forecast_given_data(result, whole, simulated(1));
+  result.outputs[1].measured[2] *= 2.0;
+  const auto after = forecast_given_data(result, whole, simulated(1));
+  for (std::size_t i = 0; i < kMonths; ++i) {
+    EXPECT_DOUBLE_EQ((*before)[0].months[i]->mean(), (*after)[0].months[i]->mean()) << i;
+  }
+  EXPECT_NE((*before)[1].months[4]->mean(), (*after)[1].months[4]->mean());
+}
+
 }  // namespace
 }  // namespace recald::assessment::given_data_test
