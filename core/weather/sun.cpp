@@ -52,13 +52,21 @@ SunPosition sun_position(metering::Instant instant, const Location& location) {
   return {cos_zenith, azimuth_deg < 0.0 ? azimuth_deg + 360.0 : azimuth_deg};
 }
 
+double extraterrestrial_W_m2(const SunPosition& sun, metering::Instant instant) {
+  return kSolarConstant_W_m2 * (1.0 + 0.033 * std::cos(day_angle(instant))) *
+         std::max(sun.cos_zenith, 0.0);
+}
+
+double clear_sky_W_m2(const SunPosition& sun) {
+  if (sun.cos_zenith <= 0.0) return 0.0;
+  return 1098.0 * sun.cos_zenith * std::exp(-0.057 / sun.cos_zenith);
+}
+
 SplitIrradiance split_global_horizontal(double global_horizontal_W_m2, const SunPosition& sun,
                                         metering::Instant instant) {
   if (global_horizontal_W_m2 <= 0.0) return {0.0, 0.0};
   if (sun.cos_zenith < kLowestCosZenith) return {0.0, global_horizontal_W_m2};
-  const double extraterrestrial_W_m2 =
-      kSolarConstant_W_m2 * (1.0 + 0.033 * std::cos(day_angle(instant))) * sun.cos_zenith;
-  const double kt = std::min(global_horizontal_W_m2 / extraterrestrial_W_m2, 1.0);
+  const double kt = std::min(global_horizontal_W_m2 / extraterrestrial_W_m2(sun, instant), 1.0);
   double diffuse_share = 0.165;
   if (kt <= 0.22) {
     diffuse_share = 1.0 - 0.09 * kt;

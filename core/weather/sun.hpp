@@ -20,6 +20,14 @@ struct SunPosition {
 ///      (1.5.3), (1.6.1b), (1.6.5). Within 0.5° of an almanac.
 [[nodiscard]] SunPosition sun_position(metering::Instant instant, const Location& location);
 
+/// Irradiance on a horizontal plane above the atmosphere; 0 below the horizon.
+/// @see Duffie and Beckman, 4th ed., eq. (1.10.2), with the distance to the sun of eq. (1.4.1a).
+[[nodiscard]] double extraterrestrial_W_m2(const SunPosition& sun, metering::Instant instant);
+
+/// Global horizontal irradiance of a cloudless sky; 0 below the horizon. By the sun's height alone.
+/// @see Haurwitz (1945), J. Meteorology 2, as printed in Reno, Hansen, Stein (2012), SAND2012-2389.
+[[nodiscard]] double clear_sky_W_m2(const SunPosition& sun);
+
 struct SplitIrradiance {
   double direct_normal_W_m2;
   double diffuse_horizontal_W_m2;
