@@ -48,6 +48,7 @@ struct EffectNeeds {
   bool air_system = false;
   bool humidity = false;
   bool wind = false;
+  bool sun = false;
   bool own_chiller = false;
   bool heat_pump = false;
   bool economiser = false;

@@ -104,9 +104,12 @@ std::vector<Family> families_of(const SiteProblem& site) {
     families.push_back(quantile_family(
         site, {"wind", "wind", " m/s", 1.0, [](const DayPart& p) { return p.wind_m_s; }}, 8));
   }
-  families.push_back(quantile_family(
-      site, {"sun", "sun", " W/m2", 1.0, [](const DayPart& p) { return p.global_horizontal_W_m2; }},
-      8));
+  if (site.has_sun) {
+    families.push_back(quantile_family(
+        site,
+        {"sun", "sun", " W/m2", 1.0, [](const DayPart& p) { return p.global_horizontal_W_m2; }},
+        8));
+  }
   // Hours by temperature: a third of the temperatures each.
   Family warm = quantile_family(site, temperature, 3);
   families.push_back({"hours by outdoor temperature",

@@ -33,6 +33,7 @@ std::string lacking(const Effect& effect, const SiteProblem& site) {
   if (needs.air_system && !b.air) return "the site file describes no air handlers";
   if (needs.humidity && !site.drivers->has_humidity) return "the weather has no humidity";
   if (needs.wind && !site.drivers->has_wind) return "the weather has no wind";
+  if (needs.sun && !site.has_sun) return "the weather has no sun";
   if (needs.own_chiller && !b.chiller_cop) return "the site has no chiller of its own";
   if (needs.heat_pump) return "the site file describes no heat pump";
   if (needs.economiser && !(b.air && b.air->economiser_lockout_C)) {

@@ -30,6 +30,7 @@ struct SiteProblem {
   /// priors; empty: none.
   Eigen::VectorXd second_start;
   std::shared_ptr<const model::Drivers> drivers;
+  bool has_sun = true;            ///< False: it was assumed, and nothing may be concluded from it.
   std::vector<MeterData> meters;  ///< (m)
   Eigen::ArrayXXd measured_kW;    ///< (hours x m) NaN where not measured.
   DayParts day_parts;

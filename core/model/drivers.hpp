@@ -56,8 +56,8 @@ struct Drivers {
   std::vector<weather::Orientation> orientations;  ///< Distinct ones of the building's surfaces.
   Eigen::ArrayXXd irradiance_W_m2;                 ///< (orientations x hours)
   double pressure_Pa = 101325.0;
-  bool has_humidity = true;  ///< False: the record lacks it and 50 % was assumed.
-  bool has_wind = true;      ///< False: 3 m/s was assumed.
+  bool has_humidity = true;  ///< False: it was assumed, here as 50 % or in the weather already.
+  bool has_wind = true;      ///< The same; here as 3 m/s.
 };
 
 /// What to do where the whole weather record lacks humidity or wind.

@@ -62,6 +62,7 @@ Effect solar_gain_change() {
           "over the 100 W/m2 below; a in -, I0 in W/m2",
       .effect_class = EffectClass::envelope,
       .dating = Dating::may_begin,
+      .needs = {.sun = true},
       .confusable = {{"scale_fault",
                       "Chilled water at night: a wrong scale shows there too, the sun does not."},
                      {"weekend_operation",
