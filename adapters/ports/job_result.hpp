@@ -75,7 +75,7 @@ struct DriftSummary {
 struct MonthWeather {
   std::string month;   ///< "2024-03"
   double known = 0.0;  ///< Share measured or interpolated, 0…1, of what the model knows least.
-  /// Shares by where they are from: a sensor, a file, "interpolated", "typical".
+  /// Shares by where they are from: a sensor, a file, "interpolated", "typical", "assumed".
   std::map<std::string, double> from = {};
 };
 

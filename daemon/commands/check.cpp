@@ -159,11 +159,12 @@ std::vector<std::string> check_weather(const SiteConfig& site, const Console& co
   if (!file.empty() && !system::require_file(file, "the weather file")) return {};
   const auto lack = lack_of_weather(site);
   if (!lack) return {site.file.filename().string() + ": " + lack.error().message};
-  if (lack->sentence.empty()) return {};
-  if (site.model && lack->stops_all) {
+  if (site.model && !lack->sentence.empty()) {
     return {site.file.filename().string() + ": " + lack->sentence};
   }
-  console.err << "recald: " << lack->sentence << "\n";
+  for (const std::string& words : {lack->sentence, assumed_words(lack->assumed)}) {
+    if (!words.empty()) console.err << "recald: " << words << "\n";
+  }
   return {};
 }
 

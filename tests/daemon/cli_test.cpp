@@ -253,13 +253,34 @@ std::string weather_columns(int end) {
   return text;
 }
 
-TEST_F(Cli, WeatherOfTemperatureAloneSaysWhatStillWorks) {
+TEST_F(Cli, CheckSaysWhatOfTheWeatherIsAssumed) {
   write("site.toml", sample_site());
   write("weather.csv", weather_columns(2));
+  const Outcome check = run({"check", site()});
+  EXPECT_EQ(check.exit_code, kSuccess);
+  EXPECT_EQ(
+      check.err,
+      "recald: Humidity, wind and sun are not measured: they are assumed from the temperature "
+      "and the clear sky, and count as uncertain.\n");
+  write("weather.csv", weather_columns(5));
+  EXPECT_EQ(
+      run({"check", site()}).err,
+      "recald: Sun is not measured: it is assumed from the temperature and the clear sky, and "
+      "counts as uncertain.\n");
+}
+
+// The file has the column, and no value in it.
+TEST_F(Cli, WeatherWithoutTemperatureSaysWhatStillWorks) {
+  write("site.toml", sample_site());
+  std::string text = "timestamp,dry_bulb_C,ghi_W_m2\n";
+  for (int h = 0; h < 48; ++h) {
+    text += metering::to_string(kBegin + hours{h}) + ",,100\n";
+  }
+  write("weather.csv", text);
   const std::string sentence =
-      "the weather in weather.csv has no rel_humidity_pct, wind_speed_m_s, ghi_W_m2. Without the "
-      "sun no model can be run: calibrate, report, profile, doe, drift and diagnose do not work. "
-      "replay, run, import and export do. Add what is missing, or give an EPW file\n";
+      "the weather in weather.csv has no dry_bulb_C. Without the temperature no model can be run: "
+      "calibrate, report, profile, doe, drift and diagnose do not work. replay, run, import and "
+      "export do. Add it, or give an EPW file\n";
   const Outcome check = run({"check", site()});
   EXPECT_EQ(check.exit_code, kFailure);
   EXPECT_EQ(check.err, "recald: site.toml: " + sentence);

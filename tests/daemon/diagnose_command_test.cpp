@@ -54,7 +54,6 @@ std::string lines_of(const std::string& text, Keep keep, Change change) {
 }
 
 std::string as_it_is(const std::string& line) { return line; }
-bool all(const std::string&) { return true; }
 
 /// A row of weather.csv without its columns from `first` to before `last`.
 std::string without_columns(const std::string& line, int first, int last) {
@@ -117,15 +116,6 @@ TEST_F(DiagnoseCommand, MonthsWithoutReadingsDoNotCount) {
       "readings: those of depot cover 2021-01 to 2021-03 with half of their hours");
 }
 
-TEST_F(DiagnoseCommand, WeatherWithoutSunCannotBeUsed) {
-  edit_file("weather.csv", all,
-            [](const std::string& line) { return without_columns(line, 5, 6); });
-  expect_refusal(
-      "the weather in weather.csv has no ghi_W_m2. Without the sun no model can be run: calibrate, "
-      "report, profile, doe, drift and diagnose do not work. replay, run, import and export do. "
-      "Add what is missing, or give an EPW file");
-}
-
 TEST_F(DiagnoseCommand, AMeterThatNeverSpokeIsNamed) {
   edit_file(
       "readings.csv",
@@ -147,13 +137,13 @@ TEST_F(DiagnoseCommand, AFolderThatCannotBeMadeIsToldBeforeTheWork) {
   EXPECT_EQ(outcome.out, "");
 }
 
-// One meter, read by the hour; the weather has neither humidity nor wind, and no May at all; the
-// meter stood still from November. Nothing can be named here, and all of that is said.
+// One meter, read by the hour; the weather has temperature alone, and no May at all; the meter
+// stood still from November. Nothing can be named here, and all of that is said.
 TEST_F(DiagnoseCommand, WhatTheDataLackIsSaid) {
   write_text(folder_ / "site.toml", one_meter_site());
   edit_file(
       "weather.csv", [](const std::string& line) { return !line.starts_with("2021-05"); },
-      [](const std::string& line) { return without_columns(line, 2, 5); });
+      [](const std::string& line) { return without_columns(line, 2, 6); });
   edit_file(
       "readings.csv", [](const std::string& line) { return line < "2021-11"; }, as_it_is);
 
@@ -163,6 +153,7 @@ TEST_F(DiagnoseCommand, WhatTheDataLackIsSaid) {
   EXPECT_THAT(outcome.out, HasSubstr("! 2021-05 is left out: only "));
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no humidity: "));
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no wind: "));
+  EXPECT_THAT(outcome.out, HasSubstr("! The weather has no sun: "));
   EXPECT_THAT(outcome.out, EndsWith("Nothing was put in force: the model is as it was.\n"));
   const Json json = result("out");
   EXPECT_THAT(json["added"], IsEmpty());
@@ -175,6 +166,7 @@ TEST_F(DiagnoseCommand, WhatTheDataLackIsSaid) {
   };
   EXPECT_EQ(why("wind_infiltration"), "the weather has no wind");
   EXPECT_EQ(why("humidifier"), "the weather has no humidity");
+  EXPECT_EQ(why("solar_gain_change"), "the weather has no sun");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/diagnosis.html"));
   EXPECT_THAT(run({"model", "list", site()}).out, StartsWith("* drawings"));
 }

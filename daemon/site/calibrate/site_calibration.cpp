@@ -30,14 +30,13 @@ using metering::Month;
 Result<void> require_months(const SiteMonths& months, const PeriodConfig& period,
                             const SiteWeather& weather) {
   if (!months.calibration.empty()) return {};
-  if (!weather.lack.empty()) return failure(ErrorCode::not_enough_data, weather.lack);
   const Month first = period.calibration.first;
   return failure(
       ErrorCode::not_enough_data,
       fmt::format("the weather covers no calibration month from {} to {} (of {} it has {:.0f} %); "
                   "give weather of these months, or change [period]",
                   metering::to_string(first), metering::to_string(period.calibration.last),
-                  metering::to_string(first), 100.0 * weather_coverage(weather.filled, first)));
+                  metering::to_string(first), 100.0 * weather_coverage(weather, first)));
 }
 
 /// The columns whose names are among `names`.

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include "core/absent.hpp"
 #include "core/assessment/assessed_calibration.hpp"
@@ -22,23 +22,14 @@ using metering::Month;
 constexpr std::size_t kLeastMonths = 6;
 constexpr double kLeastOkShare = 0.5;
 constexpr double kLeastReadShare = 0.5;  // of the hours of a month that counts as read
-// Positions in `weather::kWeatherVariables` of humidity and wind, without which the model can do.
-constexpr std::array<std::size_t, 2> kAssumable = {1, 2};
+// Positions in `weather::kWeatherVariables`.
+constexpr std::size_t kHumidity = 1;
+constexpr std::size_t kWind = 2;
+constexpr std::size_t kSun = 4;
 
-bool is_recorded(const SiteWeather& weather, std::size_t variable) {
-  return std::ranges::any_of(weather.filled.coverage, [&](const weather::WeatherCoverage& month) {
-    return month.measured[variable] > 0.0;
-  });
-}
-
-/// Months of the period with weather, ascending. What the whole record lacks and the model assumes
-/// makes no month incomplete.
-std::vector<Month> months_with_weather(const SiteConfig& site, SiteWeather weather,
+/// Months of the period with weather, ascending.
+std::vector<Month> months_with_weather(const SiteConfig& site, const SiteWeather& weather,
                                        std::vector<std::string>& words) {
-  for (const std::size_t variable : kAssumable) {
-    if (is_recorded(weather, variable)) continue;
-    for (weather::WeatherCoverage& month : weather.filled.coverage) month.measured[variable] = 1.0;
-  }
   return choose_months(*site.period, weather, words).in_order();
 }
 
@@ -135,12 +126,13 @@ std::vector<std::string> data_words(const SiteConfig& site, const Recording& rec
   std::vector<std::string> words = recording.notes;
   words.insert(words.end(), weather.notes.begin(), weather.notes.end());
   const std::vector<Month> months = months_with_weather(site, weather, words);
-  for (const std::size_t variable : kAssumable) {
-    if (is_recorded(weather, variable)) continue;
+  for (const auto& [variable, name] :
+       {std::pair{kHumidity, "humidity"}, std::pair{kWind, "wind"}, std::pair{kSun, "sun"}}) {
+    if (!is_assumed(weather, variable)) continue;
     words.push_back(fmt::format(
-        "The weather has no {}: a constant was assumed, and effects that need it are not "
-        "identifiable here.",
-        variable == kAssumable.front() ? "humidity" : "wind"));
+        "The weather has no {}: it was assumed, and effects that need it are not identifiable "
+        "here.",
+        name));
   }
   for (const std::string& id : site.model->outputs) {
     const MeterRecord& record = recording.meters[*site.meter_index(id)];
@@ -192,6 +184,9 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
       model::make_drivers(months, calendar, site.holidays, *site.building, profile->loads,
                           *site.location, weather.filled.series, model::MissingWeather::assume);
   if (!drivers) return tl::unexpected(drivers.error());
+  drivers->has_humidity = drivers->has_humidity && !is_assumed(weather, kHumidity);
+  drivers->has_wind = drivers->has_wind && !is_assumed(weather, kWind);
+  problem.has_sun = !is_assumed(weather, kSun);
   problem.drivers = std::make_shared<const model::Drivers>(std::move(*drivers));
 
   const auto maps = meter_maps(site);

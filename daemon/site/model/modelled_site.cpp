@@ -114,6 +114,9 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
   if (!facts) return tl::unexpected(facts.error());
   facts->weather_values = to_string(weather->values);
   facts->weather = known_weather(*weather);
+  for (const std::size_t variable : weather->assumed) {
+    facts->weather_assumed.emplace_back(weather::kWeatherVariables[variable].name);
+  }
   return ModelledSite{std::move(site), std::move(*recording), std::move(*weather),
                       std::move(*facts)};
 }

@@ -20,6 +20,8 @@ struct RunFacts {
   std::string time_zone_data;
   std::string weather_values;  ///< What temperatures were taken for; empty without weather.
   std::vector<MonthWeather> weather = {};  ///< Of the months that were asked for.
+  /// Columns that no source has measured and that were assumed: "ghi_W_m2".
+  std::vector<std::string> weather_assumed = {};
   std::string sampler;
   std::string hyper_prior_profile;
   std::uint64_t seed = 1;

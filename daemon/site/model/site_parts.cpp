@@ -31,21 +31,21 @@ SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
   SiteMonths months;
   const auto take = [&](const metering::MonthRange& range, MonthRole role) {
     for (Month month = range.first; month <= range.last; month = metering::next_month(month)) {
-      const double coverage = weather_coverage(weather.filled, month);
+      const double coverage = weather_coverage(weather, month);
       const weather::WeatherGrade grade = weather::grade_of(coverage);
       if (grade == weather::WeatherGrade::unknown) {
         warnings.push_back(
             fmt::format("{} is left out: only {:.0f} % of its weather ({}) is known.{}",
                         metering::to_string(month), 100.0 * coverage,
-                        least_known_variable(weather.filled, month), silence_in(weather, month)));
+                        least_known_variable(weather, month), silence_in(weather, month)));
         continue;
       }
       if (grade == weather::WeatherGrade::patchy) {
         warnings.push_back(fmt::format(
             "{}: only {:.0f} % of the weather ({}) was measured; the rest is typical of the "
             "month.{}",
-            metering::to_string(month), 100.0 * coverage,
-            least_known_variable(weather.filled, month), silence_in(weather, month)));
+            metering::to_string(month), 100.0 * coverage, least_known_variable(weather, month),
+            silence_in(weather, month)));
       }
       months.all.push_back(month);
       months.roles.push_back(role);

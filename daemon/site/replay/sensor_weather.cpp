@@ -90,6 +90,28 @@ std::map<std::string, double> shares_of(const weather::MergedWeather& merged,
   return shares;
 }
 
+/// What none of the sources has measured, in these months or before.
+Result<std::vector<std::size_t>> never_measured(const weather::WeatherSeries& merged,
+                                                const std::optional<FileWeather>& file,
+                                                const SiteConfig& site, LiveReadings* live) {
+  std::vector<std::size_t> lacking = weather::never_measured(merged);
+  if (file) {
+    const std::vector<std::size_t> of_file = weather::never_measured(file->series);
+    std::erase_if(lacking, [&](std::size_t variable) {
+      return std::ranges::find(of_file, variable) == of_file.end();
+    });
+  }
+  for (const MeterConfig& sensor : site.sensors) {
+    if (live == nullptr) break;
+    for (const WeatherChannel& channel : channels_of(sensor)) {
+      const auto begun = live->first_start(as_stored(sensor, channel));
+      if (!begun) return tl::unexpected(begun.error());
+      if (*begun) std::erase_if(lacking, [&](std::size_t v) { return is_of(channel, v); });
+    }
+  }
+  return lacking;
+}
+
 /// Whether it had begun to measure the variable and left nothing at all in the hole, not even what
 /// is not believed.
 Result<bool> is_silent_in(const weather::WeatherHole& hole, const MeterConfig& sensor,
@@ -137,13 +159,14 @@ Result<std::string> reason_of(const weather::WeatherHole& hole, const SiteConfig
 /// "Sensor 'roof' was silent from … to … (dry_bulb_C)."; empty: no hole that matters.
 Result<std::string> silence_of(const weather::WeatherSeries& series,
                                const metering::TimeSpan& month, const SiteConfig& site,
-                               LiveReadings* live) {
+                               const SiteWeather& weather, LiveReadings* live) {
   std::vector<weather::WeatherHole> worst;  // of the variable with the longest one
   const auto longest = [](const std::vector<weather::WeatherHole>& holes) {
     return std::ranges::max_element(
         holes, {}, [](const weather::WeatherHole& hole) { return hole.span.length(); });
   };
   for (const std::size_t variable : kNeededWeather) {
+    if (is_assumed(weather, variable)) continue;
     auto holes = weather::holes_in(series, variable, month, kBridged);
     if (holes.empty()) continue;
     if (worst.empty() || longest(holes)->span.length() > longest(worst)->span.length()) {
@@ -255,10 +278,13 @@ Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
     names.push_back(site.weather->file.filename().string());
   }
   weather::MergedWeather merged = weather::merge_weather(span, sources);
+  auto lacking = never_measured(merged.series, file, site, live);
+  if (!lacking) return tl::unexpected(lacking.error());
+  result.assumed = std::move(*lacking);
   for (Month month = months.first; month <= months.last; month = metering::next_month(month)) {
     const metering::TimeSpan of_month = calendar.month_span(month);
     result.from[month] = shares_of(merged, of_month, names);
-    auto silence = silence_of(merged.series, of_month, site, live);
+    auto silence = silence_of(merged.series, of_month, site, result, live);
     if (!silence) return tl::unexpected(silence.error());
     if (!silence->empty()) result.silence[month] = std::move(*silence);
   }

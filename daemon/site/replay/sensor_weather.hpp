@@ -27,7 +27,8 @@ struct FileWeather {
 };
 
 /// The weather of these months and a day on each side, over which gaps at their ends are bridged;
-/// not filled. What is to be told of it goes into `result`: notes, where it is from, silence.
+/// not filled. What is to be told of it goes into `result`: notes, what was never
+/// measured, where it is from, silence.
 /// @param file  Absent: the sensors alone.
 /// @param live  Null: nothing of the sensors yet.
 /// @return or the store's failure. @pre the site has sensors

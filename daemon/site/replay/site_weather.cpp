@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -17,7 +18,7 @@
 namespace recald::daemon {
 namespace {
 
-constexpr std::size_t kSun = 4;  // in `weather::kWeatherVariables`
+constexpr std::size_t kDryBulb = 0;  // in `weather::kWeatherVariables`
 
 Result<csv::WeatherCsv> read_csv(const WeatherConfig& config) {
   return csv::read_weather(config.file, {.stamps = config.stamps, .values = config.values});
@@ -89,11 +90,13 @@ struct KnownShare {
 
 /// Of the needed variables the one that is known least; none of a month that the file does not
 /// touch.
-KnownShare least_known(const weather::FilledWeather& filled, metering::Month month) {
-  const auto found = std::ranges::find(filled.coverage, month, &weather::WeatherCoverage::month);
-  if (found == filled.coverage.end()) return {0.0, kNeededWeather.front()};
+KnownShare least_known(const SiteWeather& weather, metering::Month month) {
+  const auto& coverage = weather.filled.coverage;
+  const auto found = std::ranges::find(coverage, month, &weather::WeatherCoverage::month);
+  if (found == coverage.end()) return {0.0, kNeededWeather.front()};
   KnownShare least{1.0, kNeededWeather.front()};
   for (const std::size_t variable : kNeededWeather) {
+    if (is_assumed(weather, variable)) continue;
     const double share = found->measured[variable] + found->interpolated[variable];
     if (share < least.share) least = {share, variable};
   }
@@ -106,33 +109,23 @@ bool has_any(const weather::WeatherSeries& series, std::size_t variable) {
       series.hours, [&](const weather::WeatherHour& hour) { return std::isfinite(hour.*member); });
 }
 
-/// @param is_absent  Of a needed variable.
-/// @param whose      "the weather in weather.csv"
-template <class IsAbsent>
-WeatherLack lack_of(IsAbsent is_absent, const std::string& whose) {
-  std::vector<std::string_view> absent;
-  for (const std::size_t variable : kNeededWeather) {
-    if (is_absent(variable)) absent.push_back(weather::kWeatherVariables[variable].name);
+std::string no_dry_bulb_words(const SiteConfig& site) {
+  std::string whose = "in " + site.weather->file.filename().string();
+  if (!site.sensors.empty()) {
+    whose =
+        "of " + sensor_words(site.sensors) + (site.weather->file.empty() ? "" : " and " + whose);
   }
-  if (absent.empty()) return {};
-  const bool no_sun = is_absent(kSun);
-  return {fmt::format("{} has no {}. {} Add what is missing, or give an EPW file", whose,
-                      fmt::join(absent, ", "),
-                      no_sun ? "Without the sun no model can be run: calibrate, report, profile, "
-                               "doe, drift and diagnose do not work. replay, run, import and "
-                               "export do."
-                             : "diagnose assumes usual values, but calibrate, report, profile, doe "
-                               "and drift do not work. replay, run, import and export do."),
-          no_sun};
+  return "the weather " + whose +
+         " has no dry_bulb_C. Without the temperature no model can be run: calibrate, report, "
+         "profile, doe, drift and diagnose do not work. replay, run, import and export do. Add it, "
+         "or give an EPW file";
 }
 
-std::string whose_weather(const SiteConfig& site) {
-  if (site.sensors.empty()) return "the weather in " + site.weather->file.filename().string();
-  std::string whose = "the weather of " + sensor_words(site.sensors);
-  if (!site.weather->file.empty()) {
-    whose += " and in " + site.weather->file.filename().string();
-  }
-  return whose;
+/// Of a variable that may be assumed: "humidity".
+std::string_view plain_name(std::size_t variable) {
+  static constexpr std::array<std::string_view, 3> kNames = {"humidity", "wind", "sun"};
+  const auto found = std::ranges::find(weather::kAssumable, variable);
+  return kNames.at(static_cast<std::size_t>(found - weather::kAssumable.begin()));
 }
 
 bool is_measured(const SiteConfig& site, std::size_t variable) {
@@ -174,6 +167,11 @@ void add_filled_shares(SiteWeather& result) {
           found->interpolated[variable] / static_cast<double>(kNeededWeather.size());
       from["typical"] += found->typical[variable] / static_cast<double>(kNeededWeather.size());
     }
+    if (result.assumed.empty()) continue;
+    const double has_dry_bulb =
+        found->measured[kDryBulb] + found->interpolated[kDryBulb] + found->typical[kDryBulb];
+    from["assumed"] = has_dry_bulb * static_cast<double>(result.assumed.size()) /
+                      static_cast<double>(kNeededWeather.size());
   }
 }
 
@@ -184,6 +182,7 @@ Result<SiteWeather> read_all(const SiteConfig& site, const metering::LocalCalend
   if (site.sensors.empty()) {
     const auto file = read_file(*site.weather, months, result);
     if (!file) return tl::unexpected(file.error());
+    result.assumed = weather::never_measured(file->series);
     result.filled = weather::fill_gaps(file->series, calendar);
     describe_file(site, calendar, months, file->series, result);
   } else {
@@ -197,11 +196,34 @@ Result<SiteWeather> read_all(const SiteConfig& site, const metering::LocalCalend
     if (!series) return tl::unexpected(series.error());
     result.filled = weather::fill_gaps(*series, calendar);
   }
+  if (!site.location) result.assumed.clear();
+  if (!result.assumed.empty()) {
+    weather::assume_sky(result.filled.series, *site.location, result.assumed);
+    result.notes.push_back(assumed_words(result.assumed));
+  }
   add_filled_shares(result);
   return result;
 }
 
 }  // namespace
+
+std::string assumed_words(const std::vector<std::size_t>& assumed) {
+  if (assumed.empty()) return "";
+  std::string names;
+  for (std::size_t i = 0; i < assumed.size(); ++i) {
+    if (i > 0) names += i + 1 < assumed.size() ? ", " : " and ";
+    names += plain_name(assumed[i]);
+  }
+  names.front() = static_cast<char>(std::toupper(names.front()));
+  const bool is_one = assumed.size() == 1;
+  return fmt::format(
+      "{} {} not measured: {} assumed from the temperature and the clear sky, and {} as uncertain.",
+      names, is_one ? "is" : "are", is_one ? "it is" : "they are", is_one ? "counts" : "count");
+}
+
+bool is_assumed(const SiteWeather& weather, std::size_t variable) {
+  return std::ranges::find(weather.assumed, variable) != weather.assumed.end();
+}
 
 Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
   const WeatherConfig& config = *site.weather;
@@ -212,22 +234,21 @@ Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
     if (!read) return tl::unexpected(read.error());
     series = std::move(read->series);
   }
-  return lack_of(
-      [&](std::size_t variable) {
-        return !has_any(series, variable) && !is_measured(site, variable);
-      },
-      whose_weather(site));
+  WeatherLack lack;
+  if (!has_any(series, kDryBulb) && !is_measured(site, kDryBulb)) {
+    lack.sentence = no_dry_bulb_words(site);
+  }
+  lack.assumed = weather::never_measured(series);
+  std::erase_if(lack.assumed, [&](std::size_t variable) { return is_measured(site, variable); });
+  return lack;
 }
 
 Result<SiteWeather> load_weather(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                  const metering::MonthRange& months, LiveReadings* live) {
   auto result = read_all(site, calendar, months, live);
-  if (!result) return result;
-  WeatherLack lack =
-      lack_of([&](std::size_t variable) { return !has_any(result->filled.series, variable); },
-              whose_weather(site));
-  if (lack.stops_all) return failure(ErrorCode::not_enough_data, std::move(lack.sentence));
-  result->lack = std::move(lack.sentence);
+  if (result && !has_any(result->filled.series, kDryBulb)) {
+    return failure(ErrorCode::not_enough_data, no_dry_bulb_words(site));
+  }
   return result;
 }
 
@@ -243,7 +264,7 @@ Result<std::vector<MonthWeather>> known_weather(const SiteConfig& site,
 std::vector<MonthWeather> known_weather(const SiteWeather& weather) {
   std::vector<MonthWeather> months;
   for (const auto& [month, from] : weather.from) {
-    months.push_back({metering::to_string(month), weather_coverage(weather.filled, month), from});
+    months.push_back({metering::to_string(month), weather_coverage(weather, month), from});
   }
   return months;
 }
@@ -255,12 +276,12 @@ Result<weather::ValuesTaken> weather_values(const SiteConfig& site) {
   return read->values;
 }
 
-double weather_coverage(const weather::FilledWeather& filled, metering::Month month) {
-  return least_known(filled, month).share;
+double weather_coverage(const SiteWeather& weather, metering::Month month) {
+  return least_known(weather, month).share;
 }
 
-std::string_view least_known_variable(const weather::FilledWeather& filled, metering::Month month) {
-  return weather::kWeatherVariables[least_known(filled, month).variable].name;
+std::string_view least_known_variable(const SiteWeather& weather, metering::Month month) {
+  return weather::kWeatherVariables[least_known(weather, month).variable].name;
 }
 
 }  // namespace recald::daemon

@@ -431,6 +431,7 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
       {"tzdata", facts.time_zone_data},
       {"weather_values", facts.weather_values},
       {"weather", results::weather_json(facts.weather)},
+      {"weather_assumed", facts.weather_assumed},
       {"wall_s", facts.wall_s}};
   json["sampling"] = sampling_json(calibration.sampling);
   json["evidence"] = evidence_json(calibration);

@@ -270,6 +270,7 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"data_revision", facts.data_revision},
                {"weather_values", facts.weather_values},
                {"weather", results::weather_json(facts.weather)},
+               {"weather_assumed", facts.weather_assumed},
                {"model_version", facts.model_version},
                {"wall_s", facts.wall_s}};
   if (!d.added.empty()) json["located_after"] = located_json(site, d.passes.back().located);

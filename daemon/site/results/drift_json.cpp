@@ -132,6 +132,7 @@ std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
                      {"tzdata", facts.time_zone_data},
                      {"weather_values", facts.weather_values},
                      {"weather", results::weather_json(facts.weather)},
+                     {"weather_assumed", facts.weather_assumed},
                      {"wall_s", facts.wall_s}};
   return json.dump(2) + "\n";
 }
