@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
+#include "core/absent.hpp"
 #include "core/assessment/common_errors.hpp"
 #include "core/assessment/level_forecast.hpp"
 #include "core/assessment/metered_outputs.hpp"
@@ -13,6 +15,7 @@
 #include "core/model/epc/prepare.hpp"
 #include "core/model/hourly/prepare.hpp"
 #include "core/model/model_adaptors.hpp"
+#include "core/weather/assumed_sky.hpp"
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/effects_calibration.hpp"
 #include "daemon/site/calibrate/yardstick.hpp"
@@ -111,12 +114,53 @@ Result<ModelFactory> whole_model_of(const SiteConfig& site, const SiteModelParts
   };
 }
 
+/// @param errors  Of all months; the problem has its own.
+void add_common_errors(const std::vector<Eigen::VectorXd>& errors, PreparedSite& prepared) {
+  const auto all = static_cast<Eigen::Index>(prepared.so_far.months.size());
+  const auto first = static_cast<Eigen::Index>(prepared.problem.month_names.size());
+  for (const Eigen::VectorXd& error : errors) {
+    prepared.common_errors.push_back(error);
+    prepared.problem.common_errors.push_back(assessment::leading_months(error, all, first));
+  }
+}
+
 void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weather,
                 const SiteMonths& months, PreparedSite& prepared) {
-  const weather::WeatherSeries& series = weather.filled.series;
+  weather::WeatherSeries series = weather.filled.series;
+  // What is assumed follows the temperature: a discrepancy must not seem to follow it.
+  for (const std::size_t variable : weather.assumed) {
+    for (weather::WeatherHour& hour : series.hours) {
+      hour.*weather::kWeatherVariables[variable].member = kAbsent;
+    }
+  }
   const auto inputs = weather::monthly_inputs(series, calendar, months.calibration);
   prepared.problem.inputs = {inputs.names, inputs.values};
   prepared.inputs = also_in(weather::monthly_inputs(series, calendar, months.all), inputs.names);
+}
+
+/// Errors of one standard deviation, one for each variable of the weather that is assumed: how all
+/// months move when it is wrong in all of them.
+Result<std::vector<Eigen::VectorXd>> assumed_weather_errors(
+    const SiteConfig& site, const SiteModelParts& parts, const SiteMonths& months,
+    const model::epc::Place& place, const SiteWeather& weather, MonthlyModel& model,
+    std::span<const double> theta) {
+  std::vector<Eigen::VectorXd> errors;
+  if (weather.assumed.empty()) return errors;
+  const auto run = [&](MonthlyModel& one) {
+    const std::vector<double> outputs = evaluate(one, theta);
+    return Eigen::VectorXd{Eigen::Map<const Eigen::VectorXd>(
+        outputs.data(), static_cast<Eigen::Index>(outputs.size()))};
+  };
+  const Eigen::VectorXd base = run(model);
+  for (const std::size_t variable : weather.assumed) {
+    weather::WeatherSeries altered = weather.filled.series;
+    weather::assume_sky(altered, place.location, std::array{variable}, weather::kSkyErrorSd);
+    const auto make = whole_model_of(site, parts, months,
+                                     {place.calendar, place.holidays, place.location, altered});
+    if (!make) return tl::unexpected(make.error());
+    errors.push_back(run(*(*make)(*site.building)) - base);
+  }
+  return errors;
 }
 
 }  // namespace
@@ -214,10 +258,14 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   if (!whole) return tl::unexpected(whole.error());
   prepared.whole_model = (*whole)(*site.building);
 
+  const std::vector<double> modes = prior_modes(result.parameters);
+  const auto of_weather =
+      assumed_weather_errors(site, parts, months, place, weather, *prepared.whole_model, modes);
+  if (!of_weather) return tl::unexpected(of_weather.error());
+
   parts.loads = assessment::more_use(parts.loads);
   const auto with_more = whole_model_of(site, parts, months, place);
   if (!with_more) return tl::unexpected(with_more.error());
-  const std::vector<double> modes = prior_modes(result.parameters);
   prepared.electricity_use =
       assessment::gain_by_use(*prepared.whole_model, *(*with_more)(*site.building), modes);
 
@@ -228,6 +276,7 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   };
   prepared.problem.common_errors = errors(*make, *prepared.model);
   prepared.common_errors = errors(*whole, *prepared.whole_model);
+  add_common_errors(*of_weather, prepared);
   return prepared;
 }
 
@@ -287,9 +336,10 @@ void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& si
     if (is_only && !is_peak) {
       add_use_scatter(k, result, prepared.problem);
       const auto& use = prepared.electricity_use;
-      prepared.common_errors.emplace_back(
+      const Eigen::VectorXd level =
           sizes.electricity_level *
-          Eigen::Map<const Eigen::VectorXd>(use.data(), static_cast<Eigen::Index>(use.size())));
+          Eigen::Map<const Eigen::VectorXd>(use.data(), static_cast<Eigen::Index>(use.size()));
+      add_common_errors({level}, prepared);
     } else if (auto why = why_no_evidence(result.outputs[k], profiled)) {
       using enum assessment::Following;
       assessment::set_aside(k, std::move(*why), is_peak ? errors : level, result, prepared.problem);
@@ -322,7 +372,6 @@ void add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
   const assessment::ModelErrorSizes& sizes = assessment::model_error_sizes(result.model);
   const std::vector<double> spreads = parameter_spreads(site, sizes, result);
-  const std::size_t known = prepared.common_errors.size();
   take_evidence(site, sizes, prepared);
   std::vector<assessment::Service> services;
   for (const assessment::OutputCalibration& output : result.outputs) {
@@ -330,13 +379,7 @@ void add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
   }
   auto errors =
       assessment::model_errors(*prepared.whole_model, result.parameters, spreads, services, sizes);
-  prepared.common_errors.insert(prepared.common_errors.end(), errors.begin(), errors.end());
-  const auto all = static_cast<Eigen::Index>(result.months.size());
-  const auto first = static_cast<Eigen::Index>(prepared.problem.month_names.size());
-  for (std::size_t g = known; g < prepared.common_errors.size(); ++g) {
-    prepared.problem.common_errors.push_back(
-        assessment::leading_months(prepared.common_errors[g], all, first));
-  }
+  add_common_errors(errors, prepared);
 }
 
 }  // namespace
