@@ -8,6 +8,7 @@
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
+#include "daemon/site/calibrate/meter_forecast.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
 #include "daemon/site/results/result_table.hpp"
@@ -43,10 +44,35 @@ tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments&
   return std::move(*done);
 }
 
+/// A site without a model: there is nothing to calibrate, and still something to forecast.
+int forecast_alone(OpenSite site, const CalibrateArguments& arguments, const Console& console) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto recorded = load_modelled_site(
+      std::move(site), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
+  if (!recorded) return console.fail(recorded.error());
+  print_data_words(recorded->recording, console);
+  const auto forecast = forecast_meters(*recorded);
+  if (!forecast) return console.fail(forecast.error());
+  RunFacts& facts = recorded->facts;
+  facts.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::string json = meter_forecast_json(*forecast, facts);
+  if (!arguments.out.empty()) {
+    const std::string months = months_csv(recorded->recording, facts.time_zone_data);
+    if (auto written = write_meter_forecast(json, months, arguments.out); !written) {
+      return console.fail(written.error());
+    }
+  }
+  console.out << (arguments.json ? json : meter_forecast_table(*forecast));
+  return kSuccess;
+}
+
 }  // namespace
 
 int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
   if (!arguments.design.folder.empty()) return run_calibrate_design(arguments, console);
+  if (auto site = open_site(arguments.site); site && !site->config.model && site->config.weather) {
+    return forecast_alone(std::move(*site), arguments, console);
+  }
   const auto done = calibrate_aloud(arguments, console);
   if (!done) return done.error();
   const InterruptGuard until_written;

@@ -587,7 +587,8 @@ TEST_F(Cli, SiteWithoutModelIsOneSentence) {
     EXPECT_EQ(outcome.exit_code, kFailure);
     EXPECT_EQ(outcome.err,
               "recald: site.toml describes meters but no [[model]]; add one with a [building] and "
-              "a [period] to calibrate, or use `recald replay`\n")
+              "a [period] to calibrate, or a [weather] with the temperature, on which `recald "
+              "calibrate` forecasts meters without a model, or use `recald replay`\n")
         << command;
   }
 }

@@ -12,6 +12,14 @@
 namespace recald::daemon {
 namespace {
 
+/// What the site is held against: the model's outputs, or without a model every meter.
+std::vector<std::string> outputs_of(const SiteConfig& site) {
+  if (site.model) return site.model->outputs;
+  std::vector<std::string> all;
+  for (const MeterConfig& config : site.meters) all.push_back(config.meter.id);
+  return all;
+}
+
 /// A gateway may read a thousand meters for a model of three: only those are loaded from its store,
 /// and another one that has just been added, or that says nonsense, is none of the model's
 /// business.
@@ -67,7 +75,8 @@ Result<void> require_model(const SiteConfig& site) {
   return failure(
       ErrorCode::not_enough_data,
       fmt::format("{} describes meters but no [[model]]; add one with a [building] and a "
-                  "[period] to calibrate, or use `recald replay`",
+                  "[period] to calibrate, or a [weather] with the temperature, on which `recald "
+                  "calibrate` forecasts meters without a model, or use `recald replay`",
                   site.file.filename().string()));
 }
 
@@ -80,7 +89,7 @@ Result<Recording> record_site(const OpenSite& site, const ReplayOptions& options
 
 Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
                                         const ChoosePeriod& choose) {
-  leave_out_unmodelled_live_meters(site.config);
+  if (site.config.model) leave_out_unmodelled_live_meters(site.config);
   VirtualClock clock{metering::Instant{}};
   auto recording = replay_meters(site.config, site.calendar, {}, clock, {});
   if (!recording) return tl::unexpected(recording.error());
@@ -124,7 +133,7 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
 Result<MonthRange> latest_months(const OpenSite& site, const Recording& recording,
                                  metering::Instant now) {
   std::optional<MonthRange> common;
-  for (const std::string& id : site.config.model->outputs) {
+  for (const std::string& id : outputs_of(site.config)) {
     const MeterRecord& record = recording.meters[*site.config.meter_index(id)];
     const auto is_closed = [&](const metering::MonthlyFigure& figure) {
       return figure.usable &&

@@ -47,13 +47,13 @@ using ChoosePeriod = std::function<Result<PeriodConfig>(
 /// files do, since they are read anyway.
 /// @param now     A site without a [period] is modelled on the latest months that are closed then.
 /// @param choose  In the place of both; absent: as the site file says.
-/// @return or what is missing. @pre the site has a model
+/// @return or what is missing. Of a site without a model every meter is read.
 [[nodiscard]] Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
                                                       const ChoosePeriod& choose = {});
 
-/// The last `recalibration.months` months that all modelled meters have closed.
+/// The last `recalibration.months` months that all modelled meters have closed; without a model,
+/// all meters.
 /// @return not_enough_data when they have no closed month in common.
-/// @pre the site has a model
 [[nodiscard]] Result<metering::MonthRange> latest_months(const OpenSite& site,
                                                          const Recording& recording,
                                                          metering::Instant now);

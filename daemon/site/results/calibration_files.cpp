@@ -172,9 +172,9 @@ Json unseen_mean_json(const assessment::ForecastAssessment& forecast) {
 }
 
 /// @param of  The output's forecast or yardstick; null: it has none.
-Json forecast_json(const assessment::AssessedCalibration& result,
-                   const std::function<const assessment::ForecastAssessment*(
-                       const assessment::OutputCalibration&)>& of) {
+Json fits_json(const assessment::AssessedCalibration& result,
+               const std::function<const assessment::ForecastAssessment*(
+                   const assessment::OutputCalibration&)>& of) {
   Json calibration = Json::object();
   Json blocks = Json::object();
   Json validation = Json::object();
@@ -377,14 +377,51 @@ void add_follow_up(const FollowUp& follow_up, Json& json) {
   json["meter_changes"] = results::changed_meters_json(*follow_up);
 }
 
-}  // namespace
-
-std::string calibration_json(const assessment::AssessedCalibration& result, const RunFacts& facts,
-                             const FollowUp* follow_up) {
+Json months_json(const assessment::AssessedCalibration& result) {
   Json months = Json::array();
   for (std::size_t i = 0; i < result.month_names.size(); ++i) {
     months.push_back({{"month", result.month_names[i]}, {"role", role_word(result.roles[i])}});
   }
+  return months;
+}
+
+Json forecast_json(const assessment::AssessedCalibration& result) {
+  return fits_json(result, [](const auto& output) { return &output.assessment.forecast; });
+}
+
+Json yardstick_json(const assessment::AssessedCalibration& result) {
+  return fits_json(result, [](const auto& output) {
+    const auto& yardstick = output.assessment.yardstick;
+    return yardstick ? &*yardstick : nullptr;
+  });
+}
+
+}  // namespace
+
+std::string meter_forecast_json(const assessment::AssessedCalibration& result,
+                                const RunFacts& facts) {
+  const Json json = {{"model", "change_point"},
+                     {"status", "forecast"},
+                     {"months", months_json(result)},
+                     {"parameters", Json::array()},
+                     {"forecast", forecast_json(result)},
+                     {"yardstick", yardstick_json(result)},
+                     {"unseen_months_within_limits", unseen_limits_json(result)},
+                     {"predictions", predictions_json(result)},
+                     {"warnings", result.warnings},
+                     {"data_revision", facts.data_revision},
+                     {"model_version", facts.model_version},
+                     {"recald_version", facts.recald_version},
+                     {"tzdata", facts.time_zone_data},
+                     {"weather_values", facts.weather_values},
+                     {"weather", results::weather_json(facts.weather)},
+                     {"weather_assumed", facts.weather_assumed},
+                     {"wall_s", facts.wall_s}};
+  return json.dump(2) + "\n";
+}
+
+std::string calibration_json(const assessment::AssessedCalibration& result, const RunFacts& facts,
+                             const FollowUp* follow_up) {
   Json hyperparameters = Json::array();
   for (const calibration::Summary& s : result.calibration.hyperparameters) {
     Json entry = summary_json(s);
@@ -392,47 +429,41 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
     hyperparameters.push_back(std::move(entry));
   }
   const auto& calibration = result.calibration;
-  Json json = {
-      {"model", name_of(result.model)},
-      {"status", calibration.converged ? "converged" : "unconverged"},
-      {"months", months},
-      {"parameters", parameters_json(result)},
-      {"fixed_parameters", fixed_parameters_json(result)},
-      {"hyperparameters", hyperparameters},
-      {"metamodel", metamodel_json(result)},
-      {"forecast",
-       forecast_json(result, [](const auto& output) { return &output.assessment.forecast; })},
-      {"yardstick", forecast_json(result,
-                                  [](const auto& output) {
-                                    const auto& yardstick = output.assessment.yardstick;
-                                    return yardstick ? &*yardstick : nullptr;
-                                  })},
-      {"before", stage_json(result, &assessment::OutputAssessment::before)},
-      {"prior_mean", stage_json(result, &assessment::OutputAssessment::prior_mean)},
-      {"after", stage_json(result, &assessment::OutputAssessment::after)},
-      {"guideline14", guideline_json(result)},
-      {"unseen_months_within_limits", unseen_limits_json(result)},
-      {"predictions", predictions_json(result)},
-      {"extrapolation", range_json(result, calibration.range.extrapolation)},
-      {"range_fail", range_json(result, calibration.range.by_month)},
-      {"prior_sensitivity", sensitivity_json(result)},
-      {"warnings", result.warnings},
-      {"outputs", outputs_json(result)},
-      {"sampler", facts.sampler},
-      {"hyper_prior", calibration.hyper_prior.name},
-      {"iterations", facts.iterations},
-      {"burn_in", facts.burn_in},
-      {"chains", facts.chains},
-      {"design_runs", facts.design_runs},
-      {"seed", facts.seed},
-      {"data_revision", facts.data_revision},
-      {"model_version", facts.model_version},
-      {"recald_version", facts.recald_version},
-      {"tzdata", facts.time_zone_data},
-      {"weather_values", facts.weather_values},
-      {"weather", results::weather_json(facts.weather)},
-      {"weather_assumed", facts.weather_assumed},
-      {"wall_s", facts.wall_s}};
+  Json json = {{"model", name_of(result.model)},
+               {"status", calibration.converged ? "converged" : "unconverged"},
+               {"months", months_json(result)},
+               {"parameters", parameters_json(result)},
+               {"fixed_parameters", fixed_parameters_json(result)},
+               {"hyperparameters", hyperparameters},
+               {"metamodel", metamodel_json(result)},
+               {"forecast", forecast_json(result)},
+               {"yardstick", yardstick_json(result)},
+               {"before", stage_json(result, &assessment::OutputAssessment::before)},
+               {"prior_mean", stage_json(result, &assessment::OutputAssessment::prior_mean)},
+               {"after", stage_json(result, &assessment::OutputAssessment::after)},
+               {"guideline14", guideline_json(result)},
+               {"unseen_months_within_limits", unseen_limits_json(result)},
+               {"predictions", predictions_json(result)},
+               {"extrapolation", range_json(result, calibration.range.extrapolation)},
+               {"range_fail", range_json(result, calibration.range.by_month)},
+               {"prior_sensitivity", sensitivity_json(result)},
+               {"warnings", result.warnings},
+               {"outputs", outputs_json(result)},
+               {"sampler", facts.sampler},
+               {"hyper_prior", calibration.hyper_prior.name},
+               {"iterations", facts.iterations},
+               {"burn_in", facts.burn_in},
+               {"chains", facts.chains},
+               {"design_runs", facts.design_runs},
+               {"seed", facts.seed},
+               {"data_revision", facts.data_revision},
+               {"model_version", facts.model_version},
+               {"recald_version", facts.recald_version},
+               {"tzdata", facts.time_zone_data},
+               {"weather_values", facts.weather_values},
+               {"weather", results::weather_json(facts.weather)},
+               {"weather_assumed", facts.weather_assumed},
+               {"wall_s", facts.wall_s}};
   json["sampling"] = sampling_json(calibration.sampling);
   json["evidence"] = evidence_json(calibration);
   json["leave_out"] = leave_out_json(calibration);

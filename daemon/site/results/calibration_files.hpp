@@ -20,6 +20,11 @@ using FollowUp = tl::expected<DriftSummary, std::string>;
                                            const RunFacts& facts,
                                            const FollowUp* follow_up = nullptr);
 
+/// The same of a site without a model (`forecast_meters`): months, forecasts and what was read, and
+/// nothing that only a calibration has.
+[[nodiscard]] std::string meter_forecast_json(const assessment::AssessedCalibration& result,
+                                              const RunFacts& facts);
+
 /// The same as the result of a job.
 [[nodiscard]] JobResult calibration_result(const assessment::AssessedCalibration& result,
                                            const RunFacts& facts,

@@ -38,6 +38,14 @@ Result<void> write_calibration(const FinishedCalibration& done, const std::strin
   return write("calibration.json", json);
 }
 
+Result<void> write_meter_forecast(const std::string& json, const std::string& months,
+                                  const std::filesystem::path& folder) {
+  if (auto made = system::make_folder(folder); !made) return made;
+  clear_results(folder);
+  if (auto written = system::write_file(folder / "months.csv", months); !written) return written;
+  return system::write_file(folder / "calibration.json", json);
+}
+
 Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,
                                const std::filesystem::path& folder) {
   if (auto made = system::make_folder(folder); !made) return made;

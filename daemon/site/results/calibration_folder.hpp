@@ -20,6 +20,10 @@ namespace recald::daemon {
                                              const std::string& generated_at,
                                              const std::filesystem::path& folder);
 
+/// Months and, last, calibration.json, of a site without a model.
+[[nodiscard]] Result<void> write_meter_forecast(const std::string& json, const std::string& months,
+                                                const std::filesystem::path& folder);
+
 /// Draws and, last, calibration.json.
 [[nodiscard]] Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,
                                              const std::filesystem::path& folder);

@@ -23,6 +23,7 @@ std::size_t label_width(const assessment::AssessedCalibration& result) {
 }
 
 /// The seed's Tables 3 and 4: every output before and after, on calibration and validation months.
+/// Where nothing was calibrated, forecasts alone.
 std::string fit_lines(const assessment::AssessedCalibration& result) {
   const std::size_t width = label_width(result);
   const auto line = [width](const std::string& label, const char* stage,
@@ -45,6 +46,7 @@ std::string fit_lines(const assessment::AssessedCalibration& result) {
                   cells(forecast.validation.metrics));
     };
     text += forecast_line(output.label, "forecast", a.forecast);
+    if (result.parameters.empty()) continue;
     if (a.yardstick) text += forecast_line("", "yardstick", *a.yardstick);
     text += stage_line("", "prior mode", a.before);
     text += stage_line("", "prior mean", a.prior_mean);
@@ -137,6 +139,17 @@ std::string result_table(const assessment::AssessedCalibration& result) {
                         verdict.why);
   }
   text += metamodel_lines(result);
+  for (const std::string& warning : result.warnings) text += "! " + warning + "\n";
+  return text;
+}
+
+std::string meter_forecast_table(const assessment::AssessedCalibration& result) {
+  std::string text = fit_lines(result);
+  text +=
+      "forecast: a regression of the meter's days on temperature; a calibration month from the "
+      "others.\nThe site has no [[model]]: with a [building] and a [[model]] its parameters are "
+      "calibrated.\n\n";
+  text += band_lines(result);
   for (const std::string& warning : result.warnings) text += "! " + warning + "\n";
   return text;
 }
