@@ -367,10 +367,20 @@ std::vector<double> parameter_spreads(const SiteConfig& site,
   return spreads;
 }
 
+/// As learnt, where the site does not know better.
+assessment::ModelErrorSizes sizes_of(const ModelConfig& model) {
+  const assessment::ModelErrorSizes& learnt = assessment::model_error_sizes(model.kind);
+  const ModelErrorsConfig& own = model.errors;
+  return {.parameter_share = own.parameter_share.value_or(learnt.parameter_share),
+          .cooling_level = own.cooling_level.value_or(learnt.cooling_level),
+          .heating_level = own.heating_level.value_or(learnt.heating_level),
+          .electricity_level = own.electricity_level.value_or(learnt.electricity_level)};
+}
+
 /// What the seed's discrepancy leaves out: see assessment/model_errors.hpp.
 void add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
-  const assessment::ModelErrorSizes& sizes = assessment::model_error_sizes(result.model);
+  const assessment::ModelErrorSizes sizes = sizes_of(*site.model);
   const std::vector<double> spreads = parameter_spreads(site, sizes, result);
   take_evidence(site, sizes, prepared);
   std::vector<assessment::Service> services;

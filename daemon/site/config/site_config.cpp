@@ -409,6 +409,17 @@ ParameterConfig read_parameter(TomlReader& table) {
   return config;
 }
 
+ModelErrorsConfig read_model_errors(TomlReader table) {
+  constexpr NumberRange kShare{0.0, 10.0};
+  constexpr NumberRange kLevel{0.0, 1.0};
+  ModelErrorsConfig errors{.parameter_share = table.number("parameter_share", kShare),
+                           .cooling_level = table.number("cooling_level", kLevel),
+                           .heating_level = table.number("heating_level", kLevel),
+                           .electricity_level = table.number("electricity_level", kLevel)};
+  table.finish();
+  return errors;
+}
+
 ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
   ModelConfig config;
   if (const auto kind = table.word("kind", model_kind_names(/*of_building_alone=*/true))) {
@@ -433,6 +444,7 @@ ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
       config.weights[id] = weights->number(id, {1e-9, 1.0}).value_or(1.0);
     }
   }
+  if (auto errors = table.table("errors")) config.errors = read_model_errors(*errors);
   for (TomlReader& parameter : table.tables("parameter")) {
     config.parameters.push_back(read_parameter(parameter));
   }

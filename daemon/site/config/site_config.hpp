@@ -85,11 +85,21 @@ struct ParameterConfig {
   std::optional<Prior> prior;  ///< Absent: from the library.
 };
 
+/// Sizes of the model's own errors that the site knows better (`assessment::ModelErrorSizes`);
+/// absent: as learnt.
+struct ModelErrorsConfig {
+  std::optional<double> parameter_share;
+  std::optional<double> cooling_level;
+  std::optional<double> heating_level;
+  std::optional<double> electricity_level;
+};
+
 struct ModelConfig {
   ModelKind kind = ModelKind::epc;
   std::vector<std::string> outputs;       ///< Ids of meters.
   std::map<std::string, double> weights;  ///< By meter; absent: 1.
   std::vector<ParameterConfig> parameters;
+  ModelErrorsConfig errors;
 
   [[nodiscard]] bool has_output(const std::string& meter_id) const;
 };
