@@ -117,17 +117,16 @@ def forecast_table(rows):
               f"{binomial(sum(abs(r['after']) <= abs(r['before']) + 0.01 for r in moved), len(moved))} |")
 
 
-def triangular_density(prior, x):
-    a, c, b = prior["min"], prior["mode"], prior["max"]
-    if not a < x < b:
-        return 0.0
-    return 2 * (x - a) / ((b - a) * (c - a)) if x < c else 2 * (b - x) / ((b - a) * (b - c))
+def log_normal(x, of):
+    """Log density of a normal with this mean and sd: posterior and prior are compared alike."""
+    return -0.5 * ((x - of["mean"]) / of["sd"]) ** 2 - math.log(of["sd"] * math.sqrt(2 * math.pi))
 
 
 def truth_table(results, truths):
     print("\n| parameter | truth in 90 % | median contraction | mean − truth, prior sd: bias, rms | "
           "log density of the truth, posterior − prior (mean) |")
     print("| --- |" + " --- |" * 4)
+    identified = []
     names = sorted({p["name"] for r in results.values() for p in r["parameters"]})
     for name in names:
         inside, contraction, errors, gain = 0, [], [], []
@@ -137,18 +136,20 @@ def truth_table(results, truths):
             if posterior is None or truth is None:
                 continue
             prior = posterior["prior"]
-            inside += posterior["q05"] <= truth <= posterior["q95"]
+            inside_now = posterior["q05"] <= truth <= posterior["q95"]
+            inside += inside_now
             contraction.append(posterior["contraction"])
             errors.append((posterior["mean"] - truth) / prior["sd"])
-            density = triangular_density(prior, truth)
-            if density > 0:
-                normal = (math.exp(-0.5 * ((truth - posterior["mean"]) / posterior["sd"]) ** 2) /
-                          (posterior["sd"] * math.sqrt(2 * math.pi)))
-                gain.append(math.log(max(normal, 1e-300)) - math.log(density))
+            gain.append(log_normal(truth, posterior) - log_normal(truth, prior))
+            if posterior["identified"]:
+                identified.append(inside_now)
         if errors:
             rms = math.sqrt(statistics.fmean(e * e for e in errors))
             print(f"| {name} | {binomial(inside, len(errors))} | {median(contraction):.2f} | "
                   f"{statistics.fmean(errors):+.2f}, {rms:.2f} | {statistics.fmean(gain):+.2f} |")
+    if identified:
+        print(f"\nOf parameters called identified the truth is in 90 %: "
+              f"{binomial(sum(identified), len(identified))}.")
 
 
 def truth_of(folder):
@@ -171,6 +172,12 @@ else:
     uses = os.environ.get("USES", "office school laboratory").split()
     for folder in make_buildings(build, out, uses, int(os.environ.get("COUNT", "12")),
                                  int(os.environ.get("SEED", "9001"))):
+        if os.environ.get("ERRORS"):  # of the same buildings, in a folder of their own
+            site = folder / "site.toml"
+            text = site.read_text()
+            if "[model.errors]" not in text:
+                place = text.index("[building]")
+                site.write_text(f"{text[:place]}[model.errors]\n{os.environ['ERRORS']}\n\n{text[place:]}")
         folders.append((folder, folder / "site.toml", truth_of(folder)))
 
 for model in models:

@@ -6,6 +6,7 @@
 #   SEED    of the first; the others follow         (default 9001)
 #   MODELS  epc, hourly                             (default both)
 #   SITES   folders with a site.toml (and a truth.json) in the place of simulated buildings
+#   ERRORS  lines of [model.errors], to try other sizes of the models' own errors; with an OUT of its own
 #   OUT     where results are kept                  (default: a new folder)
 # Argument: the build folder.
 set -eu
