@@ -9,7 +9,7 @@ namespace recald::sqlite {
 
 struct Refilled {
   std::int64_t from_samples = 0;
-  std::int64_t still_missing = 0;  ///< Between intervals that are there.
+  std::int64_t still_missing = 0;  ///< From the first to the last that there ever were.
 };
 
 /// Each meter's intervals follow each other without a gap, also where nothing was measured; so a

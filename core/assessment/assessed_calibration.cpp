@@ -107,6 +107,7 @@ Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
   const auto draws = design::run_model(whole_model, result.parameters,
                                        result.calibration.thinned.theta, context.executor);
   if (!draws) return tl::unexpected(draws.error());
+  scale_followed(result);
   auto forecasts = forecast_given_data(result, whole, *draws);
   if (!forecasts) return tl::unexpected(forecasts.error());
 

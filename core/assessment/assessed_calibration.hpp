@@ -18,13 +18,13 @@
 
 namespace recald::assessment {
 
-/// One modelled output over all months of calibration and validation.
 /// How an output that is not fitted is forecast.
 enum class Following {
   level,   ///< By its meter's level against what the model has of it.
   errors,  ///< By the model's errors, given its own months and those of the fitted outputs.
 };
 
+/// One modelled output over all months of calibration and validation.
 struct OutputCalibration {
   std::string name;       ///< As files write it: "steam_daily_kWh".
   std::string label;      ///< As tables write it: "steam".

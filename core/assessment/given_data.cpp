@@ -355,6 +355,21 @@ void follow_level(const AssessedCalibration& result, const OutputCalibration& ou
 
 }  // namespace
 
+void scale_followed(AssessedCalibration& result) {
+  const Eigen::MatrixXd& runs = result.calibration.design.outputs;
+  const Index months = runs.cols() / std::ssize(result.outputs);
+  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
+    OutputCalibration& output = result.outputs[k];
+    if (output.calibrated || output.following != Following::errors) continue;
+    const auto block = runs.middleCols(static_cast<Index>(k) * months, months);
+    if (block.size() == 0 || !(block.maxCoeff() > block.minCoeff())) {
+      output.following = Following::level;
+    } else {
+      result.calibration.normalisation.scales[k] = {block.minCoeff(), block.maxCoeff()};
+    }
+  }
+}
+
 Result<std::vector<OutputForecasts>> forecast_given_data(const AssessedCalibration& result,
                                                          const WholePeriod& whole,
                                                          const Eigen::MatrixXd& simulated) {

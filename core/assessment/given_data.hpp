@@ -23,6 +23,10 @@ struct OutputForecasts {
   int unreliable_months = 0;
 };
 
+/// Gives every output that is followed by the model's errors the scale of its design runs: it had
+/// no share in the normalisation. One that no run moves is followed by its level.
+void scale_followed(AssessedCalibration& result);
+
 /// A fitted output is the model and what the measured points say of its discrepancy and common
 /// errors: given a draw (theta, phi), with S = C(phi) + G G' and N the independent errors,
 ///

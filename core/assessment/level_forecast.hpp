@@ -1,4 +1,4 @@
-/// Forecasts of an output that no calibration parameter moves.
+/// Forecasts of an output by its level against what the model has of it.
 #pragma once
 
 #include <Eigen/Core>

@@ -75,6 +75,9 @@ Result<SiteCalibration> forecast_meters(const ModelledSite& site) {
                    "temperature; see `recald replay` for what its readings lack");
   }
   result.outputs = std::move(known);
+  for (const auto* notes : {&site.recording.notes, &site.weather.notes}) {
+    result.warnings.insert(result.warnings.end(), notes->begin(), notes->end());
+  }
   return result;
 }
 

@@ -313,27 +313,31 @@ void add_use_scatter(std::size_t k, SiteCalibration& result,
 std::optional<std::string> why_no_evidence(const assessment::OutputCalibration& output,
                                            std::size_t profiled) {
   if (output.unit == "kW") {
-    return "A month's peak stands out of the mean days that schedules are, so it is no evidence "
+    return "A month's peak is no mean day, which is what schedules tell of, so it is no evidence "
            "for "
-           "the model; it is forecast from the months before.";
+           "the model. It is forecast by the model's errors in it and in the fitted meters.";
   }
   if (output.meter != profiled) return std::nullopt;
   return "The model's lights and plugs were read off this meter, so it is no evidence for the "
-         "model; "
-         "it is followed by its level.";
+         "model; it is followed by its level.";
 }
 
-/// Sets aside what is no evidence. Where nothing else is metered, the meter that was read is fitted
-/// all the same, with the profile's doubt as a common error.
+/// Sets aside what is no evidence. Where too little else is metered, the meter that was read is
+/// fitted all the same, with the profile's doubt as a common error.
 void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& sizes,
                    PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
   const std::size_t profiled = *profile_meter(site);
-  const bool is_only = std::ranges::all_of(
-      result.outputs, [&](const auto& output) { return output.meter == profiled; });
+  int other_figures = 0;
+  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
+    const auto& output = result.outputs[k];
+    if (output.unit == "kW" || output.meter == profiled) continue;
+    other_figures += prepared.problem.outputs[k].measured_months();
+  }
+  const bool is_only = other_figures < std::ssize(result.parameters) + kFiguresBeyondParameters;
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     const bool is_peak = result.outputs[k].unit == "kW";
-    if (is_only && !is_peak) {
+    if (is_only && !is_peak && result.outputs[k].meter == profiled) {
       add_use_scatter(k, result, prepared.problem);
       const auto& use = prepared.electricity_use;
       const Eigen::VectorXd level =

@@ -19,7 +19,7 @@ namespace recald::daemon {
 /// @param problem  Of the site, as the diagnosis had it: months and their roles are taken from it.
 /// @param added    With η at their modes, one on top of the other.
 /// @return the gap; or
-///         unsupported      the monthly model cannot be made of this site (a chiller of its own);
+///         unsupported      the monthly model cannot be made of this site;
 ///         not_enough_data  fewer than two months shown, or too few to fit; no electricity meter.
 /// @note   Maximum a posteriori, Gauss-Newton: well under a second. Same input, same bytes.
 [[nodiscard]] Result<diagnosis::MonthlyVote> epc_gap(

@@ -100,8 +100,10 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
       return tl::unexpected(taken.error());
     }
   }
-  if (auto read = require_live_months(site.config, *recording); !read) {
-    return tl::unexpected(read.error());
+  if (site.config.model) {
+    if (auto read = require_live_months(site.config, *recording); !read) {
+      return tl::unexpected(read.error());
+    }
   }
   if (choose) {
     const auto period = choose(site, *recording, now);

@@ -196,8 +196,8 @@ Result<SiteWeather> read_all(const SiteConfig& site, const metering::LocalCalend
     if (!series) return tl::unexpected(series.error());
     result.filled = weather::fill_gaps(*series, calendar);
   }
-  if (!site.location) result.assumed.clear();
-  if (!result.assumed.empty()) {
+  // A site without a place has no model, which would need what is missing.
+  if (site.location && !result.assumed.empty()) {
     weather::assume_sky(result.filled.series, *site.location, result.assumed);
     result.notes.push_back(assumed_words(result.assumed));
   }

@@ -117,7 +117,7 @@ Json guideline_json(const assessment::AssessedCalibration& result) {
   std::string why;
   for (const assessment::OutputCalibration& output : result.outputs) {
     const auto& metrics = output.assessment.after.calibration;
-    // An output that was not fitted is met by its own profile: that is no evidence for the model.
+    // What was not fitted is judged by no limit for fitted models.
     if (!metrics || !output.calibrated) continue;
     const auto verdict = assessment::guideline14_verdict(*metrics);
     outputs[output.name] = {{"pass", verdict.pass}, {"why", verdict.why}};
@@ -415,7 +415,6 @@ std::string meter_forecast_json(const assessment::AssessedCalibration& result,
                      {"tzdata", facts.time_zone_data},
                      {"weather_values", facts.weather_values},
                      {"weather", results::weather_json(facts.weather)},
-                     {"weather_assumed", facts.weather_assumed},
                      {"wall_s", facts.wall_s}};
   return json.dump(2) + "\n";
 }

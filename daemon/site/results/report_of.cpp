@@ -183,13 +183,12 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
     if (auto text = forecast_sentence(meter, output.assessment); !text.empty()) {
       forecasts.push_back(std::move(text));
     }
-    if (!output.calibrated) continue;
     if (has_become_worse(output.assessment)) worse += (worse.empty() ? "" : ", ") + meter;
     if (auto text = model_sentence(meter, output.assessment); !text.empty()) {
       models.push_back(std::move(text));
     }
-    // Electricity that its own profile reproduces is no evidence for the model.
-    if (const auto& after = output.assessment.after.calibration) {
+    // What was not fitted is judged by no limit for fitted models.
+    if (const auto& after = output.assessment.after.calibration; after && output.calibrated) {
       data.verdicts.push_back({meter, assessment::guideline14_verdict(*after)});
     }
   }

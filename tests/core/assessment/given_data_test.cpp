@@ -221,6 +221,22 @@ TEST(GivenData, AnOutputThatIsNotFittedMayBeFollowedByTheModelsErrors) {
   EXPECT_NEAR((*forecasts)[1].months[2]->mean(), seen.mean(0), 1e-8);
 }
 
+// Its scale is none of the calibration's, which did not see it.
+TEST(GivenData, WhatIsFollowedHasTheScaleOfItsDesignRuns) {
+  AssessedCalibration result = one_fitted();
+  result.calibration.normalisation.scales[1] = {0.0, 1.0};
+  result.calibration.design.outputs.resize(2, 2 * kSeen);
+  result.calibration.design.outputs << 1, 2, 3, 4, 30, 40, 50, 60,  //
+      2, 3, 4, 5, 10, 20, 30, 90;
+  scale_followed(result);
+  EXPECT_EQ(result.calibration.normalisation.scales[0].max, 250.0);
+  EXPECT_EQ(result.calibration.normalisation.scales[1].min, 10.0);
+  EXPECT_EQ(result.calibration.normalisation.scales[1].max, 90.0);
+  result.calibration.design.outputs.rightCols(kSeen).setConstant(7.0);
+  scale_followed(result);
+  EXPECT_EQ(result.outputs[1].following, Following::level);
+}
+
 // A fitted output is what it would be without it.
 TEST(GivenData, WhatIsFollowedTellsNothingToTheOthers) {
   AssessedCalibration result = one_fitted();

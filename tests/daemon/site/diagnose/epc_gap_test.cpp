@@ -126,12 +126,12 @@ TEST_F(EpcGapTest, WithoutFiguresInTheMonthsShownItHasNoVote) {
   EXPECT_TRUE(std::isnan(found->gap.change[1].cvrmse.low));
 }
 
-TEST_F(EpcGapTest, SitesThatTheMonthlyModelCannotTellSaySo) {
+// The hourly model tells its chiller from lights and plugs.
+TEST_F(EpcGapTest, ASiteWithAChillerOfItsOwnIsJudgedToo) {
   modelled_->site.config.building->chiller_cop = 3.0;
-  const auto refused = gap({});
-  ASSERT_FALSE(refused.has_value());
-  EXPECT_EQ(refused.error().code, ErrorCode::unsupported);
-  EXPECT_THAT(refused.error().message, ::testing::HasSubstr("chiller_cop"));
+  const auto found = gap({});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  EXPECT_EQ(found->gap.after[1].cvrmse, found->gap.before[1].cvrmse);
 }
 
 TEST_F(EpcGapTest, TooFewMonthsToJudgeByIsExplained) {
