@@ -322,6 +322,9 @@ std::optional<std::string> why_no_evidence(const assessment::OutputCalibration& 
          "model; it is followed by its level.";
 }
 
+// A calibration needs so many more figures than it has parameters.
+constexpr int kFiguresBeyondParameters = 2;
+
 /// Sets aside what is no evidence. Where too little else is metered, the meter that was read is
 /// fitted all the same, with the profile's doubt as a common error.
 void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& sizes,
