@@ -30,7 +30,7 @@ double level_of(Service service, const ModelErrorSizes& sizes) {
 }  // namespace
 
 const ModelErrorSizes& model_error_sizes(ModelKind kind) {
-  // The likeliest of `--long model-errors`: tests/results/calibration.md.
+  // The likeliest of `--long model-errors`: tests/results/forecasts.md.
   static const ModelErrorSizes of_epc{.parameter_share = 1.5,
                                       .cooling_level = 0.20,
                                       .heating_level = 0.30,
