@@ -3,6 +3,7 @@
 /// All building models read this description; calibration parameters change copies of it.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +63,21 @@ struct SetPoints {
   double closed_start_h = 0.0;  ///< After the start with outdoor-air dampers shut.
 };
 
+/// Days of every year on which the building is used otherwise, such as a school's summer.
+struct Season {
+  std::chrono::month_day first;  ///< May be later in the year than `last`: over New Year.
+  std::chrono::month_day last;   ///< Inclusive.
+  HourlySchedule occupied_fraction;
+  bool closed = false;  ///< Set-points and fans keep their unoccupied values all day.
+
+  [[nodiscard]] bool contains(metering::Day day) const {
+    const std::chrono::month_day date{day.month(), day.day()};
+    const bool after = first <= date;
+    const bool before = date <= last;
+    return first <= last ? after && before : after || before;
+  }
+};
+
 /// Air handlers with VAV reheat as one system. Absent in a building without one.
 struct AirSystem {
   double outdoor_air_m3_s = 0.0;  ///< Total of all air handlers while occupied.
@@ -103,6 +119,7 @@ struct Building {
   std::vector<Surface> surfaces;
   Use use;
   HourlySchedule occupied_fraction;
+  std::vector<Season> seasons;  ///< The first that holds a day counts; none: as all year.
   SetPoints set_points;
   double leakage_cm2_m2 = 1.0;    ///< Effective leakage area at 4 Pa per exterior area.
   double ventilation_m3_s = 0.0;  ///< Outdoor air straight to the zone, where no air system is.

@@ -51,6 +51,10 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
   const DayType day = day_type(local.date, holidays);
   const int hour = local.minute_of_day / 60;
   const auto calendar_month = static_cast<unsigned>(local.date.month());
+  const auto season = std::ranges::find_if(
+      building.seasons, [&](const Season& one) { return one.contains(local.date); });
+  const bool in_season = season != building.seasons.end();
+  const HourlySchedule& people = in_season ? season->occupied_fraction : building.occupied_fraction;
   const double factor = loads.month_factor[calendar_month - 1];
   const double humidity_pct =
       drivers.has_humidity ? weather.rel_humidity_pct : kAssumedHumidity_pct;
@@ -69,7 +73,7 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
           .month = month,
           .day = day,
           .local_hour = hour,
-          .occupied = is_occupied(building.set_points, day, hour),
+          .occupied = !(in_season && season->closed) && is_occupied(building.set_points, day, hour),
           .dry_bulb_C = weather.dry_bulb_C,
           .humidity_ratio =
               weather::humidity_ratio(weather.dry_bulb_C, relative_humidity, drivers.pressure_Pa),
@@ -81,7 +85,7 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
           .hours_since_stop = 0.0,
           .hours_since_start = 0.0,
           .hours_to_stop = 0.0,
-          .occupied_fraction = building.occupied_fraction.at(day, hour),
+          .occupied_fraction = people.at(day, hour),
           .lights_W = 1e3 * factor * loads.lights_kW.at(day, hour),
           .plugs_W = 1e3 * factor * loads.plugs_kW.at(day, hour)};
 }

@@ -83,6 +83,32 @@ void read_schedule(TomlReader table, model::HourlySchedule& occupied_fraction) {
   table.finish();
 }
 
+std::chrono::month_day read_month_day(TomlReader& table, std::string_view key) {
+  const std::string text = table.required_text(key);
+  // Any leap year will do.
+  const auto day = metering::parse_day("2020-" + text);
+  if (day) return {day->month(), day->day()};
+  if (!text.empty()) {
+    table.problem_at(
+        key, fmt::format("'{}' is \"{}\"; write a day of the year such as \"07-15\"", key, text));
+  }
+  return {};
+}
+
+model::Season read_season(TomlReader& table) {
+  model::Season season{.first = read_month_day(table, "from"),
+                       .last = read_month_day(table, "to"),
+                       .occupied_fraction = {},
+                       .closed = table.boolean("closed").value_or(false)};
+  if (auto schedule = table.table("schedule")) {
+    read_schedule(*schedule, season.occupied_fraction);
+  } else if (!season.closed) {
+    table.problem("a season is closed = true, has a schedule of its own, or both");
+  }
+  table.finish();
+  return season;
+}
+
 void read_set_points(TomlReader table, model::SetPoints& set) {
   set.cooling_occupied_C =
       table.number_or("cooling_occupied_C", set.cooling_occupied_C, kTemperature_C);
@@ -172,6 +198,9 @@ Building read_building(TomlReader table) {
     read_schedule(*schedule, building.occupied_fraction);
   } else {
     table.problem("[building.schedule] is missing");
+  }
+  for (TomlReader& season : table.tables("season")) {
+    building.seasons.push_back(read_season(season));
   }
   if (auto set_points = table.table("setpoint")) read_set_points(*set_points, building.set_points);
   if (auto infiltration = table.table("infiltration")) {

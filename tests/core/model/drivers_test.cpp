@@ -61,6 +61,42 @@ TEST(Drivers, MissingWeatherNamesTheHourAndTheVariable) {
   EXPECT_THAT(make().error().message, HasSubstr("2021-01"));
 }
 
+TEST(Drivers, ASeasonHasItsOwnPeopleAndMayBeClosed) {
+  Building building = sample_building();
+  Season summer{.first = std::chrono::July / 5,
+                .last = std::chrono::August / 20,
+                .occupied_fraction = {},
+                .closed = true};
+  summer.occupied_fraction.at(DayType::workday, 10) = 0.1;
+  building.seasons = {summer};
+  const Drivers with = sample_drivers(building, 12);
+  const Drivers without = sample_drivers(sample_building(), 12);
+  const metering::Day first = std::chrono::year{2021} / 7 / 5;
+  const metering::Day last = std::chrono::year{2021} / 8 / 20;
+  for (std::size_t i = 0; i < with.hours.size(); ++i) {
+    const DriverHour& hour = with.hours[i];
+    if (hour.date < first || hour.date > last) {
+      EXPECT_EQ(hour.occupied, without.hours[i].occupied);
+      EXPECT_EQ(hour.occupied_fraction, without.hours[i].occupied_fraction);
+      continue;
+    }
+    EXPECT_FALSE(hour.occupied);
+    const bool is_ten_of_workday = hour.day == DayType::workday && hour.local_hour == 10;
+    EXPECT_EQ(hour.occupied_fraction, is_ten_of_workday ? 0.1 : 0.0);
+  }
+}
+
+TEST(Drivers, ASeasonMayGoOverNewYear) {
+  const Season winter{.first = std::chrono::December / 20,
+                      .last = std::chrono::January / 6,
+                      .occupied_fraction = {},
+                      .closed = true};
+  EXPECT_TRUE(winter.contains(std::chrono::year{2021} / 12 / 20));
+  EXPECT_TRUE(winter.contains(std::chrono::year{2022} / 1 / 6));
+  EXPECT_FALSE(winter.contains(std::chrono::year{2022} / 1 / 7));
+  EXPECT_FALSE(winter.contains(std::chrono::year{2021} / 12 / 19));
+}
+
 TEST(Drivers, HolidaysRunLikeSundays) {
   const metering::Day friday = std::chrono::year{2021} / 1 / 1;
   EXPECT_EQ(day_type(friday, {}), DayType::workday);
