@@ -1,6 +1,6 @@
 // The full simulation-based calibration of both ways, as a table for tests/results/calibration.md.
 //
-//   sbc_study [replicates] [seed|gaps|epc]
+//   sbc_study [replicates] [seed|gaps|epc|default]
 
 #include <cstdio>
 #include <cstdlib>
@@ -60,6 +60,11 @@ int main(int argc, char** argv) {
     c.sbc.sampling.burn_in = 1'000;
     c.sbc.sampling.gate = {.rhat_max = 1.05, .ess_min = 100.0, .mcse_share_max = 0.1};
     print("EPC, six months, DRAM", run_sbc(c.sbc, replicates, 30'001, executor));
+  }
+  if (only.empty() || only == "default") {
+    const OwnedSbcCase c = emulated_epc_case(12, 2);
+    print("EPC, twelve months, as a calibration of a site goes by default",
+          run_sbc(c.sbc, replicates, 40'001, executor));
   }
   return 0;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/assessment/model_errors.hpp"
+#include "core/calibration/emulator.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/design/model_runs.hpp"
 #include "core/model/epc/epc_model.hpp"
@@ -22,6 +23,7 @@ namespace recald::calibration {
 struct OwnedSbcCase {
   std::unique_ptr<MonthlyModel> model;
   SbcCase sbc;
+  std::unique_ptr<MonthlyModel> stand_in{};
 };
 
 /// Weather-like inputs scaled to [0, 1]: a season, its echo, and two that wander.
@@ -156,6 +158,23 @@ inline OwnedSbcCase epc_case(int months, int inputs) {
            make_hyper_prior(HyperPriorProfile::scaled, 0.05),
            sbc_input_names(inputs),
            {}}};
+}
+
+/// The EPC path as a site's calibration goes by default: a polynomial in the chains, its error
+/// among the points' variances, and the sampler that recald picks.
+inline OwnedSbcCase emulated_epc_case(int months, int inputs) {
+  OwnedSbcCase c = epc_case(months, inputs);
+  Rng rng(14);
+  const Eigen::MatrixXd theta = design::latin_hypercube(c.sbc.parameters, 200, rng);
+  const Eigen::MatrixXd runs =
+      design::run_model(*c.model, c.sbc.parameters, theta, for_each_index_serially).value();
+  Emulator emulator = emulate(theta, runs, c.model->output_count(), c.model->month_count()).value();
+  PosteriorData with_error = c.sbc.data;
+  add_emulator_error(emulator.error_sd, months, with_error);
+  c.sbc.stand_in_variances = with_error.extra_variances - c.sbc.data.extra_variances;
+  c.stand_in = std::make_unique<model::metamodel::QuadraticModel>(std::move(emulator.model));
+  c.sbc.stand_in = c.stand_in.get();
+  return c;
 }
 
 }  // namespace recald::calibration

@@ -33,6 +33,9 @@ struct SbcCase {
   /// Posterior draws a rank is taken among; they have to be about independent. One less than a
   /// multiple of 40, so that bins and levels are whole numbers of ranks.
   int draws = 199;
+  /// In the chains in the place of the model, which makes the data; null: the model itself.
+  const MonthlyModel* stand_in = nullptr;
+  Eigen::VectorXd stand_in_variances{};  ///< (points) Normalised; empty: none.
 };
 
 inline constexpr int kSbcBins = 20;
@@ -125,7 +128,9 @@ inline SbcReplicate run_replicate(const SbcCase& c, std::uint64_t seed) {
   data.values = simulate_data(c, theta, hyper, rng);
 
   SbcReplicate result;
-  const Posterior posterior = Posterior::make(c.model, c.parameters, data, c.prior).value();
+  if (c.stand_in_variances.size() > 0) data.extra_variances += c.stand_in_variances;
+  const MonthlyModel& sampled_model = c.stand_in != nullptr ? *c.stand_in : c.model;
+  const Posterior posterior = Posterior::make(sampled_model, c.parameters, data, c.prior).value();
   const auto sampled = sample_posterior(posterior, c.input_names, c.sampling, {.seed = seed});
   if (!sampled) return result;
   result.failed = false;
