@@ -82,7 +82,8 @@ Result<void> calibrate_into(const MonthlyModel& model,
   if (!calibrated) return tl::unexpected(calibrated.error());
   result.calibration = std::move(*calibrated);
   for (const calibration::Finding& finding : result.calibration.findings) {
-    result.warnings.push_back(finding.sentence);
+    const bool is_alarm = finding.kind == calibration::FindingKind::prior_edge;
+    (is_alarm ? result.alarms : result.warnings).push_back(finding.sentence);
   }
   if (!prior_sensitivity) return {};
   auto sensitivity =

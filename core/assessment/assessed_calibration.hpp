@@ -57,14 +57,25 @@ struct AssessedCalibration {
   std::vector<MonthRole> roles;          ///< (months) calibration months come first.
   std::vector<Parameter> parameters;
   std::vector<Parameter> fixed_parameters;  ///< In the model at their prior means, not calibrated.
+  /// (parameters) Where a prior that the site gives comes from, as it says; empty: nothing is said.
+  std::vector<std::string> prior_sources;
   /// (parameters) sd of what each means in the model, in prior sds (model_errors.hpp); empty: none.
   std::vector<double> parameter_errors;
   std::optional<MetamodelFacts> metamodel;
   calibration::Calibration calibration;
   std::vector<OutputCalibration> outputs;
   std::optional<calibration::PriorSensitivity> sensitivity;
+  /// Parameters that ran to an end of their prior, or to where no building lies: said first.
+  std::vector<std::string> alarms;
   std::vector<std::string> warnings;  ///< In words, in order of discovery.
+  /// A sentence; not empty: no model was calibrated, and the outputs' forecasts are all there is.
+  std::string not_calibrated_because;
 };
+
+/// Whether this may be used as it is: its chains have converged, or it needed none.
+[[nodiscard]] inline bool is_sound(const AssessedCalibration& result) {
+  return result.calibration.converged || !result.not_calibrated_because.empty();
+}
 
 /// The problem of `result`'s outputs over its first `calibration_months` months, without
 /// parameters' errors; inputs are to be filled in.

@@ -124,10 +124,8 @@ Result<void> check_inputs(const CalibrationProblem& problem) {
 }
 
 Result<void> check_point_count(const CalibrationProblem& problem) {
-  int points = 0;
-  for (const auto& output : problem.outputs) points += output.measured_months();
-  // theta and the two variances; with fewer points than unknowns only the prior would come out.
-  const auto needed = static_cast<int>(problem.parameters.size()) + 2;
+  const int points = measured_points(problem);
+  const auto needed = static_cast<int>(problem.parameters.size()) + kPointsBeyondParameters;
   if (points >= needed) return {};
   return failure(ErrorCode::not_enough_data,
                  "a calibration of " + std::to_string(problem.parameters.size()) +
@@ -136,6 +134,12 @@ Result<void> check_point_count(const CalibrationProblem& problem) {
 }
 
 }  // namespace
+
+int measured_points(const CalibrationProblem& problem) {
+  int points = 0;
+  for (const OutputMeasurements& output : problem.outputs) points += output.measured_months();
+  return points;
+}
 
 Result<void> check_problem(const CalibrationProblem& problem, const MonthlyModel& model) {
   if (auto ok = check_shapes(problem, model); !ok) return ok;

@@ -34,6 +34,11 @@ struct CalibrationProblem {
   std::vector<double> model_error_sd;
 };
 
+/// θ and the two variances: with fewer points than unknowns only the prior would come out.
+constexpr int kPointsBeyondParameters = 2;
+
+[[nodiscard]] int measured_points(const CalibrationProblem& problem);
+
 /// Checks everything that data and configuration can get wrong, before anything is computed.
 ///
 /// @return not_enough_data  fewer measured points than calibration parameters plus two;

@@ -62,21 +62,27 @@ void print_data_words(const Recording& recording, const Console& console) {
   }
 }
 
+tl::expected<ModelledSite, int> load_aloud(OpenSite site, const Console& console,
+                                           const ChoosePeriod& choose) {
+  auto modelled = load_modelled_site(
+      std::move(site), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()),
+      choose);
+  if (!modelled) return tl::unexpected(console.fail(modelled.error()));
+  print_data_words(modelled->recording, console);
+  return std::move(*modelled);
+}
+
 tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& file,
                                                    const Console& console,
                                                    std::optional<ModelKind> model,
                                                    const ChoosePeriod& choose) {
   auto site = open_site(file);
   if (!site) return tl::unexpected(console.fail(site.error()));
-  const auto fail = [&](const Error& error) { return tl::unexpected(console.fail(error)); };
-  if (auto modelled = require_model(site->config); !modelled) return fail(modelled.error());
+  if (auto modelled = require_model(site->config); !modelled) {
+    return tl::unexpected(console.fail(modelled.error()));
+  }
   if (model) site->config.model->kind = *model;
-  auto modelled = load_modelled_site(
-      std::move(*site), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()),
-      choose);
-  if (!modelled) return fail(modelled.error());
-  print_data_words(modelled->recording, console);
-  return std::move(*modelled);
+  return load_aloud(std::move(*site), console, choose);
 }
 
 }  // namespace recald::daemon

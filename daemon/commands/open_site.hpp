@@ -19,7 +19,13 @@ namespace recald::daemon {
 /// Bad lines of the files and what the meters' data show, in words on err.
 void print_data_words(const Recording& recording, const Console& console);
 
-/// Reads and replays everything; what the data show goes to err in words.
+/// Reads and replays everything of a site, with a model or without; what the data show goes to err
+/// in words.
+/// @return the site, or the exit code after saying what is wrong.
+[[nodiscard]] tl::expected<ModelledSite, int> load_aloud(OpenSite site, const Console& console,
+                                                         const ChoosePeriod& choose = {});
+
+/// The same of a file. The site has to have a model.
 /// @param model   Kind of model in the place of the site file's; absent: that one.
 /// @param choose  As load_modelled_site's.
 /// @return the site, or the exit code after saying what is wrong.

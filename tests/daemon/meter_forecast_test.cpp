@@ -67,7 +67,6 @@ TEST_F(MeterForecast, EveryMeterIsForecastFromItsDays) {
   for (const char* output : {"electricity_daily_kWh", "district_heat_daily_kWh"}) {
     const json& unseen = result["forecast"]["validation"][output];
     EXPECT_EQ(unseen["months"], 3) << output;
-    EXPECT_EQ(unseen, result["yardstick"]["validation"][output]);
     EXPECT_LT(unseen["cvrmse"], 0.05) << output;
     EXPECT_LT(std::abs(unseen["nmbe_sim_minus_meas"].get<double>()), 0.05) << output;
   }
@@ -80,6 +79,70 @@ TEST_F(MeterForecast, ATemperatureIsEnough) {
   const json after = calibrated("after");
   EXPECT_EQ(before["forecast"], after["forecast"]);
   EXPECT_EQ(before["predictions"], after["predictions"]);
+}
+
+TEST_F(MeterForecast, OptionsOfAModelAreRefused) {
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--model", "epc"},
+                                                  {"--discrepancy", "seed"},
+                                                  {"--prior-sensitivity"}}) {
+    std::vector<std::string> words{"calibrate", path("site.toml")};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = run(words);
+    EXPECT_NE(outcome.exit_code, 0) << options.front();
+    EXPECT_THAT(outcome.err, HasSubstr("has no [[model]], so --model, --discrepancy"))
+        << options[0];
+  }
+}
+
+TEST_F(MeterForecast, WithoutAPeriodEachMeterHasItsOwnMonths) {
+  // The heat meter came in May.
+  std::istringstream all{read_text(folder_ / "readings.csv")};
+  std::string kept;
+  for (std::string line; std::getline(all, line);) {
+    if (line.find(",heat,") == std::string::npos || line >= "2021-05") kept += line + "\n";
+  }
+  write_text(folder_ / "readings.csv", kept);
+  write_text(folder_ / "site.toml", std::string{recald::testing::kSampleMeters} +
+                                        "[weather]\nfile = \"weather.csv\"\nvalues = \"mean\"\n");
+  const json result = calibrated("out");
+  EXPECT_EQ(result["months"][0]["month"], "2021-01");
+  EXPECT_THAT(result["months"], SizeIs(12));
+  EXPECT_EQ(result["forecast"]["three_months_left_out"]["electricity_daily_kWh"]["months"], 12);
+  EXPECT_EQ(result["forecast"]["three_months_left_out"]["district_heat_daily_kWh"]["months"], 8);
+}
+
+/// A model of which electricity alone is metered, and parameters that do not move it.
+class UntoldModel : public MeterForecast {
+ protected:
+  UntoldModel() {
+    write_text(folder_ / "site.toml",
+               recald::testing::edited(
+                   recald::testing::edited(recald::testing::sample_site(),
+                                           R"(outputs = ["electricity", "district_heat"])",
+                                           R"(outputs = ["electricity"])"),
+                   "weights = { district_heat = 0.8 }\n", ""));
+  }
+  const std::string why_ =
+      "The model is not calibrated: its parameters need at least 4 monthly figures of meters that "
+      "they move, and there are 0. electricity is not fitted. The calibration parameters move it "
+      "by ";
+};
+
+TEST_F(UntoldModel, IsNotCalibratedAndMetersAreForecast) {
+  const Outcome outcome = run({"calibrate", path("site.toml"), "--out", path("out")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(why_));
+  const json result = json::parse(read_text(folder_ / "out" / "calibration.json"));
+  EXPECT_EQ(result["status"], "forecast");
+  EXPECT_THAT(result["not_calibrated_because"].get<std::string>(), HasSubstr(why_));
+  EXPECT_LT(result["forecast"]["validation"]["electricity_daily_kWh"]["cvrmse"], 0.05);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "report.html"));
+}
+
+TEST_F(UntoldModel, HasNoPage) {
+  const Outcome outcome = run({"report", path("site.toml"), "--out", path("page.html")});
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr(why_));
 }
 
 TEST_F(MeterForecast, WithoutATemperatureItSaysWhichMonthsLackIt) {

@@ -82,8 +82,9 @@ def rows_of(results):
             yardstick = (result["yardstick"]["validation"].get(output) or {}).get("cvrmse")
             year = result["forecast"]["unseen_mean"].get(output)
             score = next(v for k, v in fit.items() if k.startswith("interval_score"))
-            before = (result["before"]["validation"].get(output) or {})
-            after = (result["after"]["validation"].get(output) or {})
+            # A model that was not calibrated has neither.
+            before = (result.get("before", {}).get("validation", {}).get(output) or {})
+            after = (result.get("after", {}).get("validation", {}).get(output) or {})
             rows.append({"case": name, "kind": kind, "cv": fit["cvrmse"],
                          "nmbe": fit["nmbe_sim_minus_meas"], "months": fit["months"],
                          "inside": fit["inside_90"], "score": 100 * score / use,
@@ -191,7 +192,8 @@ for model in models:
         else:
             failures.append(f"{folder.name}: {(result / 'failed.txt').read_text().strip().splitlines()[-1]}")
     print(f"\n## {model}: {len(folders)} buildings, {len(failures)} failed, "
-          f"{sum(r['status'] != 'converged' for r in results.values())} not converged, "
+          f"{sum(r['status'] == 'unconverged' for r in results.values())} not converged, "
+          f"{sum(r['status'] == 'forecast' for r in results.values())} without a calibration, "
           f"{median(r['wall_s'] for r in results.values()):.1f} s each (median)\n")
     for failure in failures:
         print(f"- {failure}")

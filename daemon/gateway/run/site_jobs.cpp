@@ -1,6 +1,7 @@
 #include "daemon/gateway/run/site_jobs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -54,14 +55,20 @@ std::string lacking_words(const std::vector<MonthWeather>& months, const SiteCon
 
 JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const RunFacts& facts,
                       const SiteConfig& site, const std::filesystem::path& folder) {
-  JobOutcome outcome{.accepted = calibration.calibration.converged,
+  JobOutcome outcome{.accepted = is_sound(calibration),
                      .folder = folder.string(),
                      .result = calibration_result(calibration, facts)};
-  outcome.message = lacking_words(facts.weather, site);
+  std::vector<std::string> words;
   if (!outcome.accepted) {
-    outcome.message = "the chains have not converged, so the result before stays in use" +
-                      (outcome.message.empty() ? std::string{} : "; " + outcome.message);
+    words.emplace_back("the chains have not converged, so the result before stays in use");
   }
+  if (!calibration.not_calibrated_because.empty()) {
+    words.push_back(calibration.not_calibrated_because);
+  }
+  if (auto lacking = lacking_words(facts.weather, site); !lacking.empty()) {
+    words.push_back(std::move(lacking));
+  }
+  outcome.message = fmt::format("{}", fmt::join(words, "; "));
   return outcome;
 }
 

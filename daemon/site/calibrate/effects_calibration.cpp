@@ -35,6 +35,7 @@ std::vector<bool> teaching_months(const SiteCalibration& site, std::size_t month
 }  // namespace
 
 Result<void> calibrate_with_effects(PreparedSite& prepared, const CalibrateOptions& options,
+                                    calibration::DesignRuns design,
                                     const calibration::RunContext& context,
                                     SiteCalibration& result) {
   const std::vector<bool> teaches = teaching_months(result, prepared.problem.month_names.size());
@@ -44,7 +45,7 @@ Result<void> calibrate_with_effects(PreparedSite& prepared, const CalibrateOptio
                               "All months here are later than those that it was learnt from, so "
                               "what was learnt is the prior of its parameters, and these months "
                               "teach them further.");
-    return calibrate_all(prepared, options, context, result);
+    return calibrate_all(prepared, options, std::move(design), context, result);
   }
   Eigen::MatrixXd eta = assessment::spread_eta(result.effects->draws);
   std::string how = "It was learnt from the months here";

@@ -17,9 +17,11 @@ namespace recald::daemon {
 ///
 /// In a cut, findings, evidence and leave-out scores are of η at its mean; draws, summaries and
 /// convergence are of the pooled draws, at which no η is judged: it does not move.
-/// @param prepared  With effects; its problem loses outputs that nothing moves.
+/// @param prepared  With effects; its problem loses outputs that nothing but an effect moves.
+/// @param design    Of θ and η.
 [[nodiscard]] Result<void> calibrate_with_effects(PreparedSite& prepared,
                                                   const CalibrateOptions& options,
+                                                  calibration::DesignRuns design,
                                                   const calibration::RunContext& context,
                                                   SiteCalibration& result);
 

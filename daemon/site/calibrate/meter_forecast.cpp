@@ -31,16 +31,19 @@ std::vector<assessment::OutputCalibration> daily_outputs(const SiteConfig& site,
 
 }  // namespace
 
-Result<SiteCalibration> forecast_meters(const ModelledSite& site) {
-  const SiteConfig& config = site.site.config;
+Result<SiteCalibration> forecast_meters(const SiteConfig& site,
+                                        const metering::LocalCalendar& calendar,
+                                        const Recording& recording, const SiteWeather& weather,
+                                        std::string because) {
   SiteCalibration result;
-  const SiteMonths months = choose_months(*config.period, site.weather, result.warnings);
+  result.not_calibrated_because = std::move(because);
+  const SiteMonths months = choose_months(*site.period, weather, result.warnings);
   if (months.calibration.empty()) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("the weather has no temperature in any month from {} to {}; give a "
                                "file that covers them, or change [period]",
-                               metering::to_string(config.period->calibration.first),
-                               metering::to_string(config.period->calibration.last)));
+                               metering::to_string(site.period->calibration.first),
+                               metering::to_string(site.period->calibration.last)));
   }
   result.months = months.all;
   result.roles = months.roles;
@@ -48,10 +51,9 @@ Result<SiteCalibration> forecast_meters(const ModelledSite& site) {
     result.month_names.push_back(metering::to_string(month));
     result.month_days.push_back(metering::days_in(month));
   }
-  result.outputs = daily_outputs(config, site.recording, months.all);
+  result.outputs = daily_outputs(site, recording, months.all);
 
-  const auto forecasts =
-      yardsticks_of(config, site.site.calendar, site.recording, site.weather, result);
+  const auto forecasts = yardsticks_of(site, calendar, recording, weather, result);
   std::vector<assessment::OutputCalibration> known;
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     assessment::OutputCalibration& output = result.outputs[k];
@@ -75,7 +77,7 @@ Result<SiteCalibration> forecast_meters(const ModelledSite& site) {
                    "temperature; see `recald replay` for what its readings lack");
   }
   result.outputs = std::move(known);
-  for (const auto* notes : {&site.recording.notes, &site.weather.notes}) {
+  for (const auto* notes : {&recording.notes, &weather.notes}) {
     result.warnings.insert(result.warnings.end(), notes->begin(), notes->end());
   }
   return result;

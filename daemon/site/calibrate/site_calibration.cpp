@@ -18,6 +18,7 @@
 #include "core/weather/assumed_sky.hpp"
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/effects_calibration.hpp"
+#include "daemon/site/calibrate/meter_forecast.hpp"
 #include "daemon/site/calibrate/yardstick.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
 #include "daemon/site/model/site_model.hpp"
@@ -28,6 +29,9 @@ namespace {
 
 using assessment::MonthRole;
 using metering::Month;
+
+constexpr const char* kNoModel =
+    "The site has no [[model]]: with a [building] and a [[model]] its parameters are calibrated.";
 
 /// A model needs at least one month with weather; without, later steps would blame the meters.
 Result<void> require_months(const SiteMonths& months, const PeriodConfig& period,
@@ -67,6 +71,21 @@ void warn_about_level_changes(const Recording& recording, SiteCalibration& resul
       "In {} a meter reads differently than in the same months before: these months may "
       "not show the building that the others show.",
       months));
+}
+
+/// A wide prior lets a parameter go where no building lies, and it goes there when something else
+/// is missing.
+void warn_about_unusual_parameters(const SiteConfig& site, SiteCalibration& result) {
+  for (std::size_t j = 0; j < site.model->parameters.size(); ++j) {
+    const auto usual = model::make_parameter(*result.definitions[j], *site.building);
+    if (!usual) continue;
+    const calibration::Summary& found = result.calibration.parameters[j];
+    if (usual->prior.min() <= found.mean && found.mean <= usual->prior.max()) continue;
+    result.alarms.push_back(fmt::format(
+        "{} came out at {:.3g} {}, but in buildings like this one it lies between {:.3g} and "
+        "{:.3g}: the drawings may be wrong, or something that the model lacks is read as this.",
+        found.name, found.mean, found.unit, usual->prior.min(), usual->prior.max()));
+  }
 }
 
 void add_words(const Recording& recording, const SiteWeather& weather, SiteCalibration& result) {
@@ -231,6 +250,9 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   if (!chosen) return tl::unexpected(chosen.error());
   result.definitions = std::move(chosen->definitions);
   result.parameters = std::move(chosen->parameters);
+  for (const ParameterConfig& config : site.model->parameters) {
+    result.prior_sources.push_back(config.source);
+  }
   auto maps = meter_maps(site);
   if (!maps) return tl::unexpected(maps.error());
 
@@ -322,11 +344,9 @@ std::optional<std::string> why_no_evidence(const assessment::OutputCalibration& 
          "model; it is followed by its level.";
 }
 
-// A calibration needs so many more figures than it has parameters.
-constexpr int kFiguresBeyondParameters = 2;
-
-/// Sets aside what is no evidence. Where too little else is metered, the meter that was read is
-/// fitted all the same, with the profile's doubt as a common error.
+/// Sets aside what is no evidence. Where too little else is metered that the parameters move, the
+/// meter that was read is fitted all the same, with the profile's doubt as a common error.
+/// @pre unresponsive outputs are set aside
 void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& sizes,
                    PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
@@ -337,8 +357,10 @@ void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& si
     if (output.unit == "kW" || output.meter == profiled) continue;
     other_figures += prepared.problem.outputs[k].measured_months();
   }
-  const bool is_only = other_figures < std::ssize(result.parameters) + kFiguresBeyondParameters;
+  const bool is_only =
+      other_figures < std::ssize(result.parameters) + calibration::kPointsBeyondParameters;
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
+    if (!result.outputs[k].calibrated) continue;
     const bool is_peak = result.outputs[k].unit == "kW";
     if (is_only && !is_peak && result.outputs[k].meter == profiled) {
       add_use_scatter(k, result, prepared.problem);
@@ -384,6 +406,23 @@ assessment::ModelErrorSizes sizes_of(const ModelConfig& model) {
           .electricity_level = own.electricity_level.value_or(learnt.electricity_level)};
 }
 
+/// Why the parameters cannot be calibrated: too few figures are left of meters that they move.
+std::optional<std::string> why_too_little(const SiteConfig& site, const PreparedSite& prepared) {
+  const int points = calibration::measured_points(prepared.problem);
+  const int needed =
+      static_cast<int>(site.model->parameters.size()) + calibration::kPointsBeyondParameters;
+  if (points >= needed) return std::nullopt;
+  std::string why = fmt::format(
+      "The model is not calibrated: its parameters need at least {} monthly figures of meters that "
+      "they move, and there {} {}.",
+      needed, points == 1 ? "is" : "are", points);
+  for (const assessment::OutputCalibration& output : prepared.so_far.outputs) {
+    if (output.unit == "kW" || output.not_fitted_because.empty()) continue;
+    why += fmt::format(" {} is not fitted. {}", output.label, output.not_fitted_because);
+  }
+  return why;
+}
+
 /// What the seed's discrepancy leaves out: see assessment/model_errors.hpp.
 void add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
@@ -402,13 +441,10 @@ void add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
 }  // namespace
 
 Result<void> calibrate_all(PreparedSite& prepared, const CalibrateOptions& options,
-                           const calibration::RunContext& context, SiteCalibration& result) {
-  auto design = calibration::run_design(*prepared.model, prepared.problem,
-                                        options.calibration.design_runs, context);
-  if (!design) return tl::unexpected(design.error());
-  assessment::set_aside_unresponsive(*design, result, prepared.problem);
+                           calibration::DesignRuns design, const calibration::RunContext& context,
+                           SiteCalibration& result) {
   return assessment::calibrate_into(*prepared.model, prepared.problem, options.calibration,
-                                    options.prior_sensitivity, std::move(*design), context, result);
+                                    options.prior_sensitivity, std::move(design), context, result);
 }
 
 Result<SiteCalibration> calibrate_site(const SiteConfig& site,
@@ -417,17 +453,27 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
                                        const CalibrateOptions& options,
                                        const calibration::RunContext& context,
                                        std::vector<diagnosis::AddedEffect> added) {
+  const auto forecast_alone = [&](std::string because) {
+    return forecast_meters(site, calendar, recording, weather, std::move(because));
+  };
+  if (!site.model) return forecast_alone(kNoModel);
   auto prepared = prepare_site(site, calendar, recording, weather, std::move(added));
   if (!prepared) return tl::unexpected(prepared.error());
+  auto design = calibration::run_design(*prepared->model, prepared->problem,
+                                        options.calibration.design_runs, context);
+  if (!design) return tl::unexpected(design.error());
+  assessment::set_aside_unresponsive(*design, prepared->so_far, prepared->problem);
   CalibrateOptions how = options;
   if (options.discrepancy == DiscrepancyForm::sound) {
     add_model_errors(site, *prepared);
     // Whoever names a sampler gets the model itself in the chains.
     how.calibration.emulate = options.calibration.sampling.sampler == nullptr;
   }
+  if (auto why = why_too_little(site, *prepared)) return forecast_alone(std::move(*why));
   SiteCalibration result = std::move(prepared->so_far);
-  auto done = result.effects ? calibrate_with_effects(*prepared, how, context, result)
-                             : calibrate_all(*prepared, how, context, result);
+  auto done = result.effects
+                  ? calibrate_with_effects(*prepared, how, std::move(*design), context, result)
+                  : calibrate_all(*prepared, how, std::move(*design), context, result);
   if (!done) return tl::unexpected(done.error());
   const assessment::WholePeriod whole{{prepared->inputs.names, prepared->inputs.values},
                                       std::move(prepared->common_errors)};
@@ -437,6 +483,7 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
       !assessed) {
     return tl::unexpected(assessed.error());
   }
+  warn_about_unusual_parameters(site, result);
   add_words(recording, weather, result);
   return result;
 }

@@ -64,13 +64,14 @@ struct CalibrateOptions {
                                                 const SiteWeather& weather,
                                                 std::vector<diagnosis::AddedEffect> added = {});
 
-/// Design and chains of all parameters together. Fills `result.calibration`; the problem loses
-/// outputs that nothing moves.
+/// Chains of all parameters together. Fills `result.calibration`.
 [[nodiscard]] Result<void> calibrate_all(PreparedSite& prepared, const CalibrateOptions& options,
+                                         calibration::DesignRuns design,
                                          const calibration::RunContext& context,
                                          SiteCalibration& result);
 
-/// Profile, model, design, chains, assessment. @pre the site has a model
+/// Profile, model, design, chains, assessment. Without a model, or where too little is metered that
+/// its parameters move, forecasts alone (`forecast_meters`), and why.
 /// @param added  Effects of the version in force; see effects_calibration.hpp.
 [[nodiscard]] Result<SiteCalibration> calibrate_site(
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,

@@ -388,7 +388,7 @@ std::optional<PeriodConfig> read_period(TomlReader table) {
 }
 
 ParameterConfig read_parameter(TomlReader& table) {
-  ParameterConfig config{table.required_text("name"), {}};
+  ParameterConfig config{table.required_text("name"), {}, table.text_or("source", "")};
   const auto found = model::find_parameter(config.name);
   if (!config.name.empty() && !found) table.problem_at("name", found.error().message);
   const auto distribution = table.text("distribution");
@@ -404,6 +404,10 @@ ParameterConfig read_parameter(TomlReader& table) {
     } else {
       table.problem(physical.error().message);
     }
+  } else if (!config.source.empty()) {
+    table.problem_at("source", config.name +
+                                   ": 'source' says where a prior comes from; give min, mode and "
+                                   "max, or leave it out");
   }
   table.finish();
   return config;

@@ -83,6 +83,7 @@ struct PeriodConfig {
 struct ParameterConfig {
   std::string name;
   std::optional<Prior> prior;  ///< Absent: from the library.
+  std::string source;          ///< Where that prior comes from; empty: nobody says.
 };
 
 /// Sizes of the model's own errors that the site knows better (`assessment::ModelErrorSizes`);

@@ -134,6 +134,8 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
 
 Result<MonthRange> latest_months(const OpenSite& site, const Recording& recording,
                                  metering::Instant now) {
+  // A model is held against months that all its meters have; without one each stands by itself.
+  const bool is_shared = site.config.model.has_value();
   std::optional<MonthRange> common;
   for (const std::string& id : outputs_of(site.config)) {
     const MeterRecord& record = recording.meters[*site.config.meter_index(id)];
@@ -143,13 +145,19 @@ Result<MonthRange> latest_months(const OpenSite& site, const Recording& recordin
     };
     const auto last = std::find_if(record.figures.rbegin(), record.figures.rend(), is_closed);
     if (last == record.figures.rend()) {
+      if (!is_shared) continue;
       return failure(ErrorCode::not_enough_data,
                      fmt::format("meter '{}' has no usable closed month yet", id));
     }
     const MonthRange own{record.figures.front().month, last->month};
     if (!common) common = own;
-    common->first = std::max(common->first, own.first);
-    common->last = std::min(common->last, own.last);
+    common->first = is_shared ? std::max(common->first, own.first)  //
+                              : std::min(common->first, own.first);
+    common->last = is_shared ? std::min(common->last, own.last)  //
+                             : std::max(common->last, own.last);
+  }
+  if (!common) {
+    return failure(ErrorCode::not_enough_data, "no meter has a usable closed month yet");
   }
   common->first = std::max(
       common->first, common->last - std::chrono::months{site.config.recalibration.months - 1});

@@ -52,8 +52,8 @@ using ChoosePeriod = std::function<Result<PeriodConfig>(
                                                       const ChoosePeriod& choose = {});
 
 /// The last `recalibration.months` months that all modelled meters have closed; without a model,
-/// all meters.
-/// @return not_enough_data when they have no closed month in common.
+/// that any meter has.
+/// @return not_enough_data when there is none.
 [[nodiscard]] Result<metering::MonthRange> latest_months(const OpenSite& site,
                                                          const Recording& recording,
                                                          metering::Instant now);

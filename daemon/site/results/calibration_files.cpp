@@ -9,6 +9,7 @@
 
 #include "adapters/results/job_result_json.hpp"
 #include "core/absent.hpp"
+#include "daemon/site/results/provenance_json.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -61,6 +62,9 @@ Json parameters_json(const assessment::AssessedCalibration& result) {
     entry["contraction_max"] = results::number(assessment::contraction_max(result, j));
     entry["identified"] = assessment::is_identified(result, j);
     entry["prior"] = prior_json(result.parameters[j].prior);
+    if (j < result.prior_sources.size() && !result.prior_sources[j].empty()) {
+      entry["prior"]["source"] = result.prior_sources[j];
+    }
     list.push_back(std::move(entry));
   }
   return list;
@@ -75,6 +79,13 @@ Json fixed_parameters_json(const assessment::AssessedCalibration& result) {
                     {"value", results::number(parameter.prior.mean())},
                     {"prior", prior_json(parameter.prior)}});
   }
+  return list;
+}
+
+/// What matters most comes first.
+Json warnings_json(const assessment::AssessedCalibration& result) {
+  Json list = result.alarms;
+  for (const std::string& warning : result.warnings) list.push_back(warning);
   return list;
 }
 
@@ -396,31 +407,31 @@ Json yardstick_json(const assessment::AssessedCalibration& result) {
   });
 }
 
-}  // namespace
-
-std::string meter_forecast_json(const assessment::AssessedCalibration& result,
-                                const RunFacts& facts) {
-  const Json json = {{"model", "change_point"},
-                     {"status", "forecast"},
-                     {"months", months_json(result)},
-                     {"parameters", Json::array()},
-                     {"forecast", forecast_json(result)},
-                     {"yardstick", yardstick_json(result)},
-                     {"unseen_months_within_limits", unseen_limits_json(result)},
-                     {"predictions", predictions_json(result)},
-                     {"warnings", result.warnings},
-                     {"data_revision", facts.data_revision},
-                     {"model_version", facts.model_version},
-                     {"recald_version", facts.recald_version},
-                     {"tzdata", facts.time_zone_data},
-                     {"weather_values", facts.weather_values},
-                     {"weather", results::weather_json(facts.weather)},
-                     {"wall_s", facts.wall_s}};
-  return json.dump(2) + "\n";
+/// No model was calibrated.
+Json forecasts_alone_json(const assessment::AssessedCalibration& result, const RunFacts& facts) {
+  Json json = {{"model", "change_point"},
+               {"status", "forecast"},
+               {"not_calibrated_because", result.not_calibrated_because},
+               {"months", months_json(result)},
+               {"parameters", Json::array()},
+               {"forecast", forecast_json(result)},
+               {"yardstick", yardstick_json(result)},
+               {"unseen_months_within_limits", unseen_limits_json(result)},
+               {"predictions", predictions_json(result)},
+               {"warnings", warnings_json(result)}};
+  add_provenance(facts, json);
+  return json;
 }
+
+}  // namespace
 
 std::string calibration_json(const assessment::AssessedCalibration& result, const RunFacts& facts,
                              const FollowUp* follow_up) {
+  if (!result.not_calibrated_because.empty()) {
+    Json json = forecasts_alone_json(result, facts);
+    if (follow_up != nullptr) add_follow_up(*follow_up, json);
+    return json.dump(2) + "\n";
+  }
   Json hyperparameters = Json::array();
   for (const calibration::Summary& s : result.calibration.hyperparameters) {
     Json entry = summary_json(s);
@@ -446,7 +457,7 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
                {"extrapolation", range_json(result, calibration.range.extrapolation)},
                {"range_fail", range_json(result, calibration.range.by_month)},
                {"prior_sensitivity", sensitivity_json(result)},
-               {"warnings", result.warnings},
+               {"warnings", warnings_json(result)},
                {"outputs", outputs_json(result)},
                {"sampler", facts.sampler},
                {"hyper_prior", calibration.hyper_prior.name},
@@ -454,15 +465,8 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
                {"burn_in", facts.burn_in},
                {"chains", facts.chains},
                {"design_runs", facts.design_runs},
-               {"seed", facts.seed},
-               {"data_revision", facts.data_revision},
-               {"model_version", facts.model_version},
-               {"recald_version", facts.recald_version},
-               {"tzdata", facts.time_zone_data},
-               {"weather_values", facts.weather_values},
-               {"weather", results::weather_json(facts.weather)},
-               {"weather_assumed", facts.weather_assumed},
-               {"wall_s", facts.wall_s}};
+               {"seed", facts.seed}};
+  add_provenance(facts, json);
   json["sampling"] = sampling_json(calibration.sampling);
   json["evidence"] = evidence_json(calibration);
   json["leave_out"] = leave_out_json(calibration);

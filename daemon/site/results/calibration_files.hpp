@@ -14,16 +14,12 @@ namespace recald::daemon {
 /// What the months after a calibration have said, or why the site could not be followed.
 using FollowUp = tl::expected<DriftSummary, std::string>;
 
-/// One JSON object as text, indented; absent numbers are null.
+/// One JSON object as text, indented; absent numbers are null. Where no model was calibrated it has
+/// months, forecasts, why, and nothing that only a calibration has.
 /// @param follow_up  Null: nobody has followed the site.
 [[nodiscard]] std::string calibration_json(const assessment::AssessedCalibration& result,
                                            const RunFacts& facts,
                                            const FollowUp* follow_up = nullptr);
-
-/// The same of a site without a model (`forecast_meters`): months, forecasts and what was read, and
-/// nothing that only a calibration has.
-[[nodiscard]] std::string meter_forecast_json(const assessment::AssessedCalibration& result,
-                                              const RunFacts& facts);
 
 /// The same as the result of a job.
 [[nodiscard]] JobResult calibration_result(const assessment::AssessedCalibration& result,

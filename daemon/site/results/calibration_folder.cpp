@@ -33,17 +33,11 @@ Result<void> write_calibration(const FinishedCalibration& done, const std::strin
   };
   if (auto w = write("months.csv", months_csv(done.modelled.recording, facts.time_zone_data)); !w)
     return w;
+  // Profile and page are a model's.
+  if (!done.calibration.not_calibrated_because.empty()) return write("calibration.json", json);
   if (auto w = write("profile.json", profile_json(done.calibration.profile)); !w) return w;
   if (auto w = write("report.html", render(done, generated_at)); !w) return w;
   return write("calibration.json", json);
-}
-
-Result<void> write_meter_forecast(const std::string& json, const std::string& months,
-                                  const std::filesystem::path& folder) {
-  if (auto made = system::make_folder(folder); !made) return made;
-  clear_results(folder);
-  if (auto written = system::write_file(folder / "months.csv", months); !written) return written;
-  return system::write_file(folder / "calibration.json", json);
 }
 
 Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,

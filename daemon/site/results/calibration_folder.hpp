@@ -14,15 +14,12 @@ namespace recald::daemon {
 [[nodiscard]] std::string render(const FinishedCalibration& done, const std::string& generated_at);
 
 /// Draws, months, profile, page and, last, calibration.json: who finds that finds everything it
-/// speaks of. What an earlier calibration left in the folder goes.
+/// speaks of. What an earlier calibration left in the folder goes. Where no model was calibrated
+/// there are months and calibration.json alone.
 [[nodiscard]] Result<void> write_calibration(const FinishedCalibration& done,
                                              const std::string& json,
                                              const std::string& generated_at,
                                              const std::filesystem::path& folder);
-
-/// Months and, last, calibration.json, of a site without a model.
-[[nodiscard]] Result<void> write_meter_forecast(const std::string& json, const std::string& months,
-                                                const std::filesystem::path& folder);
 
 /// Draws and, last, calibration.json.
 [[nodiscard]] Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,

@@ -6,6 +6,7 @@
 
 #include "adapters/results/job_result_json.hpp"
 #include "daemon/site/results/drift_summary.hpp"
+#include "daemon/site/results/provenance_json.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -116,24 +117,17 @@ Json shifts_json(const SiteDrift& drift) {
 
 std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
   const DriftSummary summary = summary_of(drift);
-  const Json json = {{"model", name_of(drift.model)},
-                     {"months", drift.months},
-                     {"learning_months", drift.learning_months},
-                     {"alarms", results::alarms_json(summary)},
-                     {"meter_changes", results::changed_meters_json(summary)},
-                     {"outputs", outputs_json(drift)},
-                     {"windows", windows_json(drift)},
-                     {"last_year", shifts_json(drift)},
-                     {"warnings", drift.warnings},
-                     {"seed", facts.seed},
-                     {"data_revision", facts.data_revision},
-                     {"model_version", facts.model_version},
-                     {"recald_version", facts.recald_version},
-                     {"tzdata", facts.time_zone_data},
-                     {"weather_values", facts.weather_values},
-                     {"weather", results::weather_json(facts.weather)},
-                     {"weather_assumed", facts.weather_assumed},
-                     {"wall_s", facts.wall_s}};
+  Json json = {{"model", name_of(drift.model)},
+               {"months", drift.months},
+               {"learning_months", drift.learning_months},
+               {"alarms", results::alarms_json(summary)},
+               {"meter_changes", results::changed_meters_json(summary)},
+               {"outputs", outputs_json(drift)},
+               {"windows", windows_json(drift)},
+               {"last_year", shifts_json(drift)},
+               {"warnings", drift.warnings},
+               {"seed", facts.seed}};
+  add_provenance(facts, json);
   return json.dump(2) + "\n";
 }
 

@@ -195,6 +195,7 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
   if (!result.calibration.converged) {
     data.headlines.emplace_back("The sampler has not converged: treat all figures as rough.");
   }
+  data.headlines.insert(data.headlines.end(), result.alarms.begin(), result.alarms.end());
   if (!worse.empty()) {
     data.headlines.push_back(fmt::format(
         "Calibrating has moved the model itself away from the meter of {}: its mean is further off "
@@ -208,7 +209,14 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
   }
 }
 
-void add_not_known(const SiteCalibration& result, report::ReportData& data) {
+void add_not_known(const Recording& recording, const SiteCalibration& result,
+                   report::ReportData& data) {
+  for (const assessment::OutputCalibration& output : result.outputs) {
+    if (is_peak(output) || output.not_fitted_because.empty()) continue;
+    data.not_known.push_back(fmt::format("{} is not fitted. {}",
+                                         meter_label(recording.meters[output.meter].meter.id),
+                                         output.not_fitted_because));
+  }
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     if (assessment::is_identified(result, j)) continue;
     const calibration::Summary& s = result.calibration.parameters[j];
@@ -273,7 +281,7 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                     day_profile_of(result.profile, saturday, "Saturday"),
                     day_profile_of(result.profile, sunday_or_holiday, "Sunday and holiday")},
       .check_sentence = result.profile.check.words};
-  add_not_known(result, data);
+  add_not_known(recording, result, data);
   return data;
 }
 

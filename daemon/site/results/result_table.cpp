@@ -121,10 +121,26 @@ std::string parameter_lines(const assessment::AssessedCalibration& result) {
   return text;
 }
 
+std::string warning_lines(const assessment::AssessedCalibration& result) {
+  std::string text;
+  for (const std::string& warning : result.warnings) text += "! " + warning + "\n";
+  return text;
+}
+
+std::string forecasts_alone_table(const assessment::AssessedCalibration& result) {
+  return result.not_calibrated_because + "\n\n" + fit_lines(result) +
+         "forecast: a regression of the meter's days on temperature; a calibration month from the "
+         "others.\n\n" +
+         band_lines(result) + warning_lines(result);
+}
+
 }  // namespace
 
 std::string result_table(const assessment::AssessedCalibration& result) {
-  std::string text = fit_lines(result);
+  if (!result.not_calibrated_because.empty()) return forecasts_alone_table(result);
+  std::string text;
+  for (const std::string& alarm : result.alarms) text += "! " + alarm + "\n";
+  text += fit_lines(result);
   text +=
       "forecast: the model and what the calibration months say of its error; a calibration month "
       "from "
@@ -138,20 +154,7 @@ std::string result_table(const assessment::AssessedCalibration& result) {
     text += fmt::format("Guideline 14, {}: {}. {}\n", output.label, verdict.pass ? "pass" : "fail",
                         verdict.why);
   }
-  text += metamodel_lines(result);
-  for (const std::string& warning : result.warnings) text += "! " + warning + "\n";
-  return text;
-}
-
-std::string meter_forecast_table(const assessment::AssessedCalibration& result) {
-  std::string text = fit_lines(result);
-  text +=
-      "forecast: a regression of the meter's days on temperature; a calibration month from the "
-      "others.\nThe site has no [[model]]: with a [building] and a [[model]] its parameters are "
-      "calibrated.\n\n";
-  text += band_lines(result);
-  for (const std::string& warning : result.warnings) text += "! " + warning + "\n";
-  return text;
+  return text + metamodel_lines(result) + warning_lines(result);
 }
 
 }  // namespace recald::daemon

@@ -7,10 +7,8 @@
 
 namespace recald::daemon {
 
-/// Fit before and after by meter and period, then the parameters, then the warnings.
+/// Fit before and after by meter and period, then the parameters, then the warnings. Where no model
+/// was calibrated: why, forecasts, warnings.
 [[nodiscard]] std::string result_table(const assessment::AssessedCalibration& result);
-
-/// Of a site without a model: forecasts alone.
-[[nodiscard]] std::string meter_forecast_table(const assessment::AssessedCalibration& result);
 
 }  // namespace recald::daemon
