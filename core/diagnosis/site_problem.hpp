@@ -20,6 +20,8 @@ struct MeterData {
   std::string id;
   metering::Utility utility;
   model::MeterMap end_uses;
+  std::optional<double> price_per_kWh{};  ///< Mean over what it uses; in the site's currency.
+  std::optional<double> emissions_kg_per_kWh{};  ///< CO2.
 };
 
 struct SiteProblem {
@@ -32,6 +34,7 @@ struct SiteProblem {
   std::shared_ptr<const model::Drivers> drivers;
   bool has_sun = true;            ///< False: it was assumed, and nothing may be concluded from it.
   std::vector<MeterData> meters;  ///< (m)
+  std::string currency;           ///< Of their prices.
   Eigen::ArrayXXd measured_kW;    ///< (hours x m) NaN where not measured.
   DayParts day_parts;
   Eigen::ArrayXXd measured_parts_kW;  ///< (parts x m) NaN where too little was measured.

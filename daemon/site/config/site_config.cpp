@@ -12,6 +12,7 @@
 #include "core/model/parameter_library.hpp"
 #include "daemon/site/config/building_config.hpp"
 #include "daemon/site/config/site_path.hpp"
+#include "daemon/site/config/tariff_config.hpp"
 #include "daemon/site/config/toml_reader.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
 
@@ -522,6 +523,8 @@ void read_root(TomlReader root, SiteConfig& config) {
   config.store = default_store(config.file);
   if (auto store = root.table("store")) config.store = read_store(*store, config.file);
   if (auto http = root.table("http")) config.http = read_http(*http, config.file);
+  if (auto table = root.table("tariff")) read_tariff(*table, config.tariff);
+  if (auto table = root.table("emissions")) read_emissions(*table, config.tariff);
   if (auto table = root.table("recalibration")) {
     config.recalibration = read_recalibration(*table, config.file);
   }

@@ -18,6 +18,7 @@
 #include "core/model/model_kind.hpp"
 #include "core/model/parameter.hpp"
 #include "core/result.hpp"
+#include "core/tariff/tariff.hpp"
 #include "core/weather/recorded_values.hpp"
 #include "core/weather/sun.hpp"
 #include "daemon/site/config/bus_config.hpp"
@@ -117,6 +118,7 @@ struct SiteConfig {
   StoreConfig store;
   std::optional<HttpConfig> http;  ///< Absent: nothing is served.
   RecalibrationConfig recalibration;
+  tariff::Tariff tariff;
   std::vector<BusConfig> buses;
   std::vector<MeterConfig> meters;
   /// Those [[meter]] with role = "weather". They are no meters otherwise: no months, no outputs.

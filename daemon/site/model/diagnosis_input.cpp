@@ -71,6 +71,22 @@ Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers
   return values;
 }
 
+/// @param meter  Of the site.
+diagnosis::MeterData priced(const SiteConfig& site, std::size_t meter, const MeterRecord& record,
+                            const model::MeterMap& end_uses) {
+  const metering::Meter& described = site.meters[meter].meter;
+  std::vector<profile::HourlyLoad> hours;
+  for (const auto& [month, loads] : record.hours) {
+    hours.insert(hours.end(), loads.begin(), loads.end());
+  }
+  return {.id = described.id,
+          .utility = described.utility,
+          .end_uses = end_uses,
+          .price_per_kWh =
+              tariff::mean_price_per_kWh(site.tariff, described.utility, hours, site.holidays),
+          .emissions_kg_per_kWh = site.tariff.emissions_of(described.utility)};
+}
+
 /// Those of the site file, and what else day parts can inform. A prior that the file gives stands.
 Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
   ChosenParameters chosen;
@@ -196,10 +212,11 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   for (std::size_t k = 0; k < maps->size(); ++k) {
     const std::string& id = site.model->outputs[k];
     const std::size_t meter = *site.meter_index(id);
-    problem.meters.push_back({id, site.meters[meter].meter.utility, (*maps)[k]});
+    problem.meters.push_back(priced(site, meter, recording.meters[meter], (*maps)[k]));
     problem.measured_kW.col(static_cast<Eigen::Index>(k)) =
         hours_of(recording.meters[meter], *problem.drivers);
   }
+  problem.currency = site.tariff.currency;
   auto chosen = choose_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
   problem.definitions = std::move(chosen->definitions);

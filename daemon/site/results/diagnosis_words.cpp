@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "adapters/report/format.hpp"
@@ -72,11 +74,44 @@ std::string impact_words(const SiteProblem& site, const Addition& addition) {
   return items.empty() ? "no change of any meter's month" : "about " + listed(items, "and");
 }
 
+/// "It costs about 1,240 USD and 2.1 t of CO2 a year."; empty where no price is known.
+std::string cost_words(const SiteProblem& site, std::span<const double> monthly_kWh) {
+  std::optional<double> money;
+  std::optional<double> emissions_kg;
+  for (std::size_t g = 0; g < monthly_kWh.size(); ++g) {
+    const diagnosis::MeterData& meter = site.meters[g];
+    if (meter.price_per_kWh) money = money.value_or(0.0) + *meter.price_per_kWh * monthly_kWh[g];
+    if (meter.emissions_kg_per_kWh) {
+      emissions_kg = emissions_kg.value_or(0.0) + *meter.emissions_kg_per_kWh * monthly_kWh[g];
+    }
+  }
+  std::vector<std::string> costs;
+  std::vector<std::string> savings;
+  const auto add = [&](double a_year, const std::string& words) {
+    (a_year > 0.0 ? costs : savings).push_back(words);
+  };
+  if (money && std::abs(*money) >= 1.0) {
+    add(12.0 * *money,
+        fmt::format("{} {}", report::count_text(std::abs(12.0 * *money)), site.currency));
+  }
+  if (emissions_kg && std::abs(*emissions_kg) >= 1.0) {
+    add(12.0 * *emissions_kg, fmt::format("{:.1f} t of CO2", std::abs(12e-3 * *emissions_kg)));
+  }
+  std::string text;
+  if (!costs.empty()) text = "It costs about " + listed(costs, "and") + " a year.";
+  if (!savings.empty()) {
+    text += (text.empty() ? "" : " ") + ("It saves about " + listed(savings, "and") + " a year.");
+  }
+  return text;
+}
+
 std::string addition_words(const SiteProblem& site, const Addition& addition) {
-  return fmt::format("{}: {} Probability {}. {} It makes {}.", label_of(site, addition),
-                     addition.candidate.effect->meaning,
-                     report::probability_text(addition.probability), when_words(site, addition),
-                     impact_words(site, addition));
+  std::string text = fmt::format("{}: {} Probability {}. {} It makes {}.", label_of(site, addition),
+                                 addition.candidate.effect->meaning,
+                                 report::probability_text(addition.probability),
+                                 when_words(site, addition), impact_words(site, addition));
+  const std::string cost = cost_words(site, addition.monthly_kWh);
+  return cost.empty() ? text : text + " " + cost;
 }
 
 std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
@@ -351,9 +386,9 @@ OutcomeWords outcome_words(const Diagnosis& d, const SiteProblem& site,
 
 std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site,
                             const std::vector<ModelGap>& others) {
-  std::string text = located_words(d, site) + probability_words(d, site);
   const OutcomeWords words = outcome_words(d, site, others);
-  text += fmt::format("Outcome: {}. {}\n", to_string(d.outcome), words.headline);
+  std::string text = fmt::format("Outcome: {}. {}\n", to_string(d.outcome), words.headline);
+  text += located_words(d, site) + probability_words(d, site);
   for (const Addition& addition : d.added) {
     text += fmt::format("{}{}\n", d.not_confirmed ? "Tried and taken back: " : "",
                         addition_words(site, addition));

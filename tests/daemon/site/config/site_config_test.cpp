@@ -432,6 +432,39 @@ std::string portfolio(int meters) {
   return text;
 }
 
+TEST(SiteConfig, PricesAreReadByUtilityAndPeriod) {
+  const std::string prices = R"(
+[tariff]
+currency = "EUR"
+[tariff.electricity]
+per_kWh = 0.20
+per_kW_month = 9
+[[tariff.electricity.period]]
+from = 22
+to = 6
+days = "weekend"
+per_kWh = 0.12
+[emissions]
+heating = 0.2
+)";
+  const auto site = parse_site(std::string{kSampleMeters} + prices, "site.toml");
+  ASSERT_TRUE(site.has_value()) << site.error().front();
+  const auto& electricity = site->tariff.prices_of(metering::Utility::electricity);
+  ASSERT_TRUE(electricity.has_value());
+  EXPECT_DOUBLE_EQ(electricity->at(model::DayType::saturday, 23), 0.12);
+  EXPECT_DOUBLE_EQ(electricity->at(model::DayType::workday, 23), 0.20);
+  EXPECT_DOUBLE_EQ(electricity->per_kW_month, 9.0);
+  EXPECT_FALSE(site->tariff.prices_of(metering::Utility::gas).has_value());
+  EXPECT_EQ(site->tariff.emissions_of(metering::Utility::heating), 0.2);
+
+  const auto wrong =
+      parse_site(std::string{kSampleMeters} + edited(prices, "from = 22", "from = 6"), "site.toml");
+  ASSERT_FALSE(wrong.has_value());
+  EXPECT_THAT(
+      wrong.error(),
+      ElementsAre(::testing::HasSubstr("'from' and 'to' are the same hour; leave both out")));
+}
+
 // Each meter is compared with those of its address alone, and a map is read once.
 TEST(SiteConfig, ALargePortfolioIsReadOnceAndComparedLittle) {
   const auto allocations_for = [](int meters) {

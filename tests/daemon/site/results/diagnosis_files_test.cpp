@@ -169,6 +169,16 @@ TEST_F(DiagnosisFiles, WordsSayWhatIsMissingSinceWhenAndHowMuch) {
   EXPECT_THAT(words, Not(HasSubstr("Chilled water, ")));  // touched by next to nothing
 }
 
+TEST_F(DiagnosisFiles, WordsSayWhatItCostsWherePricesAreKnown) {
+  EXPECT_THAT(diagnosis_words(recald::testing::one_named(site_), site_),
+              Not(HasSubstr("It costs")));
+  site_.currency = "EUR";
+  site_.meters[1].price_per_kWh = 0.10;
+  site_.meters[1].emissions_kg_per_kWh = 0.25;
+  EXPECT_THAT(diagnosis_words(recald::testing::one_named(site_), site_),
+              HasSubstr("It costs about 3,504 EUR and 8.8 t of CO2 a year."));
+}
+
 TEST_F(DiagnosisFiles, WordsDoNotContradictWhatWasTakenBack) {
   const Diagnosis d = recald::testing::one_taken_back(site_);
   const std::string words = diagnosis_words(d, site_);
