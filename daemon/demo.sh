@@ -17,21 +17,45 @@ effect=${EFFECT:-weekend_operation}
 # shellcheck disable=SC2086  # lists of words
 install_packages $BUILD_PACKAGES
 
-echo "Building (release) …"
 log=$(mktemp)
-if ! { cmake -S "$root" --preset release -DRECALD_TESTS=OFF -DRECALD_WARNINGS_AS_ERRORS=OFF \
+build() {
+  cmake -S "$root" --preset release -DRECALD_TESTS=OFF -DRECALD_WARNINGS_AS_ERRORS=OFF \
     -DRECALD_TOGETHER=ON -B "$root/.build/demo" &&
-  cmake --build "$root/.build/demo" --target recald recald-sim --parallel "$(build_jobs)"; } >"$log" 2>&1; then
+    cmake --build "$root/.build/demo" --target recald recald-sim --parallel "$(build_jobs)"
+}
+
+echo "Building recald; the first time takes some minutes …"
+build >"$log" 2>&1 &
+building=$!
+trap 'kill $building 2>/dev/null; exit 130' INT TERM
+while [ -t 1 ] && kill -0 $building 2>/dev/null; do
+  printf '\r\033[K  %.70s' "$(tail -n 1 "$log")"
+  sleep 1
+done
+[ ! -t 1 ] || printf '\r\033[K'
+wait $building || {
   tail -n 40 "$log" >&2
   echo "The build failed; the last lines are above, all of it in $log." >&2
   exit 1
-fi
+}
+trap - INT TERM
 rm -f "$log"
 
 recald=$root/.build/demo/daemon/recald
 sim=$root/.build/demo/simulators/recald-sim
 mkdir -p "$dir"
 dir=$(cd "$dir" && pwd)
+
+# run NAME COMMAND…: what it prints goes to NAME.txt, what it says to NAME.log; on a terminal it shows its progress.
+run() {
+  name=$1
+  shift
+  if [ -t 2 ]; then
+    "$@" >"$dir/$name.txt"
+  else
+    "$@" >"$dir/$name.txt" 2>"$dir/$name.log" || { cat "$dir/$name.log" >&2; return 1; }
+  fi
+}
 
 echo "Making three years of feeds of an office building (seed $seed) …"
 {
@@ -42,28 +66,27 @@ echo "Making three years of feeds of an office building (seed $seed) …"
     echo "name = \"$effect\""
   fi
 } >"$dir/scenario.toml"
-"$sim" building --scenario "$dir/scenario.toml" --out "$dir" --years 3 --seed "$seed"
-echo
-echo "What the recording shows:"
-"$recald" replay "$dir/site.toml" --out "$dir" >"$dir/replay.txt"
-echo
-echo "Calibrating on the first two years, validating on the third …"
-"$recald" calibrate "$dir/site.toml" --seed "$seed" --out "$dir" 2>"$dir/calibrate.log" || {
-  cat "$dir/calibrate.log" >&2
-  exit 1
-}
-echo
+"$sim" building --scenario "$dir/scenario.toml" --out "$dir" --years 3 --seed "$seed" >"$dir/building.txt"
+echo "Turning 15-minute readings into months …"
+run replay "$recald" replay --quiet "$dir/site.toml" --out "$dir"
+echo "Calibrating the model on the first two years …"
+run calibrate "$recald" calibrate --quiet "$dir/site.toml" --seed "$seed" --out "$dir"
 echo "Looking for what the drawings do not tell …"
-"$recald" diagnose "$dir/site.toml" --seed "$seed" --out "$dir" 2>"$dir/diagnose.log" || {
-  cat "$dir/diagnose.log" >&2
-  exit 1
-}
+run diagnose "$recald" diagnose --quiet "$dir/site.toml" --seed "$seed" --out "$dir"
+
 echo
-echo "What the simulator has hidden: $effect (scenario.toml)"
+sed -n '1s/^Outcome: [^.]*[.] //p' "$dir/diagnose.txt"
+echo "(Hidden by the simulator: $effect.)"
 echo
-echo "In $dir:"
-echo "  report.html        open it in a browser"
-echo "  calibration.json   the result, with its diagnostics and seeds"
-echo "  diagnosis.html, diagnosis.json   where model and meters disagree, and why"
+echo "Open in a browser: $dir/report.html, $dir/diagnosis.html"
+echo
+echo "Details"
+echo
+cat "$dir/building.txt" "$dir/calibrate.txt" "$dir/diagnose.txt"
+echo
+echo "Also in $dir:"
+echo "  months.csv         monthly figures of each meter"
+echo "  calibration.json   the calibration, with its diagnostics and seeds"
+echo "  diagnosis.json     where model and meters disagree, and why"
 echo "  readings.csv, weather.csv, site.toml   the feeds and what their user knows"
 echo "  truth.json         what the user does not know, for scoring"

@@ -11,16 +11,27 @@
 
 #include "core/calibration/samplers.hpp"
 #include "core/text/nearest.hpp"
+#include "daemon/commands/command_docs.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
+#include "daemon/commands/site_schema.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {
 namespace {
 
+// What people come to do, in the order in which they do it.
+constexpr const char* kSetUp = "Set up a site";
+constexpr const char* kRun = "Run on a gateway";
+constexpr const char* kData = "Look at readings";
+constexpr const char* kCalibrate = "Calibrate and forecast";
+constexpr const char* kFind = "Find what the model is missing";
+constexpr const char* kDesigns = "Work with simulation runs";
+constexpr const char* kShell = "Help";
+
 void add_site(CLI::App& command, SiteArguments& arguments) {
   command.add_option("site", arguments.site, "Site file (TOML)")->required();
-  command.add_flag("--json", arguments.json, "One JSON object on standard output");
+  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
 }
 
 /// @param of_building_alone  Kinds that need no design.
@@ -43,34 +54,36 @@ void add_sampling(CLI::App& command, SamplingArguments& arguments) {
       ->check(CLI::IsMember(samplers))
       ->capture_default_str();
   command
-      .add_option(
-          "--hyper-prior", arguments.hyper_prior,
-          "Beliefs about discrepancy and error: scaled, seed, stan2018, tight or a .toml file")
+      .add_option("--hyper-prior", arguments.hyper_prior,
+                  "Prior of discrepancy and noise: scaled, seed, stan2018, tight or a .toml file")
       ->capture_default_str();
   command
       .add_option("--draws", arguments.iterations,
-                  "Iterations of a chain, burn-in included; smc: particles")
+                  "Iterations of each chain, burn-in included; particles for smc")
       ->check(CLI::Range(100, 100'000'000));
-  command.add_option("--burn-in", arguments.burn_in, "Iterations dropped at the start of a chain")
+  command
+      .add_option("--burn-in", arguments.burn_in, "Iterations to drop at the start of each chain")
       ->check(CLI::Range(1, 100'000'000));
-  command.add_option("--chains", arguments.chains, "Chains")
+  command.add_option("--chains", arguments.chains, "Number of chains")
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
   command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
-  command.add_option("--threads", arguments.threads, "Threads; 0: one a core")
+  command.add_option("--threads", arguments.threads, "Number of threads; 0 for one per core")
       ->capture_default_str();
   command.add_flag("--prior-sensitivity", arguments.prior_sensitivity,
-                   "Calibrate twice more with other beliefs about the discrepancy");
+                   "Calibrate twice more, with wider and narrower priors of the discrepancy");
 }
 
 void add_calibration(CLI::App& command, CalibrateArguments& arguments) {
-  command.add_flag("--json", arguments.json, "One JSON object on standard output");
-  command.add_option("--design-runs", arguments.design_runs, "Runs of a site's Latin hypercube")
+  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  command
+      .add_option("--design-runs", arguments.design_runs,
+                  "Model runs of the design (Latin hypercube)")
       ->check(CLI::Range(20, 100'000))
       ->capture_default_str();
   command
       .add_option("--discrepancy", arguments.discrepancy,
-                  "sound: with the model's own errors; seed: the paper's discrepancy alone")
+                  "sound: with the model's own errors; seed: only the discrepancy of the paper")
       ->check(CLI::IsMember({"sound", "seed"}))
       ->capture_default_str();
   add_sampling(command, arguments);
@@ -85,12 +98,13 @@ void add_design(CLI::App& command, DesignArguments& arguments) {
 
 void add_form(CLI::App& command, DesignArguments& arguments) {
   command
-      .add_option("--form", arguments.form,
-                  "One regression for all months, or one a month; without it the better one")
+      .add_option(
+          "--form", arguments.form,
+          "One regression for all months (seed) or one per month; the better one by default")
       ->check(CLI::IsMember({"seed", "monthly"}));
   command
       .add_option("--wind-direction", arguments.wind_direction,
-                  "How the seed's form takes a wind direction")
+                  "How the seed form uses the wind direction")
       ->check(CLI::IsMember({"sincos", "degrees"}))
       ->capture_default_str();
 }
@@ -98,16 +112,16 @@ void add_form(CLI::App& command, DesignArguments& arguments) {
 /// `calibrate` takes a site file or a design folder in its place.
 void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
   CLI::Option* site = command.add_option("site", arguments.site, "Site file (TOML)");
-  CLI::Option* doe =
-      command.add_option("--doe", arguments.design.folder, "Design folder instead of a site");
+  CLI::Option* doe = command.add_option("--doe", arguments.design.folder,
+                                        "Calibrate on this design folder, instead of a site");
   site->excludes(doe);
   add_model(command, arguments.model, "Model to calibrate", false);
   add_design(command, arguments.design);
   add_form(command, arguments.design);
   command.add_option("--metamodel", arguments.metamodel,
-                     "A regression to take as it is (term,coef), instead of fitting one");
+                     "Use this regression (term,coef) as it is, instead of fitting one");
   command.add_option("--measurements", arguments.measurements,
-                     "Measured figures instead of the folder's measurements.csv");
+                     "Measured figures, instead of the folder's measurements.csv");
   command.add_option("--parameters", arguments.parameters,
                      "What to calibrate: screened, all, or names separated by commas");
   for (const char* name : {"--design", "--form", "--wind-direction", "--metamodel",
@@ -116,7 +130,7 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
   }
   add_calibration(command, arguments);
   command.add_option("--out", arguments.out,
-                     "Folder for calibration.json, draws, figures and report");
+                     "Folder for calibration.json, the draws, the months and the report");
 }
 
 void add_screen(CLI::App& command, ScreenArguments& arguments) {
@@ -124,20 +138,19 @@ void add_screen(CLI::App& command, ScreenArguments& arguments) {
   add_design(command, arguments.design);
   command.add_option("--out", arguments.out, "Folder for the result");
   command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
-  command.add_flag("--json", arguments.json, "One JSON object on standard output");
+  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
 }
 
 void add_doe(CLI::App& command, DoeArguments& arguments) {
   add_site(command, arguments);
-  add_model(command, arguments.model, "Model to run instead of the site file's", true);
-  command.add_option("--runs", arguments.runs, "Runs of the Latin hypercube")
+  add_model(command, arguments.model, "Model to run, instead of the site file's", true);
+  command.add_option("--runs", arguments.runs, "Model runs of the design")
       ->check(CLI::Range(20, 100'000))
       ->capture_default_str();
-  command
-      .add_option("--out", arguments.out, "Design folder; one that is not finished is gone on with")
+  command.add_option("--out", arguments.out, "Design folder; an unfinished design is continued")
       ->required();
   command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
-  command.add_option("--threads", arguments.threads, "Threads; 0: one a core")
+  command.add_option("--threads", arguments.threads, "Number of threads; 0 for one per core")
       ->capture_default_str();
 }
 
@@ -170,18 +183,18 @@ void add_decode(CLI::App& command, DecodeArguments& arguments) {
       ->required();
   command.add_option("--request", arguments.request, "The request that it answers");
   command.add_option("--at", arguments.at, "Address of its first register on the wire, base 0");
-  command.add_option("--as", arguments.as, "What it is, if that is misjudged")
+  command.add_option("--as", arguments.as, "What --hex is, if recald guesses wrong")
       ->check(CLI::IsMember({"tcp", "rtu", "registers"}));
-  command.add_flag("--json", arguments.json, "One JSON object on standard output");
+  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
 }
 
 void add_status(CLI::App& command, StatusArguments& arguments) {
   CLI::Option* site = command.add_option("site", arguments.site, "Site file (TOML) of the daemon");
-  CLI::Option* url =
-      command.add_option("--url", arguments.url, "Where it listens, such as http://127.0.0.1:8080");
-  command.add_option("--token-file", arguments.token_file, "File with the token it asks for")
+  CLI::Option* url = command.add_option("--url", arguments.url,
+                                        "Address of the daemon, such as http://127.0.0.1:8080");
+  command.add_option("--token-file", arguments.token_file, "File with the access token")
       ->needs(url);
-  command.add_flag("--json", arguments.json, "One JSON object on standard output");
+  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
   site->excludes(url);
 }
 
@@ -189,21 +202,23 @@ void add_export(CLI::App& command, ExportArguments& arguments) {
   add_site(command, arguments);
   command.add_option("--from", arguments.from, "First local day, YYYY-MM-DD");
   command.add_option("--to", arguments.to, "Last local day, YYYY-MM-DD");
-  command.add_flag("--months", arguments.months, "Closed months in the place of readings");
-  command.add_option("--out", arguments.out, "File; without it standard output");
+  command.add_flag("--months", arguments.months, "Write closed months instead of readings");
+  command.add_option("--out", arguments.out, "File to write; standard output by default");
 }
 
 void add_import(CLI::App& command, ImportArguments& arguments) {
   add_site(command, arguments);
   command.add_option("file", arguments.file, "Readings CSV: timestamp,meter,value,unit")
       ->required();
-  command.add_option("--reason", arguments.reason, "Why, for those who find them later")
+  command.add_option("--reason", arguments.reason, "Why, for whoever reads the record later")
       ->required();
-  command.add_option("--stamps", arguments.stamps, "What the file's stamps name of an interval")
+  command
+      .add_option("--stamps", arguments.stamps,
+                  "Whether a time stamp marks the start or the end of its interval")
       ->check(CLI::IsMember({"start", "end"}))
       ->capture_default_str();
   command.add_flag("--supersede", arguments.supersede, "Replace good readings too");
-  command.add_flag("--dry-run", arguments.dry_run, "Say what would happen, change nothing");
+  command.add_flag("--dry-run", arguments.dry_run, "Say what would happen, but change nothing");
 }
 
 /// What every command was given on the command line; only one of them is run.
@@ -227,6 +242,8 @@ struct Arguments {
   DetectabilityArguments detectability;
   StatusArguments status;
   ModelArguments model;
+  std::string command;
+  std::string shell;
 };
 
 struct Verb {
@@ -235,19 +252,21 @@ struct Verb {
 };
 
 void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* check = app.add_subcommand("check", "Explain what a site file gets wrong");
+  CLI::App* check =
+      app.add_subcommand("check", "Check a site file and say what is wrong with it")->group(kSetUp);
   add_site(*check, given.check);
-  check->add_flag("--meters", given.check.meters, "Read each live meter once");
+  check->add_flag("--meters", given.check.meters, "Also read each live meter once");
   verbs.push_back({check, [&](const Console& console) { return run_check(given.check, console); }});
 
-  CLI::App* run = app.add_subcommand("run", "Poll the meters, until told to end");
+  CLI::App* run = app.add_subcommand("run", "Poll the meters until stopped")->group(kRun);
   run->add_option("site", given.run.site, "Site file (TOML)")->required();
   run->add_option("--clock", given.run.clock,
                   "For trials with simulated meters: START@ANCHORxSPEED, such as "
                   "2026-01-30T00:00:00Z@1769900000x600");
   verbs.push_back({run, [&](const Console& console) { return run_run(given.run, console); }});
 
-  CLI::App* status = app.add_subcommand("status", "What a running daemon says of itself");
+  CLI::App* status =
+      app.add_subcommand("status", "Show what a running daemon is doing")->group(kRun);
   add_status(*status, given.status);
   verbs.push_back({status, [&](const Console& console) {
                      const bool names_one = !given.status.site.empty() || !given.status.url.empty();
@@ -256,7 +275,7 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
                    }});
 
   CLI::App* replay =
-      app.add_subcommand("replay", "Recorded readings to monthly figures, on a virtual clock");
+      app.add_subcommand("replay", "Turn recorded readings into monthly figures")->group(kData);
   add_site(*replay, given.replay);
   replay->add_option("--from", given.replay.from, "First local day, YYYY-MM-DD");
   replay->add_option("--to", given.replay.to, "Last local day, YYYY-MM-DD");
@@ -265,7 +284,8 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
       {replay, [&](const Console& console) { return run_replay(given.replay, console); }});
 
   CLI::App* profile =
-      app.add_subcommand("profile", "Lighting and plug schedules from the electricity meter");
+      app.add_subcommand("profile", "Read lighting and plug schedules off the electricity meter")
+          ->group(kData);
   add_site(*profile, given.profile);
   profile->add_option("--out", given.profile.out, "Folder for profile.json");
   verbs.push_back(
@@ -273,38 +293,45 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
 }
 
 void add_store_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* verify = app.add_subcommand("verify", "Check the store against itself");
+  CLI::App* verify = app.add_subcommand("verify", "Check the store for damage")->group(kData);
   add_site(*verify, given.verify);
   verbs.push_back(
       {verify, [&](const Console& console) { return run_verify(given.verify, console); }});
 
-  CLI::App* exported = app.add_subcommand("export", "The store's readings or months as CSV");
+  CLI::App* exported =
+      app.add_subcommand("export", "Write the store's readings or months as CSV")->group(kData);
   add_export(*exported, given.exported);
   verbs.push_back(
       {exported, [&](const Console& console) { return run_export(given.exported, console); }});
 
-  CLI::App* imported = app.add_subcommand("import", "Readings into the store, with a reason");
+  CLI::App* imported =
+      app.add_subcommand("import", "Put readings into the store, with a reason")->group(kData);
   add_import(*imported, given.imported);
   verbs.push_back(
       {imported, [&](const Console& console) { return run_import(given.imported, console); }});
 }
 
 void add_device_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* scan = app.add_subcommand("scan", "Which units of a bus answer, and what they are");
+  CLI::App* scan =
+      app.add_subcommand("scan", "List the devices that answer on a Modbus bus")->group(kSetUp);
   add_site(*scan, given.scan);
   scan->add_option("--bus", given.scan.bus, "Name of the [bus.NAME] to scan")->required();
   scan->add_option("--units", given.scan.units, "Modbus addresses, A-B or one")
       ->capture_default_str();
   verbs.push_back({scan, [&](const Console& console) { return run_scan(given.scan, console); }});
 
-  CLI::App* decode = app.add_subcommand("decode", "Explain a Modbus frame byte by byte");
+  CLI::App* decode =
+      app.add_subcommand("decode", "Explain a Modbus frame byte by byte")->group(kSetUp);
   add_decode(*decode, given.decode);
   verbs.push_back(
       {decode, [&](const Console& console) { return run_decode(given.decode, console); }});
 }
 
 void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* calibrate = app.add_subcommand("calibrate", "One calibration now");
+  CLI::App* calibrate =
+      app.add_subcommand("calibrate",
+                         "Calibrate the site's model, or forecast its meters if it has none")
+          ->group(kCalibrate);
   add_calibrate(*calibrate, given.calibrate);
   verbs.push_back({calibrate, [&](const Console& console) {
                      const std::string why = misuse_of(given.calibrate);
@@ -312,28 +339,30 @@ void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& v
                                         : console.misused(why);
                    }});
 
-  CLI::App* report = app.add_subcommand("report", "Calibrate and write the page");
+  CLI::App* report =
+      app.add_subcommand("report", "Calibrate and write the report page")->group(kCalibrate);
   report->add_option("site", given.report.site, "Site file (TOML)")->required();
   add_calibration(*report, given.report);
-  report->add_option("--out", given.report.out, "The page, such as report.html")->required();
+  report->add_option("--out", given.report.out, "Page to write, such as report.html")->required();
   verbs.push_back(
       {report, [&](const Console& console) { return run_report(given.report, console); }});
 }
 
 void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* doe =
-      app.add_subcommand("doe", "Run the site's model over a Latin hypercube of its parameters");
+      app.add_subcommand("doe", "Run the site's model over a Latin hypercube of its parameters")
+          ->group(kDesigns);
   add_doe(*doe, given.doe);
   verbs.push_back({doe, [&](const Console& console) { return run_doe(given.doe, console); }});
 
   CLI::App* screen =
-      app.add_subcommand("screen", "Which parameters of a design matter to its outputs");
+      app.add_subcommand("screen", "Find which parameters of a design matter")->group(kDesigns);
   add_screen(*screen, given.screen);
   verbs.push_back(
       {screen, [&](const Console& console) { return run_screen(given.screen, console); }});
 
   CLI::App* metamodel =
-      app.add_subcommand("metamodel", "A regression in the place of a design's simulation");
+      app.add_subcommand("metamodel", "Fit a regression to the runs of a design")->group(kDesigns);
   add_screen(*metamodel, given.metamodel);
   add_form(*metamodel, given.metamodel.design);
   metamodel
@@ -345,41 +374,44 @@ void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs)
 
 void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* diagnose =
-      app.add_subcommand("diagnose", "Find the physical effect that the model lacks");
+      app.add_subcommand("diagnose", "Find the physical effect that the model is missing")
+          ->group(kFind);
   add_site(*diagnose, given.diagnose);
   diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.json");
   diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
       ->capture_default_str();
-  diagnose->add_flag("--apply", given.diagnose.apply, "Put what is named in force");
+  diagnose->add_flag("--apply", given.diagnose.apply, "Add the effect that is named to the model");
   diagnose->add_option("--assume", given.diagnose.assumed,
-                       "An effect that is known to be there, EFFECT or EFFECT:METER: added without "
-                       "asking how probable it is, and nothing else");
+                       "Add only this effect, EFFECT or EFFECT:METER, which is known to be there");
   verbs.push_back(
       {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
 
   CLI::App* drift =
-      app.add_subcommand("drift", "Forecast each month from those before: what has changed?");
+      app.add_subcommand("drift",
+                         "Forecast each month from the months before it and say what changed")
+          ->group(kCalibrate);
   add_site(*drift, given.drift);
   drift->add_option("--out", given.drift.out, "Folder for drift.json and the page drift.html");
   add_model(*drift, given.drift.model, "epc or hourly; else as the site file says", true);
-  drift->add_option("--learn", given.drift.learning_months, "Months that the model is made from")
+  drift->add_option("--learn", given.drift.learning_months, "Months to learn from")
       ->check(CLI::Range(6, 60))
       ->capture_default_str();
   drift
       ->add_option("--anew-every", given.drift.anew_every_months,
-                   "Months after which the posterior is sampled from the prior again")
+                   "Sample the posterior from scratch every so many months")
       ->check(CLI::Range(1, 120))
       ->capture_default_str();
-  drift->add_option("--particles", given.drift.particles, "That carry the posterior along")
+  drift->add_option("--particles", given.drift.particles, "Number of particles")
       ->check(CLI::Range(64, 100'000))
       ->capture_default_str();
   drift->add_option("--seed", given.drift.seed, "Seed of all random numbers")
       ->capture_default_str();
-  drift->add_option("--threads", given.drift.threads, "0: as many as there are processors");
+  drift->add_option("--threads", given.drift.threads, "Number of threads; 0 for one per core");
   verbs.push_back({drift, [&](const Console& console) { return run_drift(given.drift, console); }});
 
-  CLI::App* detectability = app.add_subcommand(
-      "detectability", "How visible an effect of a given footprint is at a site without it");
+  CLI::App* detectability =
+      app.add_subcommand("detectability", "Estimate how visible an effect would be at a site")
+          ->group(kFind);
   add_site(*detectability, given.detectability);
   detectability
       ->add_option("--footprint", given.detectability.footprint,
@@ -390,7 +422,9 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
                      return run_detectability(given.detectability, console);
                    }});
 
-  CLI::App* model = app.add_subcommand("model", "Versions of the site's model");
+  CLI::App* model =
+      app.add_subcommand("model", "List the versions of the site's model, or go back to one")
+          ->group(kFind);
   model->require_subcommand(1);
   const auto add = [&](const char* name, const char* help, auto run) {
     CLI::App* command = model->add_subcommand(name, help);
@@ -399,11 +433,48 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
         {command, [&given, run](const Console& console) { return run(given.model, console); }});
     return command;
   };
-  add("list", "All versions, the one in force marked", run_model_list);
-  add("show", "One version and what it was accepted on", run_model_show)
-      ->add_option("version", given.model.version, "Version; without it the one in force");
+  add("list", "List all versions and mark the one in use", run_model_list);
+  add("show", "Show one version and why it was accepted", run_model_show)
+      ->add_option("version", given.model.version, "Version; the one in use by default");
   add("revert", "Go back to an earlier version", run_model_revert)
-      ->add_option("version", given.model.version, "Version; without it the parent");
+      ->add_option("version", given.model.version, "Version; the one before by default");
+}
+
+/// Pages and scripts made from `app`, which has all commands by then.
+void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* man =
+      app.add_subcommand("man", "Print a manual page, to be read with man -l -")->group(kShell);
+  man->add_option("command", given.command, "Command; the page of recald itself by default");
+  verbs.push_back({man, [&](const Console& console) {
+                     const CLI::App* command = &app;
+                     if (!given.command.empty())
+                       command = app.get_subcommand_no_throw(given.command);
+                     if (command == nullptr) {
+                       return console.misused(
+                           fmt::format("there is no command '{}'", given.command));
+                     }
+                     console.out << man_page(*command, kVersion);
+                     return kSuccess;
+                   }});
+
+  CLI::App* schema =
+      app.add_subcommand("schema", "Print a JSON schema of the site file, for editors")
+          ->group(kShell);
+  verbs.push_back({schema, [](const Console& console) {
+                     console.out << site_schema();
+                     return kSuccess;
+                   }});
+
+  CLI::App* completion =
+      app.add_subcommand("completion", "Print a script that completes commands in a shell")
+          ->group(kShell);
+  completion->add_option("shell", given.shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  verbs.push_back({completion, [&](const Console& console) {
+                     console.out << completion_script(app, given.shell);
+                     return kSuccess;
+                   }});
 }
 
 /// What is wrong with the first word of a command line, if it is no command; else empty. CLI11
@@ -428,8 +499,13 @@ std::string unknown_command(const CLI::App& app, std::span<const char* const> wo
 
 int run_cli(int argc, const char* const* argv, const Console& console) {
   CLI::App app{"Keeps a building's energy model calibrated to its meters.", "recald"};
-  app.set_version_flag("--version", kVersion);
+  app.set_version_flag("-V,--version", kVersion);
   app.require_subcommand(1);
+  app.fallthrough();  // recald check site.toml -q
+  bool quiet = false;
+  bool verbose = false;
+  CLI::Option* less = app.add_flag("-q,--quiet", quiet, "Print results and failures only");
+  app.add_flag("-v,--verbose", verbose, "Print every rejected row; log more")->excludes(less);
   Arguments given;
   std::vector<Verb> verbs;
   add_site_verbs(app, given, verbs);
@@ -438,6 +514,7 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   add_calibration_verbs(app, given, verbs);
   add_design_verbs(app, given, verbs);
   add_model_verbs(app, given, verbs);
+  add_shell_verbs(app, given, verbs);
   const std::span words{argv, static_cast<std::size_t>(argc)};
   if (const auto why = unknown_command(app, words.subspan(std::min<std::size_t>(1, words.size())));
       !why.empty()) {
@@ -452,7 +529,11 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   const auto verb =
       std::ranges::find_if(verbs, [](const Verb& one) { return one.command->parsed(); });
   const EndSignals signals;
-  return signals.exit_code(verb->run(console));  // CLI11 saw to it that there is one
+  const Console told{console.out, console.err, console.is_terminal && !quiet,
+                     quiet     ? Console::Detail::little
+                     : verbose ? Console::Detail::all
+                               : Console::Detail::usual};
+  return signals.exit_code(verb->run(told));  // CLI11 saw to it that there is one
 }
 
 }  // namespace recald::daemon

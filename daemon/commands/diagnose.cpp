@@ -38,18 +38,14 @@ Result<SiteDiagnosis> diagnose_aloud(const ModelledSite& modelled,
                                      const diagnosis::SiteProblem& problem,
                                      const DiagnoseArguments& arguments, const Console& console) {
   const InterruptGuard guard;
-  double shown_share = -1.0;
-  const auto observer = [&](const char* what, double share) {
-    if (console.is_terminal && std::exchange(shown_share, share) != share) {
-      console.err << fmt::format("\r{:3.0f} %  {:<32}", 100.0 * share, what) << std::flush;
-    }
+  ProgressLine line{console};
+  const auto observer = [&](const char*, double share) {
+    line.show("Looking for missing effects", share);
     return !guard.interrupted();
   };
-  auto done =
-      diagnose_site(modelled, problem,
-                    {.rules = {}, .seed = arguments.seed, .assumed = arguments.assumed}, observer);
-  if (console.is_terminal) console.err << "\r\033[K";
-  return done;
+  return diagnose_site(modelled, problem,
+                       {.rules = {}, .seed = arguments.seed, .assumed = arguments.assumed},
+                       observer);
 }
 
 /// What became of the model, for people.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace recald::daemon {
 namespace {
@@ -39,18 +40,23 @@ std::string sum_words(const MeterConfig& meter) {
 }
 
 void print_data_words(const Recording& recording, const Console& console) {
+  if (console.detail == Console::Detail::little) return;
+  const std::size_t shown = console.detail == Console::Detail::all
+                                ? std::numeric_limits<std::size_t>::max()
+                                : kLinesShown;
   for (const FileIssues& file : recording.files) {
     if (file.issues.total == 0) continue;
     const std::string name = file.file.filename().string();
     // Bad lines are kept out; rows out of order or repeated are used, once: each says which it is.
     console.err << fmt::format("{}: {} line{} to look at\n", name, file.issues.total,
                                file.issues.total == 1 ? "" : "s");
-    for (std::size_t i = 0; i < std::min(kLinesShown, file.issues.listed.size()); ++i) {
+    const std::size_t listed = std::min(shown, file.issues.listed.size());
+    for (std::size_t i = 0; i < listed; ++i) {
       const csv::LineIssue& issue = file.issues.listed[i];
       console.err << fmt::format("  {}:{}: {}\n", name, issue.line, issue.reason);
     }
-    if (file.issues.total > kLinesShown) {
-      console.err << fmt::format("  … and {} more\n", file.issues.total - kLinesShown);
+    if (file.issues.total > listed) {
+      console.err << fmt::format("  … and {} more\n", file.issues.total - listed);
     }
   }
   for (const MeterRecord& record : recording.meters) {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <utility>
@@ -34,6 +35,8 @@ int run_run(const RunArguments& arguments, const Console& console) {
     if (!clock) return console.misused("--clock: " + clock.error().message);
     options.trial = *clock;
   }
+  if (console.detail == Console::Detail::little) spdlog::set_level(spdlog::level::warn);
+  if (console.detail == Console::Detail::all) spdlog::set_level(spdlog::level::debug);
   const auto ended = run_service(std::move(*site), options);
   if (!ended) return console.fail(ended.error());
   return kSuccess;
