@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/calibration/samplers.hpp"
@@ -445,17 +446,16 @@ void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   CLI::App* man =
       app.add_subcommand("man", "Print a manual page, to be read with man -l -")->group(kShell);
   man->add_option("command", given.command, "Command; the page of recald itself by default");
-  verbs.push_back({man, [&](const Console& console) {
-                     const CLI::App* command = &app;
-                     if (!given.command.empty())
-                       command = app.get_subcommand_no_throw(given.command);
-                     if (command == nullptr) {
-                       return console.misused(
-                           fmt::format("there is no command '{}'", given.command));
-                     }
-                     console.out << man_page(*command, kVersion);
-                     return kSuccess;
-                   }});
+  verbs.push_back(
+      {man, [&](const Console& console) {
+         const auto is_it = [&](const CLI::App* one) { return one->get_name() == given.command; };
+         const auto found = std::as_const(app).get_subcommands(is_it);
+         if (!given.command.empty() && found.empty()) {
+           return console.misused(fmt::format("there is no command '{}'", given.command));
+         }
+         console.out << man_page(found.empty() ? app : *found.front(), kVersion);
+         return kSuccess;
+       }});
 
   CLI::App* schema =
       app.add_subcommand("schema", "Print a JSON schema of the site file, for editors")

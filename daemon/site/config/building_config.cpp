@@ -65,11 +65,12 @@ void read_use(TomlReader table, model::Use& use) {
   table.finish();
 }
 
-void read_schedule(TomlReader table, model::HourlySchedule& occupied_fraction) {
+/// @param whole  Every kind of day has to be there; else nobody is in on those that are not.
+void read_schedule(TomlReader table, model::HourlySchedule& occupied_fraction, bool whole) {
   const auto read_day = [&](std::string_view key, DayType day) {
     const auto values = table.numbers(key, 24, kShare);
     if (!values) {
-      if (table.has(key)) return;
+      if (table.has(key) || !whole) return;
       table.problem(fmt::format("'{}' must list the occupied fraction of each hour 0 to 23", key));
       return;
     }
@@ -101,7 +102,7 @@ model::Season read_season(TomlReader& table) {
                        .occupied_fraction = {},
                        .closed = table.boolean("closed").value_or(false)};
   if (auto schedule = table.table("schedule")) {
-    read_schedule(*schedule, season.occupied_fraction);
+    read_schedule(*schedule, season.occupied_fraction, /*whole=*/false);
   } else if (!season.closed) {
     table.problem("a season is closed = true, has a schedule of its own, or both");
   }
@@ -195,7 +196,7 @@ Building read_building(TomlReader table) {
     table.problem("[building.use] is missing");
   }
   if (auto schedule = table.table("schedule")) {
-    read_schedule(*schedule, building.occupied_fraction);
+    read_schedule(*schedule, building.occupied_fraction, /*whole=*/true);
   } else {
     table.problem("[building.schedule] is missing");
   }

@@ -16,7 +16,7 @@ constexpr NumberRange kEmission_kg_kWh{0.0, 10.0};
 
 std::string name_of(metering::Utility utility) { return std::string{metering::to_string(utility)}; }
 
-tariff::PricePeriod read_period(TomlReader& table) {
+tariff::PricePeriod read_price_period(TomlReader& table) {
   tariff::PricePeriod period{.from_hour = table.whole_number_or("from", 0, kHour),
                              .to_hour = table.whole_number_or("to", 24, kHour),
                              .days = {true, true, true},
@@ -34,7 +34,8 @@ tariff::PricePeriod read_period(TomlReader& table) {
 tariff::Prices read_prices(TomlReader& table) {
   tariff::Prices prices{.per_kWh = table.required_number("per_kWh", kPrice),
                         .per_kW_month = table.number_or("per_kW_month", 0.0, kPrice)};
-  for (TomlReader& period : table.tables("period")) prices.periods.push_back(read_period(period));
+  for (TomlReader& period : table.tables("period"))
+    prices.periods.push_back(read_price_period(period));
   table.finish();
   return prices;
 }

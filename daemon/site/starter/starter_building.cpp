@@ -183,6 +183,22 @@ std::string systems_of(const StarterFacts& facts, const UseFacts& use, const Env
   return text;
 }
 
+/// The later months are kept to check the model, where enough are left to calibrate it.
+std::string period_of(const metering::MonthRange& months) {
+  const auto count = (months.last - months.first).count() + 1;
+  const auto kept = std::chrono::months{count >= 36 ? 12 : count >= 18 ? 6 : 0};
+  const auto range = [](metering::Month from, metering::Month to) {
+    return fmt::format("{{ from = \"{}\", to = \"{}\" }}", metering::to_string(from),
+                       metering::to_string(to));
+  };
+  std::string text = "\n[period]\ncalibration = " + range(months.first, months.last - kept) + "\n";
+  if (kept.count() > 0) {
+    text +=
+        "validation = " + range(months.last - kept + std::chrono::months{1}, months.last) + "\n";
+  }
+  return text;
+}
+
 /// Parameters that a guessed building leaves widest, with priors as wide as the guesses.
 std::string model_of(const StarterFacts& facts, const UseFacts& use) {
   std::vector<std::string> outputs;
@@ -275,6 +291,7 @@ Result<std::string> starter_model(const StarterFacts& facts) {
       "# A starter model: what is typical of {} {} in climate zone {} ({}).\n"
       "# Every line with \"guess\" is one: replace it by what you know, the largest first.\n",
       article((*use)->name), (*use)->name, facts.climate_zone, envelope.typical_of);
+  text += period_of(facts.months);
   text += model_of(facts, **use);
   text += "\n[building]\n";
   text += line("floor_area_m2", number(facts.floor_area_m2), "as given");

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/metering/month_closer.hpp"
 #include "core/metering/reading.hpp"
 #include "core/result.hpp"
 #include "core/weather/weather_series.hpp"
@@ -19,8 +20,9 @@ struct StarterFacts {
   std::string use;  ///< One of `starter_uses`.
   double floor_area_m2 = 0.0;
   int storeys = 1;
-  std::optional<int> built;  ///< Year; absent: before there were codes.
-  int climate_zone = 4;      ///< See `climate_zone_of`.
+  std::optional<int> built;     ///< Year; absent: before there were codes.
+  int climate_zone = 4;         ///< See `climate_zone_of`.
+  metering::MonthRange months;  ///< That the meters have.
   /// What may be modelled: ids of the site's meters and what they measure.
   std::vector<std::pair<std::string, metering::Utility>> meters;
 };
@@ -32,8 +34,8 @@ struct StarterFacts {
 /// @see ANSI/ASHRAE Standard 169-2013, table A-3 (thermal zones).
 [[nodiscard]] Result<int> climate_zone_of(const weather::WeatherSeries& weather);
 
-/// [building] and [[model]] of a site file, with a comment at each guess: how far off it may be and
-/// what it is typical of.
+/// [period], [[model]] and [building] of a site file, with a comment at each guess: how far off it
+/// may be and what it is typical of.
 /// @return invalid_value for a use that is not known (the nearest is named), an area or storeys out
 ///         of reason, or meters of which a model has none.
 [[nodiscard]] Result<std::string> starter_model(const StarterFacts& facts);

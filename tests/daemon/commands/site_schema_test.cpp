@@ -8,22 +8,22 @@
 #include "daemon/commands/site_schema.hpp"
 #include "tests/support/sample_site.hpp"
 
-namespace recald::daemon {
+namespace recald::daemon::site_schema_test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-json as_json(const toml::node& node) {
+Json as_json(const toml::node& node) {
   if (const auto* table = node.as_table()) {
-    json object = json::object();
+    Json object = Json::object();
     for (const auto& [key, value] : *table) object[std::string{key.str()}] = as_json(value);
     return object;
   }
   if (const auto* array = node.as_array()) {
-    json list = json::array();
+    Json list = Json::array();
     for (const toml::node& value : *array) list.push_back(as_json(value));
     return list;
   }
@@ -32,10 +32,10 @@ json as_json(const toml::node& node) {
   return *node.value<double>();
 }
 
-bool has_type(const json& value, const json& type) {
+bool has_type(const Json& value, const Json& type) {
   if (type.is_array()) {
     return std::any_of(type.begin(), type.end(),
-                       [&](const json& one) { return has_type(value, one); });
+                       [&](const Json& one) { return has_type(value, one); });
   }
   return (type == "object" && value.is_object()) || (type == "array" && value.is_array()) ||
          (type == "string" && value.is_string()) || (type == "number" && value.is_number()) ||
@@ -43,14 +43,14 @@ bool has_type(const json& value, const json& type) {
 }
 
 /// What a validator of the few words that the schema uses finds wrong.
-void validate(const json& value, const json& schema, const std::string& at,
+void validate(const Json& value, const Json& schema, const std::string& at,
               std::vector<std::string>& wrong) {
   if (schema.contains("type") && !has_type(value, schema["type"])) {
     wrong.push_back(at + " is no " + schema["type"].dump());
     return;
   }
   if (value.is_array() && schema.contains("items")) {
-    for (const json& one : value) validate(one, schema["items"], at, wrong);
+    for (const Json& one : value) validate(one, schema["items"], at, wrong);
   }
   if (!value.is_object()) return;
   for (const auto& [key, one] : value.items()) {
@@ -73,7 +73,7 @@ class SiteSchema : public ::testing::Test {
     validate(as_json(site), schema_, "", wrong);
     return wrong;
   }
-  json schema_ = json::parse(site_schema());
+  Json schema_ = Json::parse(site_schema());
 };
 
 TEST_F(SiteSchema, TakesTheSiteFilesThatComeWithRecald) {
@@ -103,4 +103,4 @@ TEST_F(SiteSchema, ExplainsKeys) {
 }
 
 }  // namespace
-}  // namespace recald::daemon
+}  // namespace recald::daemon::site_schema_test

@@ -21,6 +21,7 @@ StarterFacts office() {
           .storeys = 3,
           .built = 1995,
           .climate_zone = 5,
+          .months = {std::chrono::year{2020} / 1, std::chrono::year{2021} / 12},
           .meters = {{"electricity", Utility::electricity}, {"district_heat", Utility::heating}}};
 }
 
@@ -57,9 +58,20 @@ TEST(StarterBuilding, WallsAndFloorsAreThoseOfASquare) {
   double upright_m2 = 0.0;
   for (const model::Surface& surface : site->building->surfaces) {
     if (surface.orientation.tilt_deg > 45.0) upright_m2 += surface.area_m2;
-    if (surface.kind == model::SurfaceKind::roof) EXPECT_NEAR(surface.area_m2, 2600.0, 1.0);
+    if (surface.kind == model::SurfaceKind::roof) {
+      EXPECT_NEAR(surface.area_m2, 2600.0, 1.0);
+    }
   }
   EXPECT_NEAR(upright_m2, 4.0 * std::sqrt(2600.0) * 3 * 3.7, 25.0);  // three digits are written
+}
+
+TEST(StarterBuilding, LaterMonthsAreKeptWhereEnoughAreLeft) {
+  EXPECT_THAT(starter_model(office()).value(),
+              HasSubstr("calibration = { from = \"2020-01\", to = \"2021-06\" }\n"
+                        "validation = { from = \"2021-07\", to = \"2021-12\" }"));
+  StarterFacts few = office();
+  few.months.last = std::chrono::year{2020} / 12;
+  EXPECT_THAT(starter_model(few).value(), Not(HasSubstr("validation")));
 }
 
 TEST(StarterBuilding, GuessesAreMarked) {
