@@ -101,9 +101,9 @@ class Gallery {
   std::size_t figures_ = 0;
   std::string list_ =
       "# Footprints of the hidden effects\n\n"
-      "What each effect adds to the meters of a building in which nothing else differs, weather\n"
-      "and people included. Curves: its mean day. Bars: its months, as shares of what the meter\n"
-      "shows without it in a mean month, so that their mean is the share of the year.\n\n"
+      "What each effect adds to the meters of a building when nothing else changes: weather and\n"
+      "people are the same. The curves are its mean day. The bars are its months, as shares of the\n"
+      "meter's mean month without the effect, so their mean is the share of the year.\n\n"
       "Made by `recald-sim footprints --out FOLDER`.\n";
 };
 
