@@ -81,8 +81,8 @@ Result<Eigen::LLT<Eigen::MatrixXd>> posterior_factor(const Eigen::MatrixXd& info
   // Eigen lets a NaN through its factorisation.
   if (factor.info() != Eigen::Success || !factor.matrixLLT().allFinite()) {
     return failure(ErrorCode::not_positive_definite,
-                   "a sensitivity of the base model is not a finite number, so what it could "
-                   "imitate cannot be told");
+                   "a sensitivity of the base model is not a finite number, so recald cannot tell "
+                   "what the model could imitate");
   }
   return factor;
 }
@@ -168,8 +168,8 @@ Result<Detectability> FootprintGauge::measure(
       observations_.stack(twin_->measured_parts_kW + parts_kW) - observations_.measured;
   if (!footprint.allFinite()) {
     return failure(ErrorCode::not_finite,
-                   "the footprint has a value that is not a finite number where its meter was "
-                   "measured");
+                   "the footprint has a value that is not a finite number at a time when its meter "
+                   "was measured");
   }
   const Visibility block = at_block(footprint);
   return Detectability{.month = at(month_, footprint),

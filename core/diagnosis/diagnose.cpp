@@ -117,7 +117,7 @@ Result<std::vector<std::size_t>> meant_by(const std::string& id, const std::vect
     }
   }
   return failure(ErrorCode::not_found,
-                 "'" + id + "' is no effect of the catalogue, or one that the model has already");
+                 "'" + id + "' is not an effect of the catalogue, or the model already has it");
 }
 
 /// Within the posterior, linearised in the scores.
@@ -137,7 +137,7 @@ std::vector<ParameterBelief> beliefs_of(const SiteProblem& site, const JointFit&
 void take_as_named(Naming& naming) {
   naming.outcome = Outcome::named;
   naming.named = 0;
-  naming.why = "it was said to be there";
+  naming.why = "it was assumed to be present";
 }
 
 void take_back(const char* why, Diagnosis& result) {
@@ -158,8 +158,8 @@ struct Shown {
 void keep_first(std::size_t count, const std::vector<Shown>& shown, Diagnosis& result) {
   for (std::size_t i = count; i < result.added.size(); ++i) {
     result.warnings.push_back("'" + std::string{result.added[i].candidate.effect->title} +
-                              "' was named after the others and taken back: the months kept back "
-                              "do not bear it out.");
+                              "' was named after the others and withdrawn, because the held-out "
+                              "months do not confirm it.");
   }
   result.added.resize(count);
   result.modelled_kW = result.passes[count].modelled_kW;
@@ -177,8 +177,8 @@ void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) 
   if (result.added.empty()) return;
   if (shown.empty()) {
     take_back(
-        "no reading lies in the months kept back, so nothing confirms what was named and it "
-        "was taken back",
+        "the held-out months have no readings, so nothing confirms what was named and it was "
+        "withdrawn",
         result);
     return;
   }
@@ -191,8 +191,8 @@ void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) 
   result.gap->confirmed = confirmed >= result.added.size();
   if (!assumed && confirmed == 0) {
     take_back(
-        "what was named does not foretell the months that were kept back, so it was taken "
-        "back",
+        "what was named does not improve the prediction of the held-out months, so it was "
+        "withdrawn",
         result);
   }
 }
@@ -255,8 +255,8 @@ class Search {
     result_.base_fit = gaps_of(site_, first_, judge_of(site_, first_, first_.fit));
     if (!first_.none.converged) {
       result_.warnings.push_back(
-          "The base calibration of the hourly model did not settle, so nothing is named: compare "
-          "[building] with the drawings and look for a meter in a wrong unit.");
+          "The base calibration of the hourly model did not converge, so no effect is named. "
+          "Compare [building] with the drawings and look for a meter in a wrong unit.");
     }
     result_.parameters_before = beliefs_of(site_, first_.none);
     result_.parameters_after = beliefs_of(site_, now().none);
@@ -270,9 +270,9 @@ class Search {
     if (!result_.gap || result_.not_confirmed) return;
     for (std::size_t g = 0; g < site_.meters.size(); ++g) {
       if (!is_worse(result_.gap->log_score_change[g])) continue;
-      result_.warnings.push_back("Meter '" + site_.meters[g].id +
-                                 "' is foretold worse than before on the months kept " +
-                                 "back: the model has the echo of what was added wrong there.");
+      result_.warnings.push_back(
+          "Meter '" + site_.meters[g].id + "' is predicted worse than before on the held-out " +
+          "months: the model gets the side effect of the addition on this meter wrong.");
     }
   }
 
@@ -350,7 +350,7 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   if (!go_on()) return tl::unexpected(diagnosis_cancelled());
   if (auto begun = search.begin(); !begun) return tl::unexpected(begun.error());
   for (int turn = 0;; ++turn) {
-    what = "looking for disagreement";
+    what = "looking for disagreements";
     share = 0.2 + 0.15 * turn;
     if (!go_on()) return tl::unexpected(diagnosis_cancelled());
     const auto more = search.turn();

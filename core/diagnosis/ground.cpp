@@ -157,10 +157,11 @@ Result<void> require_parts(const SiteProblem& site, const Observations& fit) {
   for (std::size_t g = 0; g < site.meters.size(); ++g) {
     const std::size_t measured = fit.meters[g].rows.size();
     if (measured >= kLeastGround) continue;
-    return failure(ErrorCode::not_enough_data,
-                   "meter '" + site.meters[g].id + "' has " + std::to_string(measured) +
-                       " measured four-hour parts in the months to fit, and a diagnosis needs 100 "
-                       "of each; leave it out of the model's outputs or give more readings");
+    return failure(
+        ErrorCode::not_enough_data,
+        "meter '" + site.meters[g].id + "' has " + std::to_string(measured) +
+            " measured four-hour parts in the months to fit, but a diagnosis needs 100 per meter; "
+            "leave the meter out of the model's outputs or provide more readings");
   }
   return {};
 }

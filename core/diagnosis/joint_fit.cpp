@@ -213,8 +213,9 @@ class ModeSearch {
   /// Linearises and steps. @return what the step gained, 0 where none helped
   Result<double> iterate() {
     if (!std::isfinite(place.log_density)) {
-      return failure(ErrorCode::not_finite,
-                     "the hourly model gives no finite power at some values of its parameters");
+      return failure(
+          ErrorCode::not_finite,
+          "the hourly model does not give a finite power for some values of its parameters");
     }
     ++iterations;
     place.jacobian = model_.jacobian(place.own, observations_.measured - place.residual);

@@ -258,8 +258,8 @@ Result<void> require_enough(const MonthlyFigures& measured, std::size_t paramete
   if (points >= parameters + 2 && measured.shown.size() >= kLeastShown) return {};
   return failure(ErrorCode::not_enough_data,
                  "the monthly model needs " + std::to_string(parameters + 2) +
-                     " measured monthly figures to be fitted and " + std::to_string(kLeastShown) +
-                     " months to be judged by, and has " + std::to_string(points) + " and " +
+                     " measured monthly figures for the fit and " + std::to_string(kLeastShown) +
+                     " months for the check, but has " + std::to_string(points) + " and " +
                      std::to_string(measured.shown.size()));
 }
 

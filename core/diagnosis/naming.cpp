@@ -217,20 +217,20 @@ std::string objection(const Explanation& e, const Grounds& grounds, const Naming
                       const NamingRules& rules) {
   const double least = std::max(rules.least_evidence, naming.null_threshold);
   if (e.support / e.null_scale < least) {
-    return "its evidence is no stronger than where nothing is hidden";
+    return "its evidence is no stronger than in buildings with nothing hidden";
   }
   if (grounds.months < rules.least_months) {
     return std::to_string(grounds.months) +
-           " months of readings are too few to tell a season from "
-           "an effect: most of a year is needed";
+           " months of readings are too few to tell an effect from a season; most of a year is "
+           "needed";
   }
-  if (!grounds.settled) return "the base calibration of the hourly model did not settle";
-  if (e.first_look < naming.null_threshold) return "the residuals alone do not speak for it";
+  if (!grounds.settled) return "the base calibration of the hourly model did not converge";
+  if (e.first_look < naming.null_threshold) return "the residuals alone do not support it";
   if (e.selected_gain < -rules.most_against * e.null_scale - 2.0 * e.selected_se) {
-    return "the months that were held for choosing speak against it";
+    return "the months set aside for choosing contradict it";
   }
-  if (e.move < rules.least_move) return "it would move no meter by more than a trifle";
-  if (e.at_truncation) return "its size runs against the end of what was thought possible";
+  if (e.move < rules.least_move) return "it would hardly change any meter";
+  if (e.at_truncation) return "its size is at the limit of what is thought possible";
   return {};
 }
 
@@ -265,7 +265,7 @@ void decide(Naming& naming, const NamingRules& rules) {
   }
   if (first.effect == "unknown" && first.probability >= rules.unknown_probability) {
     naming.outcome = Outcome::unknown;
-    naming.why = "there is a gap, and no effect of the catalogue explains it";
+    naming.why = "there is a gap that no effect of the catalogue explains";
     return;
   }
   naming.outcome = Outcome::none;

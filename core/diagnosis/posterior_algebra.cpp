@@ -35,8 +35,8 @@ Result<Factor> posterior_factor(const GramSystem& system, const Eigen::MatrixXd&
   if (factor.info() != Eigen::Success || !std::isfinite(log_determinant(factor))) {
     return failure(ErrorCode::not_positive_definite,
                    "the posterior precision of " + std::to_string(q) +
-                       " parameters has no factor; a sensitivity is not finite or a prior is "
-                       "without bounds");
+                       " parameters has no Cholesky factor; a sensitivity is not finite or a prior "
+                       "is unbounded");
   }
   return factor;
 }

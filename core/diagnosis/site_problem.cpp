@@ -34,7 +34,7 @@ std::string lacking(const Effect& effect, const SiteProblem& site) {
   if (needs.humidity && !site.drivers->has_humidity) return "the weather has no humidity";
   if (needs.wind && !site.drivers->has_wind) return "the weather has no wind";
   if (needs.sun && !site.has_sun) return "the weather has no sun";
-  if (needs.own_chiller && !b.chiller_cop) return "the site has no chiller of its own";
+  if (needs.own_chiller && !b.chiller_cop) return "the site does not have its own chiller";
   if (needs.heat_pump) return "the site file describes no heat pump";
   if (needs.economiser && !(b.air && b.air->economiser_lockout_C)) {
     return "the site file describes no economiser";
@@ -45,7 +45,7 @@ std::string lacking(const Effect& effect, const SiteProblem& site) {
   if (!effect.meter_utilities.empty() &&
       std::ranges::none_of(effect.meter_utilities,
                            [&](Utility utility) { return has(site, utility); })) {
-    return "no meter of this kind is modelled";
+    return "the model has no meter of the kind it affects";
   }
   return {};
 }

@@ -52,11 +52,12 @@ Result<SiteDiagnosis> diagnose_aloud(const ModelledSite& modelled,
 std::string fate_words(const diagnosis::Diagnosis& diagnosis, const DiagnoseArguments& arguments,
                        const std::string& applied) {
   if (!applied.empty()) {
-    return fmt::format("Model version {} is in force.\n", diagnosis::short_version(applied));
+    return fmt::format("Model version {} is now active.\n", diagnosis::short_version(applied));
   }
-  if (arguments.apply) return "Nothing was put in force: the model is as it was.\n";
+  if (arguments.apply) return "No effect was added. The model was not changed.\n";
   if (diagnosis.added.empty() || diagnosis.not_confirmed) return {};
-  return "The model is as it was; with --apply it gets what was named.\n";
+  return fmt::format("The model was not changed. Run again with --apply to add {}.\n",
+                     diagnosis.added.size() == 1 ? "this effect" : "these effects");
 }
 
 }  // namespace

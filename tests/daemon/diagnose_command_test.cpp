@@ -126,7 +126,8 @@ TEST_F(DiagnoseCommand, AMeterThatNeverSpokeIsNamed) {
   const Outcome outcome = run({"diagnose", site()});
   EXPECT_EQ(outcome.exit_code, kFailure);
   EXPECT_THAT(outcome.err, HasSubstr("recald: meter 'district_heat' has "));
-  EXPECT_THAT(outcome.err, HasSubstr("leave it out of the model's outputs or give more readings"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("leave the meter out of the model's outputs or provide more readings"));
 }
 
 TEST_F(DiagnoseCommand, AFolderThatCannotBeMadeIsToldBeforeTheWork) {
@@ -154,7 +155,7 @@ TEST_F(DiagnoseCommand, WhatTheDataLackIsSaid) {
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no humidity: "));
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no wind: "));
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no sun: "));
-  EXPECT_THAT(outcome.out, EndsWith("Nothing was put in force: the model is as it was.\n"));
+  EXPECT_THAT(outcome.out, EndsWith("No effect was added. The model was not changed.\n"));
   const Json json = result("out");
   EXPECT_THAT(json["added"], IsEmpty());
   const Json unseen = json["not_identifiable_here"];
@@ -245,19 +246,18 @@ TEST_F(DepotWithMoreMachines, WhatIsNamedIsInForceUntilItIsReverted) {
   const Outcome found = diagnose("found", {"--apply"});
   ASSERT_EQ(found.exit_code, kSuccess) << found.err;
   const std::string title = "Equipment added or removed";
-  EXPECT_THAT(found.out, HasSubstr("Missing in the model: \"" + title + "\""));
+  EXPECT_THAT(found.out, HasSubstr("Missing from the model: \"" + title + "\""));
   EXPECT_THAT(found.out, HasSubstr("Scatter of months in the monthly model: Electricity "));
   const Json json = result("found");
   EXPECT_THAT(json["added"], Contains("equipment_step"));
   EXPECT_LT(json["gap"]["epc"]["change"]["electricity_daily_kWh"]["cvrmse"]["q95"], 0.0);
   const std::string version = json["model_version"].get<std::string>().substr(0, 12);
-  EXPECT_THAT(found.out, EndsWith("Model version " + version + " is in force.\n"));
+  EXPECT_THAT(found.out, EndsWith("Model version " + version + " is now active.\n"));
   EXPECT_THAT(run({"model", "list", site()}).out, HasSubstr("* " + version));
 
   // A diagnosis starts from the drawings, which are not in force.
-  expect_refusal("the model has '" + title + "' already (version " + version +
-                 "), and a diagnosis starts from the drawings; take it back first with `recald "
-                 "model revert " +
+  expect_refusal("the model has '" + title + "' (version " + version +
+                 "), but a diagnosis starts from the drawings; first run `recald model revert " +
                  site() + " drawings`");
 
   const Json with = calibrate();

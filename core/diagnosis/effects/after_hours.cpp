@@ -37,20 +37,21 @@ Effect after_hours() {
       .id = "after_hours",
       .title = "After-hours operation",
       .meaning =
-          "On working days fans, heating and cooling run on after the timetable's end, for "
-          "instance because of an override that nobody takes back.",
+          "On working days fans, heating and cooling keep running after the end of the timetable, "
+          "for instance because nobody has cancelled an override.",
       .physics = "t_off [h] = t_off,drawn + Δh on days with plant operation; Δh [h] ≥ 0",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
-      .confusable =
-          {{"dst_misapplied",
-            "The stop edge in 15-minute values: a clock error comes and goes with the change of "
-            "the clocks and moves the morning too."},
-           {"clock_offset",
-            "The start edge: a wrong clock moves start and stop alike, and the sun-locked loads."},
-           {"exterior_lighting",
-            "The edge against sunset over the year, and whether chilled water follows it."},
-           {"night_setback_missing", "Power at 03:00, long after any late stop."}},
+      .confusable = {{"dst_misapplied",
+                      "The shutdown time in 15-minute values: a clock error comes and goes with "
+                      "daylight saving and also moves the morning."},
+                     {"clock_offset",
+                      "The start time: a wrong clock moves start and stop alike, and also the "
+                      "loads that follow the sun."},
+                     {"exterior_lighting",
+                      "Whether the shutdown time follows sunset over the year, and whether chilled "
+                      "water follows it."},
+                     {"night_setback_missing", "Power at 03:00, long after any late stop."}},
       .parameters = parameters,
       .bind = bind,
   };

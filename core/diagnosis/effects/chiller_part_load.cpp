@@ -71,23 +71,23 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
 }  // namespace
 
 Effect chiller_part_load() {
-  return {
-      .id = "chiller_part_load",
-      .title = "Chiller poor at part load",
-      .meaning =
-          "The chiller uses more electricity per cooling when it is lightly loaded or "
-          "its condenser is warm: check staging, minimum load and the tower.",
-      .physics =
-          "power = cooling/COP x (1 + p (1/r - 1)) x (1 + c (T_cw - 30 C)); r load over "
-          "design load, at least 0.1; T_cw = max(T_out + 5 K, 20 C); p in -, c in 1/K",
-      .effect_class = EffectClass::plant,
-      .needs = {.own_chiller = true},
-      .confusable = {{"fouling",
-                      "Chiller power at one load and tower temperature, this year and last."},
-                     {"constant_flow_pumps", "Pump power by itself, on a mild working day."},
-                     {"demand_limit", "Chiller power against its load on the hottest afternoons."}},
-      .parameters = parameters,
-      .bind = bind};
+  return {.id = "chiller_part_load",
+          .title = "Chiller inefficient at part load",
+          .meaning =
+              "The chiller uses more electricity per unit of cooling when it is lightly loaded or "
+              "its condenser is warm. Check staging, minimum load and the tower.",
+          .physics =
+              "power = cooling/COP x (1 + p (1/r - 1)) x (1 + c (T_cw - 30 C)); r load over "
+              "design load, at least 0.1; T_cw = max(T_out + 5 K, 20 C); p in -, c in 1/K",
+          .effect_class = EffectClass::plant,
+          .needs = {.own_chiller = true},
+          .confusable = {{"fouling",
+                          "Chiller power at one load and tower temperature, this year and last."},
+                         {"constant_flow_pumps", "The pump power alone, on a mild working day."},
+                         {"demand_limit",
+                          "Chiller power plotted against its load on the hottest afternoons."}},
+          .parameters = parameters,
+          .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -43,20 +43,21 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 }  // namespace
 
 Effect clock_offset() {
-  return {.id = "clock_offset",
-          .title = "Meter's clock is wrong",
-          .meaning =
-              "Everything this meter shows happened earlier or later than it says: a wrong "
-              "clock, time zone, or label at the end of the interval.",
-          .physics = "y(t + D); y recorded power in kW, D in h, between intervals linear",
-          .effect_class = EffectClass::meter,
-          .of_one_meter = true,
-          .confusable = {{"early_start",
-                          "The other meters: a schedule moves them all, a clock this one."},
-                         {"after_hours", "The other meters, and the meter's own display of time."},
-                         {"dst_misapplied", "Winter weeks: a wrong clock is wrong then too."}},
-          .parameters = parameters,
-          .bind = bind};
+  return {
+      .id = "clock_offset",
+      .title = "Meter's clock is wrong",
+      .meaning =
+          "Everything this meter shows happened earlier or later than its time stamps say: the "
+          "clock or time zone is wrong, or the stamps mark the end of the interval.",
+      .physics = "y(t + D); y recorded power in kW, D in h, between intervals linear",
+      .effect_class = EffectClass::meter,
+      .of_one_meter = true,
+      .confusable = {{"early_start",
+                      "The other meters: a schedule moves them all, a wrong clock only this one."},
+                     {"after_hours", "The other meters, and the meter's own display of time."},
+                     {"dst_misapplied", "Winter weeks: a wrong clock is also wrong then."}},
+      .parameters = parameters,
+      .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

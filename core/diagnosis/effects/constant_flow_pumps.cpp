@@ -101,22 +101,24 @@ Effect constant_flow_pumps() {
       .id = "constant_flow_pumps",
       .title = "Pumps at constant flow",
       .meaning =
-          "Pumps of chilled or hot water run day and night at full speed through a season "
-          "or all year, also when no heat or cold is needed.",
+          "Chilled-water or hot-water pumps run at full speed day and night, through a season or "
+          "all year, even when no heating or cooling is needed.",
       .physics =
           "P_pumps [kW] += P_p·plant(t); plant: 1 in all, the warm or the cold months, else "
           "0; P_p [kW] ≥ 0",
       .effect_class = EffectClass::air_system,
       .confusable =
           {{"server_room",
-            "Chilled water of winter nights: servers need it, pumps leave it unchanged."},
+            "Chilled water on winter nights: servers need it, pumps leave it unchanged."},
            {"round_the_clock_zone",
             "Whether chilled water and heat rise with the night electricity: with pumps they do "
             "not."},
            {"constant_speed_fans",
-            "Hours with the fans off: pumps run on; a clamp meter on the pump board decides."},
+            "Hours with the fans off: pumps keep running. A clamp meter on the pump panel settles "
+            "it."},
            {"equipment_step",
-            "The dates of plant enable in the control system's log against those of the steps."}},
+            "Whether the dates of the steps match the dates when the control system's log shows "
+            "the plant enabled."}},
       .parameters = parameters,
       .bind = bind,
   };

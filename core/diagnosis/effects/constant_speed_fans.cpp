@@ -37,20 +37,20 @@ Effect constant_speed_fans() {
       .id = "constant_speed_fans",
       .title = "Fans at constant speed",
       .meaning =
-          "The fans run at full power whenever they run, although the boxes ask for less air: "
-          "speed drives are absent, by-passed or locked.",
+          "The fans always run at full power, although the boxes need less air: speed drives are "
+          "missing, bypassed or locked.",
       .physics = "fan power share g(r) ← (1−f)·g(r) + f, r flow over design flow [–]; f [–] 0…1",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.air_system = true},
       .confusable = {{"demand_limit",
-                      "Afternoons of hot days: constant fans are flat on all days, a demand limit "
-                      "only cuts the peaks."},
+                      "Hot afternoons: constant fans are flat on all days, a demand limit only "
+                      "cuts the peaks."},
                      {"weekend_operation", "Fan power on Saturdays and Sundays."},
                      {"constant_flow_pumps", "Electricity at night with the fans off."},
                      {"equipment_step",
-                      "Electricity against chilled water at a fixed hour: with constant fans the "
-                      "slope is gone; a clamp meter on one fan decides."}},
+                      "Electricity plotted against chilled water at a fixed hour: with constant "
+                      "fans there is no slope. A clamp meter on one fan settles it."}},
       .parameters = parameters,
       .bind = bind,
   };

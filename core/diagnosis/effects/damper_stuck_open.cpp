@@ -39,8 +39,8 @@ Effect damper_stuck_open() {
       .id = "damper_stuck_open",
       .title = "Outdoor-air damper stuck open",
       .meaning =
-          "At night and on weekends cold or humid outdoor air enters through an air handler whose "
-          "damper does not close; heating and the morning cool-down pay for it.",
+          "At night and on weekends, cold or humid outdoor air enters through an air handler whose "
+          "damper does not close. Heating and the morning cool-down have to make up for it.",
       .physics =
           "V_oa [m³/s] = V_oa,day·max(schedule, φ) with fans off; it meets the rooms directly; φ "
           "[–] 0…0.6",
@@ -49,17 +49,17 @@ Effect damper_stuck_open() {
       .needs = {.air_system = true},
       .confusable = {{"stack_infiltration",
                       "Stop the fans for one cold night with the damper closed by hand: leaks "
-                      "stay, the damper's share goes. Leaks also grow more than linearly with the "
-                      "temperature difference."},
+                      "remain, the damper's share disappears. Leaks also grow more than linearly "
+                      "with the temperature difference."},
                      {"wind_infiltration",
-                      "Compare calm with windy nights at equal temperature: a damper hardly "
-                      "follows the wind."},
+                      "Compare calm with windy nights at the same temperature: the flow through a "
+                      "damper hardly depends on the wind."},
                      {"night_setback_missing",
-                      "Humid summer nights: outdoor air brings moisture to the morning's chilled "
-                      "water, set-points do not."},
+                      "Humid summer nights: outdoor air brings moisture that raises chilled water "
+                      "in the morning, set-points do not."},
                      {"ground_coupling",
-                      "The lag against outdoor temperature: ground heat lags by weeks, outdoor air "
-                      "not at all."},
+                      "The delay behind outdoor temperature: heat to the ground lags by weeks, "
+                      "outdoor air not at all."},
                      {"round_the_clock_zone", "Fan power at night: an open damper needs none."}},
       .parameters = parameters,
       .bind = bind,

@@ -41,10 +41,10 @@ Effect deep_drying();
 Effect deep_drying() {
   return {
       .id = "deep_drying",
-      .title = "Dehumidification deeper than drawn",
+      .title = "More dehumidification than drawn",
       .meaning =
-          "On humid days the cooling coils take more moisture out of the air than the drawings "
-          "assume, and the chilled water pays for it.",
+          "On humid days the cooling coils remove more moisture from the air than the drawings "
+          "assume, which costs chilled water.",
       .physics =
           "Q_latent [W] = ρ V_oa h_fg·max(w_o − (w_s − x), 0) while the coil cools, V_oa [m³/s], "
           "h_fg [J/kg], w [kg/kg]; x [kg/kg] ≥ 0",
@@ -53,11 +53,12 @@ Effect deep_drying() {
       .confusable =
           {{"economiser_changeover",
             "Humidity at fixed outdoor temperature above 26 °C, where no economiser is open."},
-           {"scale_fault", "Dry days at equal temperature: a wrong scale is wrong on them too."},
+           {"scale_fault",
+            "Dry days at the same temperature: a wrong scale is also wrong on them."},
            {"outdoor_air_amount", "Heat in winter: outdoor air costs heat, drying does not."},
            {"fouling",
-            "Dry hot days: fouling costs there as well; a humidity sensor behind the coil "
-            "decides."}},
+            "Dry hot days: fouling also costs energy then. A humidity sensor behind the coil "
+            "settles it."}},
       .parameters = parameters,
       .bind = bind,
   };

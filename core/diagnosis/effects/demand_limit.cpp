@@ -115,7 +115,7 @@ Effect demand_limit() {
           .title = "Loads shed on hot afternoons",
           .meaning =
               "On the hottest working days lights, devices and fans are turned down in the "
-              "afternoon and some of it comes back in the evening.",
+              "afternoon, and part of the energy is used in the evening instead.",
           .physics =
               "lights, plugs and fans x (1 - a) from 13 to 18 h, x (1 + rho a) from 18 to "
               "20 h, on working days warmer than T_a in the afternoon; a, rho in -, T_a in "
@@ -123,10 +123,10 @@ Effect demand_limit() {
           .effect_class = EffectClass::electrical,
           .dating = Dating::may_begin,
           .confusable = {{"constant_speed_fans",
-                          "Evening rebound after hot days: only shed load comes back."},
-                         {"phase_lost", "A mild afternoon: a lost phase is missing there too."},
+                          "The evening after hot days: only shed load rebounds."},
+                         {"phase_lost", "A mild afternoon: a lost phase is also missing then."},
                          {"chiller_part_load",
-                          "The utility's list of events against the days named here."}},
+                          "Whether the utility's list of events matches these days."}},
           .parameters = parameters,
           .bind = bind};
 }

@@ -54,20 +54,21 @@ Effect demand_ventilation() {
       .title = "Demand-controlled ventilation",
       .meaning =
           "The amount of outdoor air follows the number of people, through CO₂ sensors for "
-          "instance, where the model has a constant amount whenever the fans run.",
+          "instance; the model has a constant amount whenever the fans run.",
       .physics =
           "V_oa [m³/s] = V_oa,drawn·((1−b) + b·occ), occ people present [–] 0…1, b [–] 0…1, in "
           "handlers of daytime rooms",
       .effect_class = EffectClass::outdoor_air,
       .confusable =
           {{"outdoor_air_amount",
-            "CO₂ of the return air over a day: level with demand control, rising with people "
-            "without."},
+            "CO₂ of the return air over a day: constant with demand control; without it, rising "
+            "with people."},
            {"hybrid_work",
             "Air flow of a nearly empty weekday: electricity falls with people in both cases, "
             "outdoor air only with demand control."},
            {"semester_calendar",
-            "Heat in a winter break: without people it rises, with less outdoor air it falls."}},
+            "Heat during a winter break: without people it rises, with less outdoor air it "
+            "falls."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -87,15 +87,16 @@ Effect dst_misapplied() {
   return {.id = "dst_misapplied",
           .title = "Daylight saving handled wrongly",
           .meaning =
-              "From March to November all readings stand one hour off: the logger's clock "
-              "and the building's do not agree about daylight saving.",
+              "From March to November all readings are one hour off: the clocks of the logger and "
+              "the building do not agree about daylight saving.",
           .physics =
               "y(t + D) while daylight saving is on, here or, where it never is, in most places "
               "of the continent, all meters; y recorded power in kW, D in h",
           .effect_class = EffectClass::meter,
           .confusable = {{"after_hours",
-                          "Both edges of the day in the week of the change: a clock moves both."},
-                         {"early_start", "The evening edge: an early start leaves it alone."},
+                          "The start and the end of the day in the week of the clock change: a "
+                          "clock moves both."},
+                         {"early_start", "The end of the day: an early start does not change it."},
                          {"clock_offset", "Winter weeks, and the other meters of the logger."}},
           .parameters = parameters,
           .bind = bind};

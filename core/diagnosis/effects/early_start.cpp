@@ -41,22 +41,21 @@ Effect early_start() {
       .id = "early_start",
       .title = "Early or optimum start",
       .meaning =
-          "Fans, heating and cooling start well before the timetable says, and on cold "
-          "mornings still earlier, so that rooms are comfortable when people come.",
+          "Fans, heating and cooling start well before the time in the timetable, and even earlier "
+          "on cold mornings, so that rooms are comfortable when people arrive.",
       .physics =
           "t_on [h] = t_on,drawn − (Δh_0 + b·max(θ_heat,occ − θ_e, 0)); Δh_0 [h] ≥ 0, "
           "b [h/K] ≥ 0, θ_e outdoor air [°C] of the hour",
       .effect_class = EffectClass::schedule,
-      .confusable =
-          {{"thermal_mass",
-            "Fan power before the timetable's start: mass changes heat alone, an early start shows "
-            "in electricity too."},
-           {"dst_misapplied",
-            "Whether the evening stop moved by the same hour, and only in summer."},
-           {"clock_offset", "The evening stop: an early start leaves it where it was."},
-           {"night_setback_missing",
-            "The start spike and its growth with cold; no trace on weekends that are followed by "
-            "no start."}},
+      .confusable = {{"thermal_mass",
+                      "Fan power before the timetable's start: thermal mass changes only heat, an "
+                      "early start also shows in electricity."},
+                     {"dst_misapplied",
+                      "Whether the evening stop also moved by an hour, and only in summer."},
+                     {"clock_offset", "The evening stop: an early start does not change it."},
+                     {"night_setback_missing",
+                      "The start spike grows with the cold; there is none on weekends without a "
+                      "start afterwards."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -38,8 +38,8 @@ Effect economiser_changeover() {
       .id = "economiser_changeover",
       .title = "Economiser change-over wrong",
       .meaning =
-          "The dampers go back to their least position at the wrong outdoor temperature: either "
-          "free cooling is cut off too early, or warm and humid air is let in.",
+          "The dampers return to their minimum position at the wrong outdoor temperature: either "
+          "free cooling stops too early, or warm and humid air is let in.",
       .physics = "θ_lockout [°C] = θ_lockout,drawn + x; x [K]",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
@@ -49,11 +49,13 @@ Effect economiser_changeover() {
             "Chilled water well below the change-over, at 8 to 14 °C: near zero unless the "
             "economiser failed."},
            {"deep_drying",
-            "Equal outdoor temperatures of different humidity above 26 °C, where no economiser is "
-            "open."},
-           {"solar_gain_change", "Sunny against cloudy hours at equal outdoor temperature."},
+            "Hours above 26 °C with the same temperature but different humidity, when no "
+            "economiser is open."},
+           {"solar_gain_change",
+            "Compare sunny with cloudy hours at the same outdoor temperature."},
            {"supply_reset_missing",
-            "Whether heat rises with chilled water; the damper position at 16 to 26 °C decides."}},
+            "Whether heat rises with chilled water. The damper position at 16 to 26 °C settles "
+            "it."}},
       .parameters = parameters,
       .bind = bind,
   };

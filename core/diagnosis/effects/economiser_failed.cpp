@@ -35,23 +35,23 @@ Effect economiser_failed();
 Effect economiser_failed() {
   return {
       .id = "economiser_failed",
-      .title = "Economiser failed or absent",
+      .title = "Economiser failed or missing",
       .meaning =
-          "On mild days the building is cooled with chilled water although cool outdoor air could "
-          "do it for nothing: the dampers do not open beyond their least position.",
+          "On mild days chilled water cools the building although cool outdoor air could do it for "
+          "free: the dampers do not open beyond their minimum position.",
       .physics = "free-cooling flow [m³/s] ×(1−f); f [–] 0…1, 1: no free cooling",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .needs = {.air_system = true, .economiser = true},
       .confusable = {{"supply_reset_missing",
-                      "Heat on the same days: a failed economiser costs chilled water alone, too "
-                      "cold supply air costs reheat too."},
+                      "Heat on the same days: a failed economiser only costs chilled water, supply "
+                      "air that is too cold also costs reheat."},
                      {"economiser_changeover",
-                      "The outdoor temperature at which chilled water begins: a wrong change-over "
-                      "moves it by some kelvin, a failure lifts all hours below it."},
+                      "The outdoor temperature at which chilled water starts: a wrong change-over "
+                      "moves it by a few kelvin, a failure raises all hours below it."},
                      {"solar_gain_change",
-                      "Compare cloudy with sunny mild days; or watch the damper's position on a "
-                      "dry 12 °C morning."},
+                      "Compare cloudy with sunny mild days; or watch the damper position on a dry "
+                      "12 °C morning."},
                      {"simultaneous_heating_cooling",
                       "Chilled water at 12 °C with the economiser opened by hand: it falls to near "
                       "zero if the economiser was the cause."}},

@@ -51,24 +51,24 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
 }  // namespace
 
 Effect equipment_step() {
-  return {
-      .id = "equipment_step",
-      .title = "Equipment added or removed",
-      .meaning =
-          "From one day on the building draws more electricity (or less), which also "
-          "warms the rooms more (or less): a new machine, or a retrofit.",
-      .physics =
-          "plugs + dP s(t) from the date; s = 1 - b + b plugs/mean plugs, dP mean power "
-          "in kW, b in -",
-      .effect_class = EffectClass::electrical,
-      .dating = Dating::must_begin,
-      .confusable = {{"plug_growth",
-                      "Night electricity week by week around the date: step or slope."},
-                     {"phase_lost",
-                      "Chilled water after the date: equipment moves it, a lost phase does not."},
-                     {"vacancy", "People in the building: badge or lift counts after the date."}},
-      .parameters = parameters,
-      .bind = bind};
+  return {.id = "equipment_step",
+          .title = "Equipment added or removed",
+          .meaning =
+              "From some day on the building uses more electricity (or less), which also warms the "
+              "rooms more (or less): a new machine, or a retrofit.",
+          .physics =
+              "plugs + dP s(t) from the date; s = 1 - b + b plugs/mean plugs, dP mean power "
+              "in kW, b in -",
+          .effect_class = EffectClass::electrical,
+          .dating = Dating::must_begin,
+          .confusable =
+              {{"plug_growth", "Night electricity week by week around the date: step or slope."},
+               {"phase_lost",
+                "Chilled water after the date: equipment moves it, a lost phase does not."},
+               {"vacancy",
+                "The number of people in the building: badge or lift counts after the date."}},
+          .parameters = parameters,
+          .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

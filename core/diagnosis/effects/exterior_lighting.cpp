@@ -62,23 +62,24 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
 }  // namespace
 
 Effect exterior_lighting() {
-  return {.id = "exterior_lighting",
-          .title = "Lamps outdoors follow the sun",
-          .meaning =
-              "Street, facade or car-park lamps burn from dusk to dawn on this meter; they "
-              "warm no room, and their hours move with the seasons.",
-          .physics =
-              "exterior + P while the sun is below -2 degrees, plug profile - m P x mean "
-              "dark share of the hour; P in kW, m in -",
-          .effect_class = EffectClass::electrical,
-          .dating = Dating::may_begin,
-          .confusable =
-              {{"after_hours",
-                "The 15-minute edge in the evening: does it move with sunset over the weeks?"},
-               {"weekend_operation", "Chilled water at the same hours: lamps outdoors need none."},
-               {"dst_misapplied", "Other meters: lamps move electricity alone."}},
-          .parameters = parameters,
-          .bind = bind};
+  return {
+      .id = "exterior_lighting",
+      .title = "Exterior lighting follows the sun",
+      .meaning =
+          "This meter includes street, facade or car-park lights that are on from dusk to dawn. "
+          "They heat no room, and their hours change with the seasons.",
+      .physics =
+          "exterior + P while the sun is below -2 degrees, plug profile - m P x mean "
+          "dark share of the hour; P in kW, m in -",
+      .effect_class = EffectClass::electrical,
+      .dating = Dating::may_begin,
+      .confusable =
+          {{"after_hours",
+            "The evening switch-on in 15-minute values: does it move with sunset over the weeks?"},
+           {"weekend_operation", "Chilled water at the same hours: exterior lights need none."},
+           {"dst_misapplied", "The other meters: exterior lights only change electricity."}},
+      .parameters = parameters,
+      .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -63,8 +63,8 @@ Effect fouling() {
   return {.id = "fouling",
           .title = "Cooling plant fouls slowly",
           .meaning =
-              "The same cooling costs a little more each month, as tubes, coils or filters "
-              "clog; cleaning brings it back at once.",
+              "The same cooling takes a little more electricity each month, as tubes, coils or "
+              "filters clog. Cleaning restores the efficiency at once.",
           .physics =
               "cost of cooling x (1 + r years); years since fouling began or since the last "
               "cleaning, r in 1/year",

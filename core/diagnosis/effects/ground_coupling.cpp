@@ -130,24 +130,25 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
 }  // namespace
 
 Effect ground_coupling() {
-  return {.id = "ground_coupling",
-          .title = "Heat lost to the ground",
-          .meaning =
-              "Basement walls or the slab lose heat to the soil, which stays cold long "
-              "after spring has come outdoors.",
-          .physics =
-              "Q = H_g (T_in - T_g), T_g = mean - A exp(-2 pi lag/365) cos(2 pi (day - "
-              "coldest - lag)/365); H_g in W/K, lag in days, A swing of the outdoor air, K",
-          .effect_class = EffectClass::envelope,
-          .confusable =
-              {{"damper_stuck_open",
-                "Heating in a warm April week: the ground still draws it, the damper does not."},
-               {"seasonal_hot_water",
-                "Hot-water sub-meter, or steam on a summer weekend without draw."},
-               {"stack_infiltration",
-                "Heating in spring against autumn at the same outdoor temperature."}},
-          .parameters = parameters,
-          .bind = bind};
+  return {
+      .id = "ground_coupling",
+      .title = "Heat lost to the ground",
+      .meaning =
+          "Basement walls or the slab lose heat to the soil, which stays cold long into spring.",
+      .physics =
+          "Q = H_g (T_in - T_g), T_g = mean - A exp(-2 pi lag/365) cos(2 pi (day - "
+          "coldest - lag)/365); H_g in W/K, lag in days, A swing of the outdoor air, K",
+      .effect_class = EffectClass::envelope,
+      .confusable =
+          {{"damper_stuck_open",
+            "Heating in a warm April week: losses to the ground still need it, an open damper does "
+            "not."},
+           {"seasonal_hot_water",
+            "The hot-water sub-meter, or steam on a summer weekend without hot-water use."},
+           {"stack_infiltration",
+            "Compare heating in spring and in autumn at the same outdoor temperature."}},
+      .parameters = parameters,
+      .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

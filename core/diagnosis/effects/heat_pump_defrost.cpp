@@ -53,10 +53,10 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
 
 Effect heat_pump_defrost() {
   return {.id = "heat_pump_defrost",
-          .title = "Heat pump loses to frost",
+          .title = "Heat pump loses efficiency to frost",
           .meaning =
-              "Around freezing in damp weather the heat pump keeps thawing its outdoor coil "
-              "and uses more electricity for the same heat.",
+              "In damp weather around freezing, the heat pump has to defrost its outdoor coil "
+              "often and uses more electricity for the same heat.",
           .physics =
               "COP x (1 - d exp(-(T_out - 1 C)^2 / 18 K2) m); m = (RH - 0.5)/0.4 within "
               "0...1, d in -",
@@ -64,10 +64,10 @@ Effect heat_pump_defrost() {
           .needs = {.humidity = true, .heat_pump = true},
           .confusable =
               {{"humidifier",
-                "Electricity at 1 C in damp against dry weather: frost wants damp, humidifiers dry "
-                "air."},
+                "Compare electricity at 1 C in damp and in dry weather: frost needs damp air, "
+                "humidifiers run in dry air."},
                {"stack_infiltration",
-                "Electricity at -10 C: frost cost is gone there, draught is at its worst."}},
+                "Electricity at -10 C: frost costs nothing then, and draught is at its worst."}},
           .parameters = parameters,
           .bind = bind};
 }

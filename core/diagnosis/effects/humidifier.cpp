@@ -52,8 +52,8 @@ Effect humidifier() {
       .id = "humidifier",
       .title = "Humidification on demand",
       .meaning =
-          "On dry, mostly cold days steam is blown into the air to keep the rooms from drying out; "
-          "the drawings know less of it or nothing.",
+          "On dry, mostly cold days, steam humidifies the supply air to keep the rooms from drying "
+          "out. The drawings show less humidification, or none.",
       .physics =
           "Q [W] = f·ρ V_oa h_fg·max(w_set − w_o, 0), V_oa [m³/s], h_fg [J/kg], w [kg/kg]; f [–] "
           "0…1",
@@ -61,12 +61,13 @@ Effect humidifier() {
       .needs = {.air_system = true, .humidity = true},
       .confusable =
           {{"supply_reset_missing",
-            "Chilled water on the same days: humidification leaves it alone."},
+            "Chilled water on the same days: humidification does not change it."},
            {"seasonal_hot_water",
-            "Days of equal temperature but different dryness: hot water does not see humidity."},
+            "Days with the same temperature but different humidity: hot water does not depend on "
+            "humidity."},
            {"outdoor_air_amount",
-            "Cold humid days: outdoor air costs heat on them too, humidification does not."},
-           {"stack_infiltration", "Nights with the fans off: no humidifier works then."}},
+            "Cold humid days: outdoor air also costs heat on them, humidification does not."},
+           {"stack_infiltration", "Nights with the fans off: no humidifier runs then."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -49,17 +49,18 @@ Effect hybrid_work() {
       .id = "hybrid_work",
       .title = "Presence depends on the weekday",
       .meaning =
-          "People come on some weekdays more than on others, mostly Tuesday to Thursday, "
-          "where the model has all workdays alike.",
+          "More people come on some weekdays than on others, mostly Tuesday to Thursday; in the "
+          "model all workdays are the same.",
       .physics =
           "people [–] ×(1+c_d), lights and plugs above their least of the month [W] "
           "×(1+0.8c_d); c_Tue…Thu = c, c_Mon = −1.5c+m, c_Fri = −1.5c−m; c, m [–]",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable =
-          {{"weekend_operation", "Saturdays and Sundays: weekday presence leaves them clean."},
+          {{"weekend_operation",
+            "Saturdays and Sundays: presence on weekdays does not change them."},
            {"demand_ventilation",
-            "Counts of badges, Wi-Fi clients or lift rides by weekday beside the air flow."},
+            "Compare counts of badges, Wi-Fi clients or lift rides by weekday with the air flow."},
            {"missing_holidays",
             "Whether single dates or every Monday and Friday stand out in the daily values."}},
       .parameters = parameters,

@@ -188,21 +188,21 @@ Effect missing_holidays() {
       .id = "missing_holidays",
       .title = "Public holidays missing from the calendar",
       .meaning =
-          "On public holidays the building is shut or half empty, but the model's calendar "
-          "has them as workdays. Add these dates to the site's holidays.",
+          "On public holidays the building is closed or half empty, but they are workdays in the "
+          "model's calendar. Add these dates to the site's holidays.",
       .physics =
           "on public holidays that the calendar has as workdays: on ×(1−a); people [–], "
           "lights [W] and plugs [W] move by a towards their Sunday values; a [–] 0…1",
       .effect_class = EffectClass::schedule,
       .confusable =
           {{"stuck_meter",
-            "The profile of the day: a stuck meter is flat or zero, an empty building has a weak "
-            "Sunday shape on all meters."},
+            "The profile of the day: a stuck meter is flat or zero, an empty building shows a weak "
+            "Sunday profile on all meters."},
            {"vacancy",
-            "The dates: holidays are single days that return at the same rule next year."},
+            "The dates: holidays are single days that return next year by the same rule."},
            {"semester_calendar", "Length: term breaks last weeks, holidays one day or two."},
            {"weekend_operation",
-            "Ordinary Saturdays and Sundays: missing holidays leave them clean."}},
+            "Ordinary Saturdays and Sundays: missing holidays do not change them."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -38,27 +38,27 @@ Effect night_setback_missing() {
       .id = "night_setback_missing",
       .title = "Night set-back missing",
       .meaning =
-          "Rooms are heated and cooled at night and on weekends nearly as by day: the "
-          "thermostats do not relax when everybody has left.",
+          "Rooms are heated and cooled at night and on weekends almost as during the day: the "
+          "thermostats are not set back when everybody has left.",
       .physics =
           "θ_unocc [°C] = θ_unocc,drawn + f·(θ_occ − θ_unocc,drawn), for heating and "
           "cooling; f [–] 0…1, 0: set-back as drawn, 1: none",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .needs = {.night_set_back = true},
-      .confusable =
-          {{"damper_stuck_open",
-            "Compare cold calm nights: an open damper also follows the humidity and leaves the "
-            "morning warm-up spike in place; a room temperature logger over one night decides."},
-           {"thermal_mass",
-            "Room temperature over a weekend: a heavy building sinks slowly but sinks; without "
-            "set-back it stays level."},
-           {"stack_infiltration",
-            "Look for the warm-up spike on Monday dawn: leaks keep it, a missing set-back has "
-            "none."},
-           {"after_hours",
-            "Fan power at 02:00: later hours stop at some time of the evening, a missing set-back "
-            "lasts until morning and all weekend."}},
+      .confusable = {{"damper_stuck_open",
+                      "Compare cold calm nights: the load of an open damper also follows the "
+                      "humidity, and the morning warm-up spike remains. A room temperature logger "
+                      "over one night settles it."},
+                     {"thermal_mass",
+                      "Room temperature over a weekend: in a heavy building it falls slowly, but "
+                      "it falls; without set-back it stays constant."},
+                     {"stack_infiltration",
+                      "Look for the warm-up spike on Monday morning: with leaks it is there, with "
+                      "a missing set-back it is not."},
+                     {"after_hours",
+                      "Fan power at 02:00: later hours end at some time in the evening, a missing "
+                      "set-back lasts until morning and all weekend."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -35,20 +35,20 @@ Effect outdoor_air_amount();
 Effect outdoor_air_amount() {
   return {
       .id = "outdoor_air_amount",
-      .title = "Least outdoor air too high or too low",
+      .title = "Minimum outdoor air too high or too low",
       .meaning =
           "While the fans run they bring in more, or less, outdoor air than the drawings say, so "
-          "that more or less air has to be heated, cooled and dried.",
+          "more or less air has to be heated, cooled and dehumidified.",
       .physics = "V_oa [m³/s] = V_oa,drawn·(1+a); a [–] −0.9…1.5",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .confusable =
           {{"demand_ventilation",
-            "CO₂ of the return air on full and on empty days: a wrong amount is wrong on both."},
+            "CO₂ of the return air on busy and on empty days: a wrong amount is wrong on both."},
            {"damper_stuck_open", "Hours with fans off: the amount matters only while they run."},
            {"economiser_failed",
-            "Weather between 8 and 18 °C against hot and cold weather: the least amount matters in "
-            "the latter."},
+            "Compare weather between 8 and 18 °C with hot and cold weather: the minimum amount "
+            "matters in hot and cold weather."},
            {"deep_drying", "Heat in winter: outdoor air costs heat too, drying does not."}},
       .parameters = parameters,
       .bind = bind,

@@ -43,10 +43,10 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 
 Effect phase_lost() {
   return {.id = "phase_lost",
-          .title = "Meter lost or reversed a phase",
+          .title = "Meter has lost or reversed a phase",
           .meaning =
-              "From one day on the meter misses a third or two thirds of the electricity: a "
-              "blown fuse of a voltage tap, or a current transformer mounted backwards.",
+              "From some day on the meter misses a third or two thirds of the electricity: a fuse "
+              "of a voltage tap has blown, or a current transformer is mounted backwards.",
           .physics =
               "y x (1 - a) from the date; y recorded power in kW, a = 1/3 one phase lost, "
               "2/3 one reversed or two lost",
@@ -55,8 +55,9 @@ Effect phase_lost() {
           .of_one_meter = true,
           .meter_utilities = {metering::Utility::electricity},
           .confusable = {{"equipment_step",
-                          "Chilled water and heat after the date: a lost phase moves neither."},
-                         {"scale_fault", "Currents of the three phases, with a clamp meter."}},
+                          "Chilled water and heat after the date: a lost phase changes neither."},
+                         {"scale_fault",
+                          "The currents of the three phases, measured with a clamp meter."}},
           .parameters = parameters,
           .bind = bind};
 }

@@ -44,15 +44,16 @@ Effect plug_growth() {
   return {.id = "plug_growth",
           .title = "Plug loads drift over the years",
           .meaning =
-              "Devices on the sockets become more (or fewer) year by year, at all hours, "
-              "and with them the heat they give off.",
+              "The number of plugged-in devices grows (or falls) year by year, at all hours, and "
+              "with it the heat they give off.",
           .physics =
               "plugs x (1 + g (t - t_mid)); t in years, t_mid middle of the record, g in "
               "1/year",
           .effect_class = EffectClass::electrical,
-          .confusable = {{"equipment_step",
-                          "Daily electricity at night over the year: a line grows, a step stands."},
-                         {"fouling", "Electricity on winter weekends: plugs drift there too."}},
+          .confusable =
+              {{"equipment_step",
+                "Electricity at night over the year: drift grows steadily, a step stays constant."},
+               {"fouling", "Electricity on winter weekends: plugs also drift then."}},
           .parameters = parameters,
           .bind = bind};
 }

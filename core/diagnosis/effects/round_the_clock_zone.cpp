@@ -54,7 +54,7 @@ Effect round_the_clock_zone() {
            {"night_setback_missing",
             "Electricity at night: set-points alone hardly change it, running fans do."},
            {"constant_flow_pumps",
-            "Whether the extra night electricity has an echo in chilled water and heat."}},
+            "Whether the extra electricity at night also shows in chilled water and heat."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -41,17 +41,18 @@ Effect scale_fault() {
   return {.id = "scale_fault",
           .title = "Meter's scale is wrong",
           .meaning =
-              "The meter shows the same share too much or too little at every hour: a wrong "
+              "The meter reads too high or too low by the same percentage at every hour: a wrong "
               "pulse value, transformer ratio or flow constant.",
           .physics = "y x k; y recorded power in kW, k in -",
           .effect_class = EffectClass::meter,
           .dating = Dating::may_begin,
           .of_one_meter = true,
-          .confusable =
-              {{"fouling", "The register against a second meter, in summer and in autumn."},
-               {"night_setback_missing",
-                "Ratio of metered to expected by day and by night: a scale is the same in both."},
-               {"phase_lost", "Currents of the three phases."}},
+          .confusable = {{"fouling",
+                          "Compare the register with a second meter, in summer and in autumn."},
+                         {"night_setback_missing",
+                          "The ratio of metered to expected by day and by night: with a wrong "
+                          "scale it is the same."},
+                         {"phase_lost", "The currents of the three phases."}},
           .parameters = parameters,
           .bind = bind};
 }

@@ -55,16 +55,17 @@ Effect seasonal_hot_water() {
       .id = "seasonal_hot_water",
       .title = "Hot water: cold mains and loop loss",
       .meaning =
-          "Heating tap water takes more heat in winter, when the mains are cold, and "
-          "the circulation loop loses heat day and night.",
+          "Heating tap water takes more heat in winter, when the mains water is cold, and the "
+          "circulation loop loses heat day and night.",
       .physics =
           "Q = V rho c (-A cos(2 pi (day - 230)/365)) + L; V draw in m3/s, A half the "
           "yearly swing of the mains in K, L loop loss in kW before efficiencies",
       .effect_class = EffectClass::plant,
       .confusable = {{"steam_trap_leak",
                       "Steam on an August night with the circulation pump stopped for an hour."},
-                     {"ground_coupling", "Hot-water sub-meter, or steam on a summer weekend."},
-                     {"humidifier", "Steam on damp against dry cold days at one temperature."}},
+                     {"ground_coupling", "The hot-water sub-meter, or steam on a summer weekend."},
+                     {"humidifier",
+                      "Compare steam on damp and on dry cold days at the same temperature."}},
       .parameters = parameters,
       .bind = bind};
 }

@@ -106,19 +106,18 @@ Effect semester_calendar() {
       .id = "semester_calendar",
       .title = "Term breaks",
       .meaning =
-          "In school or university breaks fewer people are in: lights and machines draw "
-          "less, less heat has to be removed, and in winter more has to be supplied.",
+          "During school or university breaks fewer people are in the building: lights and "
+          "machines use less, less heat has to be removed, and in winter more has to be supplied.",
       .physics =
           "in term breaks: people [–] ×(1−a), lights and plugs above their least of the "
           "month [W] ×(1−0.8a); a [–] 0…0.7",
       .effect_class = EffectClass::schedule,
-      .confusable =
-          {{"vacancy", "Whether it returns next year at the same term dates."},
-           {"missing_holidays", "Length: single days or whole weeks."},
-           {"hybrid_work", "Whether the weeks of term differ between their weekdays."},
-           {"solar_gain_change",
-            "Electricity: shading leaves it as it was, missing people do not; the academic "
-            "calendar decides."}},
+      .confusable = {{"vacancy", "Whether it returns next year on the same term dates."},
+                     {"missing_holidays", "The length: single days or whole weeks."},
+                     {"hybrid_work", "Whether the weekdays differ from each other during term."},
+                     {"solar_gain_change",
+                      "Electricity: shading does not change it, missing people do. The academic "
+                      "calendar settles it."}},
       .parameters = parameters,
       .bind = bind,
   };

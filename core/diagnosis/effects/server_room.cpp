@@ -65,21 +65,22 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 Effect server_room() {
   return {
       .id = "server_room",
-      .title = "Server room nobody listed",
+      .title = "Unlisted server room",
       .meaning =
-          "Somewhere computers run day and night; they use electricity and chilled "
-          "water also on winter nights, when nothing else needs cooling.",
+          "Computers run day and night somewhere in the building. They use electricity and chilled "
+          "water even on winter nights, when nothing else needs cooling.",
       .physics =
           "electricity + P, chilled water + c P, heat into rooms + (1 - c) P, plug "
           "profile - m P; P in kW at all hours, c and m in -",
       .effect_class = EffectClass::electrical,
       .dating = Dating::may_begin,
       .confusable = {{"round_the_clock_zone",
-                      "Steam on cold nights: a ventilated zone draws it, a server room saves it."},
+                      "Steam on cold nights: a ventilated zone needs it, a server room saves it."},
                      {"constant_flow_pumps",
-                      "Chilled water on winter nights: servers need it, pumps do not. Sub-meter."},
+                      "Chilled water on winter nights: servers need it, pumps do not. A sub-meter "
+                      "settles it."},
                      {"equipment_step",
-                      "Clamp meter on the room's feeder, and winter-night cooling."}},
+                      "A clamp meter on the room's feeder, and cooling on winter nights."}},
       .parameters = parameters,
       .bind = bind};
 }

@@ -49,9 +49,9 @@ Effect simultaneous_heating_cooling() {
       .id = "simultaneous_heating_cooling",
       .title = "Simultaneous heating and cooling",
       .meaning =
-          "While the fans run, air is cooled and heated again by the same amount, for instance "
-          "through a leaking valve or zones that fight each other. Nobody notices, as the rooms "
-          "stay comfortable.",
+          "While the fans run, air is cooled and reheated by the same amount, for instance because "
+          "of a leaking valve or zones that work against each other. Nobody notices, because the "
+          "rooms stay comfortable.",
       .physics =
           "Q_cool [kW] += q·on, Q_heat [kW] += q·on; on: share of the air handlers that runs [–]; "
           "q [kW] ≥ 0",
@@ -60,15 +60,17 @@ Effect simultaneous_heating_cooling() {
       .needs = {.air_system = true},
       .confusable =
           {{"supply_reset_missing",
-            "Plot chilled water against outdoor temperature: leaking valves do not depend on it, a "
-            "missing reset ends at a knee."},
+            "Plot chilled water against outdoor temperature: leaking valves do not depend on it, "
+            "the effect of a missing reset stops at a certain temperature."},
            {"economiser_failed",
-            "Heat in mild weather: it rises together with chilled water only here."},
+            "Heat in mild weather: only simultaneous heating and cooling raises it together with "
+            "chilled water."},
            {"steam_trap_leak",
-            "Nights with fans off, and chilled water: losses of the pipes have no echo there."},
+            "Nights with the fans off, and chilled water: pipe losses do not show in chilled "
+            "water."},
            {"scale_fault",
-            "Whether an error of one meter alone explains it; shut the reheat valves for an hour "
-            "and see both meters fall."}},
+            "Whether an error of a single meter explains it: close the reheat valves for an hour "
+            "and check that both meters fall."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -53,10 +53,10 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 Effect solar_gain_change() {
   return {
       .id = "solar_gain_change",
-      .title = "Sun through the windows differs",
+      .title = "Solar gain differs from the drawings",
       .meaning =
-          "Blinds, films, trees or new neighbours let in less sun than the drawings "
-          "say, or more where shading is broken or never used.",
+          "Blinds, films, trees or new neighbouring buildings let in less sun than the drawings "
+          "say, or broken or unused shading lets in more.",
       .physics =
           "solar gain x (1 - a) in hours with more than I0 on the horizontal, coming in "
           "over the 100 W/m2 below; a in -, I0 in W/m2",
@@ -64,11 +64,11 @@ Effect solar_gain_change() {
       .dating = Dating::may_begin,
       .needs = {.sun = true},
       .confusable = {{"scale_fault",
-                      "Chilled water at night: a wrong scale shows there too, the sun does not."},
+                      "Chilled water at night: a wrong scale also shows then, the sun does not."},
                      {"weekend_operation",
-                      "Sunny against cloudy weekends at the same temperature."},
+                      "Compare sunny with cloudy weekends at the same temperature."},
                      {"economiser_failed",
-                      "Mixed-air temperature at 15 C outdoors on an overcast working day."}},
+                      "The mixed-air temperature at 15 C outdoors on an overcast working day."}},
       .parameters = parameters,
       .bind = bind};
 }

@@ -52,23 +52,25 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
 }  // namespace
 
 Effect stack_infiltration() {
-  return {.id = "stack_infiltration",
-          .title = "Draught through shafts and stairs",
-          .meaning =
-              "In cold weather the building works like a chimney: air leaves at the top of "
-              "shafts and stairs and cold air comes in at the doors below.",
-          .physics =
-              "infiltration x (1 + k sqrt(h dT / (10 m x 10 K))); h building height in m, "
-              "dT between indoors and outdoors in K, k in -",
-          .effect_class = EffectClass::envelope,
-          .confusable =
-              {{"damper_stuck_open",
-                "Outdoor damper position, and heating on nights with the fans locked off."},
-               {"night_setback_missing",
-                "Room temperature at 3 o'clock: with a set-back it falls, whatever the draught."},
-               {"wind_infiltration", "Heating on calm, very cold nights against windy ones."}},
-          .parameters = parameters,
-          .bind = bind};
+  return {
+      .id = "stack_infiltration",
+      .title = "Draught through shafts and stairs",
+      .meaning =
+          "In cold weather the building acts like a chimney: air leaves at the top of shafts and "
+          "stairs, and cold air enters at the doors below.",
+      .physics =
+          "infiltration x (1 + k sqrt(h dT / (10 m x 10 K))); h building height in m, "
+          "dT between indoors and outdoors in K, k in -",
+      .effect_class = EffectClass::envelope,
+      .confusable =
+          {{"damper_stuck_open",
+            "The outdoor damper position, and heating on nights with the fans locked off."},
+           {"night_setback_missing",
+            "Room temperature at 3 o'clock at night: with a set-back it falls, whatever the "
+            "draught."},
+           {"wind_infiltration", "Compare heating on calm and on windy nights, both very cold."}},
+      .parameters = parameters,
+      .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -39,8 +39,8 @@ Effect steam_trap_leak() {
   return {.id = "steam_trap_leak",
           .title = "Steam or heat leaks in the pipes",
           .meaning =
-              "Heat is drawn day and night, also in summer, and serves no room: traps stuck "
-              "open, bare pipes or a leaking valve.",
+              "Heat is used day and night, even in summer, without heating any room: steam traps "
+              "stuck open, bare pipes or a leaking valve.",
           .physics = "heat meter + L at all hours; L in kW as metered",
           .effect_class = EffectClass::plant,
           .dating = Dating::may_begin,
@@ -48,8 +48,9 @@ Effect steam_trap_leak() {
               {{"seasonal_hot_water",
                 "Close the hot-water loop's valve for a summer night and read the heat meter."},
                {"simultaneous_heating_cooling",
-                "Chilled water of the same nights: reheat raises both, a leak the heat alone."},
-               {"scale_fault", "Ratio of metered to expected heat in January against July."}},
+                "Chilled water on the same nights: reheat raises both, a leak only the heat."},
+               {"scale_fault",
+                "Compare the ratio of metered to expected heat in January and in July."}},
           .parameters = parameters,
           .bind = bind};
 }

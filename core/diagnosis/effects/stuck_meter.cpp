@@ -48,17 +48,17 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 
 Effect stuck_meter() {
   return {.id = "stuck_meter",
-          .title = "Meter stands still",
+          .title = "Meter is frozen",
           .meaning =
-              "For some time the meter repeats its last value, or zero, while the building "
-              "goes on: look at its pulse output and its line.",
+              "For some time the meter repeats its last value, or zero, although the building "
+              "still uses energy. Check its pulse output and its line.",
           .physics =
               "y + s (l y(t1) - y) from t1 to t2; y recorded power in kW, s = 1 a dead "
               "meter, l = 0 zero, l = 1 the last value",
           .effect_class = EffectClass::meter,
           .dating = Dating::window,
           .of_one_meter = true,
-          .confusable = {{"vacancy", "The other meters: in an empty building they sink too."},
+          .confusable = {{"vacancy", "The other meters: in an empty building they also fall."},
                          {"missing_holidays", "The other meters on that date."}},
           .parameters = parameters,
           .bind = bind};

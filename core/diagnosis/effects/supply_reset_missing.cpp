@@ -52,22 +52,23 @@ Effect supply_reset_missing() {
       .id = "supply_reset_missing",
       .title = "Supply-air temperature reset missing",
       .meaning =
-          "In mild and cold weather the air handlers go on delivering air as cold as in summer; "
-          "the rooms then have to warm it up again with reheat.",
+          "In mild and cold weather the air handlers keep delivering air as cold as in summer, "
+          "which the rooms then have to reheat.",
       .physics =
           "θ_supply [°C] = θ_supply,model − min(k·max(θ_r − θ_e, 0), 5 K); extra cooling and "
           "reheat ≈ ρ c V_min·Δθ_supply [W]; k [K/K] ≥ 0, θ_r [°C]",
       .effect_class = EffectClass::air_system,
       .needs = {.air_system = true},
-      .confusable = {{"simultaneous_heating_cooling",
-                      "Plot chilled water and heat against outdoor temperature: a missing reset "
-                      "ends at a knee, leaking valves do not."},
-                     {"humidifier",
-                      "Dry against humid days at equal outdoor temperature, and chilled water, "
-                      "which humidification leaves alone."},
-                     {"economiser_failed",
-                      "Heat on the same mild days: only the missing reset raises it. A supply-air "
-                      "sensor over a week decides."}},
+      .confusable =
+          {{"simultaneous_heating_cooling",
+            "Plot chilled water and heat against outdoor temperature: the effect of a missing "
+            "reset stops at a certain temperature, that of leaking valves does not."},
+           {"humidifier",
+            "Compare dry and humid days at the same outdoor temperature, and chilled water, which "
+            "humidification does not change."},
+           {"economiser_failed",
+            "Heat on the same mild days: only the missing reset raises it. A supply-air sensor "
+            "over a week settles it."}},
       .parameters = parameters,
       .bind = bind,
   };

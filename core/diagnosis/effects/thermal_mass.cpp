@@ -34,21 +34,20 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 }  // namespace
 
 Effect thermal_mass() {
-  return {
-      .id = "thermal_mass",
-      .title = "Heavier or lighter than drawn",
-      .meaning =
-          "The building warms and cools more slowly (or faster) than its construction "
-          "suggests: nothing is broken, but start times should follow it.",
-      .physics = "heat capacity C_m x m; C_m in J/(m2 K) of floor area, m in -",
-      .effect_class = EffectClass::envelope,
-      .confusable = {{"early_start",
-                      "Fan status at dawn: an early start shows in it, slow walls do not."},
-                     {"night_setback_missing",
-                      "Room temperature after a clear night: mass lets it sink slowly, a missing "
-                      "set-back holds it level."}},
-      .parameters = parameters,
-      .bind = bind};
+  return {.id = "thermal_mass",
+          .title = "Building heavier or lighter than drawn",
+          .meaning =
+              "The building warms and cools more slowly (or faster) than its construction "
+              "suggests. Nothing is broken, but start times should take it into account.",
+          .physics = "heat capacity C_m x m; C_m in J/(m2 K) of floor area, m in -",
+          .effect_class = EffectClass::envelope,
+          .confusable = {{"early_start",
+                          "Fan status at dawn: an early start shows there, slow walls do not."},
+                         {"night_setback_missing",
+                          "Room temperature after a clear night: with a heavy mass it falls "
+                          "slowly, with a missing set-back it stays constant."}},
+          .parameters = parameters,
+          .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

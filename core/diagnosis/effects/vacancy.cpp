@@ -41,21 +41,20 @@ Effect vacancy() {
       .id = "vacancy",
       .title = "Vacancy",
       .meaning =
-          "For some weeks or months much of the building stood empty, while the plant ran "
-          "on.",
+          "For some weeks or months much of the building was empty, but the plant kept running.",
       .physics =
           "from t_1 to t_2: people [–] ×(1−a), lights and plugs above their least of the "
           "month [W] ×(1−0.8a); a [–] 0…1",
       .effect_class = EffectClass::schedule,
       .dating = Dating::window,
-      .confusable =
-          {{"equipment_step",
-            "Nights: equipment that is gone is gone at night too, missing people change working "
-            "hours only; and people come back."},
-           {"semester_calendar", "The second year: term breaks return at the same dates."},
-           {"phase_lost",
-            "Chilled water: a lost phase of the electricity meter has no echo there."},
-           {"missing_holidays", "Length: single days or many weeks."}},
+      .confusable = {{"equipment_step",
+                      "Nights: removed equipment is also missing at night, missing people only "
+                      "change working hours. And people come back."},
+                     {"semester_calendar",
+                      "The second year: term breaks return on the same dates."},
+                     {"phase_lost",
+                      "Chilled water: a lost phase of the electricity meter does not show there."},
+                     {"missing_holidays", "The length: single days or many weeks."}},
       .parameters = parameters,
       .bind = bind,
   };

@@ -55,25 +55,25 @@ Effect weekend_operation() {
       .id = "weekend_operation",
       .title = "Weekend operation",
       .meaning =
-          "Fans, heating and cooling run on Saturdays or Sundays at weekday hours, although "
-          "the timetable says that the building is closed.",
+          "Fans, heating and cooling run on Saturdays or Sundays at weekday hours, although the "
+          "building is closed according to the timetable.",
       .physics =
           "on(Sat, Sun) = max(on, φ_day·on_weekday); φ_Sat, φ_Sun [–] 0…1: share of the "
           "daytime rooms that is served at weekday hours",
       .effect_class = EffectClass::schedule,
       .confusable =
           {{"constant_speed_fans",
-            "Fan power of a Saturday: zero outside the timetable if only the speed is wrong."},
+            "Fan power on a Saturday: zero outside the timetable if only the speed is wrong."},
            {"missing_holidays",
-            "Compare ordinary weekends with the weeks around public holidays; the weekend "
-            "timetable in the building controls decides."},
+            "Compare ordinary weekends with the weeks around public holidays. The weekend "
+            "timetable in the building controls settles it."},
            {"round_the_clock_zone",
-            "Power at 03:00 on a weekday: weekend operation leaves weekday nights clean."},
+            "Power at 03:00 on a weekday: weekend operation does not change weekday nights."},
            {"exterior_lighting",
-            "The electricity's edge against sunset in 15-minute values: lamps follow the sun, the "
-            "plant follows the clock."},
+            "The evening change of electricity compared with sunset, in 15-minute values: lamps "
+            "follow the sun, the plant follows the clock."},
            {"solar_gain_change",
-            "Compare sunny with cloudy weekends at equal outdoor temperature."}},
+            "Compare sunny with cloudy weekends at the same outdoor temperature."}},
       .parameters = parameters,
       .bind = bind,
   };

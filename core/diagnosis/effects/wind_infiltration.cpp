@@ -43,18 +43,18 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 
 Effect wind_infiltration() {
   return {.id = "wind_infiltration",
-          .title = "Wind blows through the envelope",
+          .title = "Wind infiltration",
           .meaning =
-              "On windy days much more outdoor air leaks in than the drawings suggest: "
-              "look for open louvres, worn door seals and broken window gaskets.",
+              "On windy days much more outdoor air leaks in than the drawings suggest. Look for "
+              "open louvres, worn door seals and broken window gaskets.",
           .physics = "infiltration x (1 + k v^n); v wind speed in m/s, k in 1/(m/s)^n, n in -",
           .effect_class = EffectClass::envelope,
           .needs = {.wind = true},
           .confusable =
               {{"stack_infiltration",
-                "Heating on calm, very cold nights: stack draught stays, wind draught is gone."},
+                "Heating on calm, very cold nights: stack draught remains, wind draught does not."},
                {"damper_stuck_open",
-                "Outdoor damper position with fans off, on a calm and on a windy night."}},
+                "The outdoor damper position with the fans off, on a calm and on a windy night."}},
           .parameters = parameters,
           .bind = bind};
 }

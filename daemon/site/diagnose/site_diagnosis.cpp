@@ -17,12 +17,11 @@ Result<void> require_drawings(const SiteConfig& site) {
   if (present->effects.empty()) return {};
   std::vector<std::string> titles;
   for (const auto& effect : present->effects) titles.push_back("'" + effect.title + "'");
-  return failure(
-      ErrorCode::unsupported,
-      fmt::format("the model has {} already (version {}), and a diagnosis starts from the "
-                  "drawings; take it back first with `recald model revert {} {}`",
-                  fmt::join(titles, ", "), diagnosis::short_version(present->version),
-                  site.file.string(), diagnosis::kBaseVersion));
+  return failure(ErrorCode::unsupported,
+                 fmt::format("the model already has {} (version {}), but a diagnosis starts from "
+                             "the drawings; first run `recald model revert {} {}`",
+                             fmt::join(titles, ", "), diagnosis::short_version(present->version),
+                             site.file.string(), diagnosis::kBaseVersion));
 }
 
 /// What the same effects do to the monthly model, which has a vote: where it tells the months kept
@@ -34,20 +33,20 @@ std::vector<diagnosis::ModelGap> ask_monthly_model(const ModelledSite& modelled,
   auto monthly = epc_gap(modelled.site.config, modelled.site.calendar, modelled.recording,
                          modelled.weather, problem, diagnosis.added);
   if (!monthly) {
-    diagnosis.warnings.push_back("The monthly model was not asked: " + monthly.error().message +
+    diagnosis.warnings.push_back("The monthly model was not used: " + monthly.error().message +
                                  ".");
     return {};
   }
   if (!monthly->has_vote()) {
     diagnosis.warnings.emplace_back(
-        "The monthly model had no say: no meter has a usable monthly figure in the months kept "
-        "back.");
+        "The monthly model could not check the result: no meter has a usable monthly figure in the "
+        "held-out months.");
   } else if (!diagnosis.not_confirmed && !monthly->agrees()) {
     diagnosis.not_confirmed = true;
     diagnosis.outcome = diagnosis::Outcome::unknown;
     diagnosis.why =
-        "with what was named the monthly model tells the months that were kept back worse, so it "
-        "was taken back";
+        "with what was named the monthly model predicts the held-out months worse, so it was "
+        "withdrawn";
   }
   return {std::move(monthly->gap)};
 }

@@ -220,7 +220,7 @@ Json additions_json(const SiteProblem& site, const Diagnosis& d) {
                   {"title", addition.candidate.effect->title},
                   {"meaning", addition.candidate.effect->meaning},
                   {"meter", meter_name(site, addition.candidate.meter)},
-                  {"status", d.not_confirmed ? "tried and taken back" : "added"},
+                  {"status", d.not_confirmed ? "tried and withdrawn" : "added"},
                   {"when", when_words(site, addition)},
                   {"probability", results::number(addition.probability)},
                   {"evidence_gain", results::number(addition.evidence_gain)},

@@ -74,10 +74,10 @@ report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d,
   const diagnosis::Naming& naming = d.passes.front().naming;
   if (p.effect == "none") {
     bar.kind = report::CandidateKind::none;
-    bar.meaning = "The model lacks nothing that these meters can show.";
+    bar.meaning = "Nothing that these meters can show is missing from the model.";
   } else if (p.effect == "unknown") {
     bar.kind = report::CandidateKind::unknown;
-    bar.meaning = "The gap has a pattern that no effect of the catalogue makes.";
+    bar.meaning = "The gap has a pattern that no effect of the catalogue causes.";
     bar.evidence_gain = naming.unknown_gain;
   } else if (const diagnosis::Effect* effect = diagnosis::find_effect(p.effect)) {
     bar.meaning = effect->meaning;

@@ -71,7 +71,7 @@ std::string impact_words(const SiteProblem& site, const Addition& addition) {
     items.push_back(fmt::format("{} kWh a month {} at {}", report::count_text(std::abs(kWh)),
                                 kWh > 0.0 ? "more" : "less", meter_label(site.meters[g].id)));
   }
-  return items.empty() ? "no change of any meter's month" : "about " + listed(items, "and");
+  return items.empty() ? "no change in any meter's months" : "about " + listed(items, "and");
 }
 
 /// "It costs about 1,240 USD and 2.1 t of CO2 a year."; empty where no price is known.
@@ -118,7 +118,7 @@ std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
   if (!d.gap) {
     // What was taken back for that reason says so itself.
     return d.not_confirmed ? ""
-                           : "No reading lies in the months kept back: nothing confirms this yet.";
+                           : "The held-out months have no readings, so nothing confirms this yet.";
   }
   std::vector<std::string> items;
   for (std::size_t g = 0; g < d.gap->before.size(); ++g) {
@@ -127,7 +127,7 @@ std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
                     100.0 * d.gap->before[g].cvrmse_daily, 100.0 * d.gap->after[g].cvrmse_daily));
   }
   const auto kept = std::ranges::count(site.month_roles, diagnosis::Role::show);
-  return fmt::format("Scatter of days (CV(RMSE)) on the {} months kept back: {}.", kept,
+  return fmt::format("Scatter of days (CV(RMSE)) in the {} held-out months: {}.", kept,
                      listed(items, "and"));
 }
 
@@ -144,11 +144,10 @@ std::string other_model_words(const ModelGap& gap) {
   for (std::size_t i = 0; i < gap.change.size(); ++i) {
     const ChangeInterval& change = gap.change[i].cvrmse;
     if (!std::isfinite(gap.before[i].cvrmse) || !std::isfinite(change.low)) continue;
-    items.push_back(
-        fmt::format("{} {:.1f} % before, {:.1f} % after (90 % of the change: {:+.1f} to "
-                    "{:+.1f})",
-                    output_label(gap.outputs[i]), 100.0 * gap.before[i].cvrmse,
-                    100.0 * gap.after[i].cvrmse, 100.0 * change.low, 100.0 * change.high));
+    items.push_back(fmt::format(
+        "{} {:.1f} % before, {:.1f} % after (90 % interval of the change: {:+.1f} to {:+.1f})",
+        output_label(gap.outputs[i]), 100.0 * gap.before[i].cvrmse, 100.0 * gap.after[i].cvrmse,
+        100.0 * change.low, 100.0 * change.high));
   }
   if (items.empty()) return {};
   return fmt::format("Scatter of months in the {} model: {}.",
@@ -161,7 +160,7 @@ std::string remainder_words(const Diagnosis& d) {
   const diagnosis::Pass& last = d.passes.back();
   if (d.passes.size() < 2 || last.located.empty()) return {};
   return fmt::format(
-      "Something is left after that: {} places still stand out, the clearest in diagnosis.json; "
+      "Some disagreement remains: {} places still stand out (diagnosis.json lists the clearest); "
       "{}.",
       last.located.size(), last.naming.why);
 }
@@ -189,29 +188,28 @@ std::string headline_of(const Diagnosis& d, const SiteProblem& site) {
   std::vector<std::string> labels;
   for (const Addition& addition : d.added) labels.push_back(label_of(site, addition));
   if (d.not_confirmed) {
-    return fmt::format("Not confirmed: {} {} tried and taken back.", listed(labels, "and"),
+    return fmt::format("Not confirmed: {} {} tried and withdrawn.", listed(labels, "and"),
                        labels.size() == 1 ? "was" : "were");
   }
   switch (d.outcome) {
     case Outcome::named:
-      return fmt::format("Missing in the model: {}.", listed(labels, "and"));
+      return fmt::format("Missing from the model: {}.", listed(labels, "and"));
     case Outcome::confusable:
       return confusable_headline(d, site);
     case Outcome::unknown:
-      return "Something is missing in the model, and it is not known what.";
+      return "Something is missing from the model, but recald cannot tell what.";
     case Outcome::none:
       break;
   }
   return d.passes.front().located.empty()
-             ? "The calibrated model follows the meters within what chance explains."
-             : "No missing effect could be shown.";
+             ? "The calibrated model agrees with the meters within chance."
+             : "No missing effect was found.";
 }
 
 std::string find_it_words(const Diagnosis& d) {
-  return d.passes.front().located.empty()
-             ? ""
-             : "Ask those who run the building what happens at the places where meters and model "
-               "disagree.";
+  return d.passes.front().located.empty() ? ""
+                                          : "Ask the building's operators what happens at the "
+                                            "places where meters and model disagree.";
 }
 
 std::vector<std::string> separation_sentences(const Diagnosis& d, const SiteProblem& site) {
@@ -221,7 +219,7 @@ std::vector<std::string> separation_sentences(const Diagnosis& d, const SiteProb
         fmt::format("To tell \"{}\" from \"{}\": {}", s.effect, s.rival, s.measurement));
   }
   if (sentences.empty()) {
-    sentences.emplace_back("The catalogue knows no measurement that would tell them apart.");
+    sentences.emplace_back("The catalogue has no measurement that would tell them apart.");
   }
   return sentences;
 }
@@ -256,13 +254,14 @@ double probability_of(const diagnosis::Naming& naming, std::string_view effect) 
 
 std::string located_words(const Diagnosis& d, const SiteProblem& site) {
   const auto& located = d.passes.front().located;
-  if (located.empty()) return "No single hour, weather or month stands out beyond chance.\n";
+  if (located.empty())
+    return "No single hour, weather condition or month stands out beyond chance.\n";
   std::string text = "Where simulation and meters disagree most:\n";
   for (std::size_t i = 0; i < std::min(located.size(), kFindingsInWords); ++i) {
     const diagnosis::Misfit& f = located[i];
     const std::string share =
         std::abs(f.share) > kSharePeopleRead
-            ? "next to nothing is simulated"
+            ? "the simulation has almost nothing there"
             : fmt::format("{:+.0f} % +- {:.0f}", 100.0 * f.share, 100.0 * f.share_se);
     text += fmt::format("  {}, {}: {}, {:+.0f} kWh a month\n", meter_label(site.meters[f.meter].id),
                         f.words, share, f.kWh_month);
@@ -306,7 +305,7 @@ std::string day_words(metering::Day day) {
 
 std::string when_words(const SiteProblem& site, const Addition& addition) {
   const diagnosis::Candidate& candidate = addition.candidate;
-  if (!candidate.begins && !candidate.ends) return "At all times of the record.";
+  if (!candidate.begins && !candidate.ends) return "Throughout the record.";
   const std::vector<ParameterPosterior> posterior = posterior_of(addition);
   const auto day_with_range = [&](const ParameterPosterior& p) {
     return fmt::format("{} (90 %: {} to {})", day_words(day_after(site, p.mode)),
@@ -354,11 +353,10 @@ std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
   }
   for (const auto& [name, detectability] : most_detectable) {
     if (std::isinf(detectability)) continue;
-    list.push_back(
-        {name.first, name.second,
-         fmt::format("too faint at these meters: a typical one stands out {:.1f} times the noise, "
-                     "{:.0f} are needed",
-                     detectability, diagnosis::kLeastDetectability)});
+    list.push_back({name.first, name.second,
+                    fmt::format("too small for these meters: a typical one is {:.1f} times the "
+                                "noise, and {:.0f} times are needed",
+                                detectability, diagnosis::kLeastDetectability)});
   }
   return list;
 }
@@ -390,7 +388,7 @@ std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site,
   std::string text = fmt::format("Outcome: {}. {}\n", to_string(d.outcome), words.headline);
   text += located_words(d, site) + probability_words(d, site);
   for (const Addition& addition : d.added) {
-    text += fmt::format("{}{}\n", d.not_confirmed ? "Tried and taken back: " : "",
+    text += fmt::format("{}{}\n", d.not_confirmed ? "Tried and withdrawn: " : "",
                         addition_words(site, addition));
   }
   for (const std::string& sentence : words.sentences) text += sentence + "\n";

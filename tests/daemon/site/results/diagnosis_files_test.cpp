@@ -97,8 +97,8 @@ TEST_F(DiagnosisFiles, TakesBackWhatWasNotConfirmed) {
   const json result = json_of(recald::testing::one_taken_back(site_));
   EXPECT_EQ(result["outcome"], "unknown");
   EXPECT_TRUE(result["added"].empty());
-  EXPECT_EQ(result["additions"][0]["status"], "tried and taken back");
-  EXPECT_THAT(result["why"].get<std::string>(), HasSubstr("does not foretell"));
+  EXPECT_EQ(result["additions"][0]["status"], "tried and withdrawn");
+  EXPECT_THAT(result["why"].get<std::string>(), HasSubstr("does not improve the prediction"));
   EXPECT_FALSE(result["gap"]["hourly"]["confirmed"].get<bool>());
 }
 
@@ -135,7 +135,7 @@ TEST_F(DiagnosisFiles, GivesOtherModelsAnEntryOfTheirOwn) {
   EXPECT_EQ(change["cvrmse"]["q05"], -0.09);
   EXPECT_THAT(diagnosis_words(recald::testing::one_named(site_), site_, {epc}),
               HasSubstr("Scatter of months in the monthly model: Steam 12.0 % before, 7.0 % after "
-                        "(90 % of the change: -9.0 to -0.4)."));
+                        "(90 % interval of the change: -9.0 to -0.4)."));
   EXPECT_TRUE(json_of(recald::testing::nothing_named(site_))["gap"].is_null());
   EXPECT_THAT(report::render_diagnosis(page_data(recald::testing::one_named(site_), {epc})),
               HasSubstr("epc: Steam daily kWh</th><td class=\"number\">12.0\u00a0%</td>"));
@@ -162,7 +162,7 @@ TEST_F(DiagnosisFiles, TheNextVersionCarriesTheSamePosterior) {
 
 TEST_F(DiagnosisFiles, WordsSayWhatIsMissingSinceWhenAndHowMuch) {
   const std::string words = diagnosis_words(recald::testing::one_named(site_), site_);
-  EXPECT_THAT(words, HasSubstr("Outcome: named. Missing in the model: \"Steam or heat leaks in"));
+  EXPECT_THAT(words, HasSubstr("Outcome: named. Missing from the model: \"Steam or heat leaks in"));
   EXPECT_THAT(words, HasSubstr("Probability 93.0\u00a0%. Since about 1 Mar 2021 (90 %: "));
   EXPECT_THAT(words, HasSubstr("about 2,920 kWh a month more at Steam."));
   EXPECT_THAT(words, HasSubstr("on the 2 months kept back"));
@@ -183,10 +183,10 @@ TEST_F(DiagnosisFiles, WordsDoNotContradictWhatWasTakenBack) {
   const Diagnosis d = recald::testing::one_taken_back(site_);
   const std::string words = diagnosis_words(d, site_);
   EXPECT_THAT(words, HasSubstr("Outcome: unknown. Not confirmed: \"Steam or heat leaks in the "
-                               "pipes\" was tried and taken back."));
-  EXPECT_THAT(words, HasSubstr("Tried and taken back: \"Steam or heat leaks"));
-  EXPECT_THAT(words, HasSubstr("What was named does not foretell the months"));
-  EXPECT_THAT(words, Not(HasSubstr("Missing in the model")));
+                               "pipes\" was tried and withdrawn."));
+  EXPECT_THAT(words, HasSubstr("Tried and withdrawn: \"Steam or heat leaks"));
+  EXPECT_THAT(words, HasSubstr("What was named does not improve the prediction"));
+  EXPECT_THAT(words, Not(HasSubstr("Missing from the model")));
   EXPECT_THAT(words, Not(HasSubstr("better than all others together")));
 }
 
@@ -207,18 +207,19 @@ TEST_F(DiagnosisFiles, WordsNameTheMeasurementThatPartsConfusableEffects) {
 
 TEST_F(DiagnosisFiles, WordsOfNothingFoundAreHonest) {
   Diagnosis d = recald::testing::nothing_named(site_);
-  EXPECT_EQ(outcome_words(d, site_).headline, "No missing effect could be shown.");
+  EXPECT_EQ(outcome_words(d, site_).headline, "No missing effect was found.");
   d.passes[0].located.clear();
   EXPECT_EQ(outcome_words(d, site_).headline,
-            "The calibrated model follows the meters within what chance explains.");
+            "The calibrated model agrees with the meters within chance.");
 }
 
 TEST_F(DiagnosisFiles, NoPercentageOfNextToNothing) {
   Diagnosis d = recald::testing::nothing_named(site_);
   d.passes[0].located[0].share = 2.5e12;
   d.passes[0].located[0].share_se = 4e11;
-  EXPECT_THAT(diagnosis_words(d, site_),
-              HasSubstr("Steam, working days 00-04 h: next to nothing is simulated, +2100 kWh"));
+  EXPECT_THAT(
+      diagnosis_words(d, site_),
+      HasSubstr("Steam, working days 00-04 h: the simulation has almost nothing there, +2100 kWh"));
 }
 
 TEST_F(DiagnosisFiles, MonthsWithoutReadingsTaughtNothing) {

@@ -132,7 +132,8 @@ inline diagnosis::Diagnosis one_named(const diagnosis::SiteProblem& site) {
 inline diagnosis::Diagnosis one_taken_back(const diagnosis::SiteProblem& site) {
   diagnosis::Diagnosis d = one_named(site);
   d.outcome = diagnosis::Outcome::unknown;
-  d.why = "what was named does not foretell the months that were kept back, so it was taken back";
+  d.why =
+      "what was named does not improve the prediction of the held-out months, so it was withdrawn";
   d.not_confirmed = true;
   d.gap->confirmed = false;
   return d;
