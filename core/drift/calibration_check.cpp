@@ -15,7 +15,7 @@ constexpr std::size_t kLeast = 8;
 Result<CalibrationCheck> check_calibration(std::span<const double> u) {
   if (u.size() < kLeast) {
     return failure(ErrorCode::not_enough_data, "forecasts of " + std::to_string(u.size()) +
-                                                   " months are too few to judge them; " +
+                                                   " months are too few to check; " +
                                                    std::to_string(kLeast) + " are needed");
   }
   const auto n = static_cast<double>(u.size());

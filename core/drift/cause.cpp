@@ -407,13 +407,13 @@ Result<std::vector<Eigen::VectorXd>> known_before(const ChangeCase& change,
   std::vector<int> months(static_cast<std::size_t>(std::max(0, change.since - change.first)));
   std::iota(months.begin(), months.end(), change.first);
   if (months.empty()) {
-    return failure(ErrorCode::not_enough_data, "no month lies before the change");
+    return failure(ErrorCode::not_enough_data, "there is no month before the change");
   }
   if (auto learnt = before.learn(std::move(months), proceed); !learnt) {
     return tl::unexpected(learnt.error());
   }
   if (!before.has_begun()) {
-    return failure(ErrorCode::not_enough_data, "too few months lie before the change");
+    return failure(ErrorCode::not_enough_data, "there are too few months before the change");
   }
   return before.spread(options.particles);
 }
@@ -438,7 +438,8 @@ Result<std::vector<Cause>> weigh_causes(const ChangeCase& change,
     for (Contest& contest : contests) trial.run(contest, rng);
   }
   if (contests.front().log_likelihoods.empty()) {
-    return failure(ErrorCode::not_positive_definite, "no particle has a covariance with a factor");
+    return failure(ErrorCode::not_positive_definite,
+                   "no particle has a covariance with a Cholesky factor");
   }
 
   std::vector<Cause> causes;

@@ -264,7 +264,7 @@ Result<SiteDrift> follow(const FollowedSite& followed,
       {std::move(beside.days), drift.months, drift.learning_months,
        2.0 * options.watch.months_between_false_alarms}};
   if (!has_figures_after(ground, drift.learning_months)) {
-    drift.warnings.emplace_back("No month after the learning ones has a figure to compare.");
+    drift.warnings.emplace_back("No month after the learning period has a figure to compare.");
   }
   if (auto done = follow_all(ground, options, context, drift); !done) {
     return tl::unexpected(done.error());

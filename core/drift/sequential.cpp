@@ -155,7 +155,7 @@ Result<std::vector<Forecast>> SequentialCalibration::forecast(int month) {
     joint->to_natural(particles_->positions.col(chosen[static_cast<std::size_t>(k)]), theta, hyper);
     if (!joint->set_hyperparameters(hyper)) {
       return failure(ErrorCode::not_positive_definite,
-                     "a particle of the posterior has a covariance without a factor");
+                     "a particle of the posterior has a covariance without a Cholesky factor");
     }
     const Eigen::VectorXd& residual =
         joint->residual_at({theta.data(), static_cast<std::size_t>(theta.size())});

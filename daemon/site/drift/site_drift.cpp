@@ -19,10 +19,10 @@ using metering::MonthRange;
 
 std::string lost_words(const std::string& meter, const metering::LostReadings& lost) {
   return fmt::format(
-      "{} gives usable readings for {:.0f} % of the time since {}, {:.0f} % before{}; "
-      "seen after {}",
+      "{} has given usable readings for {:.0f} % of the time since {}, {:.0f} % before{}; detected "
+      "after {}",
       meter, 100.0 * lost.share_since, metering::to_string(lost.since), 100.0 * lost.share_before,
-      lost.stands_still ? ": it stands still at one value" : "", metering::to_string(lost.seen));
+      lost.stands_still ? ": it is frozen at one value" : "", metering::to_string(lost.seen));
 }
 
 /// @param first  Month that the record begins with.
@@ -63,7 +63,7 @@ std::vector<drift::DailyWatches::Output> days_of_meters(const ModelledSite& mode
   }
   auto days = watched_days(modelled, meters, site.month_names, learning_months);
   if (!days) {
-    site.warnings.push_back("Days are not watched: " + days.error().message + ".");
+    site.warnings.push_back("The daily watch is off: " + days.error().message + ".");
     return {};
   }
   std::vector<drift::DailyWatches::Output> watched;
@@ -99,8 +99,8 @@ Result<PeriodConfig> followed_period(const OpenSite& site, const Recording& reco
   const auto needed = learning_months + 1;
   if (!common || common->first + std::chrono::months{needed - 1} > common->last) {
     return failure(ErrorCode::not_enough_data,
-                   fmt::format("to follow a site takes {} months of all modelled meters: {} to "
-                               "learn from and one to forecast",
+                   fmt::format("to follow a site, recald needs {} months of all modelled meters: "
+                               "{} to learn from and one to forecast",
                                needed, learning_months));
   }
   const Month last_learnt = common->first + std::chrono::months{learning_months - 1};

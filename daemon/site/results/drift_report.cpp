@@ -35,10 +35,10 @@ std::string consequence_of(const SiteDrift& drift, const ExplainedAlarm& alarm) 
   const std::string since = report::month_text(month_of(drift, alarm.alarm.since));
   switch (alarm.consequence) {
     case ExplainedAlarm::Consequence::began_anew:
-      return fmt::format("The model has been learnt anew from the months since {}.", since);
+      return fmt::format("The model has been learned again from the months since {}.", since);
     case ExplainedAlarm::Consequence::meter_set_aside:
-      return fmt::format("The meter is set aside: its figures since {} are not learnt from.",
-                         since);
+      return fmt::format(
+          "The meter is excluded: the model does not learn from its figures since {}.", since);
     case ExplainedAlarm::Consequence::none:
       break;
   }
@@ -54,7 +54,7 @@ report::AlarmCard card_of(const SiteDrift& drift, const ExplainedAlarm& explaine
       .sentence = alarm_sentence(drift, alarm),
       .causes = {},
       .consequence = consequence_of(drift, explained),
-      .advice = explained.causes.empty() ? "Too little was known before to say why."
+      .advice = explained.causes.empty() ? "The record before the change is too short to say why."
                                          : advice_words(explained.causes.front().kind)};
   for (const drift::Cause& cause : explained.causes) {
     if (card.causes.size() == kCausesShown) break;
@@ -115,7 +115,7 @@ report::BelievedParameter believed_of(const SiteDrift& drift, std::size_t j) {
 std::vector<report::HistoryRow> history_of(const SiteDrift& drift, const RunFacts& facts) {
   std::vector<report::HistoryRow> rows{
       {month_of(drift, 0),
-       fmt::format("Model {}, learnt from its first {} months and every month since",
+       fmt::format("Model {}, learned from its first {} months and updated every month since",
                    facts.model_version, drift.learning_months)}};
   for (const ExplainedAlarm& explained : drift.alarms) {
     const std::string what = consequence_of(drift, explained);

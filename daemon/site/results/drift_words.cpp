@@ -48,17 +48,17 @@ std::string since_words(const SiteDrift& drift, const drift::Alarm& alarm) {
 
 std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm) {
   const FollowedOutput& output = drift.outputs[static_cast<std::size_t>(alarm.output)];
-  std::string sentence =
-      fmt::format("{} is {} than forecast since {}, by {:+.0f} %; raised {}, evidence {:.3g} to 1.",
-                  output.name, alarm.direction > 0 ? "more" : "less", since_words(drift, alarm),
-                  100.0 * (alarm.days ? alarm.days->excess : relative_excess(drift, alarm)),
-                  alarm.days ? "by its days on " + metering::to_string(alarm.days->raised)
-                             : "after " + drift.month_name(alarm.month),
-                  alarm.evidence);
+  std::string sentence = fmt::format(
+      "{} has been {} than forecast since {}, by {:+.0f} %; alarm raised {}, evidence {:.3g} to 1.",
+      output.name, alarm.direction > 0 ? "more" : "less", since_words(drift, alarm),
+      100.0 * (alarm.days ? alarm.days->excess : relative_excess(drift, alarm)),
+      alarm.days ? "by the daily watch on " + metering::to_string(alarm.days->raised)
+                 : "after " + drift.month_name(alarm.month),
+      alarm.evidence);
   if (!alarm.is_calibrated) {
     sentence +=
-        " The forecasts before were not true to their own spread, so false alarms are more "
-        "frequent than stated.";
+        " The earlier forecasts did not match their own bands, so false alarms are more frequent "
+        "than stated.";
   }
   return sentence;
 }
@@ -69,15 +69,15 @@ std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
     case drift::CauseKind::nothing:
       return "chance: nothing has changed";
     case drift::CauseKind::unknown:
-      if (cause.index < 0) return "something that the model lacks";
-      return fmt::format("something that the model lacks and that {} alone shows",
+      if (cause.index < 0) return "something missing from the model";
+      return fmt::format("something missing from the model that only {} shows",
                          drift.outputs[at].meter);
     case drift::CauseKind::parameter:
-      return fmt::format("{} is {:.3g} {} since (90 %: {:.3g} to {:.3g})",
+      return fmt::format("{} has been {:.3g} {} since then (90 %: {:.3g} to {:.3g})",
                          drift.parameters[at].name, cause.mean, drift.parameters[at].unit,
                          cause.q05, cause.q95);
     case drift::CauseKind::direction:
-      return fmt::format("{} is {:+.0f} % since (90 %: {:+.0f} to {:+.0f} %)",
+      return fmt::format("{} has changed by {:+.0f} % since then (90 %: {:+.0f} to {:+.0f} %)",
                          drift.directions[at].name, 100.0 * (cause.mean - 1.0),
                          100.0 * (cause.q05 - 1.0), 100.0 * (cause.q95 - 1.0));
     case drift::CauseKind::meter:
@@ -93,39 +93,40 @@ std::string advice_words(drift::CauseKind kind) {
       return "Wait for another month.";
     case drift::CauseKind::parameter:
     case drift::CauseKind::direction:
-      return "Look at what was changed in the building about then.";
+      return "Find out what changed in the building around that time.";
     case drift::CauseKind::meter:
-      return "Look at the meter: its transformers, its unit, its register map.";
+      return "Check the meter: its transformers, its unit, its register map.";
     case drift::CauseKind::unknown:
-      return "Let `recald diagnose` name it.";
+      return "Run `recald diagnose` to find out what it is.";
   }
   return "";
 }
 
 std::string trust_words(const SiteDrift& drift, std::size_t output) {
   const auto [inside, all] = inside_90(drift, output);
-  if (all == 0) return "No month to compare.";
+  if (all == 0) return "No month to compare with.";
   const auto& check = drift.outputs[output].state.calibration;
-  return fmt::format("{} of {} months within 90 %; {}.", inside, all,
-                     check ? fmt::format("forecasts true with p = {:.2g}", check->pvalue)
-                           : "too few since the last change to check");
+  return fmt::format("{} of {} months within the 90 % band; {}.", inside, all,
+                     check ? fmt::format("check of the forecasts: p = {:.2g}", check->pvalue)
+                           : "too few months since the last change to check");
 }
 
 std::string meter_change_words(const MeterChange& change) {
   return change.sentence + (change.kind == MeterChange::Kind::unit
                                 ? ". Its months since then are not compared."
-                                : ". Look at the meter and at the way to it.");
+                                : ". Check the meter and its connection.");
 }
 
 std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& alarm) {
   std::string sentence = alarm_sentence(drift, alarm.alarm);
-  if (alarm.causes.empty()) return sentence + " Too little was known before to say why.";
+  if (alarm.causes.empty())
+    return sentence + " The record before the change is too short to say why.";
   const drift::Cause& first = alarm.causes.front();
   const drift::Cause& second = alarm.causes[1];
-  sentence += fmt::format(" Likeliest ({:.0f} %): {}", 100.0 * first.probability,
+  sentence += fmt::format(" Likeliest cause ({:.0f} %): {}", 100.0 * first.probability,
                           cause_words(drift, first));
   if (second.probability >= 0.1) {
-    sentence += fmt::format("; else ({:.0f} %): {}", 100.0 * second.probability,
+    sentence += fmt::format("; next ({:.0f} %): {}", 100.0 * second.probability,
                             cause_words(drift, second));
   }
   return sentence + ". " + advice_words(first.kind);
@@ -133,7 +134,7 @@ std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& ala
 
 std::string drift_words(const SiteDrift& drift) {
   std::string words =
-      fmt::format("{} months from {} to {}, the first {} to learn from.\n", drift.months.size(),
+      fmt::format("{} months from {} to {}; the first {} are for learning.\n", drift.months.size(),
                   drift.months.front(), drift.months.back(), drift.learning_months);
   for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
     words += fmt::format("{:<28} {}\n", drift.outputs[k].name, trust_words(drift, k));
@@ -149,7 +150,7 @@ std::string drift_words(const SiteDrift& drift) {
     const drift::Shift& shift = drift.last_year[j];
     const ParameterPath& path = drift.windows.front().paths[j];
     words += fmt::format(
-        "{:<28} {:.4g} {}; from the last year but one to the last {:+.2f} sd (p {:.2f})\n",
+        "{:<28} {:.4g} {}; change from the year before last to last year {:+.2f} sd (p {:.2f})\n",
         drift.parameters[j].name, path.mean.back(), drift.parameters[j].unit, shift.standardised,
         shift.pvalue);
   }
