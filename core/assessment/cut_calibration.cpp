@@ -129,7 +129,7 @@ Result<Eigen::MatrixXd> taught_by_months(const MonthlyModel& model,
   if (!learnt) return tl::unexpected(learnt.error());
   // Whoever gives a number of draws gets what they find.
   if (!learnt->converged && !options.sampling.iterations) {
-    return failure(ErrorCode::not_enough_data, "the chains on them alone do not agree");
+    return failure(ErrorCode::not_enough_data, "the chains for them alone disagree");
   }
   return Eigen::MatrixXd{spread_eta(learnt->thinned.theta).rightCols(r)};
 }

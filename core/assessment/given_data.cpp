@@ -120,7 +120,7 @@ class DrawnErrors {
                                 jittered)) {
       return failure(ErrorCode::not_positive_definite,
                      "the covariance of the measured points has no Cholesky factor at a draw of "
-                     "the posterior; the measurement error is believed far too small");
+                     "the posterior; the assumed measurement error is far too small");
     }
     for (Index p = 0; p < residual_.size(); ++p) {
       residual_(p) = data_.values(p) - scale_of(p).normalise(simulated(draw, p));

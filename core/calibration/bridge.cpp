@@ -24,8 +24,8 @@ class WarpedTarget {
                                              static_cast<double>(draws.rows() - 1));
     if (factor.info() != Eigen::Success || !draws.allFinite()) {
       return failure(ErrorCode::not_positive_definite,
-                     "the draws do not spread in every direction, so no normal density fits them; "
-                     "draw more");
+                     "the draws do not vary in every direction, so no normal density fits them; "
+                     "use more draws");
     }
     return WarpedTarget(target, mean, factor.matrixL());
   }
@@ -107,8 +107,8 @@ class FixedPoint {
       if (converged) return BridgeEstimate{shift_ + std::log(r), standard_error(r), k};
     }
     return failure(ErrorCode::not_finite,
-                   "bridge sampling found no evidence: the draws and a normal density fitted to "
-                   "them hardly overlap; use the evidence of smc");
+                   "bridge sampling failed: the draws and the normal density fitted to them hardly "
+                   "overlap; use the evidence of smc");
   }
 
  private:
@@ -145,7 +145,7 @@ Result<BridgeEstimate> bridge_log_evidence(Target& target, const Eigen::MatrixXd
   if (draws.cols() != d || draws.rows() < 4 * (d + 2)) {
     return failure(ErrorCode::not_enough_data,
                    "bridge sampling in " + std::to_string(d) + " dimensions needs at least " +
-                       std::to_string(4 * (d + 2)) + " draws of as many columns, not " +
+                       std::to_string(4 * (d + 2)) + " draws with as many columns, not " +
                        std::to_string(draws.rows()) + " of " + std::to_string(draws.cols()));
   }
   const Eigen::Index fitted = draws.rows() / 2;

@@ -17,7 +17,7 @@ constexpr int kDesignRunsMin = 20;
 
 Result<void> check_calibration_options(const CalibrationOptions& options) {
   if (options.thinned_draws < 1) {
-    return failure(ErrorCode::invalid_value, "at least 1 thinned draw has to be asked for");
+    return failure(ErrorCode::invalid_value, "at least 1 thinned draw must be requested");
   }
   return check_sampling(options.sampling);
 }
@@ -79,9 +79,9 @@ std::optional<Emulator> emulator_of(const MonthlyModel& prototype, const DesignR
 Result<DesignRuns> run_design(const MonthlyModel& prototype, const CalibrationProblem& problem,
                               int runs, const RunContext& context) {
   if (runs < kDesignRunsMin) {
-    return failure(ErrorCode::invalid_value, "a design needs at least " +
-                                                 std::to_string(kDesignRunsMin) + " runs, but " +
-                                                 std::to_string(runs) + " are asked for");
+    return failure(ErrorCode::invalid_value,
+                   "a design needs at least " + std::to_string(kDesignRunsMin) +
+                       " runs, but only " + std::to_string(runs) + " were requested");
   }
   Rng rng(context.seed, streams::kDesign.first);
   DesignRuns design;

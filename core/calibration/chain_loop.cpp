@@ -12,7 +12,7 @@ constexpr int kStartsTried = 100;
 Result<StartingPoint> start_at(Target& target, const Eigen::VectorXd& position) {
   if (position.size() != target.dimension()) {
     return failure(ErrorCode::invalid_value,
-                   "the state to begin at has " + std::to_string(position.size()) +
+                   "the initial state has " + std::to_string(position.size()) +
                        " coordinates, but the density has " + std::to_string(target.dimension()) +
                        "; it belongs to another model");
   }
@@ -20,7 +20,7 @@ Result<StartingPoint> start_at(Target& target, const Eigen::VectorXd& position) 
   if (!value) return tl::unexpected(value.error());
   if (!std::isfinite(*value)) {
     return failure(ErrorCode::not_finite,
-                   "the state to begin at has no positive posterior density; begin without it");
+                   "the initial state has no positive posterior density; start without it");
   }
   return StartingPoint{position, *value, 1};
 }
@@ -53,20 +53,19 @@ Result<Eigen::LLT<Eigen::MatrixXd>> factor_of_state(const ChainState& state,
   const Eigen::MatrixXd& covariance = state.covariance;
   if (covariance.rows() != dimension || covariance.cols() != dimension) {
     return failure(ErrorCode::invalid_value,
-                   "the covariance to begin with is " + std::to_string(covariance.rows()) + " x " +
+                   "the initial covariance is " + std::to_string(covariance.rows()) + " x " +
                        std::to_string(covariance.cols()) + ", but the density has " +
                        std::to_string(dimension) + " dimensions; it belongs to another model");
   }
   if (!(state.scale > 0.0) || !std::isfinite(state.scale)) {
     return failure(ErrorCode::invalid_value,
-                   "the scale to begin with is " + std::to_string(state.scale) +
-                       ", but it has to be above zero; begin without the state");
+                   "the initial scale is " + std::to_string(state.scale) +
+                       ", but it must be above zero; start without the state");
   }
   Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success || !covariance.allFinite()) {
-    return failure(
-        ErrorCode::not_positive_definite,
-        "the covariance to begin with is not positive definite; begin without the state");
+    return failure(ErrorCode::not_positive_definite,
+                   "the initial covariance is not positive definite; start without the state");
   }
   return factor;
 }

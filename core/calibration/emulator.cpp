@@ -33,7 +33,7 @@ Result<Emulator> emulate(const Eigen::MatrixXd& theta, const Eigen::MatrixXd& ou
   const auto coefficients = static_cast<Eigen::Index>(terms.size()) + 1;
   if (theta.rows() < 2 * coefficients) {
     return failure(ErrorCode::not_enough_data,
-                   "a stand-in for the model has " + std::to_string(coefficients) +
+                   "an emulator of the model has " + std::to_string(coefficients) +
                        " coefficients and needs twice as many runs, not " +
                        std::to_string(theta.rows()));
   }

@@ -136,11 +136,9 @@ Result<HyperPriorProfile> parse_hyper_prior_profile(std::string_view text) {
   if (text == "seed") return HyperPriorProfile::seed;
   if (text == "stan2018" || text == "wide") return HyperPriorProfile::stan2018;
   if (text == "tight") return HyperPriorProfile::tight;
-  return failure(
-      ErrorCode::invalid_value,
-      "'" + std::string(text) +
-          "' is not a hyper-prior profile; known are scaled, seed, stan2018 (or wide) and "
-          "tight");
+  return failure(ErrorCode::invalid_value, "'" + std::string(text) +
+                                               "' is not a hyper-prior profile; the profiles are "
+                                               "scaled, seed, stan2018 (or wide) and tight");
 }
 
 }  // namespace recald::calibration

@@ -52,7 +52,7 @@ Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
     if (!posterior.set_hyperparameters(hyper)) {
       return failure(ErrorCode::not_positive_definite,
                      "the covariance of the measured points has no Cholesky factor at a draw of "
-                     "the posterior; the measurement error is believed far too small");
+                     "the posterior; the assumed measurement error is far too small");
     }
     posterior.precision(precision);
     const Eigen::VectorXd theta = thinned.theta.row(d);

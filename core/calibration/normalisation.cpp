@@ -38,7 +38,7 @@ double pooled_variance(const Eigen::MatrixXd& design_outputs,
 
 std::string sentence(const std::vector<OutOfRange>& months, const OutputMeasurements& output,
                      std::span<const std::string> month_names, FindingKind kind) {
-  std::string text = "Measured " + output.name + " lies outside what the design runs reach";
+  std::string text = "Measured " + output.name + " is outside the range of the design runs";
   text += kind == FindingKind::range_fail ? " in the same month: " : " in any month: ";
   for (std::size_t i = 0; i < months.size(); ++i) {
     const OutOfRange& m = months[i];
@@ -74,7 +74,7 @@ Result<Normalisation> normalise_design(const Eigen::MatrixXd& design_outputs,
                      "the model gives " + number_text(scale.min) + " " + outputs[k].unit + " for " +
                          outputs[k].name +
                          " in every run and month, so it cannot be calibrated against that meter; "
-                         "check that the model has the end uses behind it");
+                         "check that the model has the meter's end uses");
     }
     normalisation.scales.push_back(scale);
   }

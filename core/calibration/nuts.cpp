@@ -164,11 +164,11 @@ Result<void> check_nuts(const Target& target, const NutsOptions& options) {
   }
   if (!(options.target_acceptance > 0.0 && options.target_acceptance < 1.0)) {
     return failure(ErrorCode::invalid_value,
-                   "the target acceptance of nuts is above 0 and below 1");
+                   "the target acceptance of nuts must be above 0 and below 1");
   }
   if (options.depth_max < 1 || options.depth_max > 20 || !(options.divergence_energy > 0.0)) {
     return failure(ErrorCode::invalid_value,
-                   "nuts needs a largest depth of 1 to 20 and a divergence energy above 0");
+                   "nuts needs a maximum depth of 1 to 20 and a divergence energy above 0");
   }
   return {};
 }

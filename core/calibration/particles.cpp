@@ -110,7 +110,7 @@ Result<void> ParticleMover::set_shape(const Eigen::MatrixXd& covariance) {
   shape_.compute(2.38 * 2.38 / static_cast<double>(covariance.rows()) * covariance);
   if (shape_.info() == Eigen::Success && covariance.allFinite()) return {};
   return failure(ErrorCode::not_positive_definite,
-                 "the population has shrunk to too few different points; use more particles");
+                 "the population has too few distinct points left; use more particles");
 }
 
 Result<bool> ParticleMover::move_one(Particles& particles, Eigen::Index i, double temperature) {

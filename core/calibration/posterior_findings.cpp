@@ -23,12 +23,11 @@ double two_digits(double value) {
 Finding edge_finding(const Parameter& parameter, double share, double end) {
   std::string sentence = percent_text(share);
   sentence += " of the posterior of " + parameter.name;
-  sentence += " lies within 5 % of the end of its prior at " + number_text(end);
+  sentence += " is within 5 % of the end of its prior at " + number_text(end);
   sentence += " " + parameter.unit;
   sentence +=
-      ": unless that end is a physical limit, the model or a fixed input is wrong, or the prior "
-      "too "
-      "narrow.";
+      ". Unless that end is a physical limit, the model or a fixed input is wrong, or the prior is "
+      "too narrow.";
   return {FindingKind::prior_edge, parameter.name, std::move(sentence)};
 }
 
@@ -69,8 +68,9 @@ Findings conflict_findings(const Summary& precision, const GammaPrior& prior) {
   return {{FindingKind::hyperprior_conflict, precision.name,
            "The data contradict the prior of " + precision.name + ": posterior mean " +
                number_text(precision.mean) + ", prior 1-99 % range " + number_text(low) + " to " +
-               number_text(high) + ", that is a standard deviation of " + sd(precision.mean) +
-               " of the output range where " + sd(high) + " to " + sd(low) + " was believed."}};
+               number_text(high) + ". That means a standard deviation of " + sd(precision.mean) +
+               " of the output range, where the prior expects " + sd(high) + " to " + sd(low) +
+               "."}};
 }
 
 Findings trajectory_findings(const std::vector<ChainStatistics>& chains,
@@ -81,16 +81,16 @@ Findings trajectory_findings(const std::vector<ChainStatistics>& chains,
   if (divergences > gate.divergences_max) {
     findings.push_back({FindingKind::not_converged, "trajectories",
                         std::to_string(divergences) +
-                            " trajectories of the sampler diverged: there are places that it could "
-                            "not enter, and the posterior's figures leave them out."});
+                            " trajectories of the sampler diverged: it could not reach parts of "
+                            "the posterior, and the results do not include them."});
   }
   for (std::size_t k = 0; k < chains.size(); ++k) {
     if (std::isnan(chains[k].e_bfmi) || chains[k].e_bfmi >= gate.e_bfmi_min) continue;
-    findings.push_back({FindingKind::not_converged, "energy",
-                        "Chain " + std::to_string(k + 1) +
-                            " explores the energies too slowly (E-BFMI " +
-                            number_text(chains[k].e_bfmi, 2) + ", below " +
-                            number_text(gate.e_bfmi_min) + "): its tails may be missing."});
+    findings.push_back(
+        {FindingKind::not_converged, "energy",
+         "Chain " + std::to_string(k + 1) + " explores the energy levels too slowly (E-BFMI " +
+             number_text(chains[k].e_bfmi, 2) + ", below " + number_text(gate.e_bfmi_min) +
+             "). It may miss the tails of the posterior."});
   }
   return findings;
 }
@@ -100,10 +100,10 @@ Findings evidence_findings(const SamplingReport& report,
   if (!bridge || std::isnan(report.log_evidence)) return {};
   if (std::abs(bridge->log_evidence - report.log_evidence) <= kEvidenceTolerance) return {};
   return {{FindingKind::evidence_disagrees, "evidence",
-           "Two ways to the model's evidence disagree: log p(y) is " +
-               number_text(report.log_evidence, 5) + " by populations and " +
+           "Two estimates of the model's evidence disagree: log p(y) is " +
+               number_text(report.log_evidence, 5) + " from populations and " +
                number_text(bridge->log_evidence, 5) +
-               " by a bridge. Do not compare models by either."}};
+               " from bridge sampling. Use neither to compare models."}};
 }
 
 Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
@@ -125,16 +125,16 @@ Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
   }
   if (list.empty()) return {};
   return {{FindingKind::discrepancy_size, "discrepancy",
-           "What the model misses, month by month, has a standard deviation of: " + list +
-               ". Differences smaller than that, savings for example, cannot be read from it."}};
+           "The model's error from month to month has a standard deviation of: " + list +
+               ". The model cannot show differences smaller than that, savings for example."}};
 }
 
 Findings jitter_findings(long count) {
   if (count == 0) return {};
   return {{FindingKind::jitter_used, "covariance",
            "The covariance of the measured points had no Cholesky factor " + std::to_string(count) +
-               " times and was given 1e-10 more on its diagonal: the measurement error is believed "
-               "far too small."}};
+               " times, so 1e-10 was added to its diagonal. The assumed measurement error is far "
+               "too small."}};
 }
 
 }  // namespace recald::calibration

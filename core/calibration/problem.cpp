@@ -42,7 +42,7 @@ Result<void> check_shapes(const CalibrationProblem& problem, const MonthlyModel&
 
 Result<void> check_parameters(const CalibrationProblem& problem) {
   if (problem.parameters.empty()) {
-    return failure(ErrorCode::invalid_value, "there is no calibration parameter to calibrate");
+    return failure(ErrorCode::invalid_value, "there is no parameter to calibrate");
   }
   return {};
 }
@@ -60,7 +60,7 @@ Result<void> check_point(const OutputMeasurements& output, std::size_t month,
   if (!(variance >= 0.0) || !std::isfinite(variance)) {
     return failure(ErrorCode::invalid_value,
                    "the extra variance of measured " + output.name + " of " + month_name + " is " +
-                       number_text(variance) + ", but has to be finite and not negative");
+                       number_text(variance) + ", but it must be finite and not negative");
   }
   return {};
 }
@@ -77,7 +77,7 @@ Result<void> check_output(const OutputMeasurements& output, const CalibrationPro
   if (!(output.weight > 0.0 && output.weight <= 1.0)) {
     return failure(ErrorCode::invalid_value, "the weight of " + output.name + " is " +
                                                  number_text(output.weight) +
-                                                 ", but has to lie above 0 and not above 1");
+                                                 ", but it must be above 0 and at most 1");
   }
   for (std::size_t i = 0; i < months; ++i) {
     if (auto valid = check_point(output, i, problem.month_names[i]); !valid) return valid;
@@ -91,8 +91,8 @@ Result<void> check_model_error(const CalibrationProblem& problem) {
       std::all_of(sds.begin(), sds.end(), [](double sd) { return std::isfinite(sd) && sd >= 0.0; });
   if (usable && (sds.empty() || sds.size() == problem.outputs.size())) return {};
   return failure(ErrorCode::invalid_value,
-                 "the model's own error needs a standard deviation that is finite and not negative "
-                 "for each output, or none at all");
+                 "the model's own error needs a finite, non-negative standard deviation for each "
+                 "output, or none at all");
 }
 
 Result<void> check_inputs(const CalibrationProblem& problem) {
@@ -117,8 +117,7 @@ Result<void> check_inputs(const CalibrationProblem& problem) {
     if (inputs.values.col(s).minCoeff() < inputs.values.col(s).maxCoeff()) continue;
     return failure(ErrorCode::invalid_value,
                    "the model input " + name + " is " + number_text(inputs.values(0, s)) +
-                       " in every month, so it explains nothing; leave it "
-                       "out");
+                       " in every month, so it explains nothing; remove it");
   }
   return {};
 }

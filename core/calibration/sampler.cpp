@@ -7,9 +7,10 @@ namespace recald::calibration {
 
 Result<double> Target::log_density_and_gradient(const Eigen::VectorXd& /*point*/,
                                                 Eigen::VectorXd& /*gradient*/) {
-  assert(!has_gradient() && "a target that says it has a gradient has to compute it");
-  return failure(ErrorCode::unsupported,
-                 "this density has no gradient; choose a sampler that needs none (dram, smc)");
+  assert(!has_gradient() && "a target that claims to have a gradient must compute it");
+  return failure(
+      ErrorCode::unsupported,
+      "this density has no gradient; choose a sampler that does not need one (dram, smc)");
 }
 
 Result<void> check_options(const SamplerOptions& options) {

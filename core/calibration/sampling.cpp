@@ -254,25 +254,26 @@ class Sampling {
     if (options_.iterations) {
       if (!disagreement_.empty()) {
         result_.converged = false;
-        result_.findings.push_back({FindingKind::not_converged, std::string(chains.name),
-                                    "The chains leave something out: " + disagreement_ + "."});
+        result_.findings.push_back(
+            {FindingKind::not_converged, std::string(chains.name),
+             "The chains miss part of the posterior: " + disagreement_ + "."});
       }
       return std::move(result_);
     }
     const bool apart = !disagreement_.empty() || worst_rhat() > options_.gate.rhat_max;
     std::string why(chains.name);
-    why += " was given up: ";
+    why += " was abandoned: ";
     why += !disagreement_.empty() ? disagreement_
-           : apart                ? "its chains did not agree"
-                                  : "its draws were too few or its trajectories failed";
+           : apart                ? "its chains disagreed"
+                                  : "it had too few effective draws or failed trajectories";
     if (auto ran = run_populations(populations); !ran) {
       return tl::unexpected(std::move(ran.error()));
     }
     result_.report.taken_over = why;
     result_.findings.push_back({FindingKind::sampler_replaced, result_.report.sampler,
-                                "Tempered populations (smc) took the place of chains, as " + why +
-                                    (apart ? ". Parameters may have more than one region that the "
-                                             "data allow; the draws weigh them."
+                                "Tempered populations (smc) replaced the chains, because " + why +
+                                    (apart ? ". The data may allow more than one region of the "
+                                             "parameters; the draws weight these regions."
                                            : ".")});
     return std::move(result_);
   }
@@ -409,7 +410,9 @@ class Sampling {
     const auto q = static_cast<Eigen::Index>(posterior_.parameter_count());
     const std::string& name = where < q ? result_.parameters[static_cast<std::size_t>(where)].name
                                         : names_[static_cast<std::size_t>(where - q)];
-    return "its chains agree, but a tempered pilot saw another hill, apart from theirs in " + name;
+    return "its chains agree, but a tempered pilot found another mode, which differs from theirs "
+           "in " +
+           name;
   }
 
   const Posterior& posterior_;
@@ -425,8 +428,8 @@ class Sampling {
 Result<void> check_sampling(const SamplingOptions& options) {
   if (options.chains < 2) {
     return failure(ErrorCode::invalid_value,
-                   "a calibration needs at least 2 chains to tell whether they agree, but " +
-                       std::to_string(options.chains) + " is asked for");
+                   "a calibration needs at least 2 chains to check whether they agree, but " +
+                       std::to_string(options.chains) + " was requested");
   }
   const Sampler* sampler = options.sampler;
   const bool is_population = sampler != nullptr && sampler->is_population;
@@ -442,7 +445,7 @@ Result<void> check_sampling(const SamplingOptions& options) {
   if (auto valid = check_options(own); !valid) return valid;
   if (own.iterations - own.burn_in < 8) {
     return failure(ErrorCode::invalid_value,
-                   "at least 8 iterations have to remain after burn-in to judge convergence");
+                   "at least 8 iterations must remain after burn-in to check convergence");
   }
   return {};
 }
@@ -456,7 +459,7 @@ Result<SampledPosterior> sample_posterior(const Posterior& posterior,
     return failure(ErrorCode::unsupported,
                    std::string(options.sampler->name) +
                        " needs the model's derivatives, which this model does not have; choose "
-                       "dram, smc or seed_rwm, or leave the choice to recald");
+                       "dram, smc or seed_rwm, or let recald choose");
   }
   return Sampling(posterior, input_names, options, context).run();
 }

@@ -24,12 +24,11 @@ Result<Calibration> rerun(const MonthlyModel& prototype, const CalibrationProble
 }
 
 std::string sentence(const Summary& base, const ParameterSensitivity& s, double factor) {
-  return base.name + " is prior-driven: its posterior mean goes from " + number_text(base.mean) +
+  return base.name + " is prior-driven: its posterior mean moves from " + number_text(base.mean) +
          " to " + number_text(s.mean_at_smaller) + " and " + number_text(s.mean_at_larger) + " " +
          base.unit + " (up to " + number_text(s.largest_move_sd, 2) +
-         " posterior standard deviations) when the prior mean of the discrepancy's precision is "
-         "taken " +
-         number_text(factor) + " times larger and smaller. The data do not settle it.";
+         " posterior standard deviations) if the prior mean of the discrepancy's precision is " +
+         number_text(factor) + " times larger and smaller. The data do not determine it.";
 }
 
 void keep_unconverged(const Calibration& run, Findings& findings) {

@@ -21,8 +21,8 @@ Result<void> check_population(const SamplerOptions& options) {
   }
   if (options.burn_in != 0 || options.begin_at) {
     return failure(ErrorCode::invalid_value,
-                   "smc begins at the prior and keeps every particle: it takes no burn-in and no "
-                   "state to begin at");
+                   "smc starts from the prior and keeps every particle, so it accepts neither "
+                   "burn-in nor an initial state");
   }
   return {};
 }
@@ -80,7 +80,7 @@ Result<Chain> smc(Target& target, const SamplerOptions& options, Rng& rng,
     if (k == kTemperaturesMax) {
       return failure(ErrorCode::out_of_range,
                      "the posterior is too narrow within its prior: after " + std::to_string(k) +
-                         " temperatures smc stands at " + std::to_string(temperature) +
+                         " temperatures smc is at " + std::to_string(temperature) +
                          "; tighten the priors or check the units of the measurements");
     }
     const double next = next_temperature(particles, temperature);

@@ -58,7 +58,7 @@ Findings gate_findings(const std::vector<Summary>& summaries, const ConvergenceG
     if (faults.empty()) continue;
     findings.push_back({FindingKind::not_converged, s.name,
                         "The chains have not converged for " + s.name + ": " + faults +
-                            ". Its figures are not to be relied on; run more iterations."});
+                            ". Do not rely on its figures; run more iterations."});
   }
   return findings;
 }

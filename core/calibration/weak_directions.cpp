@@ -119,9 +119,9 @@ Findings weak_direction_findings(const std::vector<WeakDirection>& directions,
     list += "; and " + std::to_string(directions.size() - kNamedMax) + " more";
   }
   return {{FindingKind::weak_direction, "parameters",
-           "The data say less than the priors do about " + std::to_string(directions.size()) +
-               " of " + std::to_string(parameters.size()) + " directions of the parameters: " +
-               list + ". What stands there is mostly what was believed before."}};
+           "The data say less than the priors about " + std::to_string(directions.size()) + " of " +
+               std::to_string(parameters.size()) + " directions of the parameters: " + list +
+               ". The results there mostly repeat the priors."}};
 }
 
 }  // namespace recald::calibration

@@ -127,7 +127,7 @@ Result<MonthlyForecast> forecast_months(const Regression& regression,
                      "the temperature is known on " + std::to_string(month.known) + " of " +
                          std::to_string(month.days.size()) + " days of " +
                          metering::to_string(month_of(month.days.front())) +
-                         ", too few to forecast it; leave the month out or give its weather");
+                         ", too few to forecast it; leave the month out or provide its weather");
     }
     add_month(regression, month, forecast, errors);
   }

@@ -71,13 +71,12 @@ void assign_blocks(std::vector<TrainingDay>& days) {
 std::optional<Error> fault_of(const MeterDay& day) {
   if (std::isinf(day.energy_kWh)) {
     return Error{ErrorCode::not_finite, "the consumption of " + metering::to_string(day.date) +
-                                            " is infinite; give no value where none is known"};
+                                            " is infinite; leave unknown values out"};
   }
   if (day.dry_bulb_C < kColdest_C || day.dry_bulb_C > kHottest_C) {
-    return Error{ErrorCode::out_of_range, "the mean temperature of " +
-                                              metering::to_string(day.date) + " is " +
-                                              number_text(day.dry_bulb_C) +
-                                              " °C; give no value where none is known, and °C"};
+    return Error{ErrorCode::out_of_range,
+                 "the mean temperature of " + metering::to_string(day.date) + " is " +
+                     number_text(day.dry_bulb_C) + " °C; use °C, and leave unknown values out"};
   }
   return {};
 }
@@ -99,7 +98,7 @@ Result<Training> collect(std::span<const MeterDay> days) {
     return failure(ErrorCode::not_enough_data,
                    "a change-point regression needs " + std::to_string(kLeastDays) +
                        " days with a usable consumption, but there are " + std::to_string(usable) +
-                       "; wait, or give more recorded days");
+                       "; wait for more days, or provide more recorded ones");
   }
   if (with_temperature < kLeastDays) {
     training.no_temperature_because = "only " + std::to_string(with_temperature) + " of " +

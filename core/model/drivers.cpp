@@ -166,7 +166,7 @@ Result<Drivers> make_drivers(const std::vector<metering::Month>& months,
                                                        metering::to_string(t) +
                                                        ", in a month that the model needs (" +
                                                        metering::to_string(months[month]) +
-                                                       "); give weather that covers the meters");
+                                                       "); provide weather that covers the meters");
       }
       drivers.hours.push_back(describe_hour(static_cast<int>(month), t, calendar, holidays,
                                             building, loads, location, *hour, drivers));

@@ -37,9 +37,9 @@ Result<MeterMap> default_meter_map(metering::Utility utility) {
     case metering::Utility::water:
       break;
   }
-  return failure(ErrorCode::unsupported,
-                 "no end use of the building models draws on a water meter; leave it out of the "
-                 "model's outputs");
+  return failure(
+      ErrorCode::unsupported,
+      "no end use of the building models is on a water meter; remove it from the model's outputs");
 }
 
 Result<EndUse> parse_end_use(std::string_view name) {

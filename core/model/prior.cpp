@@ -124,7 +124,7 @@ Result<void> cut_fault(const CutNormal& c, double min, double max, const char* n
     text << "needs min < max, but min = " << min << ", max = " << max;
   } else if (!(c.mass() > kLeastProbability)) {
     text << "has next to no probability (" << c.mass() << ") between its ends, min = " << min
-         << " and max = " << max << ", so nobody can draw from it; move the ends or the centre";
+         << " and max = " << max << ", so recald cannot draw from it; move the ends or the centre";
   } else {
     return {};
   }
@@ -148,8 +148,8 @@ Result<void> fault(const LogNormalPrior& p) {
   if (!usable) {
     std::ostringstream text;
     text.imbue(std::locale::classic());
-    text << "a log-normal prior needs a median above 0, an sd of the logarithm above 0 and no "
-            "negative end, but they are "
+    text << "a log-normal prior needs a median above 0, an sd of the logarithm above 0 and "
+            "non-negative ends, but they are "
          << p.median << ", " << p.log_sd << " and min = " << p.min;
     return failure(ErrorCode::invalid_value, text.str());
   }

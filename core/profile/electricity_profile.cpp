@@ -174,14 +174,14 @@ std::string check_words(const ProfileCheck& check, std::size_t months) {
   const double percent = 100.0 * check.monthly_cvrmse;
   if (check.constant) {
     std::snprintf(text.data(), text.size(),
-                  "One load profile tells the electricity of %zu months within %.1f %% (CV(RMSE) "
-                  "of the months).",
+                  "One load profile predicts the electricity of %zu months within %.1f %% "
+                  "(CV(RMSE) of the months).",
                   months, percent);
   } else {
     std::snprintf(text.data(), text.size(),
-                  "The load profile is not constant over the year: one profile misses the months "
-                  "by %.1f %% (CV(RMSE), limit 5 %%), so each calendar month has a factor of its "
-                  "own; months that occur once in the record are met by construction.",
+                  "The load profile is not constant over the year: a single profile misses the "
+                  "months by %.1f %% (CV(RMSE), limit 5 %%), so each calendar month has its own "
+                  "factor. Months that occur once in the record match by construction.",
                   percent);
   }
   return text.data();

@@ -159,13 +159,13 @@ Result<void> check_inputs(const DesignData& design, const NamedColumns& columns)
   if (design.inputs.empty()) {
     return failure(ErrorCode::not_enough_data,
                    "the seed's form of the meta-model needs month inputs such as the mean dry "
-                   "bulb; give inputs.csv or use one regression a month");
+                   "bulb; provide inputs.csv or use one regression per month");
   }
   for (const auto& name : columns.names) {
     if (name != kOutputType) continue;
-    return failure(
-        ErrorCode::invalid_value,
-        "a month input may not be called 'out': the meta-model calls the output type so");
+    return failure(ErrorCode::invalid_value,
+                   "a month input cannot be called 'out', because the meta-model uses that name "
+                   "for the output type");
   }
   const auto needed = static_cast<Eigen::Index>(columns.names.size()) + 2;
   if (design.month_count() < needed) {
@@ -174,7 +174,7 @@ Result<void> check_inputs(const DesignData& design, const NamedColumns& columns)
         "the design covers " + std::to_string(design.month_count()) + " months; with " +
             std::to_string(columns.names.size()) +
             " columns of month inputs the seed's form of the meta-model needs at least " +
-            std::to_string(needed) + "; leave inputs out or use one regression a month");
+            std::to_string(needed) + "; remove inputs or use one regression per month");
   }
   return {};
 }

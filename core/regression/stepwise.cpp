@@ -178,7 +178,7 @@ Result<StepwiseFit> stepwise(const CentredProducts& products, std::span<const Pa
     return failure(ErrorCode::not_enough_data,
                    "a regression that starts with " + std::to_string(start.size()) +
                        " terms needs at least " + std::to_string(start.size() + 2) +
-                       " rows and there are " + std::to_string(static_cast<long>(products.rows)) +
+                       " rows, but there are " + std::to_string(static_cast<long>(products.rows)) +
                        "; start from the empty model or add runs");
   }
   // Rounding in a product of values near 1 makes a constant response look like 1e-16 of spread.

@@ -43,9 +43,9 @@ class Descent {
       settle_selected(penalty);
     }
     return failure(ErrorCode::invalid_value,
-                   "the lasso did not settle within " + std::to_string(options_.sweeps_max) +
+                   "the lasso did not converge within " + std::to_string(options_.sweeps_max) +
                        " passes at penalty " + number_text(penalty) +
-                       "; strongly correlated columns are the usual cause, leave one of them out");
+                       "; strongly correlated columns are the usual cause, so remove one of them");
   }
 
  private:

@@ -95,7 +95,7 @@ TEST_F(PriorsFile, SaysWhatIsWrong) {
        "min = 0, mode = 3, max = 2"},
       {head + "a,,100,1,101,truncated_normal,0.1\n",
        "'FILE':2: parameter 'a': a truncated normal prior has next to no probability (0) between "
-       "its ends, min = 100 and max = 101, so nobody can draw from it; move the ends or the "
+       "its ends, min = 100 and max = 101, so recald cannot draw from it; move the ends or the "
        "centre"},
   };
   for (const auto& [text, sentence] : faults) EXPECT_EQ(fault(text), sentence) << text;

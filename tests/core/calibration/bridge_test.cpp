@@ -95,7 +95,8 @@ TEST(Bridge, SaysWhatItLacks) {
   const auto few = bridge_log_evidence(target, Eigen::MatrixXd::Zero(31, 6), rng);
   ASSERT_FALSE(few.has_value());
   EXPECT_EQ(few.error().code, ErrorCode::not_enough_data);
-  EXPECT_THAT(few.error().message, HasSubstr("at least 32 draws of as many columns, not 31 of 6"));
+  EXPECT_THAT(few.error().message,
+              HasSubstr("at least 32 draws with as many columns, not 31 of 6"));
 
   const auto stuck = bridge_log_evidence(target, Eigen::MatrixXd::Zero(100, 6), rng);
   ASSERT_FALSE(stuck.has_value());

@@ -215,7 +215,7 @@ TEST(Calibrate, OptionsOutOfRangeAreRefused) {
   };
   CalibrationOptions options = short_options();
   options.design_runs = 5;
-  EXPECT_THAT(message(options), HasSubstr("at least 20 runs, but 5"));
+  EXPECT_THAT(message(options), HasSubstr("at least 20 runs, but only 5"));
   options = short_options();
   options.sampling.chains = 1;
   EXPECT_THAT(message(options), HasSubstr("at least 2 chains"));

@@ -187,7 +187,7 @@ inline void expect_refusals_of_states(const SampleFunction& sampler) {
       {{Eigen::VectorXd::Zero(2), 1.0, unit}, ErrorCode::invalid_value, "has 2 coordinates"},
       {{origin, 1.0, Eigen::MatrixXd::Identity(2, 2)}, ErrorCode::invalid_value, "is 2 x 2"},
       {{origin, 1.0, -unit}, ErrorCode::not_positive_definite, "not positive definite"},
-      {{origin, 0.0, unit}, ErrorCode::invalid_value, "scale to begin with is 0.0"},
+      {{origin, 0.0, unit}, ErrorCode::invalid_value, "initial scale is 0.0"},
       {{Eigen::VectorXd::Constant(3, std::numeric_limits<double>::infinity()), 1.0, unit},
        ErrorCode::not_finite,
        "no positive posterior density"}};

@@ -102,7 +102,7 @@ TEST(SamplePosterior, SaysWhichSamplerTookOver) {
       std::find_if(sampled->findings.begin(), sampled->findings.end(),
                    [](const Finding& f) { return f.kind == FindingKind::sampler_replaced; });
   ASSERT_NE(finding, sampled->findings.end());
-  EXPECT_THAT(finding->sentence, HasSubstr("took the place of chains"));
+  EXPECT_THAT(finding->sentence, HasSubstr("replaced the chains"));
   EXPECT_TRUE(sample(kOneHill, with(""))->report.taken_over.empty());
 }
 

@@ -209,9 +209,9 @@ TEST(Smc, OptionsThatMakeNoSenseAreRefused) {
     SamplerOptions options;
     const char* words;
   };
-  for (const Case& c :
-       {Case{{8, 0, {}}, "at least 16 particles, not 8"}, Case{{64, 10, {}}, "takes no burn-in"},
-        Case{{64, 0, state}, "no state to begin at"}}) {
+  for (const Case& c : {Case{{8, 0, {}}, "at least 16 particles, not 8"},
+                        Case{{64, 10, {}}, "accepts neither burn-in"},
+                        Case{{64, 0, state}, "nor an initial state"}}) {
     SkewNormal target(3);
     Rng rng(80);
     const auto chain = smc(target, c.options, rng);

@@ -98,7 +98,7 @@ TEST(PriorEdge, FlagsMassPiledAtAnEnd) {
   EXPECT_EQ(findings[0].kind, FindingKind::prior_edge);
   EXPECT_THAT(
       findings[0].sentence,
-      HasSubstr("21.0 % of the posterior of flow lies within 5 % of the end of its prior at 0"));
+      HasSubstr("21.0 % of the posterior of flow is within 5 % of the end of its prior at 0"));
 
   theta.setConstant(9.8);
   EXPECT_THAT(edge_findings(parameters, {chain_of(theta)}).at(0).sentence, HasSubstr("at 10 m3/s"));

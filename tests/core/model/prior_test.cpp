@@ -196,7 +196,7 @@ TEST(Prior, RefusesNumbersThatMakeNoDistribution) {
   EXPECT_THAT(Prior::make(TriangularPrior{2.0, 1.0, 3.0}).error().message,
               HasSubstr("min = 2, mode = 1, max = 3"));
   EXPECT_THAT(Prior::make(TruncatedNormalPrior{0.0, 1.0, 9.0, 10.0}).error().message,
-              HasSubstr("nobody can draw from it"));
+              HasSubstr("recald cannot draw from it"));
 }
 
 TEST(Prior, IsReadByTheNameOfItsDistribution) {

@@ -212,7 +212,7 @@ TEST(FitProfile, ConstantYearSaysSo) {
   ASSERT_TRUE(profile.has_value());
   EXPECT_NEAR(profile->check.monthly_cvrmse, 0.0, 1e-12);
   EXPECT_EQ(profile->check.words,
-            "One load profile tells the electricity of 12 months within 0.0 % (CV(RMSE) of the "
+            "One load profile predicts the electricity of 12 months within 0.0 % (CV(RMSE) of the "
             "months).");
   for (const double factor : profile->loads.month_factor) EXPECT_EQ(factor, 1.0);
 }

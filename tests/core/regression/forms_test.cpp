@@ -105,11 +105,11 @@ TEST(SeedForm, SaysWhatItNeeds) {
   design.inputs.clear();
   design.month_inputs.resize(12, 0);
   EXPECT_EQ(fit_seed_form(design, {}, rng).error().message,
-            "the seed's form of the meta-model needs month inputs such as the mean dry bulb; give "
-            "inputs.csv or use one regression a month");
+            "the seed's form of the meta-model needs month inputs such as the mean dry bulb; "
+            "provide inputs.csv or use one regression per month");
   EXPECT_EQ(fit_seed_form(made_design(40, 4, 0.05), {}, rng).error().message,
             "the design covers 4 months; with 3 columns of month inputs the seed's form of the "
-            "meta-model needs at least 5; leave inputs out or use one regression a month");
+            "meta-model needs at least 5; remove inputs or use one regression per month");
   design = made_design(40, 12, 0.05);
   design.inputs[0] = "out";
   EXPECT_EQ(fit_seed_form(design, {}, rng).error().code, ErrorCode::invalid_value);

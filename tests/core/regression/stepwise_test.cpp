@@ -203,8 +203,8 @@ TEST(Stepwise, MoreTermsThanRowsNeedAnEmptyStart) {
   ASSERT_FALSE(full.has_value());
   EXPECT_EQ(full.error().code, ErrorCode::not_enough_data);
   EXPECT_EQ(full.error().message,
-            "a regression that starts with 20 terms needs at least 22 rows and there are 12; start "
-            "from the empty model or add runs");
+            "a regression that starts with 20 terms needs at least 22 rows, but there are 12; "
+            "start from the empty model or add runs");
   const auto fit = stepwise(products_of(x, y), parents,
                             {.criterion = Criterion::aic_corrected, .start = Start::empty});
   ASSERT_TRUE(fit.has_value()) << fit.error().message;

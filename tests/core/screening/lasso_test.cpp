@@ -182,7 +182,7 @@ TEST(Lasso, SaysWhenItDoesNotSettle) {
   const auto fit = fit_lasso(products, 0.001 * products.largest_penalty(), {.sweeps_max = 2});
   ASSERT_FALSE(fit.has_value());
   EXPECT_EQ(fit.error().code, ErrorCode::invalid_value);
-  EXPECT_THAT(fit.error().message, ::testing::HasSubstr("did not settle within 2 passes"));
+  EXPECT_THAT(fit.error().message, ::testing::HasSubstr("did not converge within 2 passes"));
 }
 
 /// Rows of `runs` runs, `rows_per_run` each, run by run.
