@@ -76,7 +76,7 @@ std::string why_unusable(const MonthSlots& month, const MonthlyFigure& figure,
                                [](double value_kW) { return !std::isnan(value_kW); });
   if (!any) return "no readings in this month";
   if (figure.coverage < options.coverage_min) {
-    return text("only %.0f %% of the month's slots are measured, %.0f %% are needed",
+    return text("only %.0f %% of the month's intervals are measured, %.0f %% are needed",
                 std::floor(100.0 * figure.coverage), 100.0 * options.coverage_min) +
            suspects_in_words(figure);
   }
@@ -84,7 +84,7 @@ std::string why_unusable(const MonthSlots& month, const MonthlyFigure& figure,
   const LongestGap gap = longest_gap(month);
   if (gap.length > options.gap_max) {
     using FractionalDays = std::chrono::duration<double, std::ratio<86'400>>;
-    return text("nothing measured for %.1f days from ", FractionalDays{gap.length}.count()) +
+    return text("no measurement for %.1f days from ", FractionalDays{gap.length}.count()) +
            to_string(gap.start) +
            text(", %.0f days at most", FractionalDays{options.gap_max}.count()) +
            suspects_in_words(figure);

@@ -43,23 +43,24 @@ std::string plural(int count, std::string_view one, std::string_view many) {
 /// What a set of reasons means to the person who reads the meter.
 std::string reason_words(const Episode& episode) {
   const Reason r = episode.reasons;
-  if (!episode.suspect && r == Reason::none) return "without a reading";
+  if (!episode.suspect && r == Reason::none) return "without readings";
   std::string words;
   const auto add = [&](Reason reason, std::string_view text) {
     if (!has(r, reason)) return;
     words += words.empty() ? "" : ", ";
     words += text;
   };
-  add(Reason::zero_run, "exactly zero for longer than this meter's load can be: taken as no data");
+  add(Reason::zero_run,
+      "exactly zero for longer than this meter's load can be, treated as no data");
   add(Reason::stuck, "frozen at one value");
   add(Reason::negative, "negative, which this meter cannot be");
-  add(Reason::range, "beyond what this meter can show");
+  add(Reason::range, "beyond what this meter can measure");
   add(Reason::spike, "single values far above the rest of their day");
   add(Reason::nan, "listed as blank by the source");
   add(Reason::mismatch, "given twice with different values");
-  add(Reason::jump, "unbooked after a jump of the register");
-  add(Reason::reset, "unbooked around a reset of the register");
-  add(Reason::wrap, "unbooked because the register may have wrapped");
+  add(Reason::jump, "not counted after a jump of the register");
+  add(Reason::reset, "not counted around a reset of the register");
+  add(Reason::wrap, "not counted because the register may have rolled over");
   if (words.empty()) words = to_string(r);
   return words;
 }
@@ -98,7 +99,7 @@ void describe_unusable(std::string_view meter, const std::vector<MonthlyFigure>&
   if (first == nullptr) return;
   findings.push_back(
       {std::string{meter},
-       "Not used for calibration, too thin: " + months + ".",
+       "Not used for calibration, too few readings: " + months + ".",
        {calendar.month_span(first->month).begin, calendar.month_span(last->month).end},
        slots,
        DataFinding::Grade::warning});
@@ -146,12 +147,12 @@ void describe_counts(std::string_view meter, const MeterCounts& counts,
          static_cast<int>(count),
          DataFinding::Grade::warning});
   };
-  add(counts.conflicts, "came again with another value: the first is kept, as suspect.");
-  add(counts.duplicates, "came twice with the same value: counted once.");
-  add(counts.late, "came after their month had closed: the month was reopened.");
-  add(counts.too_late, "came for a month that is no longer open: refused.");
-  add(counts.off_grid, "did not start on the meter's interval: refused.");
-  add(counts.stray, "had a stamp far from all others: refused.");
+  add(counts.conflicts, "came again with another value (the first is kept and marked suspect).");
+  add(counts.duplicates, "came twice with the same value (counted once).");
+  add(counts.late, "came after the month had closed (the month was reopened).");
+  add(counts.too_late, "came for a month that is no longer open (refused).");
+  add(counts.off_grid, "did not start on a boundary of the meter's intervals (refused).");
+  add(counts.stray, "had a time stamp far from all others (refused).");
 }
 
 }  // namespace
@@ -222,7 +223,7 @@ std::vector<DataFinding> describe_data(std::string_view meter, const std::vector
     findings.push_back({std::string{meter},
                         "Exactly zero for " + span_words(run) + " from " +
                             local_words(run.begin, calendar) +
-                            ": taken as a load of nothing; if it means no data, set zero_run_max.",
+                            ": treated as a load of zero. If it means no data, set zero_run_max.",
                         run, 0, DataFinding::Grade::warning});
   }
   describe_counts(meter, counts, findings);

@@ -27,7 +27,7 @@ std::string text(const char* format, double a, double b) {
 
 /// "1/29" or "29" times.
 std::string factor_in_words(double factor) {
-  return factor < 1.0 ? "1/" + text("%.3g", 1.0 / factor, 0.0) : text("%.3g times", factor, 0.0);
+  return factor < 1.0 ? "1/" + text("%.3g of", 1.0 / factor, 0.0) : text("%.3g times", factor, 0.0);
 }
 
 /// One pass over a meter's months.
@@ -151,16 +151,16 @@ class LevelWatch {
   }
 
   [[nodiscard]] std::string level_in_words(const LevelChange& change) const {
-    return meter_name_ + " differs from the same months before since " + to_string(change.since) +
-           ": " +
+    return meter_name_ + " has differed from the same months of earlier years since " +
+           to_string(change.since) + ": " +
            text("%+.0f %% in that month (%.1f times its usual scatter)",
                 100.0 * (change.ratio - 1.0), std::abs(change.z));
   }
 
   [[nodiscard]] std::string scale_in_words(const LevelChange& change,
                                            double daily_average_kWh) const {
-    return meter_name_ + " reads about " + factor_in_words(change.factor) +
-           " what it read before, since " + to_string(change.since) +
+    return meter_name_ + " has read about " + factor_in_words(change.factor) +
+           " its earlier level since " + to_string(change.since) +
            text(" (%.4g kWh a day)", daily_average_kWh, 0.0) +
            ": probably a changed unit or multiplier, not the building";
   }

@@ -31,7 +31,7 @@ Result<Utility> parse_utility(std::string_view text) {
   return failure(
       ErrorCode::invalid_value,
       "'" + std::string{text} +
-          "' is no utility; use electricity, chilled_water, heating, steam, gas or water");
+          "' is not a utility; use electricity, chilled_water, heating, steam, gas or water");
 }
 
 std::string_view to_string(Validity validity) {
@@ -44,7 +44,7 @@ Result<Validity> parse_validity(std::string_view text) {
   }
   return failure(
       ErrorCode::invalid_value,
-      "'" + std::string{text} + "' is no validity; use ok, missing, filled, scaled or suspect");
+      "'" + std::string{text} + "' is not a validity; use ok, missing, filled, scaled or suspect");
 }
 
 std::string to_string(Reason reasons) {
@@ -65,7 +65,7 @@ Result<Reason> parse_reasons(std::string_view text) {
     std::size_t bit = 0;
     while (bit < kReasons.size() && kReasons[bit] != word) ++bit;
     if (bit == kReasons.size()) {
-      return failure(ErrorCode::invalid_value, "'" + std::string{word} + "' is no known reason");
+      return failure(ErrorCode::invalid_value, "'" + std::string{word} + "' is not a known reason");
     }
     reasons |= static_cast<Reason>(1u << bit);
   }

@@ -9,8 +9,8 @@ namespace recald::metering {
 namespace {
 
 constexpr auto kForm =
-    "write START@ANCHORxSPEED, such as 2026-01-30T00:00:00Z@1769900000x600: when the trial begins, "
-    "the real time of that in seconds since 1970, and how much faster time runs";
+    "write START@ANCHORxSPEED, such as 2026-01-30T00:00:00Z@1769900000x600: the start of the "
+    "trial, the real time at that start in seconds since 1970, and how much faster time runs";
 
 template <class Number>
 std::optional<Number> whole(std::string_view text) {
@@ -65,7 +65,7 @@ Result<TrialClock> parse_trial_clock(std::string_view text) {
   if (!start || !anchor || *anchor < 0 || *anchor >= kLatestInstant.time_since_epoch().count() ||
       !speed || !(*speed > 0.0 && *speed <= 1e6)) {
     return failure(ErrorCode::malformed,
-                   "the clock '" + std::string{text} + "' is not understood; " + kForm);
+                   "the clock '" + std::string{text} + "' is not valid; " + kForm);
   }
   return TrialClock{*start, Instant{std::chrono::seconds{*anchor}}, *speed};
 }

@@ -86,7 +86,7 @@ TEST_F(RealSite, CambridgeB25GasLosesAMonthAndChangesItsUnit) {
   EXPECT_EQ(gas.meter.interval, std::chrono::hours{1});
   EXPECT_TRUE(gas.in_file->interval_inferred);
   EXPECT_FALSE(figure(gas, month(2017, 12)).usable);
-  EXPECT_TRUE(says(gas, "taken as no data"));
+  EXPECT_TRUE(says(gas, "treated as no data"));
   EXPECT_TRUE(says(gas, "probably a changed unit or multiplier"));
   EXPECT_TRUE(metering::is_different(gas.level_changes, month(2018, 1)));
   EXPECT_FALSE(metering::is_different(gas.level_changes, month(2016, 10)));

@@ -76,7 +76,7 @@ TEST(CloseMonth, AThinMonthIsUnusableAndSaysWhy) {
       "UTC", month(2015, 9), kQuarter, [](int slot) { return slot % 2 == 0 ? 5.0 : kBlank; }));
   EXPECT_FALSE(closed.figure.usable);
   EXPECT_EQ(closed.figure.unusable_because,
-            "only 50 % of the month's slots are measured, 60 % are needed");
+            "only 50 % of the month's intervals are measured, 60 % are needed");
   EXPECT_NEAR(closed.figure.daily_average_kWh, 120.0, 1e-9);
 }
 
@@ -86,7 +86,7 @@ TEST(CloseMonth, AGapOfMoreThanAWeekIsUnusableAndSaysWhere) {
   }));
   EXPECT_FALSE(closed.figure.usable);
   EXPECT_EQ(closed.figure.unusable_because,
-            "nothing measured for 7.5 days from 2015-09-06T00:00:00Z, 7 days at most");
+            "no measurement for 7.5 days from 2015-09-06T00:00:00Z, 7 days at most");
   const ClosedMonth week = close(month_reading("UTC", month(2015, 9), kQuarter, [](int slot) {
     return slot >= 5 * 96 && slot < 12 * 96 ? kBlank : 5.0;
   }));
@@ -187,8 +187,9 @@ TEST(CloseMonth, ShareOfSuspectsStandsInTheWords) {
       close(month_reading("UTC", month(2015, 9), kHour,
                           [](int slot) { return slot >= 240 ? 0.0 : 5.0 + slot % 5; }),
             meter);
-  EXPECT_EQ(closed.figure.unusable_because,
-            "only 33 % of the month's slots are measured, 60 % are needed (480 suspect: zero_run)");
+  EXPECT_EQ(
+      closed.figure.unusable_because,
+      "only 33 % of the month's intervals are measured, 60 % are needed (480 suspect: zero_run)");
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(DescribeData, OneStretchWithoutReadingsIsANoteInLocalTime) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].meter, "steam");
   EXPECT_EQ(findings[0].sentence,
-            "5 intervals without a reading, in one stretch of 5 hours from 2021-01-05 08:00.");
+            "5 intervals without readings, in one stretch of 5 hours from 2021-01-05 08:00.");
   EXPECT_EQ(findings[0].grade, kNote);
   EXPECT_EQ(findings[0].span, gap);
   EXPECT_EQ(findings[0].slots, 5);
@@ -152,10 +152,10 @@ TEST(DescribeData, EachKindHasItsOwnSentence) {
       {{first, 1, false, Reason::none}, {second, 1, true, Reason::negative | Reason::range}});
   ASSERT_EQ(findings.size(), 2u);
   EXPECT_EQ(findings[0].sentence,
-            "1 interval negative, which this meter cannot be, beyond what this meter can show, in "
-            "one stretch of 15 minutes from 2021-01-09 01:00.");
+            "1 interval negative, which this meter cannot be, beyond what this meter can measure, "
+            "in one stretch of 15 minutes from 2021-01-09 01:00.");
   EXPECT_EQ(findings[1].sentence,
-            "1 interval without a reading, in one stretch of 1 hour from 2021-01-05 01:00.");
+            "1 interval without readings, in one stretch of 1 hour from 2021-01-05 01:00.");
 }
 
 TEST(DescribeData, EveryReasonHasWordsForPeople) {
@@ -168,9 +168,9 @@ TEST(DescribeData, EveryReasonHasWordsForPeople) {
   EXPECT_THAT(words(Reason::spike), HasSubstr("single values far above the rest of their day"));
   EXPECT_THAT(words(Reason::nan), HasSubstr("listed as blank by the source"));
   EXPECT_THAT(words(Reason::mismatch), HasSubstr("given twice with different values"));
-  EXPECT_THAT(words(Reason::jump), HasSubstr("unbooked after a jump of the register"));
-  EXPECT_THAT(words(Reason::reset), HasSubstr("unbooked around a reset of the register"));
-  EXPECT_THAT(words(Reason::wrap), HasSubstr("the register may have wrapped"));
+  EXPECT_THAT(words(Reason::jump), HasSubstr("not counted after a jump of the register"));
+  EXPECT_THAT(words(Reason::reset), HasSubstr("not counted around a reset of the register"));
+  EXPECT_THAT(words(Reason::wrap), HasSubstr("the register may have rolled over"));
   EXPECT_THAT(words(Reason::sentinel), HasSubstr("sentinel"));
 }
 
@@ -180,8 +180,8 @@ TEST(DescribeData, UnusableMonthsAreListedWithTheirReasons) {
                                   figure(month(2021, 3), "a gap of 9 days")});
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].sentence,
-            "Not used for calibration, too thin: 2021-01 (coverage 40 %), 2021-03 (a gap of 9 "
-            "days).");
+            "Not used for calibration, too few readings: 2021-01 (coverage 40 %), 2021-03 (a gap "
+            "of 9 days).");
   EXPECT_EQ(findings[0].grade, kWarning);
   EXPECT_EQ(findings[0].span, (TimeSpan{utc(2021, 1, 1), utc(2021, 4, 1)}));
   EXPECT_EQ(findings[0].slots, 2 * 31 * 24);
@@ -193,7 +193,7 @@ TEST(DescribeData, LongRunsOfZerosAreQuestioned) {
   const auto findings = describe({}, {long_run, short_run});
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].sentence,
-            "Exactly zero for 3.0 days from 2021-06-01 00:00: taken as a load of nothing; if it "
+            "Exactly zero for 3.0 days from 2021-06-01 00:00: treated as a load of zero. If it "
             "means no data, set zero_run_max.");
   EXPECT_EQ(findings[0].grade, kWarning);
 }
@@ -229,13 +229,14 @@ TEST(DescribeData, CountsOfRefusedReadings) {
   for (const DataFinding& finding : describe({}, {}, {}, {}, counts)) {
     sentences.push_back(finding.sentence);
   }
-  EXPECT_THAT(sentences,
-              ElementsAre("1 reading came again with another value: the first is kept, as suspect.",
-                          "2 readings came twice with the same value: counted once.",
-                          "3 readings came after their month had closed: the month was reopened.",
-                          "4 readings came for a month that is no longer open: refused.",
-                          "5 readings did not start on the meter's interval: refused.",
-                          "6 readings had a stamp far from all others: refused."));
+  EXPECT_THAT(
+      sentences,
+      ElementsAre("1 reading came again with another value (the first is kept and marked suspect).",
+                  "2 readings came twice with the same value (counted once).",
+                  "3 readings came after the month had closed (the month was reopened).",
+                  "4 readings came for a month that is no longer open (refused).",
+                  "5 readings did not start on a boundary of the meter's intervals (refused).",
+                  "6 readings had a time stamp far from all others (refused)."));
 }
 
 }  // namespace

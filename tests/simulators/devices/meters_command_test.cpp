@@ -280,7 +280,7 @@ TEST(MetersCommand, WhatCannotBeOpenedIsSaid) {
               HasSubstr("cannot make the link"));
   EXPECT_EQ(recald::testing::read_text(folder / "file"), "precious");
   EXPECT_THAT(said_by(std::string{"[[endpoint]]\n"} + kAbb, {"--clock", "noon"}, 2),
-              HasSubstr("the clock 'noon' is not understood"));
+              HasSubstr("the clock 'noon' is not valid"));
   EXPECT_THAT(said_by(std::string{"[[endpoint]]\n"} + kAbb, {"--faults", "none"}, 1),
               HasSubstr("cannot read the fault script"));
 }
