@@ -254,33 +254,32 @@ Result<std::optional<Recovery>> recover_if_damaged(const Places& places,
 std::string Recovery::sentence() const {
   if (is_overtaken) {
     return fmt::format(
-        "the store was damaged ({}), and before its recovery had ended another store was put in "
-        "its "
-        "place, which is used; what '{}' holds is not in it. To recover that, stop recald, move "
-        "the "
-        "new store away, and give the damaged file its name back",
+        "the store was damaged ({}), and another store replaced it before its recovery had ended. "
+        "recald uses that store, which does not contain the data of '{}'. To recover those data, "
+        "stop recald, move the new store away, and rename the damaged file back",
         damage, damaged.filename().string());
   }
   std::string text = fmt::format(
-      "the store was damaged ({}); it is kept as '{}' and a new one holds what could be read:",
+      "the store was damaged ({}); it is kept as '{}', and a new store has the rows that could be "
+      "read:",
       damage, damaged.filename().string());
   for (const RecoveredTable& table : tables) {
     if (table.from_damaged + table.from_backup == 0) continue;
     text += fmt::format(" {} {}", table.from_damaged, table.name);
-    if (table.from_backup > 0) text += fmt::format(" + {} of a backup", table.from_backup);
+    if (table.from_backup > 0) text += fmt::format(" + {} from a backup", table.from_backup);
     text += ',';
   }
   text.back() = ';';
-  if (refused > 0) text += fmt::format(" {} rows had a wrong check sum;", refused);
+  if (refused > 0) text += fmt::format(" {} rows had a wrong checksum;", refused);
   if (from_samples > 0) {
-    text += fmt::format(" {} intervals were made again from samples;", from_samples);
+    text += fmt::format(" {} intervals were computed again from samples;", from_samples);
   }
   text += lost_intervals > 0 ? fmt::format(" {} intervals are lost;", lost_intervals)
                              : std::string{" no interval is lost;"};
   text += backup ? fmt::format(" the backup was '{}'", backup->filename().string())
-                 : std::string{" there was no sound backup"};
-  if (was_interrupted) text += "; it was interrupted and has been done again";
-  return text + ". Delete the damaged file when you need it no more";
+                 : std::string{" there was no intact backup"};
+  if (was_interrupted) text += "; the recovery was interrupted and has been repeated";
+  return text + ". Delete the damaged file when you no longer need it";
 }
 
 Result<CheckedStore> open_checked(const fs::path& file, const std::vector<fs::path>& backups,

@@ -196,7 +196,7 @@ Result<RegisterState> register_from_json(std::string_view text) {
     return state;
   } catch (const std::exception& error) {
     return failure(ErrorCode::malformed,
-                   fmt::format("the store's state of a register cannot be read: {}", error.what()));
+                   fmt::format("the stored state of a register cannot be read: {}", error.what()));
   }
 }
 

@@ -13,7 +13,7 @@ struct RowCheck {
 };
 constexpr RowCheck kRowChecks[] = {
     {"SELECT \"table\", count(*) FROM pragma_foreign_key_check GROUP BY 1",
-     "table '{}' has {} rows that refer to a row that is not there"},
+     "table '{}' has {} rows that refer to a missing row"},
     {"SELECT id, datetime(t_start, 'unixepoch') FROM interval JOIN meter ON number = meter "
      "GROUP BY meter, t_start HAVING max(revision) <> count(*) - 1",
      "meter '{}': the revisions of the interval at {} UTC have a gap"},
@@ -23,7 +23,7 @@ constexpr RowCheck kRowChecks[] = {
     {"SELECT id, count(*) FROM interval JOIN meter ON number = meter, (SELECT meter AS m, "
      "min(t_start) AS first FROM interval GROUP BY meter) ON m = meter "
      "WHERE (t_start - first) % interval_s <> 0 GROUP BY meter",
-     "meter '{}' has {} intervals off its grid"},
+     "meter '{}' has {} intervals that are not on its interval grid"},
 };
 
 /// No more than this of one kind: a broken table would fill the screen.
@@ -42,7 +42,7 @@ Result<void> check_rows(Database& database, const RowCheck& check,
     problems.push_back(fmt::format(fmt::runtime(check.sentence), query->text(0), query->text(1)));
   }
   if (found > kListedMax) {
-    problems.push_back(fmt::format("… and {} more like the last", found - kListedMax));
+    problems.push_back(fmt::format("… and {} more like the last one", found - kListedMax));
   }
   return {};
 }

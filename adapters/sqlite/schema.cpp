@@ -227,16 +227,16 @@ bool has_our_tables(const SchemaTexts& file) {
 std::string misfit(int named, int version, const SchemaTexts& file,
                    const std::vector<SchemaTexts>& known) {
   if (version > 0) {
-    return fmt::format("its header says schema version {}, its tables are those of version {}",
+    return fmt::format("its header says schema version {}, but its tables are those of version {}",
                        named, version);
   }
   const SchemaTexts& meant = known[static_cast<std::size_t>(std::clamp(named, 1, kSchemaVersion))];
   for (const auto& [name, text] : meant) {
     const auto found = file.find(name);
     if (found == file.end()) return fmt::format("its {} is missing", name);
-    if (found->second != text) return fmt::format("its {} is not as recald has made it", name);
+    if (found->second != text) return fmt::format("its {} differs from what recald creates", name);
   }
-  return "its tables are as no version of recald has made them";
+  return "its tables do not match any version of recald";
 }
 
 }  // namespace
@@ -261,11 +261,10 @@ Result<int> schema_version(Database& database) {
   // number, are that version's: the number was damaged.
   const bool is_known = tables->size() == (*known)[static_cast<std::size_t>(version)].size();
   if (named > kSchemaVersion && !is_known) {
-    return failure(
-        ErrorCode::unsupported,
-        fmt::format("the store file has schema version {}, this recald knows {}; use the "
-                    "newer recald that wrote it, or a backup from before",
-                    named, kSchemaVersion));
+    return failure(ErrorCode::unsupported,
+                   fmt::format("the store file has schema version {}, but this recald only knows "
+                               "{}; use the newer recald that wrote it, or an earlier backup",
+                               named, kSchemaVersion));
   }
   if (version != named) {
     return failure(ErrorCode::malformed, misfit(named, version, *tables, *known));
@@ -291,8 +290,8 @@ Result<void> require_current(Database& database) {
   if (!version) return tl::unexpected(version.error());
   if (*version == kSchemaVersion) return {};
   return failure(ErrorCode::unsupported,
-                 fmt::format("the store file has schema version {}, this recald reads {}; the "
-                             "daemon brings it up to date when it starts",
+                 fmt::format("the store file has schema version {}, but this recald reads {}; the "
+                             "daemon upgrades the file when it starts",
                              *version, kSchemaVersion));
 }
 

@@ -49,8 +49,8 @@ Result<std::uint32_t> SqliteStore::meter_number(const std::string& id,
     if (*row) {
       if (find->integer(1) != interval.count()) {
         return failure(ErrorCode::unsupported,
-                       fmt::format("meter '{}' is stored with intervals of {} s and now has {} s; "
-                                   "give it another id, or its old interval",
+                       fmt::format("meter '{}' is stored with intervals of {} s but now has {} s; "
+                                   "give it a new id, or its old interval",
                                    id, find->integer(1), interval.count()));
       }
       return static_cast<std::uint32_t>(find->integer(0));

@@ -169,7 +169,7 @@ Result<std::string> wrong_sums(Database& database) {
     if (rows > 0) found.push_back(fmt::format("{} of {}", rows, table.name));
   }
   if (found.empty()) return std::string{};
-  return fmt::format("rows whose check sum is wrong: {}", fmt::join(found, ", "));
+  return fmt::format("rows with a wrong checksum: {}", fmt::join(found, ", "));
 }
 
 }  // namespace recald::sqlite

@@ -115,8 +115,8 @@ TEST_F(RecoveryTest, APageOfReadingsCostsThatPage) {
   EXPECT_EQ(table(recovery, "edit").from_damaged, 2);
   EXPECT_EQ(opened.store.database().quick_check().value(), "");
   EXPECT_THAT(recovery.sentence(), HasSubstr("it is kept as 'site.db.damaged-20240410T050000Z'"));
-  EXPECT_THAT(recovery.sentence(), HasSubstr("intervals were made again from samples"));
-  EXPECT_THAT(recovery.sentence(), HasSubstr("there was no sound backup"));
+  EXPECT_THAT(recovery.sentence(), HasSubstr("intervals were computed again from samples"));
+  EXPECT_THAT(recovery.sentence(), HasSubstr("there was no intact backup"));
 }
 
 // The first intervals of a store, and all of one that is some hours old, stand on its first page.
@@ -231,8 +231,7 @@ TEST_F(RecoveryTest, AFlippedValueIsFoundByItsSum) {
                     .execute("UPDATE interval SET mean_kW = mean_kW + 1 WHERE meter = 0 AND "
                              "t_start % 86400 = 0")
                     .has_value());
-    EXPECT_THAT(store.check()->problems,
-                ElementsAre("rows whose check sum is wrong: 32 of interval"));
+    EXPECT_THAT(store.check()->problems, ElementsAre("rows with a wrong checksum: 32 of interval"));
   }
   CheckedStore opened = open(file());
   ASSERT_TRUE(opened.recovery.has_value());
@@ -317,7 +316,8 @@ TEST_F(RecoveryTest, AFlippedVersionIsNoOtherVersion) {
     ASSERT_TRUE(opened.recovery.has_value());
     EXPECT_EQ(
         opened.recovery->damage,
-        fmt::format("its header says schema version {}, its tables are those of version 5", named));
+        fmt::format("its header says schema version {}, but its tables are those of version 5",
+                    named));
     EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
     EXPECT_EQ(opened.recovery->lost_intervals, 0);
   }
@@ -332,7 +332,7 @@ TEST_F(RecoveryTest, AFlippedNameOfAColumnIsFound) {
   recald::testing::write_text(file(), bytes);
   CheckedStore opened = open(file());
   ASSERT_TRUE(opened.recovery.has_value());
-  EXPECT_EQ(opened.recovery->damage, "its table interval is not as recald has made it");
+  EXPECT_EQ(opened.recovery->damage, "its table interval differs from what recald creates");
   EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
 }
 
@@ -382,7 +382,8 @@ TEST_F(RecoveryTest, ANewerStoreIsRefusedAndAsItWas) {
     EXPECT_EQ(opened.error().code, ErrorCode::unsupported);
     EXPECT_THAT(
         opened.error().message,
-        HasSubstr("the store file has schema version 6, this recald knows 5; use the newer"));
+        HasSubstr(
+            "the store file has schema version 6, but this recald only knows 5; use the newer"));
     EXPECT_EQ(recald::testing::read_text(here / "site.db"), before);
     EXPECT_FALSE(std::filesystem::exists(here / "site.db.recovery"));
   }
@@ -476,7 +477,7 @@ TEST_F(RecoveryTest, AStoreThatTookItsPlaceIsToldOf) {
     ASSERT_TRUE(opened.recovery.has_value());
     EXPECT_TRUE(opened.recovery->is_overtaken);
     EXPECT_THAT(opened.recovery->sentence(),
-                HasSubstr("what 'site.db.damaged-20240409T000000Z' holds is not in it"));
+                HasSubstr("does not contain the data of 'site.db.damaged-20240409T000000Z'"));
     EXPECT_EQ(opened.store.events(1)->at(0).text, opened.recovery->sentence());
   }
   EXPECT_TRUE(std::filesystem::exists(aside));

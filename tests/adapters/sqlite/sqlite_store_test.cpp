@@ -179,7 +179,7 @@ TEST_F(StoreFile, AMeterDoesNotChangeItsInterval) {
   const auto number = store_->meter_number("main", seconds{3600});
   ASSERT_FALSE(number.has_value());
   EXPECT_EQ(number.error().code, ErrorCode::unsupported);
-  EXPECT_THAT(number.error().message, HasSubstr("intervals of 900 s and now has 3600 s"));
+  EXPECT_THAT(number.error().message, HasSubstr("intervals of 900 s but now has 3600 s"));
 }
 
 // A counter in the middle of a suspected reset, at any minute of it, goes on after a restart as if

@@ -199,7 +199,7 @@ TEST_F(StoreTables, AStoreSaysWhatIsWrongWithIt) {
   ASSERT_THAT(check.problems, SizeIs(21));  // of a kind, 20 and how many more
   EXPECT_EQ(check.problems[0],
             "meter 'main': the revisions of the interval at 2024-03-01 00:00:00 UTC have a gap");
-  EXPECT_EQ(check.problems[20], "… and 30 more like the last");
+  EXPECT_EQ(check.problems[20], "… and 30 more like the last one");
   EXPECT_EQ(check.intervals, 100u);
 }
 
@@ -258,7 +258,7 @@ TEST_F(StoreTables, AReaderDoesNotUpgrade) {
       SqliteStore::open(folder_ / "older.db", {.access = Database::Access::read_only});
   ASSERT_FALSE(reader.has_value());
   EXPECT_EQ(reader.error().code, ErrorCode::unsupported);
-  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, this recald reads 5"));
+  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, but this recald reads 5"));
 }
 
 }  // namespace

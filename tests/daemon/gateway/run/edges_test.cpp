@@ -212,7 +212,8 @@ TEST_F(RecoveryEdges, AnInterruptedOneSaysSo) {
     ASSERT_FALSE(ends_before(nth, [&] { (void)open_store(config_, kRigStart + hours{100}); }));
   }
   const auto opened = open_store(config_, kRigStart + hours{101}).value();
-  EXPECT_THAT(opened.recovery, ::testing::HasSubstr("it was interrupted and has been done again"));
+  EXPECT_THAT(opened.recovery,
+              ::testing::HasSubstr("the recovery was interrupted and has been repeated"));
 }
 
 // A reserve that lies beside a store that cannot even be opened.
