@@ -38,7 +38,8 @@ model::Surface read_surface(TomlReader table) {
   surface.orientation.tilt_deg = table.number_or("tilt_deg", upright ? 90.0 : 0.0, {0.0, 180.0});
   const auto azimuth_deg = table.number("azimuth_deg", {0.0, 360.0});
   if (!table.has("azimuth_deg") && surface.orientation.tilt_deg > 0.0) {
-    table.problem("'azimuth_deg' is missing: where the surface faces, from north, clockwise");
+    table.problem(
+        "'azimuth_deg' is missing: the direction the surface faces, clockwise from north");
   }
   // A flat surface faces nowhere: all of them share one orientation.
   surface.orientation.azimuth_deg =
@@ -124,10 +125,10 @@ void read_set_points(TomlReader table, model::SetPoints& set) {
   set.occupied_to_hour = table.whole_number_or("occupied_to", 19, hours);
   set.saturday_occupied = table.boolean("saturday_occupied").value_or(false);
   if (set.heating_occupied_C >= set.cooling_occupied_C) {
-    table.problem(fmt::format(
-        "the heating set-point {} degC is not below the cooling set-point {} degC; they would "
-        "fight each other",
-        set.heating_occupied_C, set.cooling_occupied_C));
+    table.problem(
+        fmt::format("the heating set-point {} degC is not below the cooling set-point {} degC; "
+                    "they would work against each other",
+                    set.heating_occupied_C, set.cooling_occupied_C));
   }
   table.finish();
 }

@@ -151,9 +151,11 @@ LiveMeterConfig read_live_meter(TomlReader& table, RegisterMaps& maps) {
 LiveMeterConfig read_live_sensor(TomlReader& table, RegisterMaps& maps) {
   LiveMeterConfig sensor = read_device(table, maps);
   if (!sensor.map.name.empty() && sensor.map.weather.empty()) {
-    table.problem_at("map", fmt::format("map '{}' names no registers of the weather; see 'weather' "
-                                        "in adapters/modbus/maps/README.md",
-                                        sensor.map.name));
+    table.problem_at(
+        "map",
+        fmt::format(
+            "map '{}' has no weather registers; see 'weather' in adapters/modbus/maps/README.md",
+            sensor.map.name));
   }
   sensor.map.energy.clear();
   sensor.map.power.reset();

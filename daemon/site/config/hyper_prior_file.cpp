@@ -67,7 +67,7 @@ tl::expected<std::variant<calibration::HyperPriorProfile, HyperPrior>, Problems>
   }
   const auto profile = calibration::parse_hyper_prior_profile(text);
   if (profile) return Choice{*profile};
-  return tl::unexpected(Problems{profile.error().message + "; or name a file that ends in .toml"});
+  return tl::unexpected(Problems{profile.error().message + ", or name a file that ends in .toml"});
 }
 
 }  // namespace recald::daemon

@@ -91,7 +91,7 @@ modbus::ValueFormat read_format(TomlReader& table, const MapDefaults& defaults) 
                            format.type == modbus::RegisterType::u32 ||
                            format.type == modbus::RegisterType::u64;
   if (format.mask && !is_unsigned) {
-    table.problem_at("mask", fmt::format("'mask' selects bits of u16, u32 and u64, not of {}",
+    table.problem_at("mask", fmt::format("'mask' works on u16, u32 and u64, not on {}",
                                          modbus::to_string(format.type)));
   }
   return format;
@@ -112,7 +112,7 @@ std::vector<RegisterField> read_fields(TomlReader& root, const MapDefaults& defa
   std::vector<RegisterField> fields;
   auto registers = root.table("register");
   if (!registers) {
-    if (!root.has("register")) root.problem("no [register.NAME] is described");
+    if (!root.has("register")) root.problem("there is no [register.NAME]");
     return fields;
   }
   for (const std::string& name : registers->keys()) {
@@ -136,7 +136,7 @@ void require_unit(TomlReader& root, std::string_view key, const RegisterField& f
   const auto unit = metering::find_unit(field.unit, metering::Utility::electricity, {});
   if (unit && unit->is_rate == is_rate) return;
   root.problem_at(
-      key, fmt::format("'{}' names '{}', whose unit is \"{}\"; it must be {} such as {}", key,
+      key, fmt::format("'{}' names '{}', whose unit is \"{}\"; it must be {}, such as {}", key,
                        field.name, field.unit, is_rate ? "a power" : "an energy",
                        is_rate ? "kW" : "kWh"));
 }
@@ -162,7 +162,8 @@ void require_once(TomlReader& root, const std::vector<std::string>& energy) {
   std::set<std::string> seen;
   for (const std::string& name : energy) {
     if (seen.insert(name).second) continue;
-    root.problem_at("energy", fmt::format("'energy' names '{}' twice; it would count twice", name));
+    root.problem_at("energy",
+                    fmt::format("'energy' names '{}' twice, so it would count twice", name));
   }
 }
 
@@ -172,8 +173,8 @@ void require_scale_factor(TomlReader& root, const RegisterField& field, const Re
   const RegisterField* factor = require_field(root, "register", *field.scale_factor, map);
   if (factor == nullptr || !factor->scale_factor) return;
   root.problem_at("register",
-                  fmt::format("[register.{}] 'scale_factor' names '{}', which has a 'scale_factor' "
-                              "itself; a power of ten stands in one register",
+                  fmt::format("[register.{}] 'scale_factor' names '{}', which itself has a "
+                              "'scale_factor'; a power of ten must be in a single register",
                               field.name, factor->name));
 }
 
@@ -203,10 +204,9 @@ void read_uses(TomlReader& root, RegisterMap& map) {
   for (const std::string& name : map.weather) require_quantity(root, name, map);
   const bool is_weather = root.has("weather");
   if (!root.has("energy") && !root.has("power") && !is_weather) {
-    root.problem(
-        "names neither 'energy' nor 'power' nor 'weather': nothing of it could be metered");
+    root.problem("has neither 'energy' nor 'power' nor 'weather', so there is nothing to meter");
   } else if (energy && energy->empty() && !root.has("power") && !is_weather) {
-    root.problem_at("energy", "'energy' names no register: nothing of the map could be metered");
+    root.problem_at("energy", "'energy' is empty, so there is nothing to meter");
   }
   require_once(root, map.energy);
   for (const RegisterField& field : map.fields) require_scale_factor(root, field, map);
@@ -289,8 +289,8 @@ RegisterMapFile read_map(TomlReader root, const std::string& name) {
   MapDefaults defaults;
   if (!root.has("base")) {
     root.problem(
-        "'base' is missing: 0 if the document's addresses are those on the wire, 1 if they "
-        "are one more");
+        "'base' is missing: 0 if the document's addresses are those on the wire, 1 if they are "
+        "higher by one");
   }
   defaults.base = root.whole_number_or("base", 0, {0.0, 1.0});
   if (root.whole_number_or("fc", 3, {3.0, 4.0}) == 4) {
@@ -347,10 +347,10 @@ Result<std::string_view> shipped_register_map(std::string_view name) {
   const std::string_view nearest = nearest_name(name, names);
   return failure(
       ErrorCode::not_found,
-      fmt::format("no register map is called '{}'{}; there are {}, or name a file that "
-                  "ends in .toml",
-                  name, nearest.empty() ? "" : fmt::format(", did you mean '{}'", nearest),
-                  fmt::join(names, ", ")));
+      fmt::format(
+          "there is no register map '{}'{}; the maps are {}, or name a file that ends in .toml",
+          name, nearest.empty() ? "" : fmt::format(", did you mean '{}'", nearest),
+          fmt::join(names, ", ")));
 }
 
 tl::expected<RegisterMap, Problems> find_register_map(const std::string& name,
@@ -363,8 +363,8 @@ tl::expected<RegisterMap, Problems> find_register_map(const std::string& name,
     if (system::require_file(path, "register map")) in.open(path, std::ios::binary);
     if (!in.is_open()) {
       return tl::unexpected(
-          Problems{fmt::format("register map '{}' cannot be read; name a file beside the site file "
-                               "or a shipped map: {}",
+          Problems{fmt::format("register map '{}' cannot be read; name a file next to the site "
+                               "file or a shipped map: {}",
                                path.string(), fmt::join(shipped_register_maps(), ", "))});
     }
     text.assign(std::istreambuf_iterator<char>{in}, {});

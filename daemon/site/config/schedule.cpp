@@ -40,10 +40,11 @@ std::optional<int> whole(std::string_view text) {
 }
 
 tl::unexpected<Error> refused(const FieldForm& form, std::string_view text) {
-  return failure(ErrorCode::malformed,
-                 fmt::format("the {} '{}' is not understood; write numbers from {} to {}, such as "
-                             "*, 5, 1-3, 1,15 or */10",
-                             form.name, text, form.min, form.max));
+  return failure(
+      ErrorCode::malformed,
+      fmt::format(
+          "the {} '{}' is not valid; write numbers from {} to {}, such as *, 5, 1-3, 1,15 or */10",
+          form.name, text, form.min, form.max));
 }
 
 /// One part of a list: "*", "5", "1-3", each with "/step".
@@ -130,8 +131,8 @@ Result<Schedule> parse_schedule(std::string_view text) {
   }
   if (fields.size() != kFields.size()) {
     return failure(ErrorCode::malformed,
-                   fmt::format("'{}' is no schedule; write \"monthly\", \"never\" or five fields "
-                               "\"minute hour day month weekday\" such as \"30 3 5 * *\"",
+                   fmt::format("'{}' is not a schedule; write \"monthly\", \"never\" or five "
+                               "fields \"minute hour day month weekday\" such as \"30 3 5 * *\"",
                                text));
   }
   auto times = parse_times(fields);

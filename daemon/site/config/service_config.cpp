@@ -58,12 +58,12 @@ HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) 
   config.certificate_file = path("certificate_file");
   config.key_file = path("key_file");
   if (table.has("certificate_file") != table.has("key_file")) {
-    table.problem("'certificate_file' and 'key_file' belong together: TLS needs both");
+    table.problem("TLS needs both 'certificate_file' and 'key_file'");
   }
   if (!is_loopback(config.address) &&
       (!table.has("token_file") || !table.has("certificate_file"))) {
     table.problem_at("listen",
-                     fmt::format("'listen' opens {} to other machines; that needs 'token_file', "
+                     fmt::format("'listen' opens {} to other machines; add 'token_file', "
                                  "'certificate_file' and 'key_file', or listen on 127.0.0.1",
                                  config.address));
   }

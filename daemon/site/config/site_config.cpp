@@ -103,8 +103,8 @@ WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_f
   weather.values = read_values(table);
   for (const std::string_view key : {"stamps", "values"}) {
     if (!has_none || !table.has(key)) continue;
-    table.problem_at(key, fmt::format("'{}' describes a file, but no 'file' is named; 'values' of "
-                                      "a weather sensor that sends belongs in its [[meter]]",
+    table.problem_at(key, fmt::format("'{}' describes a file, but 'file' is missing; the 'values' "
+                                      "of a pushed weather sensor belong in its [[meter]]",
                                       key));
   }
   table.finish();
@@ -120,7 +120,7 @@ void read_peak(TomlReader table, metering::PeakRule& rule) {
 std::optional<metering::CounterSettings> read_counter(TomlReader table,
                                                       const std::optional<double>& rated_kW) {
   if (!rated_kW) {
-    table.problem("a cumulative counter needs the meter's 'rated_kW': it tells a jump from a load");
+    table.problem("a cumulative counter needs the meter's 'rated_kW', to tell a jump from a load");
   }
   const double modulus =
       table.number_or("modulus", std::numeric_limits<double>::infinity(), kPositive);
@@ -128,9 +128,9 @@ std::optional<metering::CounterSettings> read_counter(TomlReader table,
   const std::string unit = table.text_or("unit", "kWh");
   const auto conversion = metering::find_unit(unit, metering::Utility::electricity, {});
   if (!conversion || conversion->is_rate) {
-    table.problem_at("unit", fmt::format("'unit' is \"{}\"; a counter counts an energy such as kWh "
-                                         "or MWh",
-                                         unit));
+    table.problem_at(
+        "unit",
+        fmt::format("'unit' is \"{}\"; a counter needs a unit of energy such as kWh or MWh", unit));
     return {};
   }
   table.finish();
@@ -187,12 +187,12 @@ MeterConfig read_sensor(TomlReader& table, const SiteConfig& site, RegisterMaps&
     config.live = read_live_sensor(table, maps);
   } else if (config.source == MeterSource::csv) {
     table.problem(
-        "a weather sensor is polled (source = \"modbus\") or sends (source = \"http\"); a file of "
-        "the weather, which may grow, is named by [weather] file");
+        "a weather sensor is polled (source = \"modbus\") or pushed (source = \"http\"); name a "
+        "weather file, which may grow, in [weather] file");
   } else {
     if (!table.has("interval")) {
       table.problem(
-          "a weather sensor that sends needs an 'interval': how far apart its values are, such as "
+          "a pushed weather sensor needs an 'interval', the time between its values, such as "
           "\"1h\"");
     }
     config.values = read_values(table).value_or(config.values);
@@ -230,7 +230,7 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   const bool only_knows_power =
       is_live && config.live->map.energy.empty() && config.live->map.power.has_value();
   if (is_live && !only_knows_power && !table.has("rated_kW")) {
-    table.problem("a live counter needs 'rated_kW': it tells a jump from a load");
+    table.problem("a live counter needs 'rated_kW', to tell a jump from a load");
   }
   meter.zero_run_max = table.duration("zero_run_max");
   // Two hours without a single watt is a dead transformer, not a building; other utilities rest.
@@ -247,8 +247,8 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   if (auto counter = table.table("counter")) {
     if (config.source == MeterSource::http) {
       table.problem_at("counter",
-                       "what is sent are means of intervals; leave out 'counter', or send what the "
-                       "counter rose by");
+                       "pushed values are means of intervals; leave out 'counter', or send the "
+                       "increase of the counter");
     }
     config.counter = read_counter(*counter, meter.rated_kW);
   }
@@ -264,7 +264,7 @@ void require_parts(TomlReader& table, const SiteConfig& site, const MeterConfig&
   const auto wrong = [&](const std::string& sentence) {
     table.problem_at("sum_of", "'sum_of' " + sentence);
   };
-  if (sum.sum_of.size() < 2) return wrong("needs the ids of two meters or more");
+  if (sum.sum_of.size() < 2) return wrong("needs the ids of at least two meters");
   std::set<std::string> seen;
   const MeterConfig* first = nullptr;
   for (const SumPart& part : sum.sum_of) {
@@ -276,11 +276,11 @@ void require_parts(TomlReader& table, const SiteConfig& site, const MeterConfig&
     const MeterConfig& meter = site.meters[*index];
     if (!seen.insert(part.meter).second) wrong(fmt::format("names '{}' twice", part.meter));
     if (meter.source == MeterSource::sum) {
-      wrong(fmt::format("names '{}', which is a sum itself; name its parts", part.meter));
+      wrong(fmt::format("names '{}', which is itself a sum; name its parts instead", part.meter));
       continue;
     }
     if (meter.meter.utility != sum.meter.utility) {
-      wrong(fmt::format("names '{}', which meters {} and not {}", part.meter,
+      wrong(fmt::format("names '{}', which meters {}, not {}", part.meter,
                         metering::to_string(meter.meter.utility),
                         metering::to_string(sum.meter.utility)));
     }
@@ -288,8 +288,8 @@ void require_parts(TomlReader& table, const SiteConfig& site, const MeterConfig&
     if (meter.is_stored() != first->is_stored()) {
       const bool is_first = first->is_stored();
       wrong(fmt::format(
-          "names '{}', which is read live, and '{}', which is in a file; sum meters "
-          "of one kind: `recald import` takes a file into the store of a live meter",
+          "names '{}', which is read live, and '{}', which is in a file; sum meters of one kind, "
+          "or move the file into the store of a live meter with `recald import`",
           is_first ? first->meter.id : part.meter, is_first ? part.meter : first->meter.id));
     } else if (meter.is_stored() && meter.meter.interval != first->meter.interval) {
       wrong(
@@ -333,8 +333,8 @@ class BusAddresses {
     if (other.live->map.sunspec_models != meter.live->map.sunspec_models) {
       can = false;
       table.problem_at(
-          "map", fmt::format("meters '{}' and '{}' are unit {} on bus '{}' with SunSpec models of "
-                             "their own; give both maps the same 'sunspec_models'",
+          "map", fmt::format("meters '{}' and '{}' are both unit {} on bus '{}' but have different "
+                             "SunSpec models; give both maps the same 'sunspec_models'",
                              other.meter.id, meter.meter.id, meter.live->unit, meter.live->bus));
     }
     const bool is_same =
@@ -381,7 +381,9 @@ std::optional<PeriodConfig> read_period(TomlReader table) {
   if (auto range = table.table("validation")) validation = read_range(*range);
   if (calibration && validation && validation->first <= calibration->last &&
       calibration->first <= validation->last) {
-    table.problem("calibration and validation overlap: a month that is fitted cannot validate");
+    table.problem(
+        "calibration and validation overlap; a month used for calibration cannot serve for "
+        "validation");
   }
   table.finish();
   if (!calibration) return {};
@@ -399,7 +401,7 @@ ParameterConfig read_parameter(TomlReader& table) {
     const auto prior = Prior::named(distribution.value_or("triangular"), numbers);
     if (!prior) {
       table.problem(config.name + ": " + prior.error().message +
-                    ", or nothing at all for the library's range");
+                    ", or nothing to use the library's range");
     } else if (const auto physical = found ? model::physical_prior(**found, *prior) : prior) {
       config.prior = *physical;
     } else {
@@ -478,7 +480,7 @@ void read_meters(std::vector<TomlReader>& tables, SiteConfig& config) {
     addresses.add_last_of(list, *table);
     const std::string& id = list.back().meter.id;
     if (!id.empty() && !ids.insert(id).second) {
-      table->problem(fmt::format("a second meter has the id '{}'", id));
+      table->problem(fmt::format("two meters have the id '{}'", id));
     }
   }
   for (std::size_t i = 0; i < config.meters.size(); ++i) {
@@ -508,8 +510,7 @@ void read_whole_weather(TomlReader& root, SiteConfig& config) {
   if (config.sensors.empty() || root.has("weather")) return;
   if (std::ranges::none_of(config.sensors, may_measure_dry_bulb)) {
     root.problem(
-        "no weather sensor measures dry_bulb_C; add one that does, or a [weather] file that has "
-        "it");
+        "no weather sensor measures dry_bulb_C; add one that does, or a [weather] file with it");
   }
 }
 
@@ -536,14 +537,14 @@ void read_root(TomlReader root, SiteConfig& config) {
   std::vector<TomlReader> tables = root.tables("meter");
   read_meters(tables, config);
   if (config.meters.empty()) {
-    root.problem(config.sensors.empty() ? "no [[meter]] is described"
-                                        : "no [[meter]] but weather sensors is described");
+    root.problem(config.sensors.empty() ? "there is no [[meter]]"
+                                        : "there are only weather sensors and no other [[meter]]");
   }
   read_whole_weather(root, config);
   if (auto period = root.table("period")) config.period = read_period(*period);
   if (auto building = root.table("building")) config.building = read_building(*building);
   std::vector<TomlReader> models = root.tables("model");
-  if (models.size() > 1) models[1].problem("only one [[model]] a site is supported");
+  if (models.size() > 1) models[1].problem("only one [[model]] per site is supported");
   if (!models.empty()) {
     config.model = read_model(models.front(), config);
     // What is there but wrong has been reported already.

@@ -15,8 +15,8 @@ std::filesystem::path resolve(const std::filesystem::path& site_file, const std:
     const std::string name = path.substr(1, slash - 1);
     const char* value = std::getenv(name.c_str());
     if (value == nullptr) {
-      table.problem_at(key, fmt::format("'{0}' begins with ${1}, but the environment has no "
-                                        "variable {1}; set it to the folder with the data",
+      table.problem_at(key, fmt::format("'{0}' begins with ${1}, but the environment variable {1} "
+                                        "is not set; set it to the folder with the data",
                                         key, name));
       return {};
     }

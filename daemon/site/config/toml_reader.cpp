@@ -24,7 +24,7 @@ std::string limits_of(NumberRange range) {
 }  // namespace
 
 std::string syntax_problem(std::string_view file, const toml::parse_error& error) {
-  return printable(fmt::format("{}:{}: no valid TOML: {}", file, error.source().begin.line,
+  return printable(fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line,
                                error.description()));
 }
 
@@ -78,7 +78,7 @@ std::optional<std::string> TomlReader::text(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return {};
   if (const auto value = node->value_exact<std::string>()) return value;
-  problem_at(key, fmt::format("'{}' must be a text in quotes", key));
+  problem_at(key, fmt::format("'{}' must be text in quotes", key));
   return {};
 }
 
@@ -125,8 +125,8 @@ std::optional<std::chrono::milliseconds> TomlReader::milliseconds(std::string_vi
       return std::chrono::milliseconds{length->count()};
     }
   }
-  problem_at(key,
-             fmt::format("'{}' is \"{}\"; write a wait such as \"200ms\" or \"5s\"", key, *value));
+  problem_at(key, fmt::format("'{}' is \"{}\"; write a duration such as \"200ms\" or \"5s\"", key,
+                              *value));
   return {};
 }
 

@@ -63,7 +63,7 @@ TEST_F(HyperPriorFile, NoTomlIsSaid) {
   const auto problems = load("[discrepancy\n");
   ASSERT_FALSE(problems);
   ASSERT_EQ(problems.error().size(), 1U);
-  EXPECT_THAT(problems.error()[0], ::testing::StartsWith("beliefs.toml:1: no valid TOML: "));
+  EXPECT_THAT(problems.error()[0], ::testing::StartsWith("beliefs.toml:1: not valid TOML: "));
 }
 
 TEST_F(HyperPriorFile, InfinityIsNoBelief) {
@@ -85,7 +85,7 @@ TEST_F(HyperPriorFile, AChoiceIsAProfileOrAFile) {
               ElementsAre("hyper-prior file '/nowhere/b.toml' does not exist"));
   const auto neither = choose_hyper_prior("guess");
   ASSERT_FALSE(neither);
-  EXPECT_THAT(neither.error()[0], ::testing::EndsWith("; or name a file that ends in .toml"));
+  EXPECT_THAT(neither.error()[0], ::testing::EndsWith(", or name a file that ends in .toml"));
 }
 
 }  // namespace

@@ -163,9 +163,8 @@ TEST(RegisterMapFile, ASiteNamesAShippedMapOrAFileBesideIt) {
   EXPECT_EQ(find_register_map("ours.toml", folder.path())->title, "A meter of ours");
   EXPECT_EQ(find_register_map((folder / "ours.toml").string(), "/nowhere")->title,
             "A meter of ours");
-  EXPECT_THAT(
-      find_register_map("abb-b32", folder.path()).error(),
-      ElementsAre(HasSubstr("no register map is called 'abb-b32', did you mean 'abb-b23'")));
+  EXPECT_THAT(find_register_map("abb-b32", folder.path()).error(),
+              ElementsAre(HasSubstr("there is no register map 'abb-b32', did you mean 'abb-b23'")));
   EXPECT_THAT(find_register_map("theirs.toml", folder.path()).error(),
               ElementsAre(HasSubstr("theirs.toml' cannot be read")));
 }
@@ -185,15 +184,15 @@ TEST(RegisterMapFile, EveryMistakeHasItsSentence) {
       {"fc = 4", "fc = 6", "'fc' is 6; it must be between 3 and 4"},
       {"fc = 4", "fc = 3.5", "'fc' is 3.5; it must be a whole number"},
       {"order = \"CDAB\"", "order = \"little\"", "'little' is no word order"},
-      {"order = \"ABCD\"", "order = 1", "'order' must be a text in quotes"},
+      {"order = \"ABCD\"", "order = 1", "'order' must be text in quotes"},
       {"registers_max = 60", "registers_max = 126", "it must be between 4 and 125"},
       {"gap_max = 4", "gap_max = -1", "'gap_max' is -1"},
       {"trust = \"one_source\"", "trust = \"sure\"", "it must be one of two_sources"},
       {"energy = [\"energy\"]", "energy = [\"import\"]", "there is no [register.import]"},
-      {"energy = [\"energy\"]", "energy = [\"power\"]", "it must be an energy such as kWh"},
+      {"energy = [\"energy\"]", "energy = [\"power\"]", "it must be an energy, such as kWh"},
       {"power = \"power\"", "power = \"energy\"", "it must be a power such as kW"},
       {"identity = [\"serial\"]", "identity = [\"number\"]", "there is no [register.number]"},
-      {"energy = [\"energy\"]\npower = \"power\"\n", "", "names neither 'energy' nor 'power'"},
+      {"energy = [\"energy\"]\npower = \"power\"\n", "", "has neither 'energy' nor 'power'"},
       {"at = 101\ntype = \"u32\"\nscale", "type = \"u32\"\nscale", "'at' is missing"},
       {"at = 101\ntype", "at = 0\ntype", "'at' is 0; with base 1 and 2 registers"},
       {"at = 101\ntype", "at = 65536\ntype", "'at' is 65536; with base 1 and 2 registers"},
@@ -205,9 +204,9 @@ TEST(RegisterMapFile, EveryMistakeHasItsSentence) {
       {"modulus = 1e8", "modulus = -1", "'modulus' is -1"},
       {"absent = \"0xFFFFFFFF\"", "absent = \"all\"", "write its bits as \"0x8000\""},
       {"absent = \"0xFFFFFFFF\"", "absent = \"0x1FFFFFFFF\"", "more than the type's 32 bits"},
-      {"absent = \"0xFFFFFFFF\"", "absent = 65535", "'absent' must be a text in quotes"},
+      {"absent = \"0xFFFFFFFF\"", "absent = 65535", "'absent' must be text in quotes"},
       {"mask = \"0x00FF\"", "mask = \"0x1FFFF\"", "more than the type's 16 bits"},
-      {"type = \"u16\"\nmask", "type = \"i16\"\nmask", "'mask' selects bits of u16, u32 and u64"},
+      {"type = \"u16\"\nmask", "type = \"i16\"\nmask", "'mask' works on u16, u32 and u64"},
       {"scale_factor = \"tens\"", "scale_factor = \"ten\"", "there is no [register.ten]"},
       {"unit = \"kWh\"", "units = \"kWh\"", "unknown key 'units'; did you mean 'unit'?"},
       {"gap_max = 4", "gap_mx = 4", "unknown key 'gap_mx'; did you mean 'gap_max'?"},
@@ -217,14 +216,14 @@ TEST(RegisterMapFile, EveryMistakeHasItsSentence) {
       {"{ energy = 10000 }", "{ enery = 10000 }", "there is no [register.enery]"},
       {"values = { energy = 10000 }\n", "", "'values' is missing"},
       {"gap_max = 4", "sunspec_models = [\"2o3\"]", "write numbers such as \"203\""},
-      {"base = 1", "base = ", "ours.toml:4: no valid TOML"},
-      {"[[golden]]", "[{", "no valid TOML"},  // an assertion of the parser, where these are on
+      {"base = 1", "base = ", "ours.toml:4: not valid TOML"},
+      {"[[golden]]", "[{", "not valid TOML"},  // an assertion of the parser, where these are on
       {"scale = 0.1", "scale = inf", "'scale' is inf; it must be a finite number"},
       {"energy = [\"energy\"]", "energy = [\"energy\", \"energy\"]",
-       "'energy' names 'energy' twice; it would count twice"},
-      {"energy = [\"energy\"]\npower = \"power\"\n", "energy = []\n", "'energy' names no register"},
+       "'energy' names 'energy' twice, so it would count twice"},
+      {"energy = [\"energy\"]\npower = \"power\"\n", "energy = []\n", "'energy' is empty"},
       {"at = 202\ntype = \"i16\"", "at = 202\ntype = \"i16\"\nscale_factor = \"serial\"",
-       "[register.power] 'scale_factor' names 'tens', which has a 'scale_factor' itself"},
+       "[register.power] 'scale_factor' names 'tens', which itself has a 'scale_factor'"},
       {"scale_factor = \"tens\"", "scale_factor = \"power\"",
        "[register.power] 'scale_factor' names 'power'"},
       {"at = 202", "at = 302", "must be read together and span 102 registers; the device gives 60"},
@@ -238,7 +237,7 @@ TEST(RegisterMapFile, EveryMistakeHasItsSentence) {
     EXPECT_THAT(problems, Each(StartsWith("ours.toml:")));
   }
   EXPECT_THAT(problems_of("base = 0\nsource = \"x\"\n"),
-              Contains(HasSubstr("no [register.NAME] is described")));
+              Contains(HasSubstr("there is no [register.NAME]")));
   EXPECT_THAT(problems_of(kMap), IsEmpty());
 }
 
@@ -271,7 +270,7 @@ TEST(RegisterMapFile, AWeatherSensorNamesWhatItMeasures) {
       {"unit = \"degC\"", "unit = \"F\"",
        "'weather' names 'dry_bulb_C', whose unit is \"F\"; it must be \"degC\""},
       {"weather = [\"dry_bulb_C\", \"ghi_W_m2\"]\n", "",
-       "names neither 'energy' nor 'power' nor 'weather'"},
+       "has neither 'energy' nor 'power' nor 'weather'"},
   };
   for (const Mistake& mistake : mistakes) {
     SCOPED_TRACE(mistake.to);

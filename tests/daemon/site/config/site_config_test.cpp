@@ -183,7 +183,7 @@ const Mistake kSiteMistakes[] = {
     {"NumberAsText", "altitude_m = 420", "altitude_m = \"420\"", "altitude_m",
      "[site] 'altitude_m' must be a number"},
     {"TextAsNumber", "name = \"Tram depot\"", "name = 12", "name = 12",
-     "[site] 'name' must be a text in quotes"},
+     "[site] 'name' must be text in quotes"},
     {"NumberBeyondItsRange", "latitude_deg = 47.4", "latitude_deg = 474", "474",
      "[site] 'latitude_deg' is 474; it must be between -90 and 90"},
     {"UnknownZone", "Europe/Zurich", "Europe/Zurick", "Zurick",
@@ -205,10 +205,11 @@ const Mistake kSiteMistakes[] = {
      "tmy", "[weather] 'format' is \"tmy\"; it must be one of csv, epw"},
     {"VariableThatIsNotSet", "\"weather.csv\"", "\"$RECALD_NO_SUCH/weather.csv\"",
      "$RECALD_NO_SUCH",
-     "[weather] 'file' begins with $RECALD_NO_SUCH, but the environment has no variable "
-     "RECALD_NO_SUCH; set it to the folder with the data"},
+     "[weather] 'file' begins with $RECALD_NO_SUCH, but the environment variable RECALD_NO_SUCH is "
+     "not set; set it to the folder with the data"},
     {"UnknownUtility", "utility = \"heating\"", "utility = \"heat\"", "\"heat\"",
-     "[meter] 'heat' is no utility; use electricity, chilled_water, heating, steam, gas or water"},
+     "[meter] 'heat' is not a utility; use electricity, chilled_water, heating, steam, gas or "
+     "water"},
     {"MissingUtility", "utility = \"heating\"\n", "", "[[meter]]\nid = \"district_heat\"",
      "[meter] 'utility' is missing"},
     {"UnknownEndUse", "rated_kW = 400", "end_uses = [\"lightning\"]", "lightning",
@@ -216,14 +217,15 @@ const Mistake kSiteMistakes[] = {
      "pumps, chiller, sensible_cooling, latent_cooling, zone_heating, reheat, preheat, "
      "humidification, hot_water, base_heat"},
     {"CounterWithoutRating", "zero_run_max = \"96h\"", "counter = { modulus = 1e6 }", "counter",
-     "[meter.counter] a cumulative counter needs the meter's 'rated_kW': it tells a jump from a "
+     "[meter.counter] a cumulative counter needs the meter's 'rated_kW', to tell a jump from a "
      "load"},
     {"CounterOfPower", "rated_kW = 400", "rated_kW = 400\ncounter = { unit = \"kW\" }", "counter",
-     "[meter.counter] 'unit' is \"kW\"; a counter counts an energy such as kWh or MWh"},
+     "[meter.counter] 'unit' is \"kW\"; a counter needs a unit of energy such as kWh or MWh"},
     {"UnknownPeakMethod", "rated_kW = 400", "peak = { method = \"sliding\" }", "sliding",
      "[meter.peak] 'method' is \"sliding\"; it must be one of block"},
     {"OverlappingPeriods", "from = \"2021-10\"", "from = \"2021-09\"", "[period]",
-     "[period] calibration and validation overlap: a month that is fitted cannot validate"},
+     "[period] calibration and validation overlap; a month used for calibration cannot serve for "
+     "validation"},
     {"PeriodBackwards", "to = \"2021-12\"", "to = \"2021-08\"", "2021-08",
      "[period.validation] 'to' (2021-08) is before 'from' (2021-10)"},
     {"PeriodWithoutEnd", ", to = \"2021-12\"", "", "validation",
@@ -254,10 +256,10 @@ const Mistake kSiteMistakes[] = {
      "model does not have it"},
     {"PriorOutOfOrder", "min = 0.8", "min = 2.2", "[[model.parameter]]\nname = \"outdoor_airflow\"",
      "[model.parameter] outdoor_airflow: a triangular prior needs min <= mode <= max and min < "
-     "max, but min = 2.2, mode = 2, max = 2.6, or nothing at all for the library's range"},
+     "max, but min = 2.2, mode = 2, max = 2.6, or nothing to use the library's range"},
     {"PriorInPart", "mode = 2.0\n", "", "[[model.parameter]]\nname = \"outdoor_airflow\"",
-     "[model.parameter] outdoor_airflow: a triangular prior needs min, mode and max, or nothing at "
-     "all for the library's range"},
+     "[model.parameter] outdoor_airflow: a triangular prior needs min, mode and max, or nothing to "
+     "use the library's range"},
     {"FractionOfAStorey", "storeys = 2", "storeys = 2.5", "storeys",
      "[building] 'storeys' is 2.5; it must be a whole number"},
     {"UnknownMass", "\"medium\"", "\"massive\"", "massive",
@@ -269,8 +271,8 @@ const Mistake kSiteMistakes[] = {
      "[building.surface] 'kind' is missing: wall, roof, window or ground"},
     {"WallThatFacesNowhere", "azimuth_deg = 180\n\n", "\n",
      "[[building.surface]]\nname = \"south wall\"",
-     "[building.surface] 'azimuth_deg' is missing: where the surface faces, from north, "
-     "clockwise"},
+     "[building.surface] 'azimuth_deg' is missing: the direction the surface faces, clockwise from "
+     "north"},
     {"AzimuthBeyondTheCircle", "azimuth_deg = 180\n\n", "azimuth_deg = 480\n\n", "480",
      "[building.surface] 'azimuth_deg' is 480; it must be between 0 and 360"},
     {"WindowWithoutShgc", "shgc = 0.5\n", "", "[[building.surface]]\nname = \"south windows\"",
@@ -290,7 +292,7 @@ const Mistake kSiteMistakes[] = {
     {"HeatingAboveCooling", "heating_occupied_C = 21", "heating_occupied_C = 26",
      "[building.setpoint]",
      "[building.setpoint] the heating set-point 26 degC is not below the cooling set-point 25 "
-     "degC; they would fight each other"},
+     "degC; they would work against each other"},
     {"SmallestFlowAboveDesign", "supply_flow_min_m3_s = 2.5", "supply_flow_min_m3_s = 7",
      "[building.air]",
      "[building.air] 'supply_flow_min_m3_s' is larger than 'supply_flow_design_m3_s'"},
@@ -311,7 +313,7 @@ TEST(SiteConfig, TwoMetersOfOneId) {
   const std::string text =
       edited(std::string{kSampleMeters}, "id = \"district_heat\"", "id = \"electricity\"");
   EXPECT_THAT(SiteFile{text}.problems(),
-              ElementsAre("site.toml:18: [meter] a second meter has the id 'electricity'"));
+              ElementsAre("site.toml:18: [meter] two meters have the id 'electricity'"));
 }
 
 TEST(SiteConfig, ModelNamesWhatItLacks) {
@@ -345,12 +347,12 @@ TEST(SiteConfig, SecondModelIsOneTooMany) {
   const std::string line = std::to_string(line_of(sample_site(), "efficiency = 0.95") + 2);
   EXPECT_THAT(
       SiteFile{text}.problems(),
-      ElementsAre("site.toml:" + line + ": [model] only one [[model]] a site is supported"));
+      ElementsAre("site.toml:" + line + ": [model] only one [[model]] per site is supported"));
 }
 
 TEST(SiteConfig, EmptyFileSaysWhatASiteIs) {
-  EXPECT_THAT(SiteFile{""}.problems(), ElementsAre("site.toml:1: [site] is missing",
-                                                   "site.toml:1: no [[meter]] is described"));
+  EXPECT_THAT(SiteFile{""}.problems(),
+              ElementsAre("site.toml:1: [site] is missing", "site.toml:1: there is no [[meter]]"));
 }
 
 TEST(SiteConfig, AllMistakesAreReportedAtOnce) {
@@ -362,7 +364,7 @@ TEST(SiteConfig, AllMistakesAreReportedAtOnce) {
       SiteFile{text}.problems(),
       ::testing::UnorderedElementsAre(
           StartsWith("site.toml:7: [site] unknown key 'altitud_m'"),
-          StartsWith("site.toml:20: [meter] 'warmth' is no utility"),
+          StartsWith("site.toml:20: [meter] 'warmth' is not a utility"),
           ::testing::HasSubstr("[model.parameter] 'min' must be a number"),
           ::testing::HasSubstr(
               "[model.parameter] outdoor_airflow: a triangular prior needs min, mode and max"),
@@ -373,7 +375,7 @@ TEST(SiteConfig, AllMistakesAreReportedAtOnce) {
 
 TEST(SiteConfig, SyntaxErrorIsOneSentenceWithItsLine) {
   const std::string text = with("\"Europe/Zurich\"", "Europe/Zurich");
-  EXPECT_THAT(SiteFile{text}.problems(), ElementsAre(StartsWith("site.toml:4: no valid TOML: ")));
+  EXPECT_THAT(SiteFile{text}.problems(), ElementsAre(StartsWith("site.toml:4: not valid TOML: ")));
 }
 
 class DecimalComma : public std::numpunct<char> {
@@ -399,7 +401,7 @@ TEST(SiteConfig, DecimalCommaLocale) {
 
 TEST(SiteConfig, KeyGivenTwiceIsASyntaxError) {
   const std::string text = with("altitude_m = 420", "altitude_m = 420\naltitude_m = 421");
-  EXPECT_THAT(SiteFile{text}.problems(), ElementsAre(StartsWith("site.toml:8: no valid TOML: ")));
+  EXPECT_THAT(SiteFile{text}.problems(), ElementsAre(StartsWith("site.toml:8: not valid TOML: ")));
 }
 
 TEST(SiteConfig, MissingFileAndFolderAreOneSentence) {

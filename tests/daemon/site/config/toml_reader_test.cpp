@@ -100,8 +100,8 @@ TEST(TomlReader, WrongTypesNameLineAndKey) {
   (void)r.reader.table("f");
   (void)r.reader.tables("g");
   EXPECT_THAT(r.problems,
-              ElementsAre("a.toml:1: 'a' must be a text in quotes",
-                          "a.toml:2: 'b' must be a number", "a.toml:3: 'c' must be true or false",
+              ElementsAre("a.toml:1: 'a' must be text in quotes", "a.toml:2: 'b' must be a number",
+                          "a.toml:3: 'c' must be true or false",
                           "a.toml:4: 'd' must be a list of texts in quotes",
                           "a.toml:5: 'e' must be a list of 2 numbers between 0 and 1",
                           "a.toml:6: 'f' must be a table, written [f]",
