@@ -114,10 +114,9 @@ TEST_F(LiveWeather, CheckExplainsASensor) {
   describe("[weather]\nfile = \"weather.csv\"\nvalues = \"mean\"\n", kSender);
   const auto sender = checked();
   EXPECT_EQ(sender.exit_code, 0) << sender.err;
-  EXPECT_THAT(sender.out,
-              AllOf(HasSubstr("meter roof             weather        as it is sent, interval 1 h; "
-                              "units degC (dry_bulb_C), %"),
-                    HasSubstr("weather.csv (start-stamped")));
+  EXPECT_THAT(sender.out, AllOf(HasSubstr("meter roof             weather        pushed, interval "
+                                          "1 h; units degC (dry_bulb_C), %"),
+                                HasSubstr("weather.csv (start-stamped")));
   const std::string text = read_text(folder_ / "live.toml");
   write_text(folder_ / "live.toml", edited(text, "\n[http]\n", "\n"));
   EXPECT_THAT(checked().err, HasSubstr("no [http] to send its readings to"));
@@ -294,8 +293,7 @@ TEST_F(Sent, AFileThatGrowsIsTakenUp) {
   ASSERT_THAT(ended_, SizeIs(1));
   EXPECT_EQ(last_month(result_of(ended_[0])), "2025-10");
   EXPECT_EQ(ended_[0].message,
-            "not all weather is known of 2025-11 (33 %); it is calibrated again when more of it "
-            "comes");
+            "weather is incomplete in 2025-11 (33 %); recald calibrates again when more arrives");
   EXPECT_THAT(result_of(ended_[0])["warnings"].get<std::vector<std::string>>(),
               Contains("2025-11 is left out: only 33 % of its weather (dry_bulb_C) is known. "
                        "weather.csv ends at 2025-11-10T23:00:00Z."));
@@ -341,7 +339,7 @@ TEST_F(Sent, ASilentSensorIsSaidFromWhenToWhen) {
   loop_.run_for(hours{2});
   ASSERT_THAT(ended_, SizeIs(2));
   EXPECT_EQ(last_month(result_of(ended_[1])), "2025-11");
-  EXPECT_THAT(ended_[1].message, HasSubstr("not all weather is known of 2025-10 (77 %);"));
+  EXPECT_THAT(ended_[1].message, HasSubstr("weather is incomplete in 2025-10 (77 %);"));
 }
 
 // A sensor that nobody has connected yet: there is no weather at all. The calibration fails, and is
@@ -354,9 +352,8 @@ TEST_F(Sent, WithoutAnyWeatherItFailsAndIsMadeWhenItComes) {
   ASSERT_THAT(ended_, SizeIs(1));
   EXPECT_EQ(ended_[0].state, JobState::failed);
   EXPECT_THAT(ended_[0].message, HasSubstr("the weather of sensor 'roof' has no dry_bulb_C"));
-  EXPECT_THAT(ended_[0].message,
-              HasSubstr("; not all weather is known of 2025-06 to 2025-11 (0 %); it is calibrated "
-                        "again when more of it comes"));
+  EXPECT_THAT(ended_[0].message, HasSubstr("; weather is incomplete in 2025-06 to 2025-11 (0 %); "
+                                           "recald calibrates again when more arrives"));
   send(calendar_.month_span(year{2025} / 6).begin, kDecember);
   loop_.run_for(hours{2});
   ASSERT_THAT(ended_, SizeIs(2));

@@ -183,8 +183,9 @@ void MeterTrack::take_identity(StoreBatch& batch, PollTime poll, Instant at) {
   }
   batch.events.push_back(
       {at, Severity::warning, std::string{kind_of(CounterEvent::swapped)}, meter_.id,
-       fmt::format("meter '{}' has another identity: {} instead of {}; its counter starts anew",
-                   meter_.id, identity, state_.identity)});
+       fmt::format(
+           "meter '{}' is a different device: {} instead of {}; its counter starts again from here",
+           meter_.id, identity, state_.identity)});
   state_.identity = identity;
   other_identity_.reset();
   state_.counter = metering::swap_meter(std::move(state_.counter)).state;
@@ -310,23 +311,22 @@ StoreEvent MeterTrack::event_of(CounterEvent event, const RegisterSample& sample
         break;
       case CounterEvent::bounce:
         return fmt::format(
-            "the register showed {:.1f} kWh for a moment and is back at {:.1f}; "
-            "nothing was lost",
+            "the register read {:.1f} kWh for a moment and is back at {:.1f}; nothing was lost",
             before.pending->last.value_kWh, sample.value_kWh);
       case CounterEvent::reset:
         return fmt::format(
-            "the register fell from {:.1f} to {:.1f} kWh and stays there: it was "
-            "reset; the energy between is not known",
+            "the register fell from {:.1f} to {:.1f} kWh and stays there, so it was reset; the "
+            "energy in between is unknown",
             from_kWh, before.pending->first.value_kWh);
       case CounterEvent::jump:
         return fmt::format(
-            "the register rose from {:.1f} to {:.1f} kWh, more than {:.0f} kW can "
-            "draw, and stays there; the rise was not booked",
+            "the register rose from {:.1f} to {:.1f} kWh, more than a load of {:.0f} kW can use, "
+            "and stays there; the rise was not counted",
             from_kWh, before.pending->first.value_kWh, state_.settings.rated_kW);
       case CounterEvent::restored:
         return fmt::format(
-            "the register is back on its old line at {:.1f} kWh; what was booked "
-            "since was put right",
+            "the register is back at its earlier count, {:.1f} kWh; what was counted in between "
+            "was corrected",
             sample.value_kWh);
       case CounterEvent::erratic:
         return fmt::format(

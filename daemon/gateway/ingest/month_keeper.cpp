@@ -61,12 +61,12 @@ Result<void> MonthKeeper::take_rules(const StoredMeter& meter, Instant now) {
       meter.number, metering::closing_rules(options_.closing, meter.meter));
   if (!reopened) return tl::unexpected(reopened.error());
   if (*reopened == 0) return {};
-  const auto told = store_.commit(
-      {.events = {{now, Severity::info, "rules_changed", meter.meter.id,
-                   fmt::format("the rules that months are closed by have changed: {} closed "
-                               "month{} of {} {} closed anew",
-                               *reopened, *reopened == 1 ? "" : "s", meter.meter.id,
-                               *reopened == 1 ? "is" : "are")}}});
+  const auto told =
+      store_.commit({.events = {{now, Severity::info, "rules_changed", meter.meter.id,
+                                 fmt::format("the rules for closing months have changed: {} closed "
+                                             "month{} of {} {} closed again",
+                                             *reopened, *reopened == 1 ? "" : "s", meter.meter.id,
+                                             *reopened == 1 ? "is" : "are")}}});
   if (!told) return tl::unexpected(told.error());
   return {};
 }

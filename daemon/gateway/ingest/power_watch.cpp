@@ -42,15 +42,15 @@ void PowerWatch::judge(StoreBatch& batch, const metering::CounterSettings& count
     if (verdict.has_frozen_now) {
       batch.events.push_back(
           {at, Severity::warning, "counter_stuck", id_,
-           fmt::format("meter '{}': its counter stands while its power shows {:.1f} kW; the "
-                       "intervals since {} are doubtful until it moves",
+           fmt::format("meter '{}': its counter does not move while its power is {:.1f} kW; the "
+                       "intervals since {} are doubtful until it does",
                        id_, powered.mean_kW, metering::to_string(verdict.frozen.front().start))});
     }
     if (verdict.power_to_counter != 0.0) {
       batch.events.push_back(
           {at, Severity::warning, "power_differs", id_,
-           fmt::format("meter '{}': over a day its power adds up to {:.3g} times what its counter "
-                       "counted; check units, scales and the multiplier in its register map",
+           fmt::format("meter '{}': over a day its power adds up to {:.3g} times the energy on its "
+                       "counter; check units, scales and the multiplier in its register map",
                        id_, verdict.power_to_counter)});
     }
   }

@@ -26,19 +26,19 @@ struct Kind {
 
 Kind kind_of(std::uint8_t exception) {
   if (modbus::is_busy(exception)) {
-    return {"device_busy", "is busy whenever it is asked for",
-            "they are asked for at every poll. If it goes on, poll more rarely, or see who else "
-            "asks the device",
+    return {"device_busy", "has been busy at every request for",
+            "recald asks again at every poll. If this goes on, poll less often, or find out who "
+            "else polls the device",
             kPatience};
   }
   if (modbus::is_from_gateway(exception)) {
-    return {"device_unreachable", "is not reached by its gateway, which answers for",
-            "it is tried again, at least every probe_max. If it goes on, check its power, wiring "
-            "and unit",
+    return {"device_unreachable", "cannot be reached by its gateway, which answers requests for",
+            "recald tries again, at least every probe_max. If this goes on, check the device's "
+            "power, wiring and unit",
             kPatience};
   }
   return {"registers_refused", "refuses",
-          "they are asked for again, at least every five minutes. If it goes on, check unit and "
+          "recald asks again, at least every five minutes. If this goes on, check unit and "
           "register map",
           std::chrono::seconds{0}};
 }
@@ -85,7 +85,7 @@ std::optional<StoreEvent> RefusalWatch::answer(Read& read, Instant at) const {
   if (!was_refused || !std::exchange(read.is_told, false)) return {};
   return StoreEvent{
       at, Severity::info, "registers_answer", meter_,
-      fmt::format("meter '{}' answers again for registers {} to {}, which it had not done since {}",
+      fmt::format("meter '{}' answers again for registers {} to {}, for the first time since {}",
                   meter_, was_refused->address, was_refused->address + was_refused->count - 1,
                   metering::to_string(was_refused->since))};
 }

@@ -11,12 +11,12 @@ namespace recald::daemon {
 using metering::Instant;
 
 std::string silence_words(std::string_view sensor, std::string_view quantity, Instant since) {
-  return fmt::format("weather sensor '{}' has given no {} since {}", sensor, quantity,
+  return fmt::format("weather sensor '{}' has sent no {} since {}", sensor, quantity,
                      metering::to_string(since));
 }
 
 std::string frozen_words(std::string_view sensor, std::string_view quantity, Instant since) {
-  return fmt::format("weather sensor '{}' has shown the same {} since {}", sensor, quantity,
+  return fmt::format("weather sensor '{}' has reported the same {} since {}", sensor, quantity,
                      metering::to_string(since));
 }
 
@@ -60,10 +60,10 @@ std::vector<StoreEvent> SensorWatch::judge(std::span<const MeterProgress* const>
     }
     if (!state.silent_since && silent_.erase(name) > 0) back.push_back(name);
     if (state.frozen_since && frozen_.insert(name).second) {
-      events.push_back(event(Severity::warning, "weather_frozen",
-                             frozen_words(sensor_, name, *state.frozen_since) +
-                                 "; it is not believed as long as it stands still",
-                             now));
+      events.push_back(event(
+          Severity::warning, "weather_frozen",
+          frozen_words(sensor_, name, *state.frozen_since) + "; it is not used until it changes",
+          now));
     }
     if (!state.frozen_since) frozen_.erase(name);
   }
@@ -71,13 +71,13 @@ std::vector<StoreEvent> SensorWatch::judge(std::span<const MeterProgress* const>
     events.push_back(event(
         Severity::warning, "weather_silent",
         silence_words(sensor_, fmt::format("{}", fmt::join(silent, ", ")), silent_since) +
-            "; months of meters close all the same, and a calibration says what weather it lacks",
+            "; months of meters close regardless, and a calibration says which weather is missing",
         now));
   }
   if (!back.empty()) {
     events.push_back(event(
         Severity::info, "weather_answers",
-        fmt::format("weather sensor '{}' gives {} again", sensor_, fmt::join(back, ", ")), now));
+        fmt::format("weather sensor '{}' sends {} again", sensor_, fmt::join(back, ", ")), now));
   }
   return events;
 }

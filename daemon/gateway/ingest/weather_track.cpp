@@ -146,8 +146,8 @@ void WeatherTrack::tell(StoreBatch& batch, Channel& channel, double value, Insta
        .severity = Severity::warning,
        .kind = "weather_not_plausible",
        .subject = id_,
-       .text = fmt::format("weather sensor '{}': {}; it is taken for no value. Check scale and "
-                           "address in its register map, and the sensor",
+       .text = fmt::format("weather sensor '{}': {}; it counts as no value. Check the sensor, and "
+                           "scale and address in its register map",
                            id_, weather::why_not_plausible(*channel.quantity, value)),
        .is_counted = true});
 }

@@ -198,8 +198,8 @@ void Gateway::start(LiveBus& bus) {
   for (LiveMeter& meter : bus.meters()) {
     if (meter.doubt.empty()) continue;
     note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", meter.id,
-          fmt::format("meter '{}': {}; its counter starts anew, and what it counted since the last "
-                      "interval is not known",
+          fmt::format("meter '{}': {}; its counter starts again from here, and the energy since "
+                      "the last interval is unknown",
                       meter.id, std::exchange(meter.doubt, {}))});
   }
 }
@@ -296,9 +296,9 @@ void Gateway::watch_clock(const Moment& now) {
     for (LiveMeter& meter : bus->meters()) meter.clock_was_set();
   }
   note({now.instant(), Severity::warning, "clock_set", "",
-        fmt::format("the system clock was set {} by {} s; the time between is missing from all "
-                    "meters",
-                    moved > milliseconds{0} ? "forward" : "back", std::abs(moved.count()) / 1000)});
+        fmt::format(
+            "the system clock was set {} by {} s; the skipped time is missing from all meters",
+            moved > milliseconds{0} ? "forward" : "back", std::abs(moved.count()) / 1000)});
 }
 
 /// Reads from before the first right time are stamped by how long ago they were.
@@ -337,7 +337,8 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   const auto pushed = std::ranges::find(
       pushed_, meter, [](const PushedMeter& one) { return one.progress.stored.meter.id; });
   if (pushed == pushed_.end()) {
-    return failure(ErrorCode::not_found, "no readings are taken of a meter '" + meter + "'");
+    return failure(ErrorCode::not_found,
+                   "this daemon does not accept readings of a meter '" + meter + "'");
   }
   StoreBatch batch;
   for (metering::Reading& reading : readings) {
@@ -384,15 +385,15 @@ void Gateway::tell_of_pushed(const std::string& meter, const CommitCounts& count
           .severity = Severity::warning,
           .kind = "reading_conflict",
           .subject = meter,
-          .text = fmt::format("{} readings were sent again with another value, the first of {}; "
-                              "what was there stays",
+          .text = fmt::format("{} readings were sent again with a different value, the first of "
+                              "{}; the stored values stay",
                               counts.conflicts.size(),
                               metering::to_string(counts.conflicts.front().start)),
           .is_counted = true});
   }
   if (correction && counts.taken > 0) {
     note({now, Severity::info, "readings_corrected", meter,
-          fmt::format("{} readings were put right by {}: {}", counts.taken, correction->author,
+          fmt::format("{} readings were corrected by {}: {}", counts.taken, correction->author,
                       correction->reason)});
   }
 }

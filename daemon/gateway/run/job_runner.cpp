@@ -20,12 +20,12 @@ Result<JobOutcome> done_safely(const DoJob& work, const StoredJob& job, const Go
   try {
     return work(job, *job.started, goes_on);
   } catch (const std::bad_alloc&) {
-    return failure(ErrorCode::io_failed, "there is not enough memory for it");
+    return failure(ErrorCode::io_failed, "there is not enough memory for the job");
   } catch (const std::exception& thrown) {
-    return failure(ErrorCode::unsupported,
-                   fmt::format("it stopped on something that recald did not foresee ({}); please "
-                               "report it",
-                               thrown.what()));
+    return failure(
+        ErrorCode::unsupported,
+        fmt::format("the job stopped on an unforeseen error ({}), which is a bug; report it",
+                    thrown.what()));
   }
 }
 
@@ -71,12 +71,12 @@ Result<void> JobRunner::take_up_unfinished() {
   for (StoredJob& job : *unfinished) {
     if (job.state == JobState::running && job.tries >= kTriesMax) {
       job.message = fmt::format(
-          "recald was ended {} times while it ran, by the system for want of memory perhaps; make "
-          "more memory available, and ask for it again",
+          "recald was killed {} times while the job ran, perhaps by the system because memory ran "
+          "out; make more memory available, then request the job again",
           job.tries);
       if (auto put = end(std::move(job), JobState::failed); !put) return put;
     } else if (!waiting.insert(job.kind).second) {
-      job.message = "one that was asked for before waits already, and will see the same readings";
+      job.message = "an earlier request is still waiting and will use the same readings";
       if (auto put = end(std::move(job), JobState::cancelled); !put) return put;
     } else if (job.state == JobState::running) {
       job.state = JobState::waiting;
@@ -120,7 +120,7 @@ Result<void> JobRunner::cancel(std::int64_t number) {
   auto found = ports_.store.job(number);
   if (!found) return tl::unexpected(found.error());
   if (!*found || (*found)->state != JobState::waiting) {
-    return failure(ErrorCode::not_found, fmt::format("no job {} waits or runs", number));
+    return failure(ErrorCode::not_found, fmt::format("no job {} is waiting or running", number));
   }
   return end(std::move(**found), JobState::cancelled);
 }

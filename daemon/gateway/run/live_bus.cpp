@@ -28,7 +28,7 @@ std::vector<const MeterConfig*> meters_on(const SiteConfig& site, const std::str
 Result<std::string> lost_state(Store& store, std::uint32_t meter, const std::string& field) {
   std::string lost;
   const auto read = store.for_each_sample(meter, field, [&](const metering::RegisterSample&) {
-    lost = "the state of its counter is not in the store any more";
+    lost = "the state of its counter is no longer in the store";
   });
   if (!read) return tl::unexpected(read.error());
   return lost;

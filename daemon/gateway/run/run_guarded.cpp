@@ -15,15 +15,13 @@ class Thrown {
     if (what == last_ && now.monotonic - at_ < std::chrono::hours{1}) return {};
     last_ = what;
     at_ = now.monotonic;
-    return StoreEvent{.time = now.instant(),
-                      .severity = Severity::error,
-                      .kind = "unforeseen",
-                      .subject = "",
-                      .text =
-                          "something happened that recald did not foresee; it goes on, and tries "
-                          "again what can be: " +
-                          what,
-                      .is_counted = true};
+    return StoreEvent{
+        .time = now.instant(),
+        .severity = Severity::error,
+        .kind = "unforeseen",
+        .subject = "",
+        .text = "recald met an unforeseen error; it continues, and retries what it can: " + what,
+        .is_counted = true};
   }
 
  private:
@@ -44,7 +42,7 @@ void run_guarded(boost::asio::io_context& context, const Loop& loop,
     } catch (const std::exception& exception) {
       what = exception.what();
     } catch (...) {
-      what = "without a word";
+      what = "no description";
     }
     if (auto event = thrown.take(what, loop.now())) note(std::move(*event));
   }

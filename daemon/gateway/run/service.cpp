@@ -45,7 +45,7 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   const auto needs_restart = [](const char* what) {
     return failure(
         ErrorCode::unsupported,
-        fmt::format("another {} needs a restart; put the old one back, or restart recald", what));
+        fmt::format("a changed {} needs a restart; change it back, or restart recald", what));
   };
   if (now.id != then.id) return needs_restart("id");
   if (now.timezone != then.timezone) return needs_restart("timezone");
@@ -162,14 +162,14 @@ class Service {
 
  private:
   void stand_in() {
-    gateway_->note({.time = loop_.now().instant(),
-                    .severity = Severity::error,
-                    .kind = "no_store",
-                    .subject = "",
-                    .text = "the store cannot be opened, and readings are kept in memory until it "
-                            "can be: " +
-                            running_.missing,
-                    .is_counted = true});
+    gateway_->note(
+        {.time = loop_.now().instant(),
+         .severity = Severity::error,
+         .kind = "no_store",
+         .subject = "",
+         .text = "the store cannot be opened, so readings are kept in memory until it can be: " +
+                 running_.missing,
+         .is_counted = true});
     look_for_store();
   }
 
@@ -195,7 +195,7 @@ class Service {
     if (!opened->recovery.empty()) {
       spdlog::error("event=store_recovered what=\"{}\"", opened->recovery);
     }
-    spdlog::info("event=store_opened what=\"what was kept in memory is taken over\"");
+    spdlog::info("event=store_opened what=\"the readings kept in memory are moved to the store\"");
     found_ = RunningStore{std::move(opened->store), ""};
     context_.stop();
   }
@@ -261,9 +261,9 @@ class Service {
       return;
     }
     gateway_->begin_buses_anew();
-    gateway_->note(
-        {loop_.now().instant(), Severity::error, "not_reloaded", "",
-         "the site file was not taken, recald goes on by the old one: " + changed.error().message});
+    gateway_->note({loop_.now().instant(), Severity::error, "not_reloaded", "",
+                    "the site file was rejected, recald continues with the old one: " +
+                        changed.error().message});
   }
 
   Result<void> reload_from(const std::filesystem::path& file) {

@@ -35,7 +35,7 @@ Result<Signals> Signals::open() {
   const int file = ::signalfd(-1, &all, SFD_NONBLOCK | SFD_CLOEXEC);
   if (file < 0) {
     return failure(ErrorCode::io_failed,
-                   "signals cannot be listened to: " + std::generic_category().message(errno));
+                   "recald cannot receive signals: " + std::generic_category().message(errno));
   }
   hold(kOthers);
   return Signals{file, before};

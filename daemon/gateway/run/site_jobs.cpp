@@ -30,7 +30,7 @@ namespace {
 constexpr int kDriftParticles = 256;
 constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
 
-/// "not all weather is known of 2024-03 (12 %), 2024-05 to 2024-07 (0 %)"; empty: all of it is.
+/// "weather is incomplete in 2024-03 (12 %), 2024-05 to 2024-07 (0 %)"; empty: it is complete.
 std::string lacking_words(const std::vector<MonthWeather>& months, const SiteConfig& site) {
   std::string words;
   const auto known_words = [](const MonthWeather& one) {
@@ -49,8 +49,8 @@ std::string lacking_words(const std::vector<MonthWeather>& months, const SiteCon
   }
   if (words.empty()) return "";
   const bool is_made_again = !site.recalibration.schedule.is_never();
-  return fmt::format("not all weather is known of {}{}", words,
-                     is_made_again ? "; it is calibrated again when more of it comes" : "");
+  return fmt::format("weather is incomplete in {}{}", words,
+                     is_made_again ? "; recald calibrates again when more arrives" : "");
 }
 
 JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const RunFacts& facts,
@@ -60,7 +60,7 @@ JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const 
                      .result = calibration_result(calibration, facts)};
   std::vector<std::string> words;
   if (!outcome.accepted) {
-    words.emplace_back("the chains have not converged, so the result before stays in use");
+    words.emplace_back("the chains have not converged, so the previous result stays in use");
   }
   if (!calibration.not_calibrated_because.empty()) {
     words.push_back(calibration.not_calibrated_because);

@@ -30,7 +30,8 @@ Checked<EventCursor> cursor_of(const http::Request& request) {
   const auto [stop, error] =
       std::from_chars(text->data() + std::min(slash + 1, text->size()), end, cursor.sent);
   if (!time || error != std::errc{} || stop != end || cursor.sent < 0) {
-    return refusal(400, "invalid_value", "'cursor' is none that was given out", "cursor");
+    return refusal(400, "invalid_value", "'cursor' is not one from a 'next' of this list",
+                   "cursor");
   }
   cursor.time = *time;
   return cursor;

@@ -42,7 +42,7 @@ http::Response get_forecasts(const Served& served, const http::Request& request)
   if (!to) return to.error();
   const auto limit = limit_of(request);
   if (!limit) return limit.error();
-  const auto sent = whole_number_of(request, "cursor", "a number that was given out");
+  const auto sent = whole_number_of(request, "cursor", "the number from a 'next' of this list");
   if (!sent) return sent.error();
   const auto stored = served.store.forecasts();
   if (!stored) return refusal(stored.error()).value();

@@ -29,7 +29,9 @@ Checked<TimeSpan> span_from_cursor(const http::Request& request) {
   const auto cursor = text_of(request, "cursor");
   if (!span || !cursor) return span;
   const auto at = csv::parse_timestamp(*cursor);
-  if (!at) return refusal(400, "invalid_value", "'cursor' is none that was given out", "cursor");
+  if (!at)
+    return refusal(400, "invalid_value", "'cursor' is not one from a 'next' of this list",
+                   "cursor");
   span->begin = std::max(span->begin, *at);
   return span;
 }
@@ -55,8 +57,8 @@ Checked<Queried> queried(const SiteConfig& site, const http::Request& request) {
   if (!meter) return tl::unexpected(meter.error());
   if ((*meter)->role == MeterRole::weather) {
     return refusal(400, "invalid_value",
-                   fmt::format("'{}' is a weather sensor, which has intervals by quantity: name "
-                               "{}.dry_bulb_C, for example",
+                   fmt::format("'{}' is a weather sensor and has separate intervals for each "
+                               "quantity; ask for {}.dry_bulb_C, for example",
                                id, id),
                    "meter");
   }

@@ -74,7 +74,7 @@ http::Response get_jobs_of(JobKind kind, const Served& served, const http::Reque
   }
   const auto limit = limit_of(request);
   if (!limit) return limit.error();
-  const auto cursor = whole_number_of(request, "cursor", "a cursor that was given out");
+  const auto cursor = whole_number_of(request, "cursor", "the number from a 'next' of this list");
   if (!cursor) return cursor.error();
   const auto jobs = served.store.jobs(kind, kLimitMax);
   if (!jobs) return refusal(jobs.error()).value();
@@ -107,7 +107,7 @@ http::Response cancel_job_of(JobKind kind, const Served& served, const std::stri
   if (!job) return job.error();
   if (!served.cancel_job) {
     return http::error_response(409, "not_possible",
-                                fmt::format("this daemon makes no {}", plural(kind)));
+                                fmt::format("this daemon does not run {}", plural(kind)));
   }
   if (const auto cancelled = served.cancel_job(job->number); !cancelled) {
     return refused_job(cancelled.error());
@@ -122,18 +122,19 @@ http::Response post_job_of(JobKind kind, const Served& served, const http::Reque
   if (!asks_for_nothing_more(request.body)) {
     return http::error_response(
         400, "invalid_value",
-        fmt::format("a {} is asked for with an empty body or {{}}; what it does stands in the "
-                    "site file",
-                    name_of(kind)),
+        fmt::format(
+            "to request a {}, send an empty body or {{}}; its settings are in the site file",
+            name_of(kind)),
         "body");
   }
   if (!served.ask_job) {
     return http::error_response(409, "not_possible",
-                                fmt::format("this daemon makes no {}", plural(kind)));
+                                fmt::format("this daemon does not run {}", plural(kind)));
   }
   if (!served.no_store.empty()) {
-    return not_taken(fmt::format("no {} is begun, ask again: the store cannot be opened: {}",
-                                 name_of(kind), served.no_store));
+    return not_taken(
+        fmt::format("no {} was started, try again later: the store cannot be opened: {}",
+                    name_of(kind), served.no_store));
   }
   const auto number = served.ask_job(kind);
   if (!number) return refused_job(number.error());

@@ -16,9 +16,10 @@ namespace {
 double seconds_of(metering::Instant t) { return static_cast<double>(t.time_since_epoch().count()); }
 
 void write_process(PrometheusText& text, const Served& served, const GatewayStatus& status) {
-  text.begin("recald_build_info", "gauge", "1, with the version of the program.");
+  text.begin("recald_build_info", "gauge", "Always 1; the label has the program's version.");
   text.sample(1.0, {{"version", kVersion}});
-  text.begin("process_start_time_seconds", "gauge", "When the process began, since 1970.");
+  text.begin("process_start_time_seconds", "gauge",
+             "Start time of the process, in seconds since 1970.");
   text.sample(seconds_of(served.started));
   text.begin("recald_clock_ok", "gauge",
              "1 while readings can be stamped; 0 until the system clock has been set.");
@@ -32,7 +33,7 @@ void write_process(PrometheusText& text, const Served& served, const GatewayStat
 
 void write_buses(PrometheusText& text, const GatewayStatus& status) {
   text.begin("recald_poll_requests_total", "counter",
-             "Requests to a meter, by how they ended; timeout includes no connection.");
+             "Requests to a meter by result; timeout includes failed connections.");
   for (const MeterStatus& meter : status.meters) {
     if (!meter.poll) continue;
     for (std::size_t i = 0; i < kRequestResults.size(); ++i) {
@@ -42,25 +43,25 @@ void write_buses(PrometheusText& text, const GatewayStatus& status) {
                   {{"bus", meter.poll->bus}, {"meter", meter.id}, {"result", kRequestResults[i]}});
     }
   }
-  text.begin("recald_poll_duration_seconds", "histogram", "From a request to its outcome.");
+  text.begin("recald_poll_duration_seconds", "histogram", "Time from a request to its result.");
   for (const BusStatus& bus : status.buses) text.histogram(bus.duration, {{"bus", bus.name}});
   text.begin("recald_poll_lateness_seconds", "histogram",
-             "A poll's first request behind its due time.");
+             "Delay of a poll's first request after its due time.");
   for (const BusStatus& bus : status.buses) text.histogram(bus.lateness, {{"bus", bus.name}});
 }
 
 void write_meters(PrometheusText& text, const GatewayStatus& status) {
-  text.begin("recald_unit_state", "gauge", "Of a meter's device: 0 down, 1 degraded, 2 up.");
+  text.begin("recald_unit_state", "gauge", "State of a meter's device: 0 down, 1 degraded, 2 up.");
   for (const MeterStatus& meter : status.meters) {
     if (meter.poll) text.sample(static_cast<double>(meter.poll->state), {{"meter", meter.id}});
   }
   text.begin("recald_last_reading_timestamp_seconds", "gauge",
-             "When a meter last answered or was sent readings of, since 1970.");
+             "Time of a meter's last answer or pushed reading, in seconds since 1970.");
   for (const MeterStatus& meter : status.meters) {
     if (meter.live.read_at) text.sample(seconds_of(*meter.live.read_at), {{"meter", meter.id}});
   }
   text.begin("recald_month_coverage_ratio", "gauge",
-             "Share of the open month's intervals so far that are measured and valid.");
+             "Share of measured and valid intervals in the open month so far.");
   for (const MeterStatus& meter : status.meters) {
     if (std::isfinite(meter.open_month_coverage)) {
       text.sample(meter.open_month_coverage, {{"meter", meter.id}});
@@ -69,9 +70,9 @@ void write_meters(PrometheusText& text, const GatewayStatus& status) {
 }
 
 void write_weather(PrometheusText& text, const GatewayStatus& status) {
-  text.begin("recald_weather_known_until_timestamp_seconds", "gauge",
-             "End of the last interval of a weather sensor's quantity that is believed, since "
-             "1970.");
+  text.begin(
+      "recald_weather_known_until_timestamp_seconds", "gauge",
+      "End of the last valid interval of a weather sensor's quantity, in seconds since 1970.");
   for (const MeterStatus& meter : status.meters) {
     for (const QuantityStatus& one : meter.weather) {
       if (!one.known_until) continue;
@@ -97,7 +98,7 @@ void write_intervals(PrometheusText& text, const GatewayStatus& status) {
     text.sample(static_cast<double>(meter.counters.late), {{"meter", meter.id}});
   }
   text.begin("recald_counter_events_total", "counter",
-             "What a meter's counter did beside counting: resets, jumps, bounces.");
+             "Irregular events of a meter's counter: resets, jumps, bounces.");
   for (const MeterStatus& meter : status.meters) {
     for (const auto& [event, count] : meter.counters.events) {
       text.sample(static_cast<double>(count), {{"meter", meter.id}, {"event", event}});
@@ -117,7 +118,7 @@ double store_bytes(const std::filesystem::path& file) {
 }
 
 void write_store(PrometheusText& text, const Served& served, const GatewayStatus& status) {
-  text.begin("recald_store_commit_seconds", "histogram", "How long the store took for a commit.");
+  text.begin("recald_store_commit_seconds", "histogram", "Time the store takes for a commit.");
   text.histogram(status.store.durations);
   text.begin("recald_store_bytes", "gauge", "Size of the store with its write-ahead log.");
   text.sample(store_bytes(served.site.store.file));
@@ -126,7 +127,8 @@ void write_store(PrometheusText& text, const Served& served, const GatewayStatus
 /// Climbs before an alarm does.
 void write_evidence(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
   text.begin("recald_drift_evidence_ratio", "gauge",
-             "Log evidence that something has changed, by months and by days; 1 raises an alarm.");
+             "Log evidence that something has changed, divided by the alarm threshold, by month "
+             "and by day; 1 raises an alarm.");
   for (const OutputDrift& one : drift.outputs) {
     const auto sample = [&](double ratio, const char* grain) {
       if (!std::isfinite(ratio)) return;
@@ -139,8 +141,9 @@ void write_evidence(PrometheusText& text, const DriftSummary& drift, const std::
 
 void write_drift(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
   write_evidence(text, drift, model);
-  text.begin("recald_drift_pvalue", "gauge",
-             "How well the newest month agrees with the calibration in use; small: it drifts.");
+  text.begin(
+      "recald_drift_pvalue", "gauge",
+      "Agreement of the newest month with the calibration in use; a small value means drift.");
   for (const OutputDrift& one : drift.outputs) {
     if (!std::isfinite(one.pvalue)) continue;
     text.sample(one.pvalue, {{"model", model}, {"output", one.output}});
@@ -152,7 +155,7 @@ void write_alarms(PrometheusText& text, const DriftSummary& drift, const std::st
   std::map<std::string, int> alarms;
   for (const DriftAlarm& one : drift.alarms) ++alarms[one.output];
   text.begin("recald_drift_alarms", "gauge",
-             "Alarms among the months that were followed: the building or a meter has changed.");
+             "Alarms in the months followed so far: the building or a meter has changed.");
   for (const auto& [output, count] : alarms) {
     text.sample(count, {{"model", model}, {"output", output}});
   }
@@ -164,11 +167,11 @@ void write_calibration(PrometheusText& text, const Served& served) {
   if (!job || !*job || !(*job)->ended) return;
   const JobResult& result = (*job)->result;
   const std::string model{served.site.model ? name_of(served.site.model->kind) : ""};
-  text.begin("recald_calibration_age_seconds", "gauge", "Since the calibration in use was made.");
+  text.begin("recald_calibration_age_seconds", "gauge", "Age of the calibration in use.");
   text.sample(static_cast<double>((served.now() - *(*job)->ended).count()), {{"model", model}});
   if (std::isfinite(result.rhat_max)) {
     text.begin("recald_calibration_rhat_max", "gauge",
-               "The largest R-hat of the calibration in use; near 1: its chains agree.");
+               "Largest R-hat of the calibration in use; near 1 if its chains agree.");
     text.sample(result.rhat_max, {{"model", model}});
   }
   if (!result.drift) return;

@@ -31,7 +31,8 @@ Checked<void> take_cursor(MonthQuery& query, const Served& served, const http::R
   const auto month = slash == std::string::npos ? Result<Month>{failure(ErrorCode::malformed, "")}
                                                 : metering::parse_month(cursor->substr(slash + 1));
   if (!meter || !month) {
-    return refusal(400, "invalid_value", "'cursor' is none that was given out", "cursor");
+    return refusal(400, "invalid_value", "'cursor' is not one from a 'next' of this list",
+                   "cursor");
   }
   query.first_meter = *meter;
   query.first_month = *month;

@@ -19,8 +19,8 @@ Checked<std::optional<Instant>> instant_of(const http::Request& request, const s
   const auto instant = csv::parse_timestamp(*text);
   if (!instant) {
     return refusal(400, "invalid_value",
-                   fmt::format("'{}' is {}; write a time such as 2026-03-01T00:00:00Z (a + in an "
-                               "offset is %2B in an address)",
+                   fmt::format("'{}' is {}; write a time such as 2026-03-01T00:00:00Z (write a + "
+                               "in an offset as %2B in a URL)",
                                name, csv::in_quotes(*text)),
                    name);
   }
@@ -49,8 +49,8 @@ Checked<void> has_only(const http::Request& request,
   for (const auto& [name, value] : request.query) {
     if (std::ranges::find(names, name) != names.end()) continue;
     return refusal(400, "unknown_parameter",
-                   fmt::format("there is no parameter {} here{}{}", csv::in_quotes(name),
-                               names.size() == 0 ? "" : "; there are: ", fmt::join(names, ", ")),
+                   fmt::format("there is no parameter {} on this route{}{}", csv::in_quotes(name),
+                               names.size() == 0 ? "" : "; it accepts: ", fmt::join(names, ", ")),
                    name);
   }
   return {};
@@ -118,7 +118,7 @@ Checked<const MeterConfig*> meter_of(const SiteConfig& site, const std::string& 
   if (const auto index = site.meter_index(id)) return &site.meters[*index];
   if (const MeterConfig* const sensor = site.find_sensor(id)) return sensor;
   return refusal(404, "not_found",
-                 fmt::format("site '{}' has no meter {}; GET /api/v1/meters lists those it has",
+                 fmt::format("site '{}' has no meter {}; GET /api/v1/meters lists the meters",
                              site.id, csv::in_quotes(id)),
                  "meter");
 }

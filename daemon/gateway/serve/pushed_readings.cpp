@@ -47,8 +47,7 @@ bool is_nested_deeper(std::string_view json, int depth_max) {
 }
 
 tl::unexpected<http::Response> malformed(std::string_view what, std::string_view field) {
-  return refusal(400, "malformed", fmt::format("{}; the body is JSON such as {}", what, kExample),
-                 field);
+  return refusal(400, "malformed", fmt::format("{}; send JSON such as {}", what, kExample), field);
 }
 
 /// The text of a key, or nothing where it is absent or none.
@@ -64,8 +63,7 @@ Checked<const MeterConfig*> pushed_meter(const nlohmann::json& body, const SiteC
   const auto meter = meter_of(site, *id);
   if (!meter || (*meter)->source == MeterSource::http) return meter;
   return refusal(409, "not_possible",
-                 fmt::format("meter '{}' has source = \"{}\": its readings come from there and are "
-                             "not taken from others",
+                 fmt::format("meter '{}' has source = \"{}\", so its readings cannot be pushed",
                              *id, name_of((*meter)->source)),
                  "meter");
 }
@@ -84,8 +82,8 @@ Checked<PushedUnit> unit_of(const nlohmann::json& body, const MeterConfig& meter
       return PushedUnit{.quantity = quantity};
     }
     return refusal(400, "invalid_value",
-                   fmt::format("unit {} is none of the weather's; use {}", csv::in_quotes(*unit),
-                               weather::quantity_units()),
+                   fmt::format("unit {} is not one of the weather units; use {}",
+                               csv::in_quotes(*unit), weather::quantity_units()),
                    "unit");
   }
   if (!unit) return malformed("'unit' is needed, such as kWh", "unit");
@@ -103,16 +101,16 @@ Checked<std::optional<Correction>> correction_in(const nlohmann::json& body,
   };
   if (!body.contains("reason")) {
     if (!body.contains("author")) return std::optional<Correction>{};
-    return refusal(400, "invalid_value", "'author' goes with a 'reason'", "author");
+    return refusal(400, "invalid_value", "'author' needs a 'reason'", "author");
   }
   if (!is_text("reason")) {
     return refusal(400, "invalid_value",
-                   "'reason' is empty; say why the stored readings are put right, for those who "
-                   "find them later",
+                   "'reason' is empty; say why the stored readings are corrected, so that others "
+                   "can understand it later",
                    "reason");
   }
   if (body.contains("author") && !is_text("author")) {
-    return refusal(400, "invalid_value", "'author' is empty; say who puts them right", "author");
+    return refusal(400, "invalid_value", "'author' is empty; say who corrects them", "author");
   }
   system::Sha256 hash;
   hash.add(bytes);
@@ -134,10 +132,10 @@ class Elements {
 
   [[nodiscard]] Checked<Reading> read(const nlohmann::json& element, std::size_t index) const {
     const std::string place = fmt::format("readings[{}]", index);
-    if (!element.is_object()) return malformed(place + " is no object", place);
+    if (!element.is_object()) return malformed(place + " is not an object", place);
     for (const auto& [key, value] : element.items()) {
       if (key != "time" && key != "value") {
-        return malformed(fmt::format("{} has {}, which is not known", place, csv::in_quotes(key)),
+        return malformed(fmt::format("{} has the unknown key {}", place, csv::in_quotes(key)),
                          place);
       }
     }
@@ -169,14 +167,14 @@ class Elements {
     if (!text || !stamp) {
       return refusal(400, "invalid_value",
                      fmt::format("{} is {}; write a time such as 2026-03-01T00:00:00Z", place,
-                                 text ? csv::in_quotes(*text) : "no text"),
+                                 text ? csv::in_quotes(*text) : "not a text"),
                      place);
     }
     const seconds interval = meter_.meter.interval;
     const Instant start = is_end_stamped_ ? *stamp - interval : *stamp;
     if ((start.time_since_epoch() - meter_.meter.phase) % interval != seconds{0}) {
       return refusal(400, "invalid_value",
-                     fmt::format("{} is {}, which is no border of the meter's intervals of {} s",
+                     fmt::format("{} is {}, which is not a boundary of the meter's {} s intervals",
                                  place, csv::in_quotes(*text), interval.count()),
                      place);
     }
@@ -189,14 +187,13 @@ class Elements {
           place);
     }
     if (start < now_ - kOldest) {
-      return refusal(
-          400, "invalid_value",
-          fmt::format("{} is {}, more than {} days ago; {}", place, csv::in_quotes(*text),
-                      kOldest.count(),
-                      unit_.quantity == nullptr
-                          ? "readings from before are imported: recald import"
-                          : "weather from before belongs in the file that [weather] file names"),
-          place);
+      return refusal(400, "invalid_value",
+                     fmt::format("{} is {}, more than {} days ago; {}", place,
+                                 csv::in_quotes(*text), kOldest.count(),
+                                 unit_.quantity == nullptr
+                                     ? "use recald import for older readings"
+                                     : "older weather belongs in the file named by [weather] file"),
+                     place);
     }
     return start;
   }
@@ -209,7 +206,7 @@ class Elements {
     }
     if (value == element.end() || !value->is_number()) {
       return refusal(400, "invalid_value",
-                     place + " is no number; write null for an interval without one", place);
+                     place + " is not a number; write null for an interval without a value", place);
     }
     const double number = value->get<double>();
     if (!(std::abs(number) <= kValueMax)) {
@@ -235,13 +232,13 @@ std::string PushedReadings::stored_id() const {
 
 Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& site, Instant now) {
   if (is_nested_deeper(body, kDepthMax)) {
-    return malformed(fmt::format("the body is nested deeper than {} levels", kDepthMax), "body");
+    return malformed(fmt::format("the body has more than {} levels of nesting", kDepthMax), "body");
   }
   const auto json = nlohmann::json::parse(body, nullptr, false);
-  if (!json.is_object()) return malformed("the body is no JSON object", "body");
+  if (!json.is_object()) return malformed("the body is not a JSON object", "body");
   for (const auto& [key, value] : json.items()) {
     if (std::ranges::find(kKeys, key) == kKeys.end()) {
-      return malformed(fmt::format("{} is not known here", csv::in_quotes(key)), key);
+      return malformed(fmt::format("{} is not a known key", csv::in_quotes(key)), key);
     }
   }
   const auto meter = pushed_meter(json, site);

@@ -12,18 +12,18 @@ std::vector<std::string> reasons_not_ready(const GatewayStatus& status) {
   std::vector<std::string> reasons;
   if (!status.clock_ok) {
     reasons.emplace_back(
-        "the system clock is not set yet; readings are held until it is, since they cannot be "
+        "the system clock is not set yet; readings are held until it is, because they cannot be "
         "stamped");
   }
   if (!status.no_store.empty()) {
-    reasons.push_back(fmt::format(
-        "the store cannot be opened: {}; readings are kept in memory, and are lost if recald ends "
-        "before it can be",
-        status.no_store));
+    reasons.push_back(
+        fmt::format("the store cannot be opened: {}; readings are kept in memory, and are lost if "
+                    "recald ends before the store opens",
+                    status.no_store));
   }
   if (status.store.is_degraded) {
     reasons.push_back(
-        fmt::format("the store refuses: {}; {} intervals wait for it and {} were given up",
+        fmt::format("the store refuses writes: {}; {} intervals are waiting and {} were dropped",
                     status.store.why, status.waiting_intervals, status.store.lost_intervals));
   }
   return reasons;

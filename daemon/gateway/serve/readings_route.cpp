@@ -18,7 +18,7 @@ std::string why_doubted(const metering::Reading& reading, const metering::Meter&
   const std::string value_kW = number_text(reading.mean_kW, 6);
   if (metering::has(reading.reasons, metering::Reason::negative)) {
     return fmt::format(
-        "{} kW is negative, and the meter has no negative_is_valid = true; check the sign",
+        "{} kW is negative, but the meter does not have negative_is_valid = true; check the sign",
         value_kW);
   }
   return fmt::format("{} kW is more than {} times rated_kW = {}; check the unit, or rated_kW",
@@ -44,25 +44,27 @@ nlohmann::ordered_json suspect_json(const PushedReadings& pushed,
 http::Response post_readings(const Served& served, const http::Request& request) {
   if (const auto checked = has_only(request, {}); !checked) return checked.error();
   if (!served.no_store.empty()) {
-    return not_taken("nothing was stored, send it again: the store cannot be opened: " +
+    return not_taken("nothing was stored, send the readings again: the store cannot be opened: " +
                      served.no_store);
   }
   if (!is_plausible_time(served.now())) {
-    return http::error_response(503, "clock_not_set",
-                                "the clock here has not been set yet, send it again later");
+    return http::error_response(
+        503, "clock_not_set",
+        "the daemon's clock has not been set yet; send the readings again later");
   }
   auto pushed = parse_pushed(request.body, served.site, served.now());
   if (!pushed) return pushed.error();
   const std::string& id = pushed->meter->meter.id;
   if (!served.take_readings) {
     return http::error_response(
-        409, "not_possible", fmt::format("no readings of meter '{}' are taken here", id), "meter");
+        409, "not_possible", fmt::format("this daemon does not accept readings of meter '{}'", id),
+        "meter");
   }
   const auto suspect = suspect_json(*pushed, served.site.closing.closing.validation);
   const auto counts =
       served.take_readings(pushed->stored_id(), std::move(pushed->readings), pushed->correction);
   if (!counts) {
-    return not_taken("nothing was stored, send it again: " + counts.error().message);
+    return not_taken("nothing was stored, send the readings again: " + counts.error().message);
   }
   auto conflicts = nlohmann::ordered_json::array();
   for (const metering::Reading& reading : counts->conflicts) {

@@ -76,7 +76,7 @@ constexpr std::array kOtherRoutes{
 
 Response not_allowed(const Route& route) {
   Response response =
-      http::error_response(405, "method_not_allowed", "this method does nothing here");
+      http::error_response(405, "method_not_allowed", "this route does not support that method");
   std::vector<std::string_view> allowed;
   if (route.get != nullptr) allowed.emplace_back("GET, HEAD");
   if (route.post != nullptr) allowed.emplace_back("POST");
@@ -97,7 +97,7 @@ Response take(const Route& route, const Served& served, const Request& request,
 Response nothing_here(const Request& request) {
   return http::error_response(
       404, "not_found",
-      fmt::format("there is nothing at {}; daemon/gateway/serve/README.md lists what there is",
+      fmt::format("there is nothing at {}; daemon/gateway/serve/README.md lists the routes",
                   request.path),
       "path");
 }

@@ -86,7 +86,7 @@ Cell coverage_cell(const MeterStatus* status) {
 
 void write_meters(Html& html, const Served& served, const GatewayStatus& status) {
   Table table{"Meters"};
-  table.columns({"Meter", "State", "Load", "Last answer", "Last interval", "This month measured"});
+  table.columns({"Meter", "State", "Load", "Last answer", "Last interval", "Measured this month"});
   for (const auto* const list : {&served.site.meters, &served.site.sensors}) {
     for (const MeterConfig& config : *list) {
       const auto found = std::ranges::find(status.meters, config.meter.id, &MeterStatus::id);
@@ -110,14 +110,13 @@ void write_verdict(Html& html, const Served& served, const GatewayStatus& status
   const auto silent = std::ranges::count_if(status.meters, [](const MeterStatus& meter) {
     return meter.poll && meter.poll->state != UnitState::up;
   });
-  html.markup("<section aria-labelledby=\"verdict\"><h2 id=\"verdict\">Is it well?</h2><ul>");
-  html.element("li", fmt::format("✔ The daemon runs since {}.",
+  html.markup("<section aria-labelledby=\"verdict\"><h2 id=\"verdict\">Health</h2><ul>");
+  html.element("li", fmt::format("✔ The daemon has been running since {}.",
                                  site_time_text(served.calendar, served.started)));
   for (const std::string& reason : reasons) html.element("li", "✖ Not ready: " + reason, "bad");
   if (status.clock_ok) html.element("li", "✔ The clock is set.");
   if (!status.store.is_degraded) {
-    html.element("li", fmt::format("✔ The store takes what it is given ({} commits).",
-                                   status.store.commits));
+    html.element("li", fmt::format("✔ The store accepts data ({} commits).", status.store.commits));
   }
   for (const std::string& reason : reasons_to_look(status)) {
     html.element("li", "▲ " + reason + ".", "warn");
@@ -125,9 +124,10 @@ void write_verdict(Html& html, const Served& served, const GatewayStatus& status
   if (silent == 0) {
     html.element("li", fmt::format("✔ All {} polled meters answer.", polled));
   } else {
-    html.element(
-        "li", fmt::format("▲ {} of {} polled meters do not answer, or not always.", silent, polled),
-        "warn");
+    html.element("li",
+                 fmt::format("▲ {} of {} polled meters answer only sometimes or not at all.",
+                             silent, polled),
+                 "warn");
   }
   html.markup("</ul></section>");
 }
@@ -143,7 +143,7 @@ void write_jobs(Html& html, const Served& served, JobKind kind, std::string capt
   const auto jobs = served.store.jobs(kind, kJobsShown);
   if (!jobs || jobs->empty()) return;
   Table table{std::move(caption)};
-  table.columns({"Number", "State", "Asked", "By", "What was said"});
+  table.columns({"Number", "State", "Requested", "By", "Message"});
   for (const StoredJob& job : *jobs) {
     table.row({{std::to_string(job.number)},
                job_state_cell(job),
@@ -161,7 +161,7 @@ void write_alarms(Html& html, const Served& served) {
   const auto& drift = (*job)->result.drift;
   if (!drift || drift->alarms.empty()) return;
   Table table{"What has changed"};
-  table.columns({"Since", "What", "In words"});
+  table.columns({"Since", "What", "Details"});
   for (const DriftAlarm& alarm : drift->alarms) {
     table.row({{alarm.since}, {alarm.output}, {alarm.sentence}});
   }
@@ -187,7 +187,7 @@ void write_events(Html& html, const Served& served) {
     return;
   }
   Table table{"Last events"};
-  table.columns({"When", "How grave", "What"});
+  table.columns({"When", "Severity", "What"});
   for (const StoreEvent& event : *events) {
     table.row({{site_time_text(served.calendar, event.time)},
                severity_cell(event.severity),
@@ -235,8 +235,8 @@ http::Response status_page(const Served& served) {
   html.element("title", title + " – recald").markup("</head><body><main>");
   html.element("h1", title);
   html.element("p",
-               fmt::format("As of {}, times of {}.", site_time_text(served.calendar, served.now()),
-                           served.site.timezone),
+               fmt::format("As of {}; times are in {}.",
+                           site_time_text(served.calendar, served.now()), served.site.timezone),
                "muted");
   write_verdict(html, served, status);
   write_meters(html, served, status);

@@ -89,7 +89,7 @@ Result<CounterComparison> compare_with_counter(Store& store, const StoredMeter& 
     const double tolerance_kWh = 2.0 * resolution_kWh + kShareOff * std::abs(counted_kWh) + 1e-6;
     if (std::abs(sum.energy_kWh - counted_kWh) <= tolerance_kWh) continue;
     comparison.problems.push_back(fmt::format(
-        "meter '{}', {} UTC: its intervals sum to {:.2f} kWh, its counter rose by {:.2f} kWh",
+        "meter '{}', {} UTC: its intervals sum to {:.2f} kWh, but its counter rose by {:.2f} kWh",
         meter.meter.id, metering::to_string(day).substr(0, 10), sum.energy_kWh, counted_kWh));
   }
   return comparison;

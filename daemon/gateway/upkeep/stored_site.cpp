@@ -14,19 +14,21 @@ Result<std::vector<StoredMeter>> stored_meters(Store& store, const SiteConfig& s
     if (*number) meters.push_back({**number, config.meter});
   }
   if (meters.empty()) {
-    return failure(ErrorCode::not_found,
-                   fmt::format("the store '{}' knows no meter of the site; recald run or recald "
-                               "import fill it",
-                               site.store.file.string()));
+    return failure(
+        ErrorCode::not_found,
+        fmt::format(
+            "the store '{}' has no meter of the site; fill it with recald run or recald import",
+            site.store.file.string()));
   }
   return meters;
 }
 
 Result<std::unique_ptr<Store>> open_to_read(const SiteConfig& site) {
   if (std::error_code ignored; !std::filesystem::exists(site.store.file, ignored)) {
-    return failure(ErrorCode::not_found,
-                   fmt::format("there is no store '{}' yet; recald run or recald import make one",
-                               site.store.file.string()));
+    return failure(
+        ErrorCode::not_found,
+        fmt::format("there is no store '{}' yet; create it with recald run or recald import",
+                    site.store.file.string()));
   }
   return stores::open_to_read(site.store.file);
 }

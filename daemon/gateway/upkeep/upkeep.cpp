@@ -92,9 +92,9 @@ void Upkeep::end_backup(const Result<std::string>& damage, Instant now) {
   if (damage && !damage->empty()) {
     damaged_on_ = calendar_.local_time(now).date;
     tell(now, backup_failure_, "store_damaged",
-         "the store is damaged, as its copy shows (" + *damage +
-             "); the copy was thrown away, and the backups from before stay. Restart recald: it "
-             "recovers what can be read",
+         "the store is damaged, as a check of its copy shows (" + *damage +
+             "); the copy was deleted, and earlier backups are kept. Restart recald: it recovers "
+             "the rows that can be read",
          Severity::error);
     return;
   }

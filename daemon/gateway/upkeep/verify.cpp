@@ -86,8 +86,9 @@ Result<void> check_meter(Store& store, const SiteConfig& site,
 }  // namespace
 
 std::string damaged_file(std::string_view damage) {
-  return fmt::format("the file is damaged: {}; the daemon recovers what can be read when it starts",
-                     damage);
+  return fmt::format(
+      "the file is damaged: {}; the daemon recovers the rows that can be read when it starts",
+      damage);
 }
 
 Result<Verification> verify_store(Store& store, const SiteConfig& site,

@@ -208,7 +208,7 @@ TEST(MeterTrack, EventsAreSentences) {
   EXPECT_EQ(meter.events[1].subject, "main");
   EXPECT_EQ(meter.events[1].severity, Severity::warning);
   EXPECT_THAT(meter.events[1].text,
-              HasSubstr("fell from 5012.0 to 13.0 kWh and stays there: it was reset"));
+              HasSubstr("fell from 5012.0 to 13.0 kWh and stays there, so it was reset"));
   for (int minute = 21; minute <= 30; ++minute) meter.read(minutes{minute}, 90'000.0 + minute);
   ASSERT_THAT(meter.events, SizeIs(3));
   EXPECT_EQ(meter.events[2].kind, "counter_jump");
@@ -349,7 +349,8 @@ TEST(MeterTrack, ACounterThatStandsUnderLoadIsDoubted) {
   }
   ASSERT_THAT(meter.events, SizeIs(1));
   EXPECT_EQ(meter.events[0].kind, "counter_stuck");
-  EXPECT_THAT(meter.events[0].text, HasSubstr("its counter stands while its power shows 60.0 kW"));
+  EXPECT_THAT(meter.events[0].text,
+              HasSubstr("its counter does not move while its power is 60.0 kW"));
   for (const int quarter : {0, 1}) EXPECT_EQ(meter.quarter(quarter).validity, Validity::ok);
   for (int quarter = 2; quarter < 8; ++quarter) {
     EXPECT_EQ(meter.quarter(quarter).validity, Validity::suspect) << quarter;
@@ -365,7 +366,7 @@ TEST(MeterTrack, APowerThatDiffersFromItsCounterIsTold) {
   }
   ASSERT_THAT(meter.events, SizeIs(1));
   EXPECT_EQ(meter.events[0].kind, "power_differs");
-  EXPECT_THAT(meter.events[0].text, HasSubstr("adds up to 1.1 times what its counter counted"));
+  EXPECT_THAT(meter.events[0].text, HasSubstr("adds up to 1.1 times the energy on its counter"));
   EXPECT_EQ(meter.quarter(95).validity, Validity::ok) << "energy is the counter's";
 }
 

@@ -379,7 +379,7 @@ TEST_F(GatewayTest, AStateThatIsGoneIsToldOf) {
   const auto events = disk_.events(10).value();
   ASSERT_THAT(events, Contains(Field(&StoreEvent::kind, "counter_state_lost")).Times(1));
   EXPECT_EQ(events.back().subject, "main");
-  EXPECT_THAT(events.back().text, ::testing::HasSubstr("is not in the store any more"));
+  EXPECT_THAT(events.back().text, ::testing::HasSubstr("is no longer in the store"));
 }
 
 // Readings from before the first poll, as an import brings them, have no state and never had one.

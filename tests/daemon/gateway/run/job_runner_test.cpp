@@ -219,7 +219,7 @@ TEST_F(JobRunnerTest, AfterThreeKillsAJobIsGivenUp) {
   }
   loop_->run_for(hours{1});
   EXPECT_EQ(stored(number).state, JobState::failed);
-  EXPECT_THAT(stored(number).message, HasSubstr("was ended 3 times while it ran"));
+  EXPECT_THAT(stored(number).message, HasSubstr("was killed 3 times while the job ran"));
   EXPECT_EQ(told_.back(), "1 failed");
   EXPECT_EQ(runs_, 0);
 }
@@ -262,7 +262,7 @@ TEST_F(JobRunnerTest, OfAKindOneWaitsAtMost) {
   loop_->run_for(hours{1});
   EXPECT_EQ(stored(first).state, JobState::done);
   EXPECT_EQ(stored(second).state, JobState::cancelled);
-  EXPECT_THAT(stored(second).message, HasSubstr("waits already"));
+  EXPECT_THAT(stored(second).message, HasSubstr("is still waiting"));
 }
 
 TEST_F(JobRunnerTest, AFullDiskDelaysAResultAndLosesNone) {

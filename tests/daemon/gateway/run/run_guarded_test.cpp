@@ -46,7 +46,7 @@ TEST_F(RunGuarded, WhatACallOrACoroutineThrowsIsAnEventAndTheLoopGoesOn) {
   run();
   EXPECT_TRUE(has_gone_on);
   ASSERT_THAT(told_, SizeIs(3));
-  const char* words[] = {"a call's word", "a coroutine's word", "without a word"};
+  const char* words[] = {"a call's word", "a coroutine's word", "no description"};
   for (std::size_t i = 0; i < told_.size(); ++i) {
     EXPECT_EQ(told_[i].kind, "unforeseen");
     EXPECT_EQ(told_[i].severity, Severity::error);

@@ -232,7 +232,8 @@ TEST_F(Jobs, WithoutAStoreOnDiskNoneIsBegun) {
     const http::Response response = post(path);
     EXPECT_EQ(response.status, 503) << path;
     EXPECT_EQ(response.header("Retry-After"), "60");
-    EXPECT_THAT(response.body, HasSubstr("is begun, ask again: the store cannot be opened"));
+    EXPECT_THAT(response.body,
+                HasSubstr("was started, try again later: the store cannot be opened"));
   }
   EXPECT_THAT(disk_.unfinished_jobs().value(), SizeIs(0));
 }

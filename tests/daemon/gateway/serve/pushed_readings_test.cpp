@@ -129,8 +129,9 @@ TEST_F(PushedMeterSite, WhatTheMeterCannotReadIsSuspect) {
   EXPECT_EQ(said["suspect"][0]["start"], "2024-03-30T10:15:00Z");
   EXPECT_EQ(said["suspect"][0]["why"],
             "602 kW is more than 1.2 times rated_kW = 500; check the unit, or rated_kW");
-  EXPECT_EQ(said["suspect"][1]["why"],
-            "-2 kW is negative, and the meter has no negative_is_valid = true; check the sign");
+  EXPECT_EQ(
+      said["suspect"][1]["why"],
+      "-2 kW is negative, but the meter does not have negative_is_valid = true; check the sign");
   const Json stored = intervals();
   EXPECT_EQ(stored[0]["validity"], "ok");
   EXPECT_EQ(stored[1]["validity"], "suspect");
@@ -202,7 +203,7 @@ TEST_F(PushedMeterSite, ADeeplyNestedBodyIsRefusedBeforeItIsRead) {
   const http::Response response = post(deep);
   EXPECT_LT(recald::testing::allocation_count() - before, 1000);
   EXPECT_EQ(response.status, 400);
-  EXPECT_THAT(response.body, HasSubstr("nested deeper than"));
+  EXPECT_THAT(response.body, HasSubstr("levels of nesting"));
   EXPECT_EQ(in_short(post(R"({"meter":"chw","unit":")" + std::string(64, '[') + R"("})")),
             "400 invalid_value unit");  // within a text they are text
   const http::Response job =
@@ -279,8 +280,8 @@ TEST_F(PushedMeterSite, WhileReadingsAreOnlyInMemoryTheyAreToBeSentAgain) {
   const http::Response response = post(body_of(kStart - hours{3}, 4, 5.0));
   EXPECT_EQ(response.status, 503);
   EXPECT_EQ(response.header("Retry-After"), "60");
-  EXPECT_THAT(response.body, HasSubstr("nothing was stored, send it again: the store cannot be "
-                                       "opened: database or disk is full"));
+  EXPECT_THAT(response.body, HasSubstr("nothing was stored, send the readings again: the store "
+                                       "cannot be opened: database or disk is full"));
   EXPECT_THAT(intervals(), IsEmpty());
 }
 

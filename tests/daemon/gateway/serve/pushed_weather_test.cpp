@@ -122,7 +122,7 @@ TEST_F(PushedWeather, SilenceIsSeenEverywhere) {
   EXPECT_EQ(ready["status"], "ready");
   ASSERT_THAT(ready["look_at"], SizeIs(1));
   EXPECT_EQ(ready["look_at"][0],
-            "weather sensor 'roof' has given no dry_bulb_C since 2024-03-30T10:15:00Z");
+            "weather sensor 'roof' has sent no dry_bulb_C since 2024-03-30T10:15:00Z");
   EXPECT_THAT(get("/").body, AllOf(HasSubstr("has given no dry_bulb_C since"), HasSubstr("roof"),
                                    HasSubstr("7.5 degC")));
   EXPECT_EQ(get_json("/api/v1/meters/roof")["weather"]["dry_bulb_C"]["silent_since"],
@@ -150,7 +150,7 @@ TEST_F(PushedWeather, WhatIsTooOldBelongsInAFile) {
   const http::Response response =
       post(body_of("degC", R"({"time":"2022-03-30T10:00:00Z","value":7.5})"));
   EXPECT_EQ(in_short(response), "400 invalid_value readings[0].time");
-  EXPECT_THAT(response.body, AllOf(HasSubstr("belongs in the file that [weather] file names"),
+  EXPECT_THAT(response.body, AllOf(HasSubstr("belongs in the file named by [weather] file"),
                                    Not(HasSubstr("recald import"))));
 }
 

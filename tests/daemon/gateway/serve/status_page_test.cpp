@@ -26,7 +26,7 @@ TEST_F(Page, SaysHowItIs) {
   EXPECT_THAT(
       page.body,
       AllOf(StartsWith("<!doctype html><html lang=\"en\">"), HasSubstr("name=\"viewport\""),
-            HasSubstr("As of 2024-03-30 09:00 −05:00, times of America/Chicago."),
+            HasSubstr("As of 2024-03-30 09:00 −05:00; times are in America/Chicago."),
             HasSubstr("✔ All 2 polled meters answer."), HasSubstr("<td class=\"good\">✔ up</td>"),
             HasSubstr("30 s ago"), HasSubstr("2024-03-30 08:45 −05:00 ok")));
 }
@@ -50,8 +50,8 @@ TEST_F(Page, WhatIsWrongStandsAtTheTop) {
   store_.refuses = true;
   loop_.run_for(hours{1});
   const std::string page = get("/").body;
-  EXPECT_THAT(page, HasSubstr("▲ 1 of 2 polled meters do not answer"));
-  EXPECT_THAT(page, HasSubstr("✖ Not ready: the store refuses: database or disk is full; "));
+  EXPECT_THAT(page, HasSubstr("▲ 1 of 2 polled meters answer only sometimes or not at all"));
+  EXPECT_THAT(page, HasSubstr("✖ Not ready: the store refuses writes: database or disk is full; "));
   EXPECT_THAT(page, HasSubstr("✖ down"));
   EXPECT_THAT(page, HasSubstr("The events cannot be read"));
 }
@@ -95,7 +95,7 @@ TEST_F(Readiness, AliveIsNotReady) {
   EXPECT_EQ(get("/healthz").status, 200);
   const http::Response response = get("/readyz");
   EXPECT_EQ(response.status, 503);
-  EXPECT_THAT(response.body, HasSubstr("the store refuses: database or disk is full"));
+  EXPECT_THAT(response.body, HasSubstr("the store refuses writes: database or disk is full"));
   store_.refuses = false;
   loop_.run_for(minutes{1});
   EXPECT_EQ(get("/readyz").status, 200);
@@ -133,11 +133,11 @@ TEST_F(Readiness, ABusyDeviceAndOneThatItsGatewayDoesNotReachDeserveALook) {
   const Json look_at = get_json("/readyz")["look_at"];
   ASSERT_EQ(look_at.size(), 2u) << look_at;
   EXPECT_THAT(look_at[0].get<std::string>(),
-              StartsWith("meter 'main' is busy whenever it is asked for registers 0 to 3 with "
+              StartsWith("meter 'main' has been busy at every request for registers 0 to 3 with "
                          "exception 6 (device busy) since 2024-03-30T12:00:00Z"));
   EXPECT_THAT(look_at[1].get<std::string>(),
-              StartsWith("meter 'cooling' is not reached by its gateway, which answers for "
-                         "registers 0 to 3 with exception 11 ("));
+              StartsWith("meter 'cooling' cannot be reached by its gateway, which answers requests "
+                         "for registers 0 to 3 with exception 11 ("));
   EXPECT_EQ(get_json("/api/v1/meters/main")["state"], "degraded");
   EXPECT_EQ(get_json("/api/v1/meters/cooling")["state"], "down");
 }

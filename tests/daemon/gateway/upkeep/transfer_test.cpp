@@ -121,7 +121,7 @@ TEST_F(Transfer, AnImportIsAnEditAndClosesTheMonthAgain) {
       "timestamp,meter,value,unit\n" + std::string{kScaled} + ",main,77.5,kW\n";
   const Outcome imported = import(text);
   ASSERT_EQ(imported.exit_code, 0) << imported.err;
-  EXPECT_THAT(imported.out, HasSubstr("1 readings: 1 taken"));
+  EXPECT_THAT(imported.out, HasSubstr("1 readings: 1 stored"));
   const StoredInterval now = stored(kScaled);
   EXPECT_EQ(now.reading.mean_kW, 77.5);
   EXPECT_EQ(now.reading.validity, metering::Validity::ok);
@@ -137,7 +137,7 @@ TEST_F(Transfer, AnImportIsAnEditAndClosesTheMonthAgain) {
     EXPECT_EQ(opened.months(0)->at(1).figure.revision, 1);
   }
   // Once more: nothing new, no second edit.
-  EXPECT_THAT(import(text).out, HasSubstr("0 taken, 1 known already"));
+  EXPECT_THAT(import(text).out, HasSubstr("0 stored, 1 already known"));
   auto opened = store();
   auto edits = opened.database().prepare("SELECT count(*) FROM edit").value();
   ASSERT_TRUE(edits.step().value());
@@ -149,10 +149,11 @@ TEST_F(Transfer, GoodReadingsStayUnlessSuperseded) {
   const double before = stored(kMeasured).reading.mean_kW;
   const std::string text =
       "timestamp,meter,value,unit\n" + std::string{kMeasured} + ",main,1.25,kW\n";
-  EXPECT_THAT(import(text).out, HasSubstr("0 taken, 0 known already, 0 known better, 1 in conf"));
+  EXPECT_THAT(import(text).out,
+              HasSubstr("0 stored, 0 already known, 0 weaker than the stored ones, 1 in conf"));
   EXPECT_EQ(stored(kMeasured).reading.mean_kW, before);
   EXPECT_THAT(import(text, {"--supersede", "--dry-run"}).out,
-              HasSubstr("would be so: 1 readings: 1 taken"));
+              HasSubstr("dry run: 1 readings: 1 would be stored"));
   EXPECT_EQ(stored(kMeasured).reading.mean_kW, before);
   EXPECT_THAT(import(text, {"--supersede"}).out, HasSubstr("1 taken"));
   EXPECT_EQ(stored(kMeasured).reading.mean_kW, 1.25);
@@ -199,7 +200,8 @@ TEST_F(Transfer, AFileWhoseHeaderIsDamagedIsToldSo) {
   const Outcome verified = run({"verify", site()});
   EXPECT_EQ(verified.exit_code, 1);
   EXPECT_THAT(verified.err, HasSubstr("the file is damaged: its header says schema version 7"));
-  EXPECT_THAT(verified.err, HasSubstr("the daemon recovers what can be read when it starts"));
+  EXPECT_THAT(verified.err,
+              HasSubstr("the daemon recovers the rows that can be read when it starts"));
 }
 
 TEST_F(Transfer, NothingIsImportedWithoutReasonOrBesideADaemon) {
@@ -211,7 +213,7 @@ TEST_F(Transfer, NothingIsImportedWithoutReasonOrBesideADaemon) {
   const Outcome beside = run({"import", site(), csv(), "--reason", "r"});
   EXPECT_EQ(beside.exit_code, 1);
   EXPECT_THAT(beside.err, HasSubstr("is held by another recald"));
-  EXPECT_THAT(beside.err, HasSubstr("end the daemon, import, and start it again"));
+  EXPECT_THAT(beside.err, HasSubstr("stop the daemon, import, and start it again"));
 }
 
 TEST_F(Transfer, BadLinesAreToldAndKeptOut) {
@@ -242,12 +244,12 @@ constexpr Fault kFaults[] = {
     {"MonthGap", "UPDATE month SET revision = 1 WHERE meter = 1 AND month = '2024-03'",
      "meter 'cooling': the revisions of month 2024-03 have a gap"},
     {"Orphan", "PRAGMA foreign_keys = OFF; INSERT INTO sample VALUES (9, 0, 'energy', 1.0, NULL)",
-     "table 'sample' has 1 rows that refer to a row that is not there"},
+     "table 'sample' has 1 rows that refer to a missing row"},
     {"OffGrid",
      "UPDATE interval SET t_start = t_start + 60 WHERE meter = 0 AND t_start = 1710072000",
-     "meter 'main' has 1 intervals off its grid"},
+     "meter 'main' has 1 intervals that are not on its interval grid"},
     {"State", "UPDATE register SET state = '{}' WHERE meter = 0",
-     "meter 'main': the store's state of a register cannot be read"},
+     "meter 'main': the stored state of a register cannot be read"},
     {"Sum", "UPDATE interval SET mean_kW = mean_kW + 20 WHERE meter = 0 AND t_start = 1710072000",
      "meter 'main', 2024-03-10 UTC: its intervals sum to"},
     {"Month", "UPDATE month SET daily_average_kWh = 1 WHERE meter = 0 AND month = '2024-03'",
