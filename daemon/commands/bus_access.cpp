@@ -24,8 +24,8 @@ std::optional<std::string> why_bus_is_taken(const BusConfig& bus) {
   if (holders.empty()) return {};
   const system::FileHolder& holder = holders.front();
   return fmt::format(
-      "serial port {} of bus '{}' is open in process {} ({}); two programs on one line garble each "
-      "other's frames, so stop it first",
+      "serial port {} of bus '{}' is open in process {} ({}); two programs on one serial line "
+      "corrupt each other's frames, so stop it first",
       serial->device, bus.name, holder.process, holder.name);
 }
 

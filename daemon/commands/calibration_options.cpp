@@ -38,7 +38,7 @@ int gate_verdict(bool converged, const CalibrateArguments& arguments,
   if (converged) return kSuccess;
   if (folder != arguments.out) return console.fail(kept_sentence(folder));
   if (arguments.iterations) return kSuccess;
-  return console.fail("the chains have not converged; these figures are not to be relied on");
+  return console.fail("the chains have not converged; do not rely on these figures");
 }
 
 }  // namespace recald::daemon

@@ -33,7 +33,7 @@ void print_meters(const SiteConfig& site, const Console& console) {
       continue;
     }
     if (config.source == MeterSource::http) {
-      console.out << fmt::format("  meter {:<16} {:<14} as it is sent, interval {}\n", meter.id,
+      console.out << fmt::format("  meter {:<16} {:<14} pushed, interval {}\n", meter.id,
                                  metering::to_string(meter.utility),
                                  duration_words(meter.interval));
       continue;
@@ -47,7 +47,7 @@ void print_meters(const SiteConfig& site, const Console& console) {
         "  meter {:<16} {:<14} {} ('{}', {}-stamped, interval {})\n", meter.id,
         metering::to_string(meter.utility), config.file.string(), config.name_in_file,
         config.stamps == csv::Stamps::end ? "end" : "start",
-        config.interval ? duration_words(*config.interval) : "as the file shows");
+        config.interval ? duration_words(*config.interval) : "as in the file");
   }
 }
 
@@ -68,7 +68,7 @@ void print_sensors(const SiteConfig& site, const Console& console) {
                           sensor.live->bus, sensor.live->map.title, quantity_names(sensor),
                           duration_words(sensor.live->poll))
             : fmt::format(
-                  "as it is sent, interval {}{}; units {}", duration_words(sensor.meter.interval),
+                  "pushed, interval {}{}; units {}", duration_words(sensor.meter.interval),
                   sensor.values == weather::RecordedValues::instant ? ", values at the stamp" : "",
                   weather::quantity_units());
     console.out << fmt::format("  meter {:<16} {:<14} {}\n", sensor.meter.id, "weather", how);
@@ -229,8 +229,7 @@ int run_check(const CheckArguments& arguments, const Console& console) {
     };
     if (try_meters(*site, tell).empty()) {
       problems.push_back(
-          fmt::format("{}: no [[meter]] has source = \"modbus\", so there is none "
-                      "to try",
+          fmt::format("{}: no [[meter]] has source = \"modbus\", so there is no meter to try",
                       site->file.filename().string()));
     }
   }

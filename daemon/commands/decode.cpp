@@ -52,14 +52,14 @@ void compare(const modbus::FramedRequest& asked, Decoding& decoding) {
   const auto problem = [&](std::string sentence) { frame.problems.push_back(std::move(sentence)); };
   if (frame.framing == Framing::registers) {
     if (frame.registers.size() != asked.request.count) {
-      problem(fmt::format("the request asks for {} registers; these are {}", asked.request.count,
-                          frame.registers.size()));
+      problem(fmt::format("the request reads {} registers, but there are {} here",
+                          asked.request.count, frame.registers.size()));
     }
     return;
   }
   if (frame.framing != asked.framing) {
-    problem(fmt::format("the request is one of {} and the reply one of {}",
-                        modbus::to_string(asked.framing), modbus::to_string(frame.framing)));
+    problem(fmt::format("the request is {}, but the reply is {}", modbus::to_string(asked.framing),
+                        modbus::to_string(frame.framing)));
     return;
   }
   const auto reply = frame.framing == Framing::tcp
@@ -67,7 +67,7 @@ void compare(const modbus::FramedRequest& asked, Decoding& decoding) {
                          : check_rtu_reply(decoding.bytes, asked.request);
   const bool is_refusal = !reply && reply.error().fault == modbus::ReadFault::exception;
   if (!reply && !is_refusal && frame.problems.empty()) {
-    problem("this is no reply to the request: " + reply.error().what);
+    problem("this is not a reply to the request: " + reply.error().what);
   }
 }
 
@@ -75,7 +75,7 @@ void place_fields(Decoding& decoding) {
   FrameExplanation& frame = decoding.frame;
   if (frame.function && frame.problems.empty() &&
       *frame.function != static_cast<std::uint8_t>(decoding.map.function)) {
-    frame.problems.push_back(fmt::format("the frame has function {}; map '{}' is read with {}",
+    frame.problems.push_back(fmt::format("the frame has function {}, but map '{}' uses function {}",
                                          *frame.function, decoding.map.name,
                                          static_cast<int>(decoding.map.function)));
   }
@@ -111,9 +111,9 @@ Result<Decoding> understand(const DecodeArguments& arguments, modbus::RegisterMa
     const auto at = parse_address(arguments.at);
     if (!at) return tl::unexpected(at.error());
     if (decoding.address && *decoding.address != *at) {
-      return failure(
-          ErrorCode::invalid_value,
-          fmt::format("--at says {} and --request {}; give one of them", *at, *decoding.address));
+      return failure(ErrorCode::invalid_value,
+                     fmt::format("--at says {} but --request says {}; give only one of them", *at,
+                                 *decoding.address));
     }
     decoding.address = *at;
   }
@@ -175,13 +175,13 @@ void print_fields(const Decoding& decoding, const Console& console) {
   if (!decoding.address) {
     console.out
         << (map.sunspec_models.empty()
-                ? "  where the registers begin is not known: give --request or --at\n"
+                ? "  the address of the first register is unknown: give --request or --at\n"
                 : "  give --at: the first register, counted from the model's id register\n");
     return;
   }
   if (decoding.fields.empty()) {
     console.out << fmt::format(
-        "  none of its fields stands in registers @{} to @{}\n", *decoding.address,
+        "  registers @{} to @{} contain none of its fields\n", *decoding.address,
         *decoding.address + static_cast<int>(decoding.frame.registers.size()) - 1);
   }
   for (const FieldWords& found : decoding.fields) {

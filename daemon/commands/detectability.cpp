@@ -44,8 +44,8 @@ std::string detectability_json(const diagnosis::Detectability& seen,
 void print_words(const diagnosis::Detectability& seen, const diagnosis::SiteProblem& site,
                  const Console& console) {
   console.out << fmt::format(
-      "detectability d* = {:.3g}, on four-hour data\n"
-      "in units of {:g}, by which the scores of effects that are not there vary\n",
+      "detectability d* = {:.3g}, on four-hour data\nin units of {:g}, the spread of the scores of "
+      "absent effects\n",
       seen.d_star, diagnosis::null_score_spread);
   const auto grain = [&](const char* name, const diagnosis::Visibility& one) {
     console.out << fmt::format(
@@ -56,7 +56,7 @@ void print_words(const diagnosis::Detectability& seen, const diagnosis::SiteProb
   grain("months", seen.month);
   grain("days", seen.day);
   grain("four hours", seen.block);
-  console.out << "of each meter, over the months to fit:\n";
+  console.out << "change of each meter, over the months to fit:\n";
   for (std::size_t g = 0; g < site.meters.size(); ++g) {
     console.out << fmt::format("  {:<16} {:+.2f} % net, {:.2f} % moved\n", site.meters[g].id,
                                100.0 * seen.meters[g].net_share,

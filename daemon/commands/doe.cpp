@@ -35,7 +35,7 @@ std::string design_words(const DoeArguments& arguments, const doe::DesignPlan& p
   std::string text = fmt::format("{}: {} runs of {} parameters, {} outputs in {} months",
                                  arguments.out.string(), plan.theta.rows(), plan.parameters.size(),
                                  plan.output_names.size(), plan.months.size());
-  text += before == 0 ? ".\n" : fmt::format("; {} of them were there already.\n", before);
+  text += before == 0 ? ".\n" : fmt::format("; {} of them already existed.\n", before);
   for (const std::string& warning : warnings) text += "! " + warning + "\n";
   return text;
 }

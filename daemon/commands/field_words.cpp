@@ -17,8 +17,7 @@ std::string why_none(const RegisterField& field, modbus::ValueFault fault,
     const auto factor = std::ranges::find_if(
         others, [&](const FieldWords& other) { return other.field->name == *field.scale_factor; });
     if (factor == others.end()) {
-      return fmt::format("its power of ten, '{}', is not among these registers",
-                         *field.scale_factor);
+      return fmt::format("its power of ten, '{}', is not in these registers", *field.scale_factor);
     }
     if (!factor->value) {
       return fmt::format("its power of ten, '{}', has no value", *field.scale_factor);
@@ -32,11 +31,11 @@ std::string why_none(const RegisterField& field, modbus::ValueFault fault,
 std::string_view describe(modbus::ValueFault fault) {
   switch (fault) {
     case modbus::ValueFault::absent:
-      return "absent: the device says that it has no value";
+      return "absent: the device reports no value";
     case modbus::ValueFault::not_finite:
-      return "no number (NaN or infinity)";
+      return "not a number (NaN or infinity)";
     case modbus::ValueFault::not_bcd:
-      return "no decimal digits (a half byte above 9)";
+      return "not decimal digits (a half byte above 9)";
   }
   assert(false && "every fault has words");
   return "";

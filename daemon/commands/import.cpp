@@ -34,16 +34,17 @@ void print_issues(const ImportArguments& arguments, const csv::LineIssues& issue
 void print_words(const ImportOutcome& outcome, const ImportArguments& arguments,
                  const Console& console) {
   console.out << fmt::format(
-      "{}{} readings: {} taken, {} known already, {} known better, {} in conflict\n",
-      arguments.dry_run ? "would be so: " : "", outcome.file.readings, outcome.taken,
-      outcome.duplicates, outcome.weaker, outcome.conflicts);
+      "{}{} readings: {} {}, {} already known, {} weaker than the stored ones, {} in conflict\n",
+      arguments.dry_run ? "dry run: " : "", outcome.file.readings, outcome.taken,
+      arguments.dry_run ? "would be stored" : "stored", outcome.duplicates, outcome.weaker,
+      outcome.conflicts);
   if (outcome.conflicts > 0) {
-    console.err << "readings in conflict are as good as the stored ones and differ; --supersede "
-                   "takes the file's\n";
+    console.err << "readings in conflict differ from stored ones of equal quality; add --supersede "
+                   "to use those of the file\n";
   }
   if (!outcome.closed.empty()) {
-    console.out << fmt::format("{} months closed, {} of them again\n", outcome.closed.size(),
-                               outcome.reopened.size());
+    console.out << fmt::format("{} months closed, {} of them reopened ones\n",
+                               outcome.closed.size(), outcome.reopened.size());
   }
 }
 
@@ -64,14 +65,14 @@ nlohmann::ordered_json json_of(const ImportOutcome& outcome, bool dry_run) {
 int run_import(const ImportArguments& arguments, const Console& console) {
   if (arguments.reason.find_first_not_of(" \t") == std::string::npos) {
     return console.misused(
-        "--reason is empty; say why these readings are put in, for those who "
-        "find them later");
+        "--reason is empty; say why these readings are imported, so that others can understand it "
+        "later");
   }
   const auto site = open_site(arguments.site);
   if (!site) return console.fail(site.error());
   const auto lock = system::FileLock::take(site->config.store.file.string() + ".lock");
   if (!lock) {
-    return console.fail(lock.error().message + "; end the daemon, import, and start it again");
+    return console.fail(lock.error().message + "; stop the daemon, import, and start it again");
   }
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   const auto opened = open_store(site->config.store, now);

@@ -26,10 +26,10 @@ void say(std::string_view sentence) {
 void end(int signal) {
   const bool is_first = caught.exchange(signal) == 0;
   if (is_first && guards > 0) {
-    say("recald: ending; another Ctrl-C ends it at once\n");
+    say("recald: stopping; press Ctrl-C again to stop at once\n");
     return;
   }
-  say("recald: ended by a signal\n");
+  say("recald: stopped by a signal\n");
   ::_exit(kEndedBySignal + signal);
 }
 

@@ -94,7 +94,7 @@ std::string effect_words(const AddedEffect& added) {
     text += fmt::format("  {}: {:+.0f} kWh a month\n", impact.meter, impact.monthly_kWh);
   }
   if (!added.months_used.empty()) {
-    text += fmt::format("  learnt from {} months, {} to {}\n", added.months_used.size(),
+    text += fmt::format("  learned from {} months, {} to {}\n", added.months_used.size(),
                         metering::to_string(added.months_used.front()),
                         metering::to_string(added.months_used.back()));
   }
@@ -103,7 +103,7 @@ std::string effect_words(const AddedEffect& added) {
 
 std::string version_words(const ModelVersion& version) {
   if (version.version == diagnosis::kBaseVersion) {
-    return "drawings: the model as the site file describes it, no effects\n";
+    return "drawings: the model as described in the site file, without effects\n";
   }
   std::string text =
       fmt::format("{}, {} ({}), made {}\nparent {}, data {}, catalogue {}\n",
@@ -149,7 +149,7 @@ int run_model_revert(const ModelArguments& arguments, const Console& console) {
     const Json json = {{"active", version->version}, {"effects", effect_ids(*version)}};
     console.out << json.dump(2) + "\n";
   } else {
-    console.out << fmt::format("The model is at version {} again, with {}.\n",
+    console.out << fmt::format("The model is back at version {}, with {}.\n",
                                short_version(version->version), effects_words(*version));
   }
   return kSuccess;

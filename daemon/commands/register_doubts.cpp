@@ -126,16 +126,16 @@ std::string doubt_about(const RegisterField& field, const ReadWords& read, doubl
   if (!own && own.error() == modbus::ValueFault::absent) return "";
   const auto value = trial.decoded(field.format, 0);
   if (value && trial.is_possible(*value)) return "";
-  const std::string is = value ? fmt::format("{:.6g} {}", *value, field.unit) : "no number";
+  const std::string is = value ? fmt::format("{:.6g} {}", *value, field.unit) : "not a number";
   const auto others = explanations(field, trial);
   if (others.empty()) {
     return fmt::format(
-        "'{}' is {}, which a load of {:.6g} kW cannot be; check its address, type, scale and unit "
-        "in the map against the meter's display",
+        "'{}' is {}, which is impossible for a load of {:.6g} kW; compare its address, type, scale "
+        "and unit in the map with the meter's display",
         field.name, is, limits.rated_kW);
   }
-  return fmt::format("'{}' is {}, which a load of {:.6g} kW cannot be; it would be {}", field.name,
-                     is, limits.rated_kW, fmt::join(others, ", or "));
+  return fmt::format("'{}' is {}, which is impossible for a load of {:.6g} kW; it would be {}",
+                     field.name, is, limits.rated_kW, fmt::join(others, ", or "));
 }
 
 std::string coarseness_of(const RegisterField& field, double resolution, double load_kW,
@@ -146,11 +146,12 @@ std::string coarseness_of(const RegisterField& field, double resolution, double 
   const double interval_kWh = load_kW * static_cast<double>(interval.count()) / 3600.0;
   if (step_kWh <= kCoarse * interval_kWh) return "";
   return fmt::format(
-      "'{}' counts in steps of {:.4g} kWh, {:.2g} % of what {:.4g} kW take in {} minutes; {}",
+      "'{}' counts in steps of {:.4g} kWh, {:.2g} % of the energy of {:.4g} kW in {} minutes; {}",
       field.name, step_kWh, 100.0 * step_kWh / interval_kWh, load_kW, interval.count() / 60,
       field.format.type == RegisterType::f32
-          ? "a float loses resolution as it grows: use the integer or 64-bit copy if there is one"
-          : "its intervals will be rough and their peaks more so");
+          ? "a float loses resolution as it grows, so use the integer or 64-bit copy if there is "
+            "one"
+          : "its intervals will be inaccurate, and its peaks even more so");
 }
 
 }  // namespace recald::daemon

@@ -20,7 +20,7 @@ int run_run(const RunArguments& arguments, const Console& console) {
   if (!any(&MeterConfig::is_stored)) {
     return console.fail(
         fmt::format("{}: no [[meter]] has source = \"modbus\" or \"http\", so there is nothing to "
-                    "poll or to receive; use recald replay for recorded readings",
+                    "poll or receive; use recald replay for recorded readings",
                     arguments.site.filename().string()));
   }
   const bool polls = any([](const MeterConfig& meter) { return meter.live.has_value(); });

@@ -100,7 +100,8 @@ std::string no_such_bus(const SiteConfig& site, const std::string& name) {
   std::vector<std::string> names;
   for (const BusConfig& bus : site.buses) names.push_back(bus.name);
   return fmt::format(
-      "{}: there is no [bus.{}]; the site has {}", site.file.filename().string(), printable(name),
+      "{}: there is no [bus.{}]; the buses of the site are {}", site.file.filename().string(),
+      printable(name),
       names.empty() ? std::string{"none"} : fmt::format("{}", fmt::join(names, ", ")));
 }
 

@@ -34,16 +34,15 @@ tl::expected<Question, std::vector<std::string>> question_for_site(
   };
   if (!site->http) {
     return why_not(
-        fmt::format("{}: there is no [http], so its daemon answers nobody; add "
-                    "[http] with listen = \"127.0.0.1:8080\"",
+        fmt::format("{}: there is no [http], so its daemon cannot be asked; add [http] with listen "
+                    "= \"127.0.0.1:8080\"",
                     file.filename().string()));
   }
   const HttpConfig& http = *site->http;
   if (http.port == 0) {
-    return why_not(
-        fmt::format("{}: [http] listens on any free port; the daemon's log says which, "
-                    "ask with --url",
-                    file.filename().string()));
+    return why_not(fmt::format(
+        "{}: [http] listens on a free port that the daemon's log names; pass it with --url",
+        file.filename().string()));
   }
   Question question;
   question.url = {.is_tls = !http.certificate_file.empty(),
@@ -79,10 +78,10 @@ Result<Json> ask(Question question, const std::string& path) {
   Json json = Json::parse(response->body, nullptr, false);
   if (response->status == 401) {
     return failure(ErrorCode::invalid_value,
-                   question.url.text() + " asks for a token; name its file with --token-file");
+                   question.url.text() + " needs a token; name its file with --token-file");
   }
   if (!json.is_object() || (response->status != 200 && response->status != 503)) {
-    return failure(ErrorCode::malformed, fmt::format("what answers at {} is no recald (status {})",
+    return failure(ErrorCode::malformed, fmt::format("the server at {} is not recald (status {})",
                                                      question.url.text(), response->status));
   }
   return json;

@@ -133,7 +133,7 @@ class Attempt {
         const auto* const quantity = weather::find_quantity(found.field->name);
         if (quantity != nullptr && !weather::is_plausible(*quantity, value->value->value)) {
           trial_.warnings.push_back(weather::why_not_plausible(*quantity, value->value->value) +
-                                    "; check its address, type, scale and order in the map");
+                                    "; check address, type, scale and order in the map");
         }
       }
       if (meter_.meter.rated_kW) {

@@ -132,7 +132,7 @@ TEST_F(Cli, CheckOfARightFileSaysWhatIsInIt) {
   EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, StartsWith("Tram depot (depot), Europe/Zurich\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("('heat', start-stamped, interval as the file shows)"));
+  EXPECT_THAT(outcome.out, HasSubstr("('heat', start-stamped, interval as in the file)"));
   EXPECT_THAT(outcome.out, HasSubstr("triangular 0.8 / 2 / 2.6 m3/s"));
   EXPECT_THAT(outcome.out, HasSubstr("triangular 0 / 0.05 / 0.1 person/m2"));
   EXPECT_THAT(outcome.out, ::testing::EndsWith("\nok\n"));
@@ -162,7 +162,7 @@ TEST_F(Cli, CheckOfAWrongFileExplainsEachMistake) {
   EXPECT_EQ(lines_in(outcome.err), 2);
   EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml:7: [site] unknown key 'altitud_m'; did you "
                                      "mean 'altitude_m'?\n"));
-  EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml:20: [meter] 'warmth' is no utility"));
+  EXPECT_THAT(outcome.err, HasSubstr("recald: site.toml:20: [meter] 'warmth' is not a utility"));
 }
 
 TEST_F(Cli, CheckNamesDataFilesThatAreNotThere) {
@@ -361,7 +361,7 @@ TEST_F(SumOfMeters, OfPartsThatDoNotFitIsNamed) {
     write("site.toml", edited(site_text(), "[\"east\", \"west\", \"-pv\"]", parts));
     return run({"check", site()}).err;
   };
-  EXPECT_THAT(problem_of("[\"east\"]"), HasSubstr("'sum_of' needs the ids of two meters or more"));
+  EXPECT_THAT(problem_of("[\"east\"]"), HasSubstr("'sum_of' needs the ids of at least two meters"));
   EXPECT_THAT(problem_of("[\"east\", \"wset\"]"),
               HasSubstr("'sum_of' names 'wset', which is not the id of a [[meter]]"));
   EXPECT_THAT(problem_of("[\"east\", \"-east\"]"), HasSubstr("'sum_of' names 'east' twice"));
@@ -369,9 +369,9 @@ TEST_F(SumOfMeters, OfPartsThatDoNotFitIsNamed) {
       edited(site_text(), "\"pv\"\nutility = \"electricity\"", "\"pv\"\nutility = \"gas\"");
   write("site.toml", gas);
   EXPECT_THAT(run({"check", site()}).err,
-              HasSubstr("'sum_of' names 'pv', which meters gas and not electricity"));
+              HasSubstr("'sum_of' names 'pv', which meters gas, not electricity"));
   EXPECT_THAT(problem_of("[\"east\", \"all\"]"),
-              HasSubstr("'sum_of' names 'all', which is a sum itself; name its parts"));
+              HasSubstr("'sum_of' names 'all', which is itself a sum; name its parts instead"));
   write("site.toml", site_text() + "file = \"halves.csv\"\n");
   EXPECT_THAT(run({"check", site()}).err, HasSubstr("unknown key 'file'"));
 }
@@ -412,12 +412,11 @@ TEST_F(Cli, TimeAfterTheLastReadingIsNoGap) {
   };
   const Instant march_10 = sys_days{year{2021} / 3 / 10};
   write("readings.csv", until("", march_10));
-  EXPECT_THAT(run({"replay", site()}).err, Not(HasSubstr("without a reading")));
+  EXPECT_THAT(run({"replay", site()}).err, Not(HasSubstr("without readings")));
   write("readings.csv", until("heat", march_10));
-  EXPECT_THAT(
-      run({"replay", site()}).err,
-      HasSubstr("district_heat: 526 intervals without a reading, in one stretch of 21.9 days "
-                "from 2021-03-10 01:00."));
+  EXPECT_THAT(run({"replay", site()}).err,
+              HasSubstr("district_heat: 526 intervals without readings, in one stretch of 21.9 "
+                        "days from 2021-03-10 01:00."));
 }
 
 TEST_F(Cli, AMisspeltCommandIsToldWhatWasMeant) {
@@ -632,7 +631,7 @@ TEST_F(Cli, ProfileSplitsTheMeterIntoLightsAndPlugs) {
     EXPECT_NEAR(at("lights_kW") + at("plugs_kW") + at("fans_and_pumps_kW"), at("measured_kW"),
                 1e-9);
   }
-  EXPECT_THAT(run({"profile", site()}).out, HasSubstr("One load profile tells the electricity"));
+  EXPECT_THAT(run({"profile", site()}).out, HasSubstr("One load profile predicts the electricity"));
 }
 
 }  // namespace

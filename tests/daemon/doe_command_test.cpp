@@ -85,7 +85,7 @@ TEST_F(DoeCommand, GoesOnWhereItStopped) {
   write_text(folder_ / "cut/doe_outputs.csv", outputs.substr(0, outputs.find("\n21,") + 1));
   const Outcome again = doe("cut");
   ASSERT_EQ(again.exit_code, kSuccess) << again.err;
-  EXPECT_THAT(again.out, HasSubstr("; 20 of them were there already.\n"));
+  EXPECT_THAT(again.out, HasSubstr("; 20 of them already existed.\n"));
   for (const char* file : kFiles) {
     EXPECT_TRUE(read_text(folder_ / "whole" / file) == read_text(folder_ / "cut" / file)) << file;
   }

@@ -39,16 +39,16 @@ TEST(DecodeCommand, BareRegistersNeedAnAddress) {
   EXPECT_THAT(known.out, HasSubstr("1000 kWh"));
   const Outcome elsewhere =
       run({"decode", "--map", "abb-b23", "--hex", "0000 0000 0001 86A0", "--at", "0"});
-  EXPECT_THAT(elsewhere.out, HasSubstr("none of its fields stands in registers @0 to @3"));
+  EXPECT_THAT(elsewhere.out, HasSubstr("registers @0 to @3 contain none of its fields"));
 }
 
 TEST(DecodeCommand, SaysWhyAFieldHasNoValue) {
   const Outcome absent =
       run({"decode", "--map", "abb-b23", "--hex", "FFFF FFFF FFFF FFFF 0000", "--at", "0x5000"});
-  EXPECT_THAT(absent.out, HasSubstr("absent: the device says that it has no value"));
+  EXPECT_THAT(absent.out, HasSubstr("absent: the device reports no value"));
   EXPECT_THAT(absent.out, HasSubstr("only 1 of its 4 registers are here")) << "the next field";
   const Outcome unscaled = run({"decode", "--map", "sunspec-meter", "--hex", "FF9C", "--at", "18"});
-  EXPECT_THAT(unscaled.out, HasSubstr("its power of ten, 'power_factor_of_ten', is not among"));
+  EXPECT_THAT(unscaled.out, HasSubstr("its power of ten, 'power_factor_of_ten', is not in these"));
   const Outcome scaled =
       run({"decode", "--map", "sunspec-meter", "--hex", "FF9C 0000 0000 0000 0001", "--at", "18"});
   EXPECT_THAT(scaled.out, HasSubstr("-1000 W"));
@@ -68,11 +68,11 @@ TEST(DecodeCommand, WhatDoesNotFitIsSaidAndFails) {
       {{"--hex", "0002 0000 000B 01 03 08 0000 0000 0001 86A0", "--request", kRequest},
        "transaction 2 came for transaction 1"},
       {{"--hex", "0001 0000 000B 01 04 08 0000 0000 0001 86A0"},
-       "the frame has function 4; map 'abb-b23' is read with 3"},
-      {{"--hex", "0000 0001", "--request", kRequest}, "asks for 4 registers; these are 2"},
+       "the frame has function 4, but map 'abb-b23' uses function 3"},
+      {{"--hex", "0000 0001", "--request", kRequest}, "reads 4 registers, but there are 2 here"},
       {{"--hex", "0001 0000 000B 01 03 08 0000 0000 0001 86"}, "cut short"},
       {{"--hex", kReply, "--request", "01 03 50 00 00 04 55 09"},
-       "of rtu and the reply one of tcp"},
+       "the request is rtu, but the reply is tcp"},
   };
   for (const auto& [given, words] : cases) {
     std::vector<std::string> arguments{"decode", "--map", "abb-b23"};
@@ -91,7 +91,7 @@ TEST(DecodeCommand, WrongUsageIsOneSentence) {
       {{"--map", "abb-b23", "--hex", "00", "--at", "0x"}, "--at is '0x'"},
       {{"--map", "abb-b23", "--hex", "00", "--request", "00"}, "--request: a read request has"},
       {{"--map", "abb-b23", "--hex", kReply, "--request", kRequest, "--at", "1"},
-       "--at says 1 and --request 20480"},
+       "--at says 1 but --request says 20480"},
   };
   for (const auto& [given, words] : cases) {
     std::vector<std::string> arguments{"decode"};

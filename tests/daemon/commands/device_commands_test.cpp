@@ -280,7 +280,7 @@ TEST(Scan, WrongUsageIsOneSentence) {
   }
   const Outcome nobus = run({"scan", site, "--bus", "roof"});
   EXPECT_EQ(nobus.exit_code, 1);
-  EXPECT_THAT(nobus.err, HasSubstr("there is no [bus.roof]; the site has plant"));
+  EXPECT_THAT(nobus.err, HasSubstr("there is no [bus.roof]; the buses of the site are plant"));
   EXPECT_EQ(parse_units("1-247")->last, 247);
   EXPECT_EQ(parse_units("17")->first, 17);
 }

@@ -94,7 +94,7 @@ class LongCommands : public ::testing::TestWithParam<LongCommand> {
 TEST_P(LongCommands, EndByCtrlCAndLeaveNoHalfResult) {
   BackgroundProcess process{command(), said()};
   EXPECT_EQ(end_at_work(process, SIGINT), 130) << recald::testing::read_text(said());
-  EXPECT_THAT(recald::testing::read_text(said()), HasSubstr("recald: end"));
+  EXPECT_THAT(recald::testing::read_text(said()), HasSubstr("recald: stop"));
   EXPECT_THAT(left(), IsEmpty());
 }
 
@@ -153,7 +153,7 @@ TEST(EndSignals, ASecondOneEndsAtOnce) {
     if (!guard.interrupted()) return;
     std::raise(SIGINT);
   };
-  EXPECT_EXIT(never_ends(), ::testing::ExitedWithCode(130), "recald: ending; another Ctrl-C");
+  EXPECT_EXIT(never_ends(), ::testing::ExitedWithCode(130), "recald: stopping; press Ctrl-C again");
 }
 
 TEST(EndSignals, WithoutWorkThatCanBeAskedTheFirstEndsAtOnce) {
@@ -161,7 +161,7 @@ TEST(EndSignals, WithoutWorkThatCanBeAskedTheFirstEndsAtOnce) {
     const EndSignals signals;
     std::raise(SIGTERM);
   };
-  EXPECT_EXIT(waits(), ::testing::ExitedWithCode(143), "recald: ended by a signal");
+  EXPECT_EXIT(waits(), ::testing::ExitedWithCode(143), "recald: stopped by a signal");
 }
 
 TEST(EndSignals, SayHowACommandEnded) {

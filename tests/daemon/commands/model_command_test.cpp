@@ -69,7 +69,7 @@ TEST_F(ModelCommand, SiteFileThatIsAbsentIsOneSentence) {
 TEST_F(ModelCommand, SiteWithoutAdditionsHasItsDrawings) {
   EXPECT_THAT(run({"model", "list", site()}).out, StartsWith("* drawings      accepted"));
   EXPECT_EQ(run({"model", "show", site()}).out,
-            "drawings: the model as the site file describes it, no effects\n");
+            "drawings: the model as described in the site file, without effects\n");
   const Outcome reverted = run({"model", "revert", site()});
   EXPECT_EQ(reverted.exit_code, kFailure);
   EXPECT_EQ(reverted.err,
@@ -102,21 +102,16 @@ TEST_F(ModelCommand, ShowSaysWhatAnEffectWasAcceptedOn) {
   add_two();
   const Outcome outcome = run({"model", "show", site(), short_version(first_)});
   EXPECT_EQ(outcome.exit_code, kSuccess);
-  EXPECT_EQ(outcome.out,
-            short_version(first_) +
-                ", accepted (auto), made 2021-03-01T05:00:00Z\n"
-                "parent drawings, data 0123456789ab, catalogue 0.1.0\n"
-                "\n"
-                "Night set-back missing (night_setback_missing)\n"
-                "  theta_set,unocc = theta_set,occ - (1 - f) dT  [K]\n"
-                "  probability 93.0\u00a0%, evidence gain 14.3 nats\n"
-                "  rival: damper_stuck_open 5 %\n"
-                "  rival: none 2 %\n"
-                "  share [-]: 0.8 ± 0.1, 90 % 0.65 to 0.95; prior uniform 0.5 ± 0.29\n"
-                "  slope [K/h]: 2.1 ± 0.4, 90 % 1.5 to 2.9; prior log_normal 2.266 ± 1.2\n"
-                "  electricity: +310 kWh a month\n"
-                "  district_heat: +5200 kWh a month\n"
-                "  learnt from 3 months, 2020-11 to 2021-01\n");
+  EXPECT_EQ(
+      outcome.out,
+      short_version(first_) +
+          ", accepted (auto), made 2021-03-01T05:00:00Z\nparent drawings, data 0123456789ab, "
+          "catalogue 0.1.0\n\nNight set-back missing (night_setback_missing)\n  theta_set,unocc = "
+          "theta_set,occ - (1 - f) dT  [K]\n  probability 93.0\u00a0%, evidence gain 14.3 nats\n  "
+          "rival: damper_stuck_open 5 %\n  rival: none 2 %\n  share [-]: 0.8 ± 0.1, 90 % 0.65 to "
+          "0.95; prior uniform 0.5 ± 0.29\n  slope [K/h]: 2.1 ± 0.4, 90 % 1.5 to 2.9; prior "
+          "log_normal 2.266 ± 1.2\n  electricity: +310 kWh a month\n  district_heat: +5200 kWh a "
+          "month\n  learned from 3 months, 2020-11 to 2021-01\n");
   const Outcome active = run({"model", "show", site()});
   EXPECT_THAT(active.out, HasSubstr("Meter's factor wrong (meter_scale), meter district_heat from "
                                     "2020-12-05 until 2021-01-20\n"));
@@ -129,7 +124,7 @@ TEST_F(ModelCommand, RevertGoesBackStepByStepOrToAVersion) {
   add_two();
   const Outcome outcome = run({"model", "revert", site()});
   EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
-  EXPECT_EQ(outcome.out, "The model is at version " + short_version(first_) +
+  EXPECT_EQ(outcome.out, "The model is back at version " + short_version(first_) +
                              " again, with night_setback_missing.\n");
   const auto json =
       nlohmann::json::parse(run({"model", "revert", site(), "drawings", "--json"}).out);

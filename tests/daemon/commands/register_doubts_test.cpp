@@ -85,7 +85,7 @@ TEST(RegisterDoubts, AnAbsentValueIsNoMistake) {
 
 TEST(RegisterDoubts, WithoutAnExplanationTheDisplayDecides) {
   const std::string said = doubt(field(RegisterType::u16, "MW"), {900});
-  EXPECT_THAT(said, AllOf(HasSubstr("'it' is 900 MW"), HasSubstr("against the meter's display")));
+  EXPECT_THAT(said, AllOf(HasSubstr("'it' is 900 MW"), HasSubstr("with the meter's display")));
 }
 
 TEST(RegisterDoubts, ScalesAndTransformersCount) {

@@ -73,7 +73,7 @@ TEST_F(StatusCommand, ATokenIsAskedFor) {
   RunningServer server{handler(), {.token = kToken}};
   const auto without = run({"status", "--url", url(server)});
   EXPECT_EQ(without.exit_code, 1);
-  EXPECT_THAT(without.err, HasSubstr("asks for a token; name its file with --token-file"));
+  EXPECT_THAT(without.err, HasSubstr("needs a token; name its file with --token-file"));
   EXPECT_EQ(run({"status", "--url", url(server), "--token-file", token_file()}).exit_code, 0);
 }
 
@@ -113,7 +113,7 @@ TEST_F(StatusCommand, SomebodyElseThere) {
   }};
   const auto outcome = run({"status", "--url", url(server)});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("is no recald (status 200)"));
+  EXPECT_THAT(outcome.err, HasSubstr("is not recald (status 200)"));
 }
 
 TEST_F(StatusCommand, WhatIsWrongIsSaid) {
