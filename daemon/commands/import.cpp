@@ -43,8 +43,8 @@ void print_words(const ImportOutcome& outcome, const ImportArguments& arguments,
                    "to use those of the file\n";
   }
   if (!outcome.closed.empty()) {
-    console.out << fmt::format("{} months closed, {} of them reopened ones\n",
-                               outcome.closed.size(), outcome.reopened.size());
+    console.out << fmt::format("{} months closed, {} of them again\n", outcome.closed.size(),
+                               outcome.reopened.size());
   }
 }
 

@@ -256,7 +256,7 @@ TEST_F(DepotWithMoreMachines, WhatIsNamedIsInForceUntilItIsReverted) {
   EXPECT_THAT(run({"model", "list", site()}).out, HasSubstr("* " + version));
 
   // A diagnosis starts from the drawings, which are not in force.
-  expect_refusal("the model has '" + title + "' (version " + version +
+  expect_refusal("the model already has '" + title + "' (version " + version +
                  "), but a diagnosis starts from the drawings; first run `recald model revert " +
                  site() + " drawings`");
 

@@ -200,7 +200,7 @@ TEST_F(DriftCommand, AYoungSiteIsTold) {
   write_text(folder_ / "readings.csv", year);
   const auto refused = drift("out", "1");
   EXPECT_EQ(refused.exit_code, kFailure);
-  EXPECT_THAT(refused.err, HasSubstr("takes 13 months of all modelled meters"));
+  EXPECT_THAT(refused.err, HasSubstr("needs 13 months of all modelled meters"));
 }
 
 }  // namespace

@@ -290,7 +290,7 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
   json result = json::parse(outcome->result.document);
   EXPECT_THAT(result["drift_not_followed"].get<std::string>(),
-              HasSubstr("takes 13 months of all modelled meters"));
+              HasSubstr("needs 13 months of all modelled meters"));
   result.erase("drift_not_followed");  // what has changed is said beside the calibration's own file
   ASSERT_EQ(result["months"].size(), 8U);
   EXPECT_EQ(result["months"].front()["month"], "2021-04");

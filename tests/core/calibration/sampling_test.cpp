@@ -97,7 +97,7 @@ TEST(SamplePosterior, SaysWhichSamplerTookOver) {
   const auto sampled = sample(kTwoHills, with(""), 1);
   ASSERT_TRUE(sampled.has_value());
   EXPECT_EQ(sampled->report.sampler, "smc");
-  EXPECT_THAT(sampled->report.taken_over, HasSubstr("nuts was given up"));
+  EXPECT_THAT(sampled->report.taken_over, HasSubstr("nuts was abandoned"));
   const auto finding =
       std::find_if(sampled->findings.begin(), sampled->findings.end(),
                    [](const Finding& f) { return f.kind == FindingKind::sampler_replaced; });

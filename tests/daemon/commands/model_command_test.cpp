@@ -125,7 +125,7 @@ TEST_F(ModelCommand, RevertGoesBackStepByStepOrToAVersion) {
   const Outcome outcome = run({"model", "revert", site()});
   EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   EXPECT_EQ(outcome.out, "The model is back at version " + short_version(first_) +
-                             " again, with night_setback_missing.\n");
+                             ", with night_setback_missing.\n");
   const auto json =
       nlohmann::json::parse(run({"model", "revert", site(), "drawings", "--json"}).out);
   EXPECT_EQ(json["active"], "drawings");

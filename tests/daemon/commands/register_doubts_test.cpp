@@ -58,7 +58,7 @@ TEST(RegisterDoubts, AnotherOrderOfWordsIsNamed) {
 TEST(RegisterDoubts, ANanMayBeAnOrderOfWords) {
   const Words words{0x7FC0, 0x42F6};  // low word first: 123.249 kW
   EXPECT_THAT(doubt(field(RegisterType::f32, "kW"), words),
-              AllOf(HasSubstr("'it' is no number"), HasSubstr("kW with order CDAB")));
+              AllOf(HasSubstr("'it' is not a number"), HasSubstr("kW with order CDAB")));
 }
 
 TEST(RegisterDoubts, AShiftedAddressIsNamedWhereItWasReadAlong) {
@@ -99,11 +99,11 @@ TEST(RegisterDoubts, ScalesAndTransformersCount) {
 TEST(RegisterDoubts, CoarseCountersAreNamedWithWhatTheyCost) {
   const RegisterField counter = field(RegisterType::f32, "kWh");
   EXPECT_THAT(coarseness_of(counter, 0.0625, 20.0, minutes{15}, kLimits),
-              AllOf(HasSubstr("steps of 0.0625 kWh"), HasSubstr("1.2 % of what 20 kW take in 15"),
-                    HasSubstr("64-bit copy")));
+              AllOf(HasSubstr("steps of 0.0625 kWh"),
+                    HasSubstr("1.2 % of the energy of 20 kW in 15"), HasSubstr("64-bit copy")));
   EXPECT_THAT(coarseness_of(counter, 0.0625, 26.0, minutes{15}, kLimits), IsEmpty());
   EXPECT_THAT(coarseness_of(field(RegisterType::u32, "MWh"), 1.0, 100.0, minutes{15}, kLimits),
-              HasSubstr("rough"));
+              HasSubstr("inaccurate"));
   EXPECT_THAT(coarseness_of(field(RegisterType::f32, "kW"), 1000.0, 1.0, minutes{15}, kLimits),
               IsEmpty());
 }

@@ -212,7 +212,7 @@ TEST(MeterTrack, EventsAreSentences) {
   for (int minute = 21; minute <= 30; ++minute) meter.read(minutes{minute}, 90'000.0 + minute);
   ASSERT_THAT(meter.events, SizeIs(3));
   EXPECT_EQ(meter.events[2].kind, "counter_jump");
-  EXPECT_THAT(meter.events[2].text, HasSubstr("more than 400 kW can draw"));
+  EXPECT_THAT(meter.events[2].text, HasSubstr("more than a load of 400 kW can use"));
 }
 
 // meter_swap: one odd serial number is a flipped bit, two alike are another device.

@@ -288,7 +288,7 @@ TEST_F(RunCommand, WhatNeedsARestartIsNotReloaded) {
   moved.replace(moved.find("America/Chicago"), 15, "America/Denver");
   recald::testing::write_text(folder_ / "site.toml", moved);
   daemon.signal(SIGHUP);
-  EXPECT_TRUE(eventually([&] { return said_so("another timezone needs a restart"); }))
+  EXPECT_TRUE(eventually([&] { return said_so("a changed timezone needs a restart"); }))
       << what_was_said();
   EXPECT_EQ(daemon.end(SIGTERM), 0) << what_was_said();
 }

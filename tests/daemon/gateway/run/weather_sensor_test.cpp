@@ -224,7 +224,7 @@ TEST_F(SendingSensor, IsSilentWhenADayIsMissing) {
   EXPECT_EQ(roof().weather[0].known_until, kStart + days{4});
   loop_.run_for(hours{38});
   ASSERT_THAT(events_of("weather_silent"), SizeIs(1));
-  EXPECT_THAT(events_of("weather_silent")[0].text, HasSubstr("has given no dry_bulb_C since"));
+  EXPECT_THAT(events_of("weather_silent")[0].text, HasSubstr("has sent no dry_bulb_C since"));
   send_day(kStart + days{4});
   loop_.run_for(hours{2});
   EXPECT_THAT(events_of("weather_answers"), SizeIs(1));

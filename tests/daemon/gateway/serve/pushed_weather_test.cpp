@@ -123,7 +123,7 @@ TEST_F(PushedWeather, SilenceIsSeenEverywhere) {
   ASSERT_THAT(ready["look_at"], SizeIs(1));
   EXPECT_EQ(ready["look_at"][0],
             "weather sensor 'roof' has sent no dry_bulb_C since 2024-03-30T10:15:00Z");
-  EXPECT_THAT(get("/").body, AllOf(HasSubstr("has given no dry_bulb_C since"), HasSubstr("roof"),
+  EXPECT_THAT(get("/").body, AllOf(HasSubstr("has sent no dry_bulb_C since"), HasSubstr("roof"),
                                    HasSubstr("7.5 degC")));
   EXPECT_EQ(get_json("/api/v1/meters/roof")["weather"]["dry_bulb_C"]["silent_since"],
             "2024-03-30T10:15:00Z");

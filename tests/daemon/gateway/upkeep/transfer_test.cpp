@@ -155,7 +155,7 @@ TEST_F(Transfer, GoodReadingsStayUnlessSuperseded) {
   EXPECT_THAT(import(text, {"--supersede", "--dry-run"}).out,
               HasSubstr("dry run: 1 readings: 1 would be stored"));
   EXPECT_EQ(stored(kMeasured).reading.mean_kW, before);
-  EXPECT_THAT(import(text, {"--supersede"}).out, HasSubstr("1 taken"));
+  EXPECT_THAT(import(text, {"--supersede"}).out, HasSubstr("1 stored"));
   EXPECT_EQ(stored(kMeasured).reading.mean_kW, 1.25);
 }
 
@@ -221,7 +221,7 @@ TEST_F(Transfer, BadLinesAreToldAndKeptOut) {
                                   ",main,77.5,kW\n2024-03-03T04:15:00Z,nobody,1,kW\n");
   EXPECT_EQ(imported.exit_code, 0);
   EXPECT_THAT(imported.err, HasSubstr("out.csv:3: meter 'nobody' is not configured"));
-  EXPECT_THAT(imported.out, HasSubstr("1 taken"));
+  EXPECT_THAT(imported.out, HasSubstr("1 stored"));
   EXPECT_EQ(run({"import", site(), folder_ / "none.csv", "--reason", "r"}).exit_code, 1);
 }
 

@@ -190,7 +190,7 @@ TEST(RegisterMapFile, EveryMistakeHasItsSentence) {
       {"trust = \"one_source\"", "trust = \"sure\"", "it must be one of two_sources"},
       {"energy = [\"energy\"]", "energy = [\"import\"]", "there is no [register.import]"},
       {"energy = [\"energy\"]", "energy = [\"power\"]", "it must be an energy, such as kWh"},
-      {"power = \"power\"", "power = \"energy\"", "it must be a power such as kW"},
+      {"power = \"power\"", "power = \"energy\"", "it must be a power, such as kW"},
       {"identity = [\"serial\"]", "identity = [\"number\"]", "there is no [register.number]"},
       {"energy = [\"energy\"]\npower = \"power\"\n", "", "has neither 'energy' nor 'power'"},
       {"at = 101\ntype = \"u32\"\nscale", "type = \"u32\"\nscale", "'at' is missing"},

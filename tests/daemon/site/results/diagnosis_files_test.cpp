@@ -165,7 +165,7 @@ TEST_F(DiagnosisFiles, WordsSayWhatIsMissingSinceWhenAndHowMuch) {
   EXPECT_THAT(words, HasSubstr("Outcome: named. Missing from the model: \"Steam or heat leaks in"));
   EXPECT_THAT(words, HasSubstr("Probability 93.0\u00a0%. Since about 1 Mar 2021 (90 %: "));
   EXPECT_THAT(words, HasSubstr("about 2,920 kWh a month more at Steam."));
-  EXPECT_THAT(words, HasSubstr("on the 2 months kept back"));
+  EXPECT_THAT(words, HasSubstr("in the 2 held-out months"));
   EXPECT_THAT(words, Not(HasSubstr("Chilled water, ")));  // touched by next to nothing
 }
 
