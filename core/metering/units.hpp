@@ -30,10 +30,13 @@ struct UnitConversion {
   }
 };
 
-/// Power: W kW MW GW, BTU/h kBtu/h MBtu/h MBH, ton (of refrigeration), kg/h lb/h m3/h.
-/// Energy: Wh kWh MWh GWh, J kJ MJ GJ, BTU kBtu MBtu MMBtu therm, ton-hour, kg lb m3.
-/// Case does not matter, but for a leading m, which would be milli. MBtu is a million BTU as in
-/// Portfolio Manager, and the same as MMBtu; MBH is a thousand BTU an hour.
+/// Power: W kW MW GW, BTU/h kBtu/h MBtu/h MMBtu/h MBH, kWh/h, GJ/h, ton (of refrigeration), kg/h
+/// lb/h m3/h. Energy: Wh kWh MWh GWh, J kJ MJ GJ, kcal Gcal, BTU kBtu MBtu MMBtu therm Dth,
+/// ton-hour ton-day, kg t lb klb, m3 ft3 CCF MCF.
+/// Case does not matter, but for a leading m, which would be milli; nor do a plural's s, blanks and
+/// hyphens, "hr" for "h", and "m³" for "m3". MBtu is a million BTU as in Portfolio Manager, and the
+/// same as MMBtu; MBH is a thousand BTU an hour; CCF and MCF are a hundred and a thousand cubic
+/// feet. A ton is one of refrigeration, t and tonne are a thousand kilograms.
 ///
 /// @return the conversion for a meter of `utility`, or
 ///         invalid_value  the unit is not known, or a mass stands on another meter than steam's;

@@ -57,6 +57,46 @@ TEST(Units, GasVolumeNeedsItsHeatingValue) {
   EXPECT_NE(without.error().message.find("heating value"), std::string::npos);
 }
 
+// 1 lb = 0.45359237 kg, 1 ft3 = 0.028316846592 m3, 1 ton-day = 24 ton-hours: by definition.
+TEST(Units, AsPeopleWriteThem) {
+  const seconds hour{3600};
+  for (const char* unit : {"lbs", "pounds", "LB"}) {
+    EXPECT_NEAR(mean_kW(unit, 1000.0, Utility::steam, hour), 305.0, 1e-9) << unit;
+  }
+  EXPECT_NEAR(mean_kW("klb", 1.0, Utility::steam, hour), 305.0, 1e-9);
+  EXPECT_NEAR(mean_kW("klbs/hr", 1.0, Utility::steam), 305.0, 1e-9);
+  EXPECT_NEAR(mean_kW("tonnes", 1.0, Utility::steam, hour), 305.0 / 0.45359237, 1e-9);
+  for (const char* unit : {"ton-hours", "Ton Hours", "tonhrs", "ton-hr", "TRh", "RTh"}) {
+    EXPECT_NEAR(mean_kW(unit, 1.0, Utility::chilled_water, hour), 3.516853, 5e-7) << unit;
+  }
+  EXPECT_NEAR(mean_kW("ton-days", 1.0, Utility::chilled_water, hour), 24.0 * 3.516853, 1e-5);
+  EXPECT_NEAR(mean_kW("tons", 1.0, Utility::chilled_water), 3.516853, 5e-7);
+  EXPECT_NEAR(mean_kW("therms", 1.0, Utility::gas, hour), 29.30711, 5e-6);
+  EXPECT_NEAR(mean_kW("Dth", 1.0, Utility::gas, hour), 293.0711, 5e-5);
+  EXPECT_NEAR(mean_kW("MMBTU/hr", 1.0, Utility::heating), 293.0711, 5e-5);
+  EXPECT_NEAR(mean_kW("BTUH", 12'000.0, Utility::chilled_water), 3.516853, 5e-7);
+  EXPECT_DOUBLE_EQ(mean_kW("kWh/h", 7.0), 7.0);
+  EXPECT_NEAR(mean_kW("GJ", 3.6, Utility::heating, hour), 1000.0, 1e-9);
+  EXPECT_NEAR(mean_kW("Gcal", 1.0, Utility::heating, hour), 1163.0, 1e-9);
+}
+
+TEST(Units, VolumesOfGasInMetresAndFeet) {
+  UnitFactors factors;
+  factors.gas_kWh_per_m3 = 10.0;
+  const auto hourly_kW = [&](const char* unit) {
+    return mean_kW(unit, 1.0, Utility::gas, seconds{3600}, factors);
+  };
+  for (const char* unit : {"m3", "m\xC2\xB3", "m^3", "cbm", "Nm3"}) {
+    EXPECT_DOUBLE_EQ(hourly_kW(unit), 10.0) << unit;
+  }
+  EXPECT_NEAR(hourly_kW("CCF"), 28.316846592, 1e-9);
+  EXPECT_NEAR(hourly_kW("MCF"), 283.16846592, 1e-9);
+  EXPECT_NEAR(hourly_kW("ft\xC2\xB3"), 0.28316846592, 1e-9);
+  const auto without = find_unit("CCF", Utility::gas, {});
+  ASSERT_FALSE(without.has_value());
+  EXPECT_NE(without.error().message.find("gas_kWh_per_m3"), std::string::npos);
+}
+
 TEST(Units, CaseDoesNotMatterButMilliIsNotMega) {
   EXPECT_DOUBLE_EQ(mean_kW("KWH", 1.0, Utility::electricity, seconds{3600}), 1.0);
   EXPECT_NEAR(mean_kW("kBTU/h", 1.0), 0.293071, 5e-7);
