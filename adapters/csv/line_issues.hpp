@@ -11,20 +11,32 @@
 
 namespace recald::csv {
 
+inline constexpr std::size_t kExcerptMax = 80;  ///< Bytes of a bad line that are shown.
+
 struct LineIssue {
   std::uint64_t line;  ///< From 1; the header is line 1 unless comments precede it.
   std::string reason;
+  std::string text = {};  ///< The line's beginning; empty where it is no longer known.
 };
+
+/// The beginning of a line, fit to be shown.
+[[nodiscard]] inline std::string excerpt(std::string_view line) {
+  if (line.size() <= kExcerptMax) return printable(line);
+  std::size_t end = kExcerptMax;  // not within a letter of several bytes
+  while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0u) == 0x80u) --end;
+  return printable(line.substr(0, end)) + "…";
+}
 
 struct LineIssues {
   std::vector<LineIssue> listed;
   std::uint64_t total = 0;
   std::size_t listed_max = 100;
 
-  void add(std::uint64_t line, std::string_view reason) {
+  /// @param text  The line itself.
+  void add(std::uint64_t line, std::string_view reason, std::string_view text = {}) {
     ++total;
     // Reasons quote what stands in the file, whatever that is.
-    if (listed.size() < listed_max) listed.push_back({line, printable(reason)});
+    if (listed.size() < listed_max) listed.push_back({line, printable(reason), excerpt(text)});
   }
 };
 

@@ -1,60 +1,21 @@
 #include "adapters/csv/readings_csv.hpp"
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <unordered_map>
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/line_reader.hpp"
+#include "adapters/csv/reading_intake.hpp"
 #include "core/absent.hpp"
-#include "core/metering/interval_book.hpp"
 
 namespace recald::csv {
 namespace {
 
 using metering::Instant;
-using metering::Reading;
-using metering::Reason;
-using metering::UnitConversion;
-using metering::Validity;
-using std::chrono::seconds;
 
 constexpr std::string_view kHeader = "timestamp,meter,value,unit";
 constexpr std::size_t kRequiredColumns = 4;
-constexpr std::size_t kHeadRows = 64;  // what an interval is inferred from
-constexpr seconds kIntervalMin{60};
-constexpr seconds kIntervalMax{3600};
-constexpr double kValueMax = 1e18;   // so that no unit and no multiplier makes it infinite
-constexpr seconds kOffsetGrid{900};  // all zones' offsets since 1971 are multiples of it
-
-/// One row, its interval not yet applied.
-struct Row {
-  std::uint64_t line;
-  Instant stamp;
-  double value;  // in the row's unit, NaN: blank
-  UnitConversion conversion;
-  Validity validity = Validity::ok;
-  Reason reasons = Reason::none;
-  bool late = false;
-};
-
-struct MeterState {
-  MeterRows rows;
-  MeterReport report;
-  std::string unit;  // text of the row before, and what it means
-  UnitConversion conversion{};
-  bool grid_known = false;
-  bool refused = false;  // no usable interval
-  double kW_per_unit = 0.0;
-  std::vector<Row> head;
-  std::vector<metering::RegisterSample> samples;
-  std::optional<Instant> last;    // start of the row before
-  std::optional<Instant> newest;  // latest start so far
-  std::optional<Instant> earliest;
-};
 
 struct StringHash {
   using is_transparent = void;
@@ -62,11 +23,6 @@ struct StringHash {
     return std::hash<std::string_view>{}(text);
   }
 };
-
-std::string in_words(seconds span) {
-  return span.count() % 60 == 0 ? std::to_string(span.count() / 60) + " minutes"
-                                : std::to_string(span.count()) + " seconds";
-}
 
 /// Equality by eight bytes at a time: a call of memcmp costs more than these short texts.
 bool same(std::string_view a, std::string_view b) {
@@ -83,31 +39,6 @@ bool same(std::string_view a, std::string_view b) {
     if (a[i] != b[i]) return false;
   }
   return true;
-}
-
-template <class Key>
-Key commonest(const std::map<Key, int>& counts) {
-  const auto most =
-      std::max_element(counts.begin(), counts.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most->first;
-}
-
-/// Commonest step between neighbouring stamps; the smaller of equals. None below two stamps.
-std::optional<seconds> commonest_step(std::vector<Instant> stamps) {
-  std::sort(stamps.begin(), stamps.end());
-  std::map<seconds, int> counts;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] > stamps[i - 1]) ++counts[stamps[i] - stamps[i - 1]];
-  }
-  if (counts.empty()) return {};
-  return commonest(counts);
-}
-
-std::vector<Instant> stamps_of(const MeterState& meter) {
-  std::vector<Instant> stamps;
-  for (const Row& row : meter.head) stamps.push_back(row.stamp);
-  return stamps;
 }
 
 /// Where the optional columns stand; 0: absent.
@@ -155,9 +86,10 @@ class ReadingsReader {
  public:
   ReadingsReader(ByteSource source, std::string_view name, const ReadingsOptions& options,
                  const ReadingsSink& sink)
-      : lines_{std::move(source)}, name_{name}, options_{options}, sink_{sink} {
-    report_.issues.listed_max = options.issues_listed_max;
-    for (const MeterRows& rows : options.meters) add_meter(rows);
+      : lines_{std::move(source)}, name_{name}, options_{options}, intake_{options, sink} {
+    for (std::size_t i = 0; i < options.meters.size(); ++i) {
+      by_name_.emplace(options.meters[i].name, static_cast<std::uint32_t>(i));
+    }
   }
 
   Result<ReadingsReport> run() {
@@ -167,7 +99,7 @@ class ReadingsReader {
       if (line.text.empty() && !line.too_long) continue;
       if (!line.text.empty() && line.text.front() == '#') continue;
       if (header_seen) {
-        ++report_.lines;
+        intake_.count_line();
         read_line(line);
         continue;
       }
@@ -178,8 +110,7 @@ class ReadingsReader {
     }
     if (lines_.error()) return tl::unexpected(*lines_.error());
     if (!header_seen) return failure(ErrorCode::malformed, empty_file());
-    finish();
-    return std::move(report_);
+    return intake_.finish();
   }
 
  private:
@@ -187,31 +118,19 @@ class ReadingsReader {
     return in_quotes(name_) + " is empty; its first line must be '" + std::string{kHeader} + "'";
   }
 
-  std::uint32_t add_meter(const MeterRows& rows) {
-    const auto index = static_cast<std::uint32_t>(meters_.size());
-    MeterState state;
-    state.rows = rows;
-    state.report.shown.meter = index;
-    state.report.shown.name = rows.name;
-    meters_.push_back(std::move(state));
-    by_name_.emplace(rows.name, index);
-    return index;
-  }
-
   void read_line(const Line& line) {
     if (read_expected_line(line)) return;
-    if (line.too_long) return bad(line.number, "longer than 64 KiB");
+    Row row{.line = line.number, .text = line.text};
+    meter_ = nullptr;
+    if (line.too_long) return bad(row, "longer than 64 KiB");
     const std::size_t count = fields_.split(line.text);
-    if (count != columns_.count) return bad(line.number, wrong_count(count));
-    Row row{line.number, {}, 0.0, {}};
-    if (!read_stamp(row)) return;
-    MeterState* meter = find_meter(line.number);
-    if (meter == nullptr || !read_value(row)) return;
-    if (!line.terminated && !surely_whole(*meter)) {
-      return bad(line.number, "the last line has no line end and may be cut; it is kept out");
+    if (count != columns_.count) return bad(row, wrong_count(count));
+    if (!find_meter() || !read_stamp(row) || !read_value(row)) return;
+    if (!line.terminated && !surely_whole()) {
+      return bad(row, "the last line has no line end and may be cut; it is kept out");
     }
-    if (!read_unit(row, *meter) || !read_flags(row)) return;
-    accept(*meter, row);
+    if (!read_unit(row) || !read_flags(row)) return;
+    intake_.take(*meter_, row);
   }
 
   /// Most rows repeat what the rows before had: a stamp as long, the meter whose turn it is, its
@@ -224,7 +143,7 @@ class ReadingsReader {
         rest[stamp_length] != ',') {
       return false;
     }
-    Row row{line.number, last_stamp_, 0.0, {}};
+    Row row{.line = line.number, .stamp = last_stamp_, .text = line.text};
     if (const std::string_view stamp = rest.substr(0, stamp_length);
         !same(stamp, last_stamp_text_)) {
       const auto parsed = parse_timestamp(stamp);
@@ -233,7 +152,7 @@ class ReadingsReader {
       last_stamp_ = row.stamp = *parsed;
     }
     rest.remove_prefix(stamp_length + 1);
-    MeterState* meter = expected_meter(rest);
+    IntakeMeter* meter = expected_meter(rest);
     if (meter == nullptr) return false;
     rest.remove_prefix(meter->rows.name.size() + 1);
     const std::size_t length = parse_plain_decimal(rest, row.value);
@@ -242,22 +161,23 @@ class ReadingsReader {
       return false;  // a blank, another unit, an exponent, or something wrong
     }
     row.conversion = meter->conversion;
-    accept(*meter, row);
+    intake_.take(*meter, row);
     return true;
   }
 
   /// The meter that `rest` begins with, if it is one of the likely ones and was seen before.
-  MeterState* expected_meter(std::string_view rest) {
+  IntakeMeter* expected_meter(std::string_view rest) {
     for (const std::size_t guess : {last_meter_ + 1, last_meter_, std::size_t{0}}) {
-      if (guess >= meters_.size()) continue;
-      const std::string& name = meters_[guess].rows.name;
+      if (guess >= intake_.size()) continue;
+      IntakeMeter& meter = intake_.meter(guess);
+      const std::string& name = meter.rows.name;
       if (rest.size() <= name.size() || rest[name.size()] != ',' ||
           !same(rest.substr(0, name.size()), name)) {
         continue;
       }
-      if (meters_[guess].unit.empty()) return nullptr;
+      if (meter.unit.empty()) return nullptr;
       last_meter_ = guess;
-      return &meters_[guess];
+      return &meter;
     }
     return nullptr;
   }
@@ -281,8 +201,7 @@ class ReadingsReader {
     if (fields_[0] != last_stamp_text_) {
       const auto stamp = parse_timestamp(fields_[0]);
       if (!stamp) {
-        bad(row.line, stamp.error().message);
-        return false;
+        return refuse(row, stamp.error().message);
       }
       last_stamp_text_ = fields_[0];
       last_stamp_ = *stamp;
@@ -291,13 +210,15 @@ class ReadingsReader {
     return true;
   }
 
-  MeterState* find_meter(std::uint64_t line) {
+  /// False: a meter that nobody asked for, or none at all.
+  bool find_meter() {
     // Most files either repeat one meter or go round all of them.
     const std::string_view name = fields_[1];
     for (const std::size_t guess : {last_meter_ + 1, last_meter_, std::size_t{0}}) {
-      if (guess < meters_.size() && meters_[guess].rows.name == name) {
+      if (guess < intake_.size() && intake_.meter(guess).rows.name == name) {
         last_meter_ = guess;
-        return &meters_[guess];
+        meter_ = &intake_.meter(guess);
+        return true;
       }
     }
     const auto found = by_name_.find(trimmed(name));
@@ -306,12 +227,14 @@ class ReadingsReader {
     } else if (options_.add_unlisted_meters && !trimmed(name).empty()) {
       MeterRows rows;
       rows.name = trimmed(name);
-      last_meter_ = add_meter(rows);
+      last_meter_ = intake_.add_meter(rows);
+      by_name_.emplace(rows.name, static_cast<std::uint32_t>(last_meter_));
     } else {
-      bad(line, "meter " + in_quotes(name) + " is not configured");
-      return nullptr;
+      intake_.count_other(trimmed(name));
+      return false;
     }
-    return &meters_[last_meter_];
+    meter_ = &intake_.meter(last_meter_);
+    return true;
   }
 
   bool read_value(Row& row) {
@@ -322,8 +245,7 @@ class ReadingsReader {
     }
     const auto value = parse_number(text);
     if (!value) {
-      bad(row.line, number_problem("value", text));
-      return false;
+      return refuse(row, number_problem("value", text));
     }
     if (std::abs(*value) > kValueMax) {
       return refuse(row, "value " + in_quotes(text) + " is more than any meter counts");
@@ -334,24 +256,17 @@ class ReadingsReader {
 
   /// A last line without its end is believed when its last field is the one seen before: kWh cut to
   /// kW would be another reading.
-  [[nodiscard]] bool surely_whole(const MeterState& meter) const {
-    return columns_.count == kRequiredColumns && !meter.unit.empty() && fields_[3] == meter.unit;
+  [[nodiscard]] bool surely_whole() const {
+    return columns_.count == kRequiredColumns && !meter_->unit.empty() &&
+           fields_[3] == meter_->unit;
   }
 
-  bool read_unit(Row& row, MeterState& meter) {
-    if (fields_[3] != meter.unit || meter.unit.empty()) {
-      const auto conversion =
-          metering::find_unit(trimmed(fields_[3]), meter.rows.utility, meter.rows.units);
-      if (!conversion) {
-        bad(row.line, conversion.error().message + " (meter " + in_quotes(meter.rows.name) + ")");
-        return false;
-      }
-      meter.unit = fields_[3];
-      meter.conversion = *conversion;
-      if (meter.report.shown.unit.empty()) meter.report.shown.unit = trimmed(fields_[3]);
-      if (meter.grid_known) set_scale(meter);
+  bool read_unit(Row& row) {
+    if (fields_[3] != meter_->unit || meter_->unit.empty()) {
+      const auto known = intake_.set_unit(*meter_, fields_[3]);
+      if (!known) return refuse(row, known.error().message);
     }
-    row.conversion = meter.conversion;
+    row.conversion = meter_->conversion;
     return true;
   }
 
@@ -376,170 +291,25 @@ class ReadingsReader {
     return true;
   }
 
-  void accept(MeterState& meter, const Row& row) {
-    if (meter.refused) return;
-    if (meter.rows.counter) return keep_sample(meter, row);
-    if (meter.grid_known) return hand_on(meter, row);
-    meter.head.push_back(row);
-    if (meter.head.size() == kHeadRows) begin_meter(meter);
+  void bad(const Row& row, std::string_view reason) {
+    intake_.refuse(row.line, reason, row.text, meter_);
   }
-
-  /// The head shows the interval; from here on rows go straight to the sink.
-  void begin_meter(MeterState& meter) {
-    if (!find_grid(meter)) {
-      meter.refused = true;
-    } else {
-      set_scale(meter);
-      meter.grid_known = true;
-      if (sink_.on_meter) sink_.on_meter(meter.report.shown);
-      for (const Row& row : meter.head) hand_on(meter, row);
-    }
-    meter.head = {};
-  }
-
-  bool find_grid(MeterState& meter) {
-    MeterInFile& shown = meter.report.shown;
-    shown.interval_inferred = !meter.rows.interval;
-    const auto interval =
-        meter.rows.interval ? meter.rows.interval : commonest_step(stamps_of(meter));
-    const std::uint64_t line = meter.head.front().line;
-    if (!interval) {
-      bad(line, "meter " + in_quotes(shown.name) +
-                    " has one time stamp only, so its interval cannot be seen; declare it");
-      return false;
-    }
-    if (*interval < kIntervalMin || *interval > kIntervalMax ||
-        kIntervalMax % *interval != seconds{0}) {
-      bad(line, "meter " + in_quotes(shown.name) + " comes every " + in_words(*interval) +
-                    "; supported are whole minutes that divide an hour");
-      return false;
-    }
-    shown.interval = *interval;
-    std::map<seconds, int> phases;
-    for (const Row& row : meter.head) ++phases[row.stamp.time_since_epoch() % *interval];
-    shown.phase = commonest(phases);
-    // Another phase than a zone's offset can make is a clock that is wrong, row by row.
-    if (shown.phase % kOffsetGrid != seconds{0}) shown.phase = seconds{0};
-    return true;
-  }
-
-  void set_scale(MeterState& meter) {
-    meter.kW_per_unit =
-        meter.conversion.mean_kW(meter.rows.multiplier, meter.report.shown.interval);
-  }
-
-  void hand_on(MeterState& meter, const Row& row) {
-    const MeterInFile& shown = meter.report.shown;
-    const Instant start = meter.rows.stamps == Stamps::end ? row.stamp - shown.interval : row.stamp;
-    const bool follows =
-        meter.last && start == *meter.last + shown.interval && meter.last == meter.newest;
-    if (!follows && !check_order(meter, row, start)) return;
-    meter.last = start;
-    if (!meter.newest || start > *meter.newest) meter.newest = start;
-    ++meter.report.readings;
-    if (std::isnan(row.value)) ++meter.report.blanks;
-    const bool usual_unit = row.conversion.factor == meter.conversion.factor &&
-                            row.conversion.is_rate == meter.conversion.is_rate;
-    const double mean_kW =
-        usual_unit ? row.value * meter.kW_per_unit
-                   : row.conversion.mean_kW(row.value * meter.rows.multiplier, shown.interval);
-    if (sink_.on_reading) {
-      sink_.on_reading({shown.meter, start, mean_kW, row.validity, row.reasons, row.late});
-    }
-  }
-
-  /// What is not simply the next interval. False: kept out.
-  bool check_order(MeterState& meter, const Row& row, Instant start) {
-    const MeterInFile& shown = meter.report.shown;
-    if (start < Instant{} + std::chrono::days{366} ||
-        start + shown.interval > metering::kLatestInstant) {
-      return refuse(row, "the interval lies outside 1971 to 2037");
-    }
-    if ((start.time_since_epoch() - shown.phase) % shown.interval != seconds{0}) {
-      ++meter.report.off_grid;
-      return refuse(row, "meter " + in_quotes(shown.name) + ": " + metering::to_string(start) +
-                             " is no start of an interval of " + in_words(shown.interval));
-    }
-    if (meter.last && start == *meter.last) {
-      ++meter.report.duplicates;
-      bad(row.line, "meter " + in_quotes(shown.name) + ": interval " + metering::to_string(start) +
-                        " comes twice; the first value stays");
-    } else if (meter.newest && start < *meter.newest) {
-      ++meter.report.unsorted;
-      bad(row.line, "meter " + in_quotes(shown.name) + ": " + metering::to_string(start) +
-                        " comes after a later interval; the file is not in order of time");
-    }
-    if (!meter.earliest || start < *meter.earliest) meter.earliest = start;
-    return true;
-  }
-
-  void keep_sample(MeterState& meter, const Row& row) {
-    if (row.conversion.is_rate) {
-      bad(row.line, "meter " + in_quotes(meter.rows.name) + " is a counter, but " +
-                        in_quotes(meter.unit) + " is a power");
-      return;
-    }
-    if (!meter.samples.empty() && row.stamp <= meter.samples.back().time) {
-      ++meter.report.unsorted;
-      bad(row.line, "meter " + in_quotes(meter.rows.name) +
-                        ": a counter's samples must be in order of time; this one is kept out");
-      return;
-    }
-    if (meter.samples.size() < kHeadRows) meter.head.push_back(row);
-    meter.samples.push_back({row.stamp, row.value * row.conversion.factor * meter.rows.multiplier});
-  }
-
-  void finish() {
-    for (MeterState& meter : meters_) {
-      if (!meter.grid_known && !meter.refused && !meter.head.empty()) {
-        if (meter.rows.counter) {
-          finish_counter(meter);
-        } else {
-          begin_meter(meter);
-        }
-      }
-      if (meter.newest) {
-        meter.report.span =
-            metering::TimeSpan{*meter.earliest, *meter.newest + meter.report.shown.interval};
-      }
-      report_.readings += meter.report.readings;
-      report_.meters.push_back(std::move(meter.report));
-    }
-  }
-
-  void finish_counter(MeterState& meter) {
-    if (!find_grid(meter)) return;
-    MeterInFile& shown = meter.report.shown;
-    shown.phase = seconds{0};
-    if (sink_.on_meter) sink_.on_meter(shown);
-    for (const Reading& reading : metering::readings_from_register(
-             shown.meter, meter.samples, shown.interval, *meter.rows.counter)) {
-      ++meter.report.readings;
-      if (std::isnan(reading.mean_kW)) ++meter.report.blanks;
-      if (!meter.earliest) meter.earliest = reading.start;
-      meter.newest = reading.start;
-      if (sink_.on_reading) sink_.on_reading(reading);
-    }
-  }
-
-  void bad(std::uint64_t line, std::string_view reason) { report_.issues.add(line, reason); }
   bool refuse(const Row& row, std::string_view reason) {
-    bad(row.line, reason);
+    bad(row, reason);
     return false;
   }
 
   LineReader lines_;
   std::string name_;
   const ReadingsOptions& options_;
-  const ReadingsSink& sink_;
+  ReadingIntake intake_;
   FieldSplitter fields_;
   Columns columns_;
-  std::vector<MeterState> meters_;
+  IntakeMeter* meter_ = nullptr;  ///< Of the line that is being read.
   std::unordered_map<std::string, std::uint32_t, StringHash, std::equal_to<>> by_name_;
   std::size_t last_meter_ = 0;
   std::string last_stamp_text_;
   Instant last_stamp_{};
-  ReadingsReport report_;
 };
 
 }  // namespace

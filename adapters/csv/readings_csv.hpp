@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adapters/csv/line_issues.hpp"
+#include "adapters/csv/other_meters.hpp"
 #include "core/metering/counter.hpp"
 #include "core/metering/reading.hpp"
 #include "core/metering/units.hpp"
@@ -61,6 +62,8 @@ struct MeterReport {
       0;  ///< Older than the row before; handed on, late ones are the closer's.
   std::uint64_t duplicates = 0;  ///< Same stamp as the row before; handed on, the closer decides.
   std::uint64_t off_grid = 0;    ///< Kept out.
+  std::uint64_t refused = 0;     ///< Rows known to be of this meter that were kept out.
+  std::vector<LineIssue> first_refused;    ///< Up to three of them.
   std::optional<metering::TimeSpan> span;  ///< From the earliest start to the latest end.
 };
 
@@ -68,6 +71,7 @@ struct ReadingsReport {
   std::uint64_t lines = 0;     ///< Data lines, good and bad, without header and comments.
   std::uint64_t readings = 0;  ///< Handed to the sink.
   LineIssues issues;
+  OtherMeters others;               ///< Of the file, whose lines were left out.
   std::vector<MeterReport> meters;  ///< In order of the options' list, then as they appear.
 };
 

@@ -20,9 +20,11 @@ std::string author() {
   return user != nullptr && *user != '\0' ? user : "unknown";
 }
 
-void print_issues(const ImportArguments& arguments, const csv::LineIssues& issues,
+void print_issues(const ImportArguments& arguments, const csv::ReadingsReport& report,
                   const Console& console) {
   const std::string name = arguments.file.filename().string();
+  const csv::LineIssues& issues = report.issues;
+  if (!report.others.empty()) console.err << fmt::format("{}: {}\n", name, report.others.words());
   for (std::size_t i = 0; i < std::min(kRefusedShown, issues.listed.size()); ++i) {
     console.err << fmt::format("{}:{}: {}\n", name, issues.listed[i].line, issues.listed[i].reason);
   }
@@ -87,7 +89,7 @@ int run_import(const ImportArguments& arguments, const Console& console) {
                        .dry_run = arguments.dry_run},
                       now);
   if (!outcome) return console.fail(outcome.error());
-  print_issues(arguments, outcome->file.issues, console);
+  print_issues(arguments, outcome->file, console);
   if (arguments.json) {
     console.out << json_of(*outcome, arguments.dry_run).dump(2) << "\n";
   } else {

@@ -10,6 +10,7 @@ namespace recald::daemon {
 namespace {
 
 constexpr std::size_t kLinesShown = 10;
+constexpr std::size_t kTextsShown = 3;  // of them as they stand in the file
 
 }  // namespace
 
@@ -39,26 +40,35 @@ std::string sum_words(const MeterConfig& meter) {
   return words;
 }
 
-void print_data_words(const Recording& recording, const Console& console) {
+void print_line_words(const Recording& recording, const Console& console) {
   if (console.detail == Console::Detail::little) return;
   const std::size_t shown = console.detail == Console::Detail::all
                                 ? std::numeric_limits<std::size_t>::max()
                                 : kLinesShown;
   for (const FileIssues& file : recording.files) {
-    if (file.issues.total == 0) continue;
     const std::string name = file.file.filename().string();
+    if (!file.others.empty()) console.err << fmt::format("{}: {}\n", name, file.others.words());
+    if (file.issues.total == 0) continue;
     // Bad lines are kept out; rows out of order or repeated are used, once: each says which it is.
     console.err << fmt::format("{}: {} line{} to look at\n", name, file.issues.total,
                                file.issues.total == 1 ? "" : "s");
-    const std::size_t listed = std::min(shown, file.issues.listed.size());
-    for (std::size_t i = 0; i < listed; ++i) {
-      const csv::LineIssue& issue = file.issues.listed[i];
-      console.err << fmt::format("  {}:{}: {}\n", name, issue.line, issue.reason);
+    const auto& listed = file.issues.listed;
+    const std::size_t count = std::min(shown, listed.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      console.err << fmt::format("  {}:{}: {}\n", name, listed[i].line, listed[i].reason);
+      if (i < kTextsShown && !listed[i].text.empty()) {
+        console.err << fmt::format("    {}\n", listed[i].text);
+      }
     }
-    if (file.issues.total > listed) {
-      console.err << fmt::format("  … and {} more\n", file.issues.total - listed);
+    if (file.issues.total > count) {
+      console.err << fmt::format("  … and {} more\n", file.issues.total - count);
     }
   }
+}
+
+void print_data_words(const Recording& recording, const Console& console) {
+  print_line_words(recording, console);
+  if (console.detail == Console::Detail::little) return;
   for (const MeterRecord& record : recording.meters) {
     for (const metering::DataFinding& finding : record.findings) {
       console.err << fmt::format("{} {}: {}\n",

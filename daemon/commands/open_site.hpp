@@ -19,6 +19,9 @@ namespace recald::daemon {
 /// Bad lines of the files and what the meters' data show, in words on err.
 void print_data_words(const Recording& recording, const Console& console);
 
+/// Of it, lines that were refused or left out.
+void print_line_words(const Recording& recording, const Console& console);
+
 /// Reads and replays everything of a site, with a model or without; what the data show goes to err
 /// in words.
 /// @return the site, or the exit code after saying what is wrong.

@@ -29,11 +29,13 @@ struct MeterRecord {
   metering::MeterCounts counts;
   std::vector<metering::LevelChange> level_changes;
   std::vector<metering::DataFinding> findings;
+  std::string doubt;  ///< In a sentence, also among the findings: whether it is a register.
 };
 
 struct FileIssues {
   std::filesystem::path file;
   csv::LineIssues issues;
+  csv::OtherMeters others;  ///< Whose lines were left out.
 };
 
 struct Recording {

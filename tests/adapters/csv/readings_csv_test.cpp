@@ -265,9 +265,34 @@ TEST(ReadingsCsvBadInput, AfterAHundredOnlyTheCountGoesOn) {
   EXPECT_EQ(outcome.readings.size(), 3u);
 }
 
-TEST(ReadingsCsvBadInput, UnknownMeterAndUnit) {
-  EXPECT_EQ(issue(kHead + kThreeRows + "2016-03-01T00:45:00Z,mian,1,kW\n"),
-            "5: meter 'mian' is not configured");
+TEST(ReadingsCsvBadInput, MetersThatNobodyAskedForAreOneSentence) {
+  std::string text = kHead + kThreeRows;
+  for (int i = 0; i < 300; ++i) text += "2016-03-01T00:45:00Z,other,1,kW\n";
+  const Outcome outcome = read(text + "2016-03-01T00:45:00Z,third,1,kW\n");
+  EXPECT_EQ(outcome.report->issues.total, 0u);
+  EXPECT_EQ(outcome.report->others.lines(), 301u);
+  EXPECT_EQ(outcome.report->others.words(),
+            "2 meters are not configured, and their lines were left out: other (300), third (1)");
+}
+
+TEST(ReadingsCsvBadInput, OfTooManyOtherMetersTheFirstAreNamed) {
+  std::string text = kHead + kThreeRows;
+  for (int i = 0; i < 100; ++i) {
+    text += "2016-03-01T00:45:00Z,m" + std::to_string(i) + ",1,kW\n";
+  }
+  const std::string words = read(text).report->others.words();
+  EXPECT_NE(words.find("more than 20 meters are not configured"), std::string::npos) << words;
+  EXPECT_NE(words.find("m19 (1) and others (80)"), std::string::npos) << words;
+}
+
+TEST(ReadingsCsvBadInput, ARefusedRowIsShownAsItStands) {
+  const Outcome outcome = read(kHead + "2016-03-01T00:00:00Z,main,ten,kW\n" + kThreeRows);
+  EXPECT_EQ(outcome.report->issues.listed.at(0).text, "2016-03-01T00:00:00Z,main,ten,kW");
+  EXPECT_EQ(outcome.report->meters.at(0).refused, 1u);
+  EXPECT_EQ(outcome.report->meters.at(0).first_refused.at(0).line, 2u);
+}
+
+TEST(ReadingsCsvBadInput, UnknownUnit) {
   const std::string unit = issue(kHead + kThreeRows + "2016-03-01T00:45:00Z,main,1,kvarh\n");
   EXPECT_NE(unit.find("5: unit 'kvarh' is not known"), std::string::npos) << unit;
   EXPECT_NE(unit.find("(meter 'main')"), std::string::npos);
@@ -298,8 +323,8 @@ TEST(ReadingsCsvBadInput, MoreThanAnyMeterCounts) {
 
 // What a file contains moves no cursor and begins no line of its own.
 TEST(ReadingsCsvBadInput, ControlCharactersAreWrittenOut) {
-  EXPECT_EQ(issue(kHead + kThreeRows + "2016-03-01T00:45:00Z,\x1B[2J,1,kWh\n"),
-            "5: meter '\\x1B[2J' is not configured");
+  const auto other = read(kHead + kThreeRows + "2016-03-01T00:45:00Z,\x1B[2J,1,kWh\n").report;
+  EXPECT_NE(other->others.words().find("left out: \\x1B[2J (1)"), std::string::npos);
   EXPECT_THAT(read("timestamp;\a\n").report.error().message,
               ::testing::HasSubstr("'timestamp;\\x07'"));
 }
