@@ -1,0 +1,208 @@
+#include "adapters/table/delimited.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "adapters/csv/fields.hpp"
+
+namespace recald::table {
+namespace {
+
+void append_utf8(std::string& out, std::uint32_t point) {
+  const auto byte = [&](std::uint32_t bits) { out += static_cast<char>(bits); };
+  if (point < 0x80) {
+    byte(point);
+  } else if (point < 0x800) {
+    byte(0xC0 | (point >> 6));
+    byte(0x80 | (point & 0x3F));
+  } else if (point < 0x10000) {
+    byte(0xE0 | (point >> 12));
+    byte(0x80 | ((point >> 6) & 0x3F));
+    byte(0x80 | (point & 0x3F));
+  } else {
+    byte(0xF0 | (point >> 18));
+    byte(0x80 | ((point >> 12) & 0x3F));
+    byte(0x80 | ((point >> 6) & 0x3F));
+    byte(0x80 | (point & 0x3F));
+  }
+}
+
+/// Bytes of a letter in UTF-8 by its first byte; 0 where none begins so.
+std::size_t letter_bytes(unsigned char first) {
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first < 0xE0) return 2;
+  if (first >= 0xE0 && first < 0xF0) return 3;
+  if (first >= 0xF0 && first < 0xF5) return 4;
+  return 0;
+}
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t count = letter_bytes(static_cast<unsigned char>(text[i]));
+    if (count == 0 || i + count > text.size()) return false;
+    for (std::size_t k = 1; k < count; ++k) {
+      if ((static_cast<unsigned char>(text[i + k]) & 0xC0u) != 0x80u) return false;
+    }
+    i += count;
+  }
+  return true;
+}
+
+/// Reads the first bytes once, then all of it in one encoding.
+class Recoder {
+ public:
+  explicit Recoder(csv::ByteSource bytes) : bytes_{std::move(bytes)} {}
+
+  Result<std::size_t> read(char* buffer, std::size_t size) {
+    while (out_at_ == out_.size()) {
+      out_.clear();
+      out_at_ = 0;
+      const auto got = bytes_(raw_.data(), raw_.size());
+      if (!got || *got == 0) return got;
+      take({raw_.data(), *got});
+    }
+    const std::size_t count = std::min(size, out_.size() - out_at_);
+    std::copy_n(out_.data() + out_at_, count, buffer);
+    out_at_ += count;
+    return count;
+  }
+
+ private:
+  enum class Kind { unknown, plain, little, big };
+
+  void take(std::string_view piece) {
+    if (kind_ == Kind::unknown) {
+      begin_ += piece;
+      if (begin_.size() < 2) return;
+      const auto first = static_cast<unsigned char>(begin_[0]);
+      const auto second = static_cast<unsigned char>(begin_[1]);
+      kind_ = first == 0xFF && second == 0xFE   ? Kind::little
+              : first == 0xFE && second == 0xFF ? Kind::big
+                                                : Kind::plain;
+      const std::string whole = std::move(begin_);
+      take(kind_ == Kind::plain ? std::string_view{whole} : std::string_view{whole}.substr(2));
+      return;
+    }
+    if (kind_ == Kind::plain) {
+      out_ += piece;
+      return;
+    }
+    for (const char c : piece) take_byte(static_cast<unsigned char>(c));
+  }
+
+  void take_byte(unsigned char byte) {
+    if (!half_) {
+      half_ = byte;
+      return;
+    }
+    const std::uint32_t unit = kind_ == Kind::little
+                                   ? static_cast<std::uint32_t>(byte) << 8 | *half_
+                                   : static_cast<std::uint32_t>(*half_) << 8 | byte;
+    half_.reset();
+    if (unit >= 0xD800 && unit < 0xDC00) {
+      high_ = unit;
+    } else if (unit >= 0xDC00 && unit < 0xE000) {
+      if (high_) append_utf8(out_, 0x10000 + ((*high_ - 0xD800) << 10) + (unit - 0xDC00));
+      high_.reset();
+    } else {
+      append_utf8(out_, unit);
+    }
+  }
+
+  csv::ByteSource bytes_;
+  Kind kind_ = Kind::unknown;
+  std::string begin_;
+  std::array<char, 64 * 1024> raw_{};
+  std::string out_;
+  std::size_t out_at_ = 0;
+  std::optional<unsigned char> half_;
+  std::optional<std::uint32_t> high_;
+};
+
+class DelimitedRows final : public RowSource {
+ public:
+  DelimitedRows(csv::ByteSource bytes, char separator)
+      : lines_{as_utf8(std::move(bytes))}, separator_{separator} {}
+
+  bool next(TableRow& row) override {
+    csv::Line line{};
+    if (!lines_.next(line)) return false;
+    row.number = line.number;
+    row.text = line.text;
+    row.is_terminated = line.terminated;
+    row.problem = {};
+    row.cells.clear();
+    if (line.too_long) {
+      row.problem = "longer than 64 KiB";
+    } else if (!split_cells(line.text, separator_, row.cells, unquoted_)) {
+      row.cells.clear();
+      row.problem = "a quote is not closed, or text follows a closing quote";
+    }
+    return true;
+  }
+
+  [[nodiscard]] const std::optional<Error>& error() const override { return lines_.error(); }
+
+ private:
+  csv::LineReader lines_;
+  char separator_;
+  std::string unquoted_;
+};
+
+/// The contents of a quoted cell, whose opening quote is gone. @return false: it is never closed
+bool take_quoted(std::string_view& line, std::string& unquoted) {
+  for (;;) {
+    const std::size_t quote = line.find('"');
+    if (quote == std::string_view::npos) return false;
+    unquoted.append(line.substr(0, quote));
+    line.remove_prefix(quote + 1);
+    if (line.empty() || line.front() != '"') return true;
+    unquoted += '"';
+    line.remove_prefix(1);
+  }
+}
+
+}  // namespace
+
+bool split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells,
+                 std::string& unquoted) {
+  // Contents are never longer than the line, so reserving once keeps earlier cells valid.
+  unquoted.clear();
+  unquoted.reserve(line.size());
+  while (cells.size() < kCellsMax) {
+    if (!line.empty() && line.front() == '"') {
+      line.remove_prefix(1);
+      const std::size_t begin = unquoted.size();
+      if (!take_quoted(line, unquoted)) return false;
+      cells.push_back(csv::trimmed(std::string_view{unquoted}.substr(begin)));
+      if (line.empty()) return true;
+      if (line.front() != separator) return false;
+      line.remove_prefix(1);
+      continue;
+    }
+    const std::size_t length = std::min(line.find(separator), line.size());
+    cells.push_back(csv::trimmed(line.substr(0, length)));
+    if (length == line.size()) return true;
+    line.remove_prefix(length + 1);
+  }
+  return true;
+}
+
+std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator) {
+  return std::make_unique<DelimitedRows>(std::move(bytes), separator);
+}
+
+csv::ByteSource as_utf8(csv::ByteSource bytes) {
+  const auto recoder = std::make_shared<Recoder>(std::move(bytes));
+  return [recoder](char* buffer, std::size_t size) { return recoder->read(buffer, size); };
+}
+
+std::string utf8_of(std::string_view text) {
+  if (is_utf8(text)) return std::string{text};
+  std::string out;
+  for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
+  return out;
+}
+
+}  // namespace recald::table

@@ -1,0 +1,326 @@
+#include "adapters/table/read_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "adapters/csv/fields.hpp"
+#include "adapters/csv/reading_intake.hpp"
+#include "adapters/table/cell_number.hpp"
+#include "adapters/table/delimited.hpp"
+#include "core/absent.hpp"
+#include "core/text/nearest.hpp"
+
+namespace recald::table {
+namespace {
+
+using metering::Instant;
+using std::chrono::seconds;
+
+constexpr std::uint64_t kHeaderRowsMax = 200;  // above which a header is looked for
+constexpr std::size_t kColumnsShown = 12;
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// "#3": the third column, 2 from 0.
+std::optional<std::size_t> numbered(std::string_view column) {
+  if (column.size() < 2 || column.front() != '#') return {};
+  std::size_t number = 0;
+  const auto [end, error] =
+      std::from_chars(column.data() + 1, column.data() + column.size(), number);
+  const bool is_whole = error == std::errc{} && end == column.data() + column.size();
+  if (!is_whole || number == 0 || number > kCellsMax) return {};
+  return number - 1;
+}
+
+/// Digits after the decimal sign, or none.
+std::size_t decimals_of(std::string_view cell, char decimal) {
+  const std::size_t sign = cell.find(decimal);
+  return sign == std::string_view::npos ? 0 : cell.size() - sign - 1;
+}
+
+class TableReader {
+ public:
+  TableReader(RowSource& rows, std::string_view name, const TableShape& shape,
+              std::span<const TableMeter> meters, const csv::ReadingsOptions& options,
+              const metering::LocalCalendar& calendar, const csv::ReadingsSink& sink)
+      : rows_{rows},
+        name_{name},
+        shape_{shape},
+        meters_{meters},
+        calendar_{calendar},
+        intake_{options, sink} {}
+
+  Result<csv::ReadingsReport> run() {
+    if (auto found = find_header(); !found) return tl::unexpected(found.error());
+    TableRow row;
+    while (rows_.next(row)) read_row(row);
+    if (rows_.error()) return failed_source();
+    return intake_.finish();
+  }
+
+  [[nodiscard]] const ClockFacts& facts() const { return facts_; }
+
+ private:
+  /// Goes to the row below the header.
+  Result<void> find_header() {
+    if (numbered(shape_.time_column)) return resolve({});
+    TableRow row;
+    std::vector<std::string> widest;
+    for (std::uint64_t i = 0; i < kHeaderRowsMax && rows_.next(row); ++i) {
+      std::vector<std::string> header;
+      for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
+      if (find_column(header, shape_.time_column)) {
+        is_below_header_ = true;
+        return resolve(std::move(header));
+      }
+      if (header.size() > widest.size()) widest = std::move(header);
+    }
+    if (rows_.error()) return failed_source();
+    if (widest.empty()) return failure(ErrorCode::malformed, in_quotes(name_) + " is empty");
+    return no_column(widest, shape_.time_column);
+  }
+
+  [[nodiscard]] tl::unexpected<Error> failed_source() const {
+    const Error& error = *rows_.error();
+    if (error.message.find(name_) != std::string::npos) return tl::unexpected(error);
+    return failure(error.code, in_quotes(name_) + ": " + error.message);
+  }
+
+  [[nodiscard]] static std::string in_quotes(std::string_view text) { return csv::in_quotes(text); }
+
+  [[nodiscard]] tl::unexpected<Error> no_column(const std::vector<std::string>& header,
+                                                std::string_view column) const {
+    std::string words = in_quotes(name_) + " has no column " + in_quotes(column);
+    const std::vector<std::string_view> names{header.begin(), header.end()};
+    if (const std::string_view nearest = nearest_name(column, names); !nearest.empty()) {
+      words += "; did you mean " + in_quotes(nearest) + "?";
+    } else {
+      words += "; it has ";
+      for (std::size_t i = 0; i < std::min(kColumnsShown, names.size()); ++i) {
+        words += (i > 0 ? ", " : "") + in_quotes(names[i].substr(0, 60));
+      }
+      if (names.size() > kColumnsShown) words += " and more";
+    }
+    return failure(ErrorCode::malformed, words);
+  }
+
+  Result<void> resolve(std::vector<std::string> header) {
+    header_ = std::move(header);
+    const auto place = [&](std::string_view column, std::size_t& into) -> Result<void> {
+      if (column.empty()) return {};
+      const auto found = find_column(header_, column);
+      if (!found) return no_column(header_, column);
+      into = *found;
+      return {};
+    };
+    value_.assign(meters_.size(), kNone);
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      if (auto found = place(meters_[i].column, value_[i]); !found) return found;
+    }
+    for (const auto& [column, into] :
+         {std::pair{&shape_.time_column, &time_}, std::pair{&shape_.clock_column, &clock_},
+          std::pair{&shape_.meter_column, &meter_}, std::pair{&shape_.unit_column, &unit_}}) {
+      if (auto found = place(*column, *into); !found) return found;
+    }
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      by_name_.emplace(meters_[i].rows.name, i);
+      if (meters_[i].unit.empty()) continue;
+      if (auto known = intake_.set_unit(intake_.meter(i), meters_[i].unit); !known) return known;
+    }
+    const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
+    clocks_.assign(clocks, ClockReader{calendar_});
+    return {};
+  }
+
+  void read_row(const TableRow& row) {
+    if (!row.problem.empty()) {
+      intake_.count_line();
+      return intake_.refuse(row.number, row.problem, row.text);
+    }
+    if (std::all_of(row.cells.begin(), row.cells.end(),
+                    [](std::string_view cell) { return cell.empty(); })) {
+      return;
+    }
+    const bool is_next_to_header = std::exchange(is_below_header_, false);
+    if (is_header_again(row) || (is_next_to_header && is_row_of_units(row))) return;
+    intake_.count_line();
+    if (!row.is_terminated && !is_surely_whole(row)) {
+      return intake_.refuse(
+          row.number, "the last line has no line end and may be cut; it is kept out", row.text);
+    }
+    last_cells_ = row.cells.size();
+    last_decimals_ = row.cells.empty() ? 0 : decimals_of(row.cells.back(), shape_.decimal);
+    if (meter_ == kNone) return read_wide(row);
+    read_long(row);
+  }
+
+  [[nodiscard]] static std::string_view cell(const TableRow& row, std::size_t column) {
+    return column < row.cells.size() ? row.cells[column] : std::string_view{};
+  }
+
+  [[nodiscard]] bool is_header_again(const TableRow& row) const {
+    return time_ < header_.size() && cell(row, time_) == header_[time_];
+  }
+
+  /// Below the names: no time, and no number in any meter's column.
+  [[nodiscard]] bool is_row_of_units(const TableRow& row) const {
+    if (parse_stamp(cell(row, time_), shape_.time_format)) return false;
+    return std::none_of(value_.begin(), value_.end(), [&](std::size_t column) {
+      return parse_cell(cell(row, column), shape_.decimal).has_value();
+    });
+  }
+
+  [[nodiscard]] bool is_surely_whole(const TableRow& row) const {
+    if (row.cells.empty() || row.cells.size() != last_cells_) return false;
+    const std::size_t decimals = decimals_of(row.cells.back(), shape_.decimal);
+    return decimals > 0 && decimals == last_decimals_;
+  }
+
+  /// @param clock  Which clock's turn it is.
+  std::optional<Instant> instant_of(const TableRow& row, std::size_t clock,
+                                    csv::IntakeMeter* meter) {
+    const auto refuse = [&](std::string_view reason) {
+      intake_.refuse(row.number, reason, row.text, meter);
+      return std::nullopt;
+    };
+    const std::string_view text = cell(row, time_);
+    auto written = parse_stamp(text, shape_.time_format);
+    if (!written) return refuse(written.error().message);
+    if (clock_ != kNone) {
+      const auto time = parse_time_of_day(cell(row, clock_));
+      if (!time) return refuse("time " + in_quotes(cell(row, clock_)) + " is not hh:mm");
+      written->clock += *time;
+    }
+    if (written->utc_offset) return written->clock - *written->utc_offset;
+    ++facts_.naive;
+    const auto instant = clocks_[clock].instant_of(written->clock);
+    if (instant) return instant;
+    ++facts_.skipped;
+    return refuse("timestamp " + in_quotes(text) + " does not exist in " + calendar_.zone_name() +
+                  ", whose clock jumps over it; if the meter's clock is never changed, give its "
+                  "own zone as 'timezone', such as \"Etc/GMT-1\"");
+  }
+
+  void read_wide(const TableRow& row) {
+    const auto instant = instant_of(row, 0, nullptr);
+    if (!instant) return;
+    for (std::size_t i = 0; i < meters_.size(); ++i) take(row, i, *instant);
+  }
+
+  void read_long(const TableRow& row) {
+    const std::string_view name = cell(row, meter_);
+    const auto index = meter_named(name);
+    if (!index) return intake_.count_other(utf8_of(name));
+    csv::IntakeMeter& meter = intake_.meter(*index);
+    const auto instant = instant_of(row, *index, &meter);
+    if (!instant) return;
+    if (unit_ != kNone && (meter.unit.empty() || meter.unit != cell(row, unit_))) {
+      if (const auto known = intake_.set_unit(meter, cell(row, unit_)); !known) {
+        return intake_.refuse(row.number, known.error().message, row.text, &meter);
+      }
+    }
+    take(row, *index, *instant);
+  }
+
+  [[nodiscard]] std::optional<std::size_t> meter_named(std::string_view name) {
+    for (const std::size_t guess : {last_meter_ + 1, last_meter_, std::size_t{0}}) {
+      if (guess >= meters_.size() || meters_[guess].rows.name != name) continue;
+      last_meter_ = guess;
+      return guess;
+    }
+    const auto found = by_name_.find(utf8_of(name));
+    if (found == by_name_.end()) return {};
+    last_meter_ = found->second;
+    return found->second;
+  }
+
+  void take(const TableRow& row, std::size_t index, Instant instant) {
+    csv::IntakeMeter& meter = intake_.meter(index);
+    const std::string_view text = cell(row, value_[index]);
+    csv::Row reading{.line = row.number,
+                     .stamp = instant,
+                     .value = kAbsent,
+                     .conversion = meter.conversion,
+                     .text = row.text};
+    if (!is_blank(text)) {
+      const auto value = parse_cell(text, shape_.decimal);
+      const bool is_usable = value && std::abs(*value) <= csv::kValueMax;
+      if (!is_usable) {
+        return intake_.refuse(
+            row.number,
+            "meter " + in_quotes(meter.rows.name) + ": " + cell_problem(text, shape_.decimal),
+            row.text, &meter);
+      }
+      reading.value = *value;
+    }
+    intake_.take(meter, reading);
+  }
+
+  RowSource& rows_;
+  std::string name_;
+  const TableShape& shape_;
+  std::span<const TableMeter> meters_;
+  const metering::LocalCalendar& calendar_;
+  csv::ReadingIntake intake_;
+  std::vector<std::string> header_;
+  std::vector<std::size_t> value_;  ///< By meter.
+  std::size_t time_ = kNone;
+  std::size_t clock_ = kNone;
+  std::size_t meter_ = kNone;
+  std::size_t unit_ = kNone;
+  std::map<std::string, std::size_t, std::less<>> by_name_;
+  std::size_t last_meter_ = 0;
+  std::vector<ClockReader> clocks_;  ///< One for the table, or one for each meter of a long one.
+  bool is_below_header_ = false;
+  std::size_t last_cells_ = 0;
+  std::size_t last_decimals_ = 0;
+  ClockFacts facts_;
+};
+
+}  // namespace
+
+std::optional<std::size_t> find_column(std::span<const std::string> header,
+                                       std::string_view column) {
+  const auto named = std::find(header.begin(), header.end(), column);
+  if (named != header.end() && !column.empty()) {
+    return static_cast<std::size_t>(named - header.begin());
+  }
+  return numbered(column);
+}
+
+char likely_separator(std::string_view line) {
+  char likely = ',';
+  std::ptrdiff_t most = 0;
+  for (const char sign : {'\t', ';', ',', '|'}) {
+    const auto count = std::count(line.begin(), line.end(), sign);
+    if (count <= most) continue;
+    most = count;
+    likely = sign;
+  }
+  return likely;
+}
+
+Result<csv::ReadingsReport> read_table(RowSource& rows, std::string_view name,
+                                       const TableShape& shape, std::span<const TableMeter> meters,
+                                       const metering::LocalCalendar& calendar,
+                                       const csv::ReadingsSink& sink, ClockFacts* facts) {
+  csv::ReadingsOptions options;
+  for (const TableMeter& meter : meters) options.meters.push_back(meter.rows);
+  const metering::LocalCalendar* clock = &calendar;
+  std::optional<metering::LocalCalendar> own;
+  if (!shape.timezone.empty()) {
+    auto opened = metering::LocalCalendar::open(shape.timezone);
+    if (!opened) return tl::unexpected(opened.error());
+    own = std::move(*opened);
+    clock = &*own;
+  }
+  TableReader reader{rows, name, shape, meters, options, *clock, sink};
+  auto report = reader.run();
+  if (facts != nullptr) *facts = reader.facts();
+  return report;
+}
+
+}  // namespace recald::table

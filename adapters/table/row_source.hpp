@@ -1,0 +1,33 @@
+/// Rows of text cells, whatever container they stand in.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace recald::table {
+
+inline constexpr std::size_t kCellsMax = 1024;  ///< In a row; what follows is not looked at.
+
+struct TableRow {
+  std::uint64_t number =
+      0;  ///< From 1: the line of a text, the row of a sheet, a reading of a feed.
+  std::vector<std::string_view> cells;  ///< Trimmed; valid until the next row.
+  std::string_view text;                ///< The row as it stands, for messages.
+  std::string_view problem;             ///< Why it has no cells: a quote that stays open.
+  bool is_terminated = true;            ///< False for the last line of a text that may be cut.
+};
+
+class RowSource {
+ public:
+  virtual ~RowSource() = default;
+
+  /// @return false at the end, and when the source fails: then `error` says so.
+  virtual bool next(TableRow& row) = 0;
+  [[nodiscard]] virtual const std::optional<Error>& error() const = 0;
+};
+
+}  // namespace recald::table

@@ -1,0 +1,59 @@
+/// Time stamps as exports write them, and the instants that clocks on a wall mean.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "core/metering/civil_time.hpp"
+#include "core/result.hpp"
+
+namespace recald::table {
+
+/// The order of a date's parts, or what is counted instead. Parts may stand apart by - / . or
+/// blanks, a month may be a name, a year may have two digits.
+enum class TimeFormat : std::uint8_t {
+  year_first,   ///< 2024-03-31 14:15, 2024-03-31T14:15:00+02:00, 20240331 1415
+  day_first,    ///< 31/03/2024 14:15, 31.3.24 2:15 PM, 31-Mar-2024
+  month_first,  ///< 03/31/2024 14:15, Mar 31, 2024
+  excel,        ///< Days since the end of 1899, as a spreadsheet counts them.
+  unix,         ///< Seconds, or milliseconds, since 1970 in UTC.
+};
+
+inline constexpr std::array<std::string_view, 5> kTimeFormats{"yyyy-mm-dd", "dd/mm/yyyy",
+                                                              "mm/dd/yyyy", "excel", "unix"};
+[[nodiscard]] inline std::string_view to_string(TimeFormat format) {
+  return kTimeFormats[static_cast<std::size_t>(format)];
+}
+
+/// What a stamp says: a time on some clock, and perhaps which clock.
+struct WrittenTime {
+  metering::Instant clock;  ///< As if the clock showed UTC.
+  std::optional<std::chrono::seconds> utc_offset;
+  bool has_time = true;  ///< False: a day alone.
+};
+
+/// @return the time, or malformed; out_of_range outside 1971…2037.
+[[nodiscard]] Result<WrittenTime> parse_stamp(std::string_view text, TimeFormat format);
+
+/// A time of the day alone: "14:15", "2:15:00 PM", "24:00".
+[[nodiscard]] std::optional<std::chrono::seconds> parse_time_of_day(std::string_view text);
+
+/// Instants of the times that one clock showed, one after the other. An hour that the clock shows
+/// twice is told apart by the order: the second time it begins, it is the later one.
+class ClockReader {
+ public:
+  /// @param calendar  Outlives this.
+  explicit ClockReader(const metering::LocalCalendar& calendar) : calendar_{&calendar} {}
+
+  /// @return none for a time that the clock jumps over.
+  [[nodiscard]] std::optional<metering::Instant> instant_of(metering::Instant clock);
+
+ private:
+  const metering::LocalCalendar* calendar_;
+  std::optional<metering::Instant> last_clock_;
+  bool in_second_pass_ = false;
+};
+
+}  // namespace recald::table

@@ -1,0 +1,342 @@
+#include "adapters/table/xlsx.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "adapters/csv/fields.hpp"
+#include "adapters/table/archive.hpp"
+#include "adapters/table/element_cutter.hpp"
+#include "adapters/table/xml_nodes.hpp"
+
+namespace recald::table {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr std::size_t kPartMax = 16u << 20;    // bytes of a part that is read as a whole
+constexpr std::size_t kRowMax = 4u << 20;      // of one row
+constexpr std::size_t kSharedMax = 64u << 20;  // of all texts that cells share
+
+bool is_named(const pugi::xml_node& node, std::string_view name) {
+  return local_name(node.name()) == name;
+}
+
+/// All text below a node, but for the pronunciation beside it.
+void add_text(const pugi::xml_node& node, std::string& text) {
+  for (const pugi::xml_node& one : node.children()) {
+    if (is_named(one, "t")) {
+      text += one.text().get();
+    } else if (!is_named(one, "rPh")) {
+      add_text(one, text);
+    }
+  }
+}
+
+Result<std::string> whole_part(const Archive& archive, const std::string& entry) {
+  const auto bytes = archive.bytes_of(entry);
+  if (!bytes) return tl::unexpected(bytes.error());
+  std::string part;
+  for (;;) {
+    const std::size_t had = part.size();
+    part.resize(had + 64 * 1024);
+    const auto got = (*bytes)(part.data() + had, part.size() - had);
+    if (!got) return tl::unexpected(got.error());
+    part.resize(had + *got);
+    if (*got == 0) return part;
+    if (part.size() > kPartMax) {
+      return failure(ErrorCode::malformed, "'" + entry + "' of the workbook is too large");
+    }
+  }
+}
+
+Result<void> parse_part(const Archive& archive, const std::string& entry,
+                        pugi::xml_document& document) {
+  const auto part = whole_part(archive, entry);
+  if (!part) return tl::unexpected(part.error());
+  if (!document.load_buffer(part->data(), part->size())) {
+    return failure(ErrorCode::malformed, "'" + entry + "' of the workbook is no XML");
+  }
+  return {};
+}
+
+struct Sheet {
+  std::string name;
+  std::string entry;
+};
+
+struct Workbook {
+  std::vector<Sheet> sheets;
+  bool counts_from_1904 = false;
+};
+
+/// A path of a part relative to xl/.
+std::string entry_of(std::string_view target) {
+  return target.starts_with('/') ? std::string{target.substr(1)} : "xl/" + std::string{target};
+}
+
+Result<Workbook> read_workbook(const Archive& archive) {
+  pugi::xml_document document;
+  pugi::xml_document relations;
+  if (auto read = parse_part(archive, "xl/workbook.xml", document); !read) {
+    return tl::unexpected(read.error());
+  }
+  if (auto read = parse_part(archive, "xl/_rels/workbook.xml.rels", relations); !read) {
+    return tl::unexpected(read.error());
+  }
+  Workbook book;
+  const pugi::xml_node root = document.document_element();
+  const std::string_view epoch = attribute(child_named(root, "workbookPr"), "date1904");
+  book.counts_from_1904 = epoch == "1" || epoch == "true";
+  for (const pugi::xml_node& sheet : child_named(root, "sheets").children()) {
+    const std::string_view id = attribute(sheet, "id");
+    for (const pugi::xml_node& relation : relations.document_element().children()) {
+      if (std::string_view{relation.attribute("Id").value()} != id || id.empty()) continue;
+      book.sheets.push_back(
+          {std::string{attribute(sheet, "name")}, entry_of(relation.attribute("Target").value())});
+    }
+  }
+  return book;
+}
+
+enum class Kind : std::uint8_t { number, date, date_and_time, time };
+
+/// What a number format shows of a day count.
+Kind kind_of_code(std::string_view code) {
+  bool has_date = false;
+  bool has_time = false;
+  bool in_quotes = false;
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    const char c = static_cast<char>(std::tolower(static_cast<unsigned char>(code[i])));
+    if (c == '"') in_quotes = !in_quotes;
+    if (in_quotes) continue;
+    if (c == '\\' || c == '_' || c == '*') ++i;  // the next letter is shown as it is
+    if (c == '[') {
+      const std::size_t end = std::min(code.find(']', i), code.size());
+      const std::string_view inside = code.substr(i + 1, end - i - 1);
+      if (inside == "h" || inside == "hh" || inside == "m" || inside == "mm") return Kind::number;
+      i = end;
+    }
+    if (c == ';') break;  // the format of positive numbers is enough
+    has_date = has_date || c == 'y' || c == 'd';
+    has_time = has_time || c == 'h' || c == 's';
+    if (c == 'e' || c == '#' || c == '0') return has_time ? Kind::time : Kind::number;
+  }
+  if (has_date) return has_time ? Kind::date_and_time : Kind::date;
+  return has_time ? Kind::time : Kind::number;
+}
+
+Kind kind_of_id(int id) {
+  if ((id >= 14 && id <= 17) || (id >= 27 && id <= 31) || (id >= 50 && id <= 58)) return Kind::date;
+  if ((id >= 18 && id <= 21) || (id >= 32 && id <= 36) || id == 45 || id == 47) return Kind::time;
+  return id == 22 ? Kind::date_and_time : Kind::number;
+}
+
+/// By a cell's style.
+Result<std::vector<Kind>> read_styles(const Archive& archive) {
+  std::vector<Kind> kinds;
+  if (!archive.has("xl/styles.xml")) return kinds;
+  pugi::xml_document document;
+  if (auto read = parse_part(archive, "xl/styles.xml", document); !read) {
+    return tl::unexpected(read.error());
+  }
+  const pugi::xml_node root = document.document_element();
+  for (const pugi::xml_node& style : child_named(root, "cellXfs").children()) {
+    const int id = static_cast<int>(whole_number(attribute(style, "numFmtId")).value_or(0));
+    Kind kind = kind_of_id(id);
+    for (const pugi::xml_node& format : child_named(root, "numFmts").children()) {
+      if (whole_number(attribute(format, "numFmtId")) != id) continue;
+      kind = kind_of_code(attribute(format, "formatCode"));
+    }
+    kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+Result<std::vector<std::string>> read_shared(const Archive& archive) {
+  std::vector<std::string> texts;
+  if (!archive.has("xl/sharedStrings.xml")) return texts;
+  auto bytes = archive.bytes_of("xl/sharedStrings.xml");
+  if (!bytes) return tl::unexpected(bytes.error());
+  ElementCutter cutter{std::move(*bytes), {"si"}, kRowMax};
+  std::size_t size = 0;
+  for (std::string_view element; cutter.next(element);) {
+    pugi::xml_document document;
+    std::string text;
+    if (document.load_buffer(element.data(), element.size())) {
+      add_text(document.document_element(), text);
+    }
+    size += text.size() + sizeof text;
+    if (size > kSharedMax) {
+      return failure(ErrorCode::malformed, "the workbook has more than 64 MiB of texts");
+    }
+    texts.push_back(std::move(text));
+  }
+  if (cutter.error()) return tl::unexpected(*cutter.error());
+  return texts;
+}
+
+std::string time_text(std::int64_t second_of_day) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%02d:%02d:%02d", static_cast<int>(second_of_day / 3600),
+                static_cast<int>(second_of_day / 60 % 60), static_cast<int>(second_of_day % 60));
+  return text.data();
+}
+
+/// A day count as the date and the time that it stands for.
+std::string date_text(double serial_days, Kind kind) {
+  constexpr std::int64_t kEpoch_days = 25'569;  // of 1970-01-01
+  const std::int64_t since =
+      std::llround((serial_days - static_cast<double>(kEpoch_days)) * 86'400.0);
+  const metering::Instant t{seconds{since}};
+  const auto midnight = std::chrono::floor<std::chrono::days>(t);
+  const std::string day = metering::to_string(metering::Day{midnight});
+  if (kind == Kind::date && t == midnight) return day;
+  return day + " " + time_text((t - midnight).count());
+}
+
+/// 0 for "A7", 27 for "AB1".
+std::optional<std::size_t> column_of(std::string_view reference) {
+  std::size_t column = 0;
+  std::size_t letters = 0;
+  for (; letters < reference.size() && reference[letters] >= 'A' && reference[letters] <= 'Z';
+       ++letters) {
+    column = 26 * column + static_cast<std::size_t>(reference[letters] - 'A') + 1;
+    if (column > kCellsMax) return {};
+  }
+  if (letters == 0) return {};
+  return column - 1;
+}
+
+class SheetRows final : public RowSource {
+ public:
+  SheetRows(csv::ByteSource bytes, bool counts_from_1904, std::vector<Kind> styles,
+            std::vector<std::string> shared)
+      : cutter_{std::move(bytes), {"row"}, kRowMax},
+        styles_{std::move(styles)},
+        shared_{std::move(shared)},
+        day_shift_{counts_from_1904 ? 1462.0 : 0.0} {}
+
+  bool next(TableRow& row) override {
+    std::string_view element;
+    if (!cutter_.next(element)) return false;
+    row.problem = {};
+    row.is_terminated = true;
+    row.cells.clear();
+    texts_.clear();
+    if (!document_.load_buffer(element.data(), element.size())) {
+      row.number = ++number_;
+      row.problem = "the row is no XML";
+      return true;
+    }
+    const pugi::xml_node node = document_.document_element();
+    const auto given = whole_number(attribute(node, "r"));
+    number_ = given && *given > 0 ? static_cast<std::uint64_t>(*given) : number_ + 1;
+    row.number = number_;
+    for (const pugi::xml_node& cell : node.children()) add_cell(cell);
+    joined_.clear();
+    for (const std::string& text : texts_) {
+      if (!joined_.empty()) joined_ += ", ";
+      joined_ += text;
+      row.cells.push_back(csv::trimmed(text));
+    }
+    row.text = joined_;
+    return true;
+  }
+
+  [[nodiscard]] const std::optional<Error>& error() const override { return cutter_.error(); }
+
+ private:
+  void add_cell(const pugi::xml_node& cell) {
+    if (!is_named(cell, "c")) return;
+    const std::string_view reference = attribute(cell, "r");
+    const auto column = reference.empty() ? std::optional{texts_.size()} : column_of(reference);
+    if (!column || *column >= kCellsMax || *column < texts_.size()) return;
+    texts_.resize(*column);  // those left out are blank
+    texts_.push_back(text_of(cell));
+  }
+
+  [[nodiscard]] std::string text_of(const pugi::xml_node& cell) const {
+    const std::string_view type = attribute(cell, "t");
+    std::string text;
+    if (type == "inlineStr") {
+      add_text(child_named(cell, "is"), text);
+      return text;
+    }
+    text = child_named(cell, "v").text().get();
+    if (type == "s") {
+      const auto index = static_cast<std::size_t>(whole_number(text).value_or(-1));
+      return index < shared_.size() ? shared_[index] : "";
+    }
+    if (type == "e") return "";  // #DIV/0!, #N/A: nothing was measured
+    const auto style = static_cast<std::size_t>(whole_number(attribute(cell, "s")).value_or(0));
+    if ((type.empty() || type == "n") && style < styles_.size()) {
+      return dated(text, styles_[style]);
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string dated(const std::string& text, Kind kind) const {
+    const auto serial = csv::parse_number(text);
+    if (kind == Kind::number || !serial) return text;
+    if (*serial >= 0.0 && *serial < 1.0) return time_text(std::llround(*serial * 86'400.0));
+    if (*serial < 0.0 || *serial > 80'000.0) return text;
+    return date_text(*serial + day_shift_, kind);
+  }
+
+  ElementCutter cutter_;
+  std::vector<Kind> styles_;
+  std::vector<std::string> shared_;
+  double day_shift_;
+  pugi::xml_document document_;
+  std::uint64_t number_ = 0;
+  std::vector<std::string> texts_;
+  std::string joined_;
+};
+
+tl::unexpected<Error> in_file(const std::filesystem::path& file, const Error& error) {
+  const std::string name = file.string();
+  if (error.message.find(name) != std::string::npos) return tl::unexpected(error);
+  return tl::unexpected(Error{error.code, "workbook '" + name + "': " + error.message});
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> sheet_names(const std::filesystem::path& file) {
+  const auto archive = Archive::open(file);
+  if (!archive) return tl::unexpected(archive.error());
+  const auto book = read_workbook(*archive);
+  if (!book) return in_file(file, book.error());
+  std::vector<std::string> names;
+  for (const Sheet& sheet : book->sheets) names.push_back(sheet.name);
+  return names;
+}
+
+Result<std::unique_ptr<RowSource>> open_sheet(const std::filesystem::path& file,
+                                              const std::string& sheet) {
+  const auto archive = Archive::open(file);
+  if (!archive) return tl::unexpected(archive.error());
+  const auto book = read_workbook(*archive);
+  if (!book) return in_file(file, book.error());
+  const auto found = std::find_if(book->sheets.begin(), book->sheets.end(), [&](const Sheet& one) {
+    return sheet.empty() || one.name == sheet;
+  });
+  if (found == book->sheets.end()) {
+    std::string names;
+    for (const Sheet& one : book->sheets) names += (names.empty() ? "" : ", ") + one.name;
+    return failure(ErrorCode::malformed,
+                   "workbook '" + file.string() + "' has no sheet " + csv::in_quotes(sheet) +
+                       (names.empty() ? "; it has none" : "; it has " + names));
+  }
+  auto styles = read_styles(*archive);
+  if (!styles) return in_file(file, styles.error());
+  auto shared = read_shared(*archive);
+  if (!shared) return in_file(file, shared.error());
+  auto bytes = archive->bytes_of(found->entry);
+  if (!bytes) return in_file(file, bytes.error());
+  return std::make_unique<SheetRows>(std::move(*bytes), book->counts_from_1904, std::move(*styles),
+                                     std::move(*shared));
+}
+
+}  // namespace recald::table

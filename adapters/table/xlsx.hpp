@@ -1,0 +1,25 @@
+/// Sheets of .xlsx workbooks (ECMA-376) as rows of text.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adapters/table/row_source.hpp"
+
+namespace recald::table {
+
+/// Names of the sheets, in their order.
+[[nodiscard]] Result<std::vector<std::string>> sheet_names(const std::filesystem::path& file);
+
+/// Rows of one sheet, one at a time. Numbers are as they are stored, with a decimal point; cells
+/// formatted as dates come as "2024-03-31 14:15:00", "2024-03-31" or "14:15:00". Texts that cells
+/// share are held, up to 64 MiB.
+/// @param sheet  Its name; empty: the first one.
+/// @return the rows, or not_found, io_failed, malformed (no workbook; no such sheet: the message
+///         lists those there are).
+[[nodiscard]] Result<std::unique_ptr<RowSource>> open_sheet(const std::filesystem::path& file,
+                                                            const std::string& sheet);
+
+}  // namespace recald::table
