@@ -11,6 +11,7 @@
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
 #include "daemon/site/model/site_parts.hpp"
+#include "daemon/site/replay/recording.hpp"
 #include "daemon/site/replay/site_weather.hpp"
 
 namespace recald::daemon {
@@ -45,7 +46,9 @@ void print_meters(const SiteConfig& site, const Console& console) {
     }
     console.out << fmt::format(
         "  meter {:<16} {:<14} {} ('{}', {}-stamped, interval {})\n", meter.id,
-        metering::to_string(meter.utility), config.file.string(), config.name_in_file,
+        metering::to_string(meter.utility), config.file.string(),
+        config.table && config.table->shape.meter_column.empty() ? config.table->column
+                                                                 : config.name_in_file,
         config.stamps == csv::Stamps::end ? "end" : "start",
         config.interval ? duration_words(*config.interval) : "as in the file");
   }
@@ -79,7 +82,7 @@ void print_weather(const WeatherConfig& config, const weather::ValuesTaken& take
                    const Console& console) {
   console.out << fmt::format(
       "  weather {} ({}-stamped, temperature, humidity, wind and pressure: {})\n",
-      config.file.string(),
+      config.more_files.empty() ? config.file.string() : config.file_words(),
       config.format == WeatherFormat::epw || config.stamps == csv::Stamps::end ? "end" : "start",
       to_string(taken));
 }
@@ -184,8 +187,28 @@ std::vector<std::string> check_files(const SiteConfig& site) {
     if (config.source != MeterSource::csv) continue;
     require(config.file, fmt::format("the file of meter '{}',", config.meter.id));
   }
-  if (has_weather_file(site)) require(site.weather->file, "the weather file");
+  if (has_weather_file(site)) {
+    require(site.weather->file, "the weather file");
+    for (const auto& file : site.weather->more_files) require(file, "the weather file");
+  }
   return problems;
+}
+
+/// What `replay` would refuse of the meters' files. @param refused  Becomes how many lines.
+std::vector<std::string> check_readings(const SiteConfig& site, const Console& console,
+                                        std::uint64_t& refused) {
+  const auto calendar = metering::LocalCalendar::open(site.timezone);
+  if (!calendar) return {calendar.error().message};
+  VirtualClock clock{metering::Instant{}};
+  const auto recording = replay_meters(site, *calendar, {}, clock, {});
+  if (!recording) return {site.file.filename().string() + ": " + recording.error().message};
+  print_line_words(*recording, console);
+  for (const FileIssues& file : recording->files) refused += file.issues.total;
+  for (const MeterRecord& record : recording->meters) {
+    if (!record.doubt.empty())
+      console.err << fmt::format("! {}: {}\n", record.meter.id, record.doubt);
+  }
+  return {};
 }
 
 }  // namespace
@@ -214,6 +237,11 @@ int run_check(const CheckArguments& arguments, const Console& console) {
     const auto more = check_buses(*site, console, arguments.json);
     problems.insert(problems.end(), more.begin(), more.end());
   }
+  std::uint64_t refused = 0;
+  if (site && problems.empty()) {
+    const auto more = check_readings(*site, console, refused);
+    problems.insert(problems.end(), more.begin(), more.end());
+  }
   if (site && site->model) {
     const auto more = check_model(*site, console, arguments.json);
     problems.insert(problems.end(), more.begin(), more.end());
@@ -235,6 +263,7 @@ int run_check(const CheckArguments& arguments, const Console& console) {
   }
   if (arguments.json) {
     nlohmann::ordered_json result{{"ok", problems.empty()}, {"problems", problems}};
+    if (refused > 0) result["lines_to_look_at"] = refused;
     if (weather) result["weather_values"] = to_string(*weather);
     if (arguments.meters) result["meters"] = meters;
     console.out << result.dump(2) << "\n";

@@ -95,10 +95,23 @@ WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_f
                            bool has_sensors) {
   WeatherConfig weather;
   const bool has_none = has_sensors && !table.has("file");
-  const std::string file = has_none ? table.text_or("file", "") : table.required_text("file");
-  if (!has_none) weather.file = resolve(site_file, file, "file", table);
+  const auto files = table.one_or_more("file");
+  if (!has_none && !table.has("file")) table.problem("'file' is missing");
+  for (const std::string& file : files.value_or(std::vector<std::string>{})) {
+    const std::filesystem::path path = resolve(site_file, file, "file", table);
+    if (weather.file.empty()) {
+      weather.file = path;
+    } else {
+      weather.more_files.push_back(path);
+    }
+  }
   weather.format =
       table.word("format", {"csv", "epw"}) == "epw" ? WeatherFormat::epw : WeatherFormat::csv;
+  if (!weather.more_files.empty() && weather.format != WeatherFormat::epw) {
+    table.problem_at("file",
+                     "'file' lists several files, which only EPW years may be; add format = "
+                     "\"epw\", or put the rows into one CSV file");
+  }
   weather.stamps = read_stamps(table);
   weather.values = read_values(table);
   for (const std::string_view key : {"stamps", "values"}) {
@@ -243,6 +256,9 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   config.units.steam_kWh_per_kg =
       table.number_or("steam_kWh_per_kg", config.units.steam_kWh_per_kg, kFactor);
   config.units.gas_kWh_per_m3 = table.number("gas_kWh_per_m3", kFactor);
+  if (config.source == MeterSource::csv && is_table(table, config.file)) {
+    config.table = read_table_config(table, config.file, meter.utility, config.units);
+  }
   if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
   if (auto counter = table.table("counter")) {
     if (config.source == MeterSource::http) {
@@ -576,6 +592,11 @@ std::string_view name_of(MeterSource source) {
       break;
   }
   return "csv";
+}
+
+std::string WeatherConfig::file_words() const {
+  const std::string name = file.filename().string();
+  return more_files.empty() ? name : fmt::format("{} and {} more", name, more_files.size());
 }
 
 bool ModelConfig::has_output(const std::string& meter_id) const {

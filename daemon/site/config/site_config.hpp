@@ -24,6 +24,7 @@
 #include "daemon/site/config/bus_config.hpp"
 #include "daemon/site/config/service_config.hpp"
 #include "daemon/site/config/store_config.hpp"
+#include "daemon/site/config/table_config.hpp"
 
 namespace recald::daemon {
 
@@ -47,8 +48,9 @@ struct MeterConfig {
   metering::Meter meter;
   MeterRole role = MeterRole::energy;
   MeterSource source = MeterSource::csv;
-  std::filesystem::path file;  ///< source = "csv"; else empty.
-  std::string name_in_file;    ///< In the file's `meter` column.
+  std::filesystem::path file;        ///< source = "csv"; else empty.
+  std::string name_in_file;          ///< In the file's `meter` column.
+  std::optional<TableConfig> table;  ///< Absent: the file is recald's own CSV.
   csv::Stamps stamps = csv::Stamps::start;
   /// Of a weather sensor that sends: instants are values at the start of their interval.
   weather::RecordedValues values = weather::RecordedValues::mean;
@@ -71,9 +73,13 @@ enum class WeatherFormat { csv, epw };
 
 struct WeatherConfig {
   std::filesystem::path file;  ///< Empty: the weather comes from the site's sensors alone.
+  std::vector<std::filesystem::path> more_files;  ///< Further EPW files, each of a year of its own.
   WeatherFormat format = WeatherFormat::csv;
   csv::Stamps stamps = csv::Stamps::start;
   std::optional<weather::RecordedValues> values;  ///< Absent: as the file shows or usually is.
+
+  /// "2021.epw", "2021.epw and 2 more"
+  [[nodiscard]] std::string file_words() const;
 };
 
 struct PeriodConfig {

@@ -170,6 +170,21 @@ std::optional<std::vector<std::string>> TomlReader::texts(std::string_view key) 
   return {};
 }
 
+std::optional<std::vector<std::string>> TomlReader::one_or_more(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return {};
+  std::vector<std::string> values;
+  if (const auto one = node->value_exact<std::string>()) values.push_back(*one);
+  if (const toml::array* array = node->as_array()) {
+    for (const toml::node& element : *array) {
+      values.push_back(element.value_exact<std::string>().value_or(""));
+    }
+  }
+  if (!values.empty() && std::ranges::find(values, "") == values.end()) return values;
+  problem_at(key, fmt::format("'{}' must be a text in quotes, or a list of such texts", key));
+  return {};
+}
+
 std::optional<std::string> TomlReader::word(std::string_view key,
                                             const std::vector<std::string_view>& words) {
   const auto value = text(key);

@@ -46,6 +46,8 @@ class TomlReader {
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count,
                                                            NumberRange range = {});
   [[nodiscard]] std::optional<std::vector<std::string>> texts(std::string_view key);
+  /// A text alone, or a list of texts; an empty list, or an empty text in it, is a problem.
+  [[nodiscard]] std::optional<std::vector<std::string>> one_or_more(std::string_view key);
   /// One of the words; anything else is a problem that lists them.
   [[nodiscard]] std::optional<std::string> word(std::string_view key,
                                                 const std::vector<std::string_view>& words);

@@ -18,6 +18,7 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
     if (meter.source == MeterSource::csv) files.insert(meter.file);
   }
   if (site.weather && !site.weather->file.empty()) files.insert(site.weather->file);
+  if (site.weather) files.insert(site.weather->more_files.begin(), site.weather->more_files.end());
   for (const auto& file : files) {
     if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
   }

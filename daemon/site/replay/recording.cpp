@@ -9,7 +9,9 @@
 #include <map>
 #include <set>
 
+#include "adapters/table/read_table.hpp"
 #include "core/absent.hpp"
+#include "daemon/site/replay/register_watch.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -18,38 +20,61 @@ using metering::ClosedMonth;
 using metering::Instant;
 using metering::TimeSpan;
 
-/// Files in order of first mention, each with the meters that it holds.
-std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> group_by_file(
-    const SiteConfig& site) {
-  std::vector<std::pair<std::filesystem::path, std::vector<std::size_t>>> groups;
+csv::MeterRows rows_of(const MeterConfig& config) {
+  return {.name = config.name_in_file,
+          .utility = config.meter.utility,
+          .stamps = config.stamps,
+          .interval = config.interval,
+          .units = config.units,
+          .multiplier = config.multiplier,
+          .counter = config.counter};
+}
+
+/// Meters that are read from one file in one go.
+struct FileGroup {
+  std::filesystem::path file;
+  std::optional<table::TableShape> shape;  ///< None: recald's own CSV.
+  std::vector<std::size_t> meters;
+};
+
+/// In order of first mention.
+std::vector<FileGroup> group_by_file(const SiteConfig& site) {
+  std::vector<FileGroup> groups;
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
-    if (site.meters[i].source != MeterSource::csv) continue;
-    const auto& file = site.meters[i].file;
-    const auto known =
-        std::ranges::find(groups, file, [](const auto& group) { return group.first; });
+    const MeterConfig& config = site.meters[i];
+    if (config.source != MeterSource::csv) continue;
+    std::optional<table::TableShape> shape;
+    if (config.table) shape = config.table->shape;
+    const auto known = std::ranges::find_if(groups, [&](const FileGroup& group) {
+      return group.file == config.file && group.shape == shape;
+    });
     if (known != groups.end()) {
-      known->second.push_back(i);
+      known->meters.push_back(i);
     } else {
-      groups.push_back({file, {i}});
+      groups.push_back({config.file, std::move(shape), {i}});
     }
   }
   return groups;
 }
 
-csv::ReadingsOptions file_options(const SiteConfig& site, const std::vector<std::size_t>& meters) {
-  csv::ReadingsOptions options;
-  for (const std::size_t i : meters) {
-    const MeterConfig& config = site.meters[i];
-    options.meters.push_back({.name = config.name_in_file,
-                              .utility = config.meter.utility,
-                              .stamps = config.stamps,
-                              .interval = config.interval,
-                              .units = config.units,
-                              .multiplier = config.multiplier,
-                              .counter = config.counter});
+Result<csv::ReadingsReport> read_group(const SiteConfig& site, const FileGroup& group,
+                                       const metering::LocalCalendar& calendar,
+                                       const csv::ReadingsSink& sink) {
+  if (!group.shape) {
+    csv::ReadingsOptions options;
+    for (const std::size_t i : group.meters) options.meters.push_back(rows_of(site.meters[i]));
+    return csv::read_readings(group.file, options, sink);
   }
-  return options;
+  std::vector<table::TableMeter> meters;
+  for (const std::size_t i : group.meters) {
+    const MeterConfig& config = site.meters[i];
+    meters.push_back({rows_of(config), config.table->column, config.table->unit});
+  }
+  return table::read_table(group.file, *group.shape, meters, calendar, sink);
 }
+
+/// What the site says itself of zeros need not be asked.
+bool is_told_of_zeros(const MeterRecord& record) { return record.meter.zero_run_max.has_value(); }
 
 /// What the closed months of one meter show besides their figures.
 class SlotRecord {
@@ -66,9 +91,10 @@ class SlotRecord {
   void describe(const std::vector<metering::MonthlyFigure>& figures,
                 const metering::LocalCalendar& calendar, MeterRecord& record,
                 Instant until = Instant::max()) const {
-    record.findings = metering::describe_data(
-        record.meter.id, episodes_until(until, record.meter.interval), joined_zero_runs(), figures,
-        record.level_changes, record.counts, calendar);
+    const auto zero_runs = is_told_of_zeros(record) ? std::vector<TimeSpan>{} : joined_zero_runs();
+    record.findings =
+        metering::describe_data(record.meter.id, episodes_until(until, record.meter.interval),
+                                zero_runs, figures, record.level_changes, record.counts, calendar);
   }
 
  private:
@@ -265,16 +291,47 @@ Result<void> add_sums(const std::vector<Sum>& sums, const SiteConfig& site,
   return {};
 }
 
+/// Why there is no row: those that were refused, else what stands in the file instead.
+std::string refusal_words(const MeterRecord& record, const FileIssues& file) {
+  const bool is_its_own = !record.rows.first_refused.empty();
+  const auto& lines = is_its_own ? record.rows.first_refused : file.issues.listed;
+  const std::uint64_t total = is_its_own ? record.rows.refused : file.issues.total;
+  if (lines.empty()) {
+    return file.others.empty() ? "" : "; " + file.others.words();
+  }
+  std::string words =
+      fmt::format("; {} {} refused:", total, total == 1 ? "line was" : "lines were");
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, lines.size()); ++i) {
+    words += fmt::format("{} line {} \"{}\": {}", i == 0 ? "" : ";", lines[i].line, lines[i].text,
+                         lines[i].reason);
+  }
+  return words;
+}
+
 /// A file has rows of each meter that the site looks for in it.
 Result<void> require_rows(const SiteConfig& site, const Recording& recording) {
   for (std::size_t i = 0; i < recording.meters.size(); ++i) {
-    if (recording.meters[i].in_file || site.meters[i].source != MeterSource::csv) continue;
+    const MeterConfig& config = site.meters[i];
+    if (recording.meters[i].in_file || config.source != MeterSource::csv) continue;
+    const auto file = std::ranges::find(recording.files, config.file, &FileIssues::file);
     return failure(ErrorCode::not_enough_data,
-                   fmt::format("{} has no usable row of meter '{}'; check the meter column, or set "
-                               "name_in_file",
-                               site.meters[i].file.string(), site.meters[i].name_in_file));
+                   fmt::format("{} has no usable row of meter '{}'{}", config.file.string(),
+                               config.name_in_file, refusal_words(recording.meters[i], *file)));
   }
   return {};
+}
+
+/// Amounts that never fall are those of a register that counts on.
+void doubt_amounts(const RegisterWatch& watch, const MeterConfig& config, MeterRecord& record) {
+  if (record.meter.is_counted || !record.in_file || !watch.is_register()) return;
+  const auto unit = metering::find_unit(record.in_file->unit, record.meter.utility, config.units);
+  if (unit && unit->is_rate) return;
+  record.doubt = fmt::format(
+      "The values never fall, as those of a cumulative register; if it is one, add rated_kW = {} "
+      "and counter = {{ unit = \"kWh\" }} to its [[meter]].",
+      watch.rated_kW());
+  record.findings.push_back(
+      {record.meter.id, record.doubt, {}, 0, metering::DataFinding::Grade::warning});
 }
 
 constexpr TimeSpan kAllTime{Instant{}, metering::kLatestInstant};
@@ -345,7 +402,9 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
     closer.add(placed);
   };
 
-  for (const auto& [file, indices] : group_by_file(site)) {
+  std::vector<RegisterWatch> watches(site.meters.size());
+  for (const FileGroup& group : group_by_file(site)) {
+    const std::vector<std::size_t>& indices = group.meters;
     const csv::ReadingsSink sink{.on_meter =
                                      [&](const csv::MeterInFile& shown) {
                                        const std::size_t i = indices[shown.meter];
@@ -356,16 +415,17 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                  .on_reading =
                                      [&](const metering::Reading& reading) {
                                        take(indices[reading.meter], reading);
+                                       watches[indices[reading.meter]].take(reading);
                                        for (Sum& sum : sums)
                                          sum.take(indices[reading.meter], reading);
                                      }};
-    auto report = csv::read_readings(file, file_options(site, indices), sink);
+    auto report = read_group(site, group, calendar, sink);
     if (!report) return tl::unexpected(report.error());
     recording.readings += report->readings;
     for (std::size_t k = 0; k < indices.size(); ++k) {
       recording.meters[indices[k]].rows = report->meters[k];
     }
-    recording.files.push_back({file, std::move(report->issues)});
+    recording.files.push_back({group.file, std::move(report->issues), std::move(report->others)});
   }
   if (auto whole = require_rows(site, recording); !whole) return tl::unexpected(whole.error());
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
@@ -385,6 +445,9 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   }
   closer.finish();
   recorder.describe(closer, calendar, last_end);
+  for (std::size_t i = 0; i < watches.size(); ++i) {
+    doubt_amounts(watches[i], site.meters[i], recording.meters[i]);
+  }
   return recording;
 }
 

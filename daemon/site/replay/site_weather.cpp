@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -74,9 +75,46 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
   return FileWeather{std::move(all), true};
 }
 
+/// Several recorded years, each in a file of its own, in any order. Hours between them are absent.
+Result<FileWeather> read_epw_list(const WeatherConfig& config, SiteWeather& result) {
+  result.values = epw_values(config);
+  std::map<metering::Instant, std::pair<std::string, weather::WeatherSeries>> years;
+  std::vector<std::filesystem::path> files = config.more_files;
+  files.insert(files.begin(), config.file);
+  for (const std::filesystem::path& file : files) {
+    auto one = epw::read_epw(file, {}, result.values.values);
+    if (!one) return tl::unexpected(one.error());
+    const std::string name = file.filename().string();
+    if (one->typical) {
+      return failure(ErrorCode::invalid_value,
+                     fmt::format("{} is a typical year; only recorded years may be listed", name));
+    }
+    result.notes.insert(result.notes.end(), one->notes.begin(), one->notes.end());
+    const metering::Instant begin = one->series.begin;
+    const auto added = years.try_emplace(begin, name, std::move(one->series));
+    if (!added.second) {
+      return failure(ErrorCode::invalid_value,
+                     fmt::format("{} and {} are of the same year; list one of them",
+                                 added.first->second.first, name));
+    }
+  }
+  weather::WeatherSeries all{.begin = years.begin()->first, .hours = {}};
+  for (auto& [begin, year] : years) {
+    const auto gap = begin - all.end();
+    if (gap < std::chrono::seconds{0}) {
+      return failure(ErrorCode::invalid_value,
+                     fmt::format("{} begins before the year before it ends", year.first));
+    }
+    all.hours.resize(all.hours.size() + static_cast<std::size_t>(gap / std::chrono::hours{1}));
+    all.hours.insert(all.hours.end(), year.second.hours.begin(), year.second.hours.end());
+  }
+  return FileWeather{std::move(all)};
+}
+
 /// @pre the site has a file
 Result<FileWeather> read_file(const WeatherConfig& config, const metering::MonthRange& months,
                               SiteWeather& result) {
+  if (!config.more_files.empty()) return read_epw_list(config, result);
   if (config.format == WeatherFormat::epw) return read_epw_years(config, months, result);
   auto series = read_csv(config, result);
   if (!series) return tl::unexpected(series.error());
@@ -110,7 +148,7 @@ bool has_any(const weather::WeatherSeries& series, std::size_t variable) {
 }
 
 std::string no_dry_bulb_words(const SiteConfig& site) {
-  std::string whose = "in " + site.weather->file.filename().string();
+  std::string whose = "in " + site.weather->file_words();
   if (!site.sensors.empty()) {
     whose =
         "of " + sensor_words(site.sensors) + (site.weather->file.empty() ? "" : " and " + whose);
@@ -140,7 +178,7 @@ bool is_measured(const SiteConfig& site, std::size_t variable) {
 void describe_file(const SiteConfig& site, const metering::LocalCalendar& calendar,
                    const metering::MonthRange& months, const weather::WeatherSeries& series,
                    SiteWeather& result) {
-  const std::string name = site.weather->file.filename().string();
+  const std::string name = site.weather->file_words();
   for (metering::Month month = months.first; month <= months.last;
        month = metering::next_month(month)) {
     const auto found =

@@ -1,0 +1,105 @@
+#include "daemon/site/config/table_config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace recald::daemon {
+namespace {
+
+using table::Container;
+
+struct Separator {
+  std::string_view word;
+  char sign;
+};
+constexpr std::array kSeparators{Separator{",", ','}, Separator{";", ';'}, Separator{"tab", '\t'},
+                                 Separator{"|", '|'}};
+
+/// By the end of the file's name.
+Container container_of(const std::filesystem::path& file) {
+  std::string end = file.extension().string();
+  std::ranges::transform(end, end.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (end == ".xlsx" || end == ".xlsm") return Container::xlsx;
+  return end == ".xml" ? Container::green_button : Container::text;
+}
+
+std::optional<std::string> read_format(TomlReader& meter) {
+  return meter.word("format", {"readings", "table", "xlsx", "green_button"});
+}
+
+void require_unit(TomlReader& meter, const TableConfig& config, metering::Utility utility,
+                  const metering::UnitFactors& known_units) {
+  if (config.unit.empty()) return;
+  const auto unit = metering::find_unit(config.unit, utility, known_units);
+  if (!unit) meter.problem_at("unit", "'unit': " + unit.error().message);
+}
+
+void read_columns(TomlReader& meter, TableConfig& config) {
+  table::TableShape& shape = config.shape;
+  shape.time_column = meter.required_text("time_column");
+  shape.clock_column = meter.text_or("clock_column", "");
+  config.column = meter.required_text("column");
+  shape.meter_column = meter.text_or("meter_column", "");
+  shape.unit_column = meter.text_or("unit_column", "");
+  const std::vector<std::string_view> formats{table::kTimeFormats.begin(),
+                                              table::kTimeFormats.end()};
+  if (const auto word = meter.word("time_format", formats)) {
+    shape.time_format =
+        static_cast<table::TimeFormat>(std::ranges::find(formats, *word) - formats.begin());
+  }
+  shape.decimal = meter.word("decimal", {".", ","}) == "," ? ',' : '.';
+  shape.timezone = meter.text_or("timezone", "");
+  if (meter.has("timezone")) {
+    if (const auto zone = metering::LocalCalendar::open(shape.timezone); !zone) {
+      meter.problem_at("timezone", "'timezone': " + zone.error().message);
+    }
+  }
+  config.unit = meter.text_or("unit", "");
+  if (config.unit.empty() == shape.unit_column.empty()) {
+    meter.problem_at(
+        "unit", config.unit.empty()
+                    ? "'unit' is missing: what the values are in, such as \"kWh\"; or name the "
+                      "'unit_column' that says it"
+                    : "'unit' and 'unit_column' are both there; leave one of them out");
+  }
+}
+
+}  // namespace
+
+bool is_table(TomlReader& meter, const std::filesystem::path& file) {
+  if (const auto format = read_format(meter)) return *format != "readings";
+  constexpr std::array kKeys{"time_column",  "clock_column", "time_format", "column",
+                             "meter_column", "unit_column",  "decimal",     "separator"};
+  return container_of(file) != Container::text ||
+         std::ranges::any_of(kKeys, [&](const char* key) { return meter.has(key); });
+}
+
+TableConfig read_table_config(TomlReader& meter, const std::filesystem::path& file,
+                              metering::Utility utility, const metering::UnitFactors& known_units) {
+  TableConfig config;
+  const auto format = read_format(meter);
+  const Container container = format == "xlsx"           ? Container::xlsx
+                              : format == "green_button" ? Container::green_button
+                              : format == "table"        ? Container::text
+                                                         : container_of(file);
+  if (container == Container::green_button) {
+    config.shape = table::green_button_shape();
+    config.column = "value";
+    return config;
+  }
+  read_columns(meter, config);
+  config.shape.container = container;
+  if (container == Container::xlsx) {
+    config.shape.sheet = meter.text_or("sheet", "");
+  } else if (const auto word = meter.word("separator", {",", ";", "tab", "|"})) {
+    config.shape.separator =
+        std::ranges::find(kSeparators, std::string_view{*word}, &Separator::word)->sign;
+  }
+  require_unit(meter, config, utility, known_units);
+  return config;
+}
+
+}  // namespace recald::daemon
