@@ -224,6 +224,7 @@ void add_import(CLI::App& command, ImportArguments& arguments) {
 
 /// What every command was given on the command line; only one of them is run.
 struct Arguments {
+  InitArguments init;
   CheckArguments check;
   ScanArguments scan;
   RunArguments run;
@@ -252,7 +253,25 @@ struct Verb {
   std::function<int(const Console&)> run;
 };
 
+void add_init(CLI::App& command, InitArguments& arguments) {
+  command
+      .add_option("files", arguments.files,
+                  "Exports of meters: CSV and its kin, .xlsx, Green Button (XML)")
+      ->required();
+  command.add_option("--out", arguments.out, "Folder for site.toml; the current one by default");
+  command.add_option("--timezone", arguments.timezone,
+                     "The building's zone, such as Europe/Berlin: for stamps without an offset, "
+                     "and for months");
+  command.add_flag("--yes", arguments.asks_nothing, "Ask nothing (recald init never does)");
+  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+}
+
 void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* init =
+      app.add_subcommand("init", "Look at exports of meters and write a site file")->group(kSetUp);
+  add_init(*init, given.init);
+  verbs.push_back({init, [&](const Console& console) { return run_init(given.init, console); }});
+
   CLI::App* check =
       app.add_subcommand("check", "Check a site file and say what is wrong with it")->group(kSetUp);
   add_site(*check, given.check);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/model/model_kind.hpp"
 #include "daemon/commands/console.hpp"
@@ -102,6 +103,14 @@ struct DriftArguments : SiteArguments {
   unsigned threads = 0;
 };
 
+struct InitArguments {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path out;  ///< Folder for site.toml; empty: here.
+  std::string timezone;       ///< IANA name, or empty.
+  bool asks_nothing = true;   ///< For scripts that say so; it never asks.
+  bool json = false;
+};
+
 struct CheckArguments : SiteArguments {
   bool meters = false;  ///< Try each live meter once.
 };
@@ -150,6 +159,8 @@ struct ModelArguments : SiteArguments {
   std::string version;  ///< Or its first digits; empty: the one in force, for revert its parent.
 };
 
+/// Looks at exports of meters and writes a site file that reads them, each guess a comment.
+int run_init(const InitArguments& arguments, const Console& console);
 /// Explains a site file; with `meters` it also reads each live meter once.
 int run_check(const CheckArguments& arguments, const Console& console);
 /// Explains a Modbus reply byte by byte, with the values that a register map finds in it.

@@ -17,6 +17,7 @@ constexpr auto kOrder = std::to_array<std::string_view>({
     "daemon/version",
     "daemon/site/config",
     "daemon/site/replay",
+    "daemon/site/setup",
     "daemon/site/model",
     "daemon/site/calibrate",
     "daemon/site/diagnose",

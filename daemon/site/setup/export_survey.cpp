@@ -1,0 +1,565 @@
+#include "daemon/site/setup/export_survey.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "adapters/csv/fields.hpp"
+#include "adapters/csv/line_reader.hpp"
+#include "adapters/table/cell_number.hpp"
+#include "adapters/table/delimited.hpp"
+#include "adapters/table/green_button.hpp"
+#include "adapters/table/read_table.hpp"
+#include "adapters/table/xlsx.hpp"
+#include "daemon/site/replay/register_watch.hpp"
+#include "daemon/site/setup/utility_guess.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using std::chrono::seconds;
+using table::Container;
+
+constexpr std::size_t kFirstBytes = 4096;
+constexpr std::size_t kSeparatorLines = 60;
+constexpr std::size_t kMetersMax = 500;
+constexpr double kTypicalGas_kWh_per_m3 = 10.55;
+constexpr int kFrozenIntervals = 12;  // as a meter is taken for frozen unless told otherwise
+constexpr std::string_view kOwnHeader = "timestamp,meter,value,unit";
+
+tl::unexpected<Error> about(const std::filesystem::path& file, const Error& error) {
+  const std::string name = file.string();
+  if (error.message.find(name) != std::string::npos) return tl::unexpected(error);
+  return tl::unexpected(Error{error.code, fmt::format("'{}': {}", name, error.message)});
+}
+
+Result<std::string> first_bytes(const std::filesystem::path& file) {
+  const auto bytes = csv::open_file(file, "export");
+  if (!bytes) return tl::unexpected(bytes.error());
+  std::string begin(kFirstBytes, '\0');
+  const auto got = (*bytes)(begin.data(), begin.size());
+  if (!got) return tl::unexpected(got.error());
+  begin.resize(*got);
+  return begin;
+}
+
+Result<std::vector<std::string>> first_lines(const std::filesystem::path& file) {
+  auto bytes = csv::open_file(file, "export");
+  if (!bytes) return tl::unexpected(bytes.error());
+  csv::LineReader reader{table::as_utf8(std::move(*bytes))};
+  std::vector<std::string> lines;
+  for (csv::Line line{}; lines.size() < kSeparatorLines && reader.next(line);) {
+    lines.emplace_back(line.text);
+  }
+  if (reader.error()) return tl::unexpected(*reader.error());
+  return lines;
+}
+
+bool is_own(const std::vector<std::string>& lines) {
+  const auto header = std::ranges::find_if(
+      lines, [](const std::string& line) { return !line.empty() && line.front() != '#'; });
+  return header != lines.end() && header->starts_with(kOwnHeader);
+}
+
+Result<std::vector<table::KeptRow>> head_of(const std::filesystem::path& file,
+                                            const table::TableShape& shape) {
+  const auto rows = table::open_rows(file, shape);
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<table::KeptRow> kept;
+  for (table::TableRow row; kept.size() < table::kSniffedRows && (*rows)->next(row);) {
+    kept.push_back({row.number, {}});
+    for (const std::string_view cell : row.cells) {
+      kept.back().cells.push_back(table::utf8_of(cell));
+    }
+  }
+  if ((*rows)->error()) return tl::unexpected(*(*rows)->error());
+  return kept;
+}
+
+Result<table::TableGuess> guess_text(const std::filesystem::path& file,
+                                     const std::vector<std::string>& lines) {
+  table::TableShape shape;
+  shape.separator = table::guess_separator(lines);
+  const auto head = head_of(file, shape);
+  if (!head) return tl::unexpected(head.error());
+  auto guess = table::guess_table(*head);
+  if (guess) guess->shape.separator = shape.separator;
+  return guess;
+}
+
+/// The first sheet that has a table.
+Result<table::TableGuess> guess_workbook(const std::filesystem::path& file) {
+  const auto names = table::sheet_names(file);
+  if (!names) return tl::unexpected(names.error());
+  std::optional<Error> first;
+  for (const std::string& name : *names) {
+    const auto head = head_of(file, {.container = Container::xlsx, .sheet = name});
+    if (!head) return tl::unexpected(head.error());
+    auto guess = table::guess_table(*head);
+    if (guess) {
+      guess->shape.container = Container::xlsx;
+      guess->shape.sheet = name;
+      return guess;
+    }
+    if (!first) first = guess.error();
+  }
+  return tl::unexpected(first.value_or(Error{ErrorCode::malformed, "it has no sheet"}));
+}
+
+/// A meter before anything is known of its readings.
+SurveyedMeter described(std::string name, std::string name_in_file, std::string column,
+                        std::string unit, std::string unit_because) {
+  SurveyedMeter meter;
+  const UtilityGuess utility = guess_utility(name, unit);
+  if (unit.empty()) {
+    unit = "kWh";
+    unit_because = "guessed: nothing says the unit";
+  }
+  meter.name = std::move(name);
+  meter.name_in_file = std::move(name_in_file);
+  meter.column = std::move(column);
+  meter.unit = {std::move(unit), std::move(unit_because)};
+  meter.utility = {utility.utility, utility.because};
+  const auto conversion = metering::find_unit(meter.unit.value, utility.utility, {});
+  meter.needs_heating_value = !conversion && conversion.error().code == ErrorCode::unsupported &&
+                              utility.utility == metering::Utility::gas;
+  return meter;
+}
+
+std::vector<SurveyedMeter> meters_of_columns(const table::TableGuess& guess,
+                                             const std::string& file_stem) {
+  std::vector<SurveyedMeter> meters;
+  for (const table::GuessedColumn& value : guess.values) {
+    std::string name = value.name;
+    if (name.empty()) name = guess.values.size() == 1 ? file_stem : value.column;
+    meters.push_back(described(name, "", value.column, value.unit, "as the header says"));
+  }
+  return meters;
+}
+
+/// Those that the rows of a long table name, each with its first unit.
+Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& file,
+                                                  const table::TableGuess& guess) {
+  const table::TableShape& shape = guess.shape;
+  const auto rows = table::open_rows(file, shape);
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<SurveyedMeter> meters;
+  std::map<std::string, std::size_t, std::less<>> known;
+  std::vector<std::string> header;
+  const table::GuessedColumn& value = guess.values.front();
+  std::optional<std::size_t> meter_at;
+  std::optional<std::size_t> unit_at;
+  std::optional<std::size_t> time_at;
+  for (table::TableRow row; (*rows)->next(row);) {
+    if (!meter_at || !time_at) {
+      header.clear();
+      for (const std::string_view cell : row.cells) header.push_back(table::utf8_of(cell));
+      meter_at = table::find_column(header, shape.meter_column);
+      time_at = table::find_column(header, shape.time_column);
+      unit_at = table::find_column(header, shape.unit_column);
+      if (!shape.time_column.starts_with('#')) continue;
+    }
+    if (*meter_at >= row.cells.size() || *time_at >= row.cells.size()) continue;
+    const std::string_view name = row.cells[*meter_at];
+    if (name.empty() || known.contains(name)) continue;
+    if (!table::parse_stamp(row.cells[*time_at], shape.time_format)) continue;
+    if (meters.size() == kMetersMax) {
+      return failure(ErrorCode::malformed,
+                     fmt::format("column {} has more than {} different names; if it does not "
+                                 "name the meters, take it out",
+                                 csv::in_quotes(shape.meter_column), kMetersMax));
+    }
+    const std::string text = table::utf8_of(name);
+    known.emplace(std::string{name}, meters.size());
+    const bool has_unit = unit_at && *unit_at < row.cells.size();
+    meters.push_back(described(text, text, value.column,
+                               has_unit ? table::utf8_of(row.cells[*unit_at]) : value.unit,
+                               has_unit ? "as its rows say" : "as the header says"));
+  }
+  if ((*rows)->error()) return tl::unexpected(*(*rows)->error());
+  return meters;
+}
+
+Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& file) {
+  const auto feed = table::read_green_button(file);
+  if (!feed) return tl::unexpected(feed.error());
+  std::vector<SurveyedMeter> meters;
+  for (const table::FeedMeter& in_feed : feed->meters) {
+    const std::string name = in_feed.title.empty()
+                                 ? std::string{in_feed.is_reverse ? "delivered back" : ""}
+                                 : in_feed.title;
+    SurveyedMeter meter = described(name.empty() ? file.stem().string() : name, in_feed.name,
+                                    "value", in_feed.unit, "as the feed says");
+    if (in_feed.utility) {
+      meter.utility = {*in_feed.utility, "as the feed says"};
+      meter.needs_heating_value = in_feed.utility == metering::Utility::gas &&
+                                  !metering::find_unit(in_feed.unit, *in_feed.utility, {});
+    }
+    meter.is_register = in_feed.is_register;
+    meters.push_back(std::move(meter));
+  }
+  return meters;
+}
+
+/// What the readings of one meter show, as they pass.
+struct MeterWatch {
+  RegisterWatch as_register;
+  std::uint64_t values = 0;
+  std::uint64_t zeros = 0;
+  std::uint64_t negatives = 0;
+  std::uint64_t frozen = 0;
+  int run = 0;
+  double last = 0.0;
+
+  void take(const metering::Reading& reading) {
+    if (std::isnan(reading.mean_kW)) return;
+    as_register.take(reading);
+    ++values;
+    if (reading.mean_kW == 0.0) ++zeros;
+    if (reading.mean_kW < 0.0) ++negatives;
+    run = values > 1 && reading.mean_kW == last && last != 0.0 ? run + 1 : 1;
+    if (run > kFrozenIntervals) ++frozen;
+    last = reading.mean_kW;
+  }
+};
+
+/// What reading the whole file showed.
+struct WholeFile {
+  csv::ReadingsReport report;
+  table::ClockFacts clock;
+  std::vector<MeterWatch> watches;
+};
+
+metering::UnitFactors factors_of(const SurveyedMeter& meter) {
+  metering::UnitFactors factors;
+  if (meter.needs_heating_value) factors.gas_kWh_per_m3 = kTypicalGas_kWh_per_m3;
+  return factors;
+}
+
+Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
+  WholeFile whole;
+  whole.watches.resize(survey.meters.size());
+  for (SurveyedMeter& meter : survey.meters) meter.samples = {};
+  const csv::ReadingsSink sink{.on_meter = {}, .on_reading = [&](const metering::Reading& reading) {
+                                 whole.watches[reading.meter].take(reading);
+                                 survey.meters[reading.meter].samples.take(reading.start,
+                                                                           reading.mean_kW);
+                               }};
+  std::vector<table::TableMeter> meters;
+  for (const SurveyedMeter& meter : survey.meters) {
+    csv::MeterRows rows{
+        .name = meter.name_in_file, .utility = meter.utility.value, .units = factors_of(meter)};
+    const bool is_said = survey.table && survey.table->shape.unit_column.empty();
+    meters.push_back({std::move(rows), meter.column, is_said ? meter.unit.value : ""});
+  }
+  if (survey.table) {
+    auto report =
+        table::read_table(survey.file, survey.table->shape, meters, calendar, sink, &whole.clock);
+    if (!report) return tl::unexpected(report.error());
+    whole.report = std::move(*report);
+    return whole;
+  }
+  csv::ReadingsOptions options;
+  for (const table::TableMeter& meter : meters) options.meters.push_back(meter.rows);
+  auto report = csv::read_readings(survey.file, options, sink);
+  if (!report) return tl::unexpected(report.error());
+  whole.report = std::move(*report);
+  return whole;
+}
+
+/// A clock that is never changed: of a zone with summer time the winter's offset, by the hour.
+std::optional<std::string> fixed_zone(const metering::LocalCalendar& calendar, Instant around) {
+  const auto year = std::chrono::year_month_day{std::chrono::floor<std::chrono::days>(around)};
+  const auto offset_in = [&](unsigned month) {
+    return calendar.utc_offset(std::chrono::sys_days{year.year() / month / 15});
+  };
+  const seconds winter = std::min(offset_in(1), offset_in(7));
+  if (winter % std::chrono::hours{1} != seconds{0}) return {};
+  const auto hours = std::chrono::duration_cast<std::chrono::hours>(winter).count();
+  // Etc/GMT-1 is one hour ahead of UTC: POSIX counts westwards.
+  return hours == 0 ? "Etc/GMT"
+                    : fmt::format("Etc/GMT{}{}", hours > 0 ? '-' : '+', std::abs(hours));
+}
+
+/// Stamps in hours that the zone's clock jumps over: the meter's clock stays as it is all year.
+Result<void> try_fixed_clock(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                             WholeFile& whole) {
+  if (whole.clock.skipped == 0 || !survey.table->shape.timezone.empty()) return {};
+  std::optional<Instant> first;
+  for (const csv::MeterReport& meter : whole.report.meters) {
+    if (meter.span) first = meter.span->begin;
+  }
+  const auto zone = first ? fixed_zone(calendar, *first) : std::nullopt;
+  if (!zone) return {};
+  survey.table->shape.timezone = *zone;
+  auto again = read_whole(survey, calendar);
+  if (!again) return tl::unexpected(again.error());
+  if (again->report.issues.total >= whole.report.issues.total) {
+    survey.table->shape.timezone.clear();
+    auto back = read_whole(survey, calendar);
+    if (!back) return tl::unexpected(back.error());
+    whole = std::move(*back);
+    return {};
+  }
+  survey.clock_because =
+      fmt::format("its clock stays on winter time: it has {} stamps that {} jumps over",
+                  whole.clock.skipped, calendar.zone_name());
+  whole = std::move(*again);
+  return {};
+}
+
+std::string first_issue(const csv::LineIssues& issues) {
+  if (issues.listed.empty()) return "";
+  return fmt::format("row {}: {}", issues.listed.front().line, issues.listed.front().reason);
+}
+
+/// What makes a file unfit; a few bad rows do not.
+Result<void> require_sound(const SurveyedExport& survey, const WholeFile& whole) {
+  const csv::ReadingsReport& report = whole.report;
+  const auto unfit = [&](const std::string& why) -> Result<void> {
+    return failure(ErrorCode::malformed, fmt::format("'{}': {}", survey.file.string(), why));
+  };
+  if (report.readings == 0) {
+    return unfit("no row can be used; " + (report.issues.total == 0
+                                               ? std::string{"there is none below the header"}
+                                               : first_issue(report.issues)));
+  }
+  std::uint64_t unsorted = 0;
+  std::uint64_t twice = 0;
+  std::uint64_t refused = report.issues.total;
+  for (const csv::MeterReport& meter : report.meters) {
+    unsorted += meter.unsorted;
+    twice += meter.duplicates;
+  }
+  refused -= std::min(refused, unsorted + twice);
+  if (unsorted * 1000 > report.readings) {
+    const auto& listed = report.issues.listed;
+    const auto late = std::ranges::find_if(listed, [](const csv::LineIssue& issue) {
+      return issue.reason.find("in order of time") != std::string::npos;
+    });
+    const std::string where =
+        late == listed.end() ? "" : fmt::format(", the first in row {}", late->line);
+    return unfit(
+        fmt::format("its stamps are out of order ({} of {} rows come after a later one{}); "
+                    "sort it by time",
+                    unsorted, report.readings, where));
+  }
+  if (refused * 100 > report.lines) {
+    return unfit(
+        fmt::format("{} of its {} rows cannot be used, so it is not what it looks like; "
+                    "{}",
+                    refused, report.lines, first_issue(report.issues)));
+  }
+  return {};
+}
+
+bool says(std::string_view text, std::initializer_list<std::string_view> words) {
+  std::string lower{text};
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::ranges::any_of(
+      words, [&](std::string_view word) { return lower.find(word) != std::string::npos; });
+}
+
+/// A record that begins a day at midnight has the starts of its intervals, one that ends a day at
+/// midnight their ends.
+Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::TimeSpan& span,
+                                seconds interval, const metering::LocalCalendar& calendar) {
+  if (!survey.table) return {csv::Stamps::start, "as recald's own files have it unless told"};
+  if (survey.table->shape.container == Container::green_button) {
+    return {csv::Stamps::start, "as Green Button feeds have it"};
+  }
+  const std::string& column = survey.table->shape.time_column;
+  if (says(column, {"end", "until", "bis"})) return {csv::Stamps::end, "by the column's name"};
+  if (says(column, {"start", "begin", "from", "von", "ab "})) {
+    return {csv::Stamps::start, "by the column's name"};
+  }
+  const auto minute = [&](Instant t) { return calendar.local_time(t).minute_of_day; };
+  const int step = static_cast<int>(interval.count() / 60);
+  const Instant last = span.end - interval;
+  if (minute(span.begin) == 0 && minute(last) == 1440 - step) {
+    return {csv::Stamps::start, "it begins at midnight and ends before it"};
+  }
+  if (minute(span.begin) == step && minute(last) == 0) {
+    return {csv::Stamps::end, "it begins after midnight and ends at it"};
+  }
+  return {csv::Stamps::start, "guessed; a file of whole days would decide"};
+}
+
+void take_results(SurveyedExport& survey, const WholeFile& whole,
+                  const metering::LocalCalendar& calendar) {
+  std::vector<SurveyedMeter> usable;
+  for (std::size_t i = 0; i < survey.meters.size(); ++i) {
+    SurveyedMeter& meter = survey.meters[i];
+    const csv::MeterReport& report = whole.report.meters[i];
+    const MeterWatch& watch = whole.watches[i];
+    if (!report.span || watch.values == 0) {
+      survey.notes.push_back(fmt::format(
+          "{} has no value that can be used and is left out{}.", csv::in_quotes(meter.name),
+          report.first_refused.empty()
+              ? ""
+              : fmt::format(" (row {}: {})", report.first_refused.front().line,
+                            report.first_refused.front().reason)));
+      continue;
+    }
+    const auto share = [&](std::uint64_t count) {
+      return static_cast<double>(count) / static_cast<double>(watch.values);
+    };
+    meter.readings = report.readings;
+    meter.refused = report.refused;
+    meter.span = *report.span;
+    meter.interval = report.shown.interval;
+    meter.stamps = guess_stamps(survey, meter.span, meter.interval, calendar);
+    meter.zero_share = share(watch.zeros);
+    meter.negative_share = share(watch.negatives);
+    meter.frozen_share = share(watch.frozen);
+    const auto unit =
+        metering::find_unit(report.shown.unit, meter.utility.value, factors_of(meter));
+    const bool is_rate = unit && unit->is_rate;
+    meter.is_register = !is_rate && (meter.is_register || watch.as_register.is_register());
+    meter.rated_kW = watch.as_register.rated_kW();
+    if (meter.is_register) {
+      meter.stamps = {csv::Stamps::start, "no matter: a register stands at its stamp"};
+    }
+    usable.push_back(std::move(meter));
+  }
+  survey.meters = std::move(usable);
+}
+
+/// "timestamp_utc"
+bool is_called_utc(const std::string& column) { return says(column, {"utc", "gmt", "zulu"}); }
+
+std::optional<seconds> first_offset(const std::filesystem::path& file,
+                                    const table::TableGuess& guess) {
+  const auto rows = table::open_rows(file, guess.shape);
+  if (!rows) return {};
+  std::vector<std::string> header;
+  std::optional<std::size_t> time_at;
+  for (table::TableRow row; (*rows)->next(row);) {
+    if (!time_at) {
+      header.assign(row.cells.begin(), row.cells.end());
+      time_at = table::find_column(header, guess.shape.time_column);
+      if (!guess.shape.time_column.starts_with('#')) continue;
+    }
+    if (!time_at || *time_at >= row.cells.size()) continue;
+    const auto stamp = table::parse_stamp(row.cells[*time_at], guess.shape.time_format);
+    if (stamp && stamp->utc_offset) return stamp->utc_offset;
+  }
+  return {};
+}
+
+/// Own files: meters and first units are found by reading it once.
+Result<std::vector<SurveyedMeter>> meters_of_own(const std::filesystem::path& file) {
+  table::TableGuess as_table;
+  as_table.shape.separator = ',';
+  as_table.shape.time_column = "timestamp";
+  as_table.shape.meter_column = "meter";
+  as_table.shape.unit_column = "unit";
+  as_table.values.push_back({"value", "value", ""});
+  return meters_of_rows(file, as_table);
+}
+
+Result<SurveyedExport> described_export(const std::filesystem::path& file) {
+  SurveyedExport survey{.file = file};
+  const auto begin = first_bytes(file);
+  if (!begin) return tl::unexpected(begin.error());
+  const auto container = table::guess_container(*begin);
+  if (!container) return about(file, container.error());
+  if (*container == Container::green_button) {
+    survey.table.emplace();
+    survey.table->shape = table::green_button_shape();
+    survey.table->has_offsets = true;
+    auto meters = meters_of_feed(file);
+    if (!meters) return about(file, meters.error());
+    survey.meters = std::move(*meters);
+    return survey;
+  }
+  const auto lines = first_lines(file);
+  if (!lines) return tl::unexpected(lines.error());
+  if (*container == Container::text && is_own(*lines)) {
+    auto meters = meters_of_own(file);
+    if (!meters) return about(file, meters.error());
+    survey.meters = std::move(*meters);
+    return survey;
+  }
+  auto guess = *container == Container::xlsx ? guess_workbook(file) : guess_text(file, *lines);
+  if (!guess) return about(file, guess.error());
+  if (guess->shape.meter_column.empty()) {
+    survey.meters = meters_of_columns(*guess, file.stem().string());
+  } else {
+    auto meters = meters_of_rows(file, *guess);
+    if (!meters) return about(file, meters.error());
+    survey.meters = std::move(*meters);
+  }
+  if (!guess->has_offsets && is_called_utc(guess->shape.time_column)) {
+    guess->shape.timezone = "Etc/UTC";
+    survey.clock_because = "by the time column's name";
+  }
+  if (!guess->ignored.empty()) {
+    survey.notes.push_back(fmt::format("{}: columns not used: {}.", file.filename().string(),
+                                       fmt::join(guess->ignored, ", ")));
+  }
+  if (guess->decimal_because.starts_with("guessed")) {
+    survey.notes.push_back(fmt::format("{}: the decimal sign is '{}', {}.",
+                                       file.filename().string(), guess->shape.decimal,
+                                       guess->decimal_because));
+  }
+  if (guess->is_time_format_open) {
+    survey.notes.push_back(fmt::format("{}: dates are taken for {}, {}.", file.filename().string(),
+                                       table::to_string(guess->shape.time_format),
+                                       guess->time_format_because));
+  }
+  survey.table = std::move(*guess);
+  return survey;
+}
+
+}  // namespace
+
+Result<SurveyedExport> survey_export(const std::filesystem::path& file,
+                                     const std::optional<metering::LocalCalendar>& calendar) {
+  auto survey = described_export(file);
+  if (!survey) return survey;
+  const bool is_naive =
+      survey->table && !survey->table->has_offsets && survey->table->shape.timezone.empty();
+  if (is_naive && !calendar) {
+    return failure(ErrorCode::invalid_value,
+                   fmt::format("'{}': its times do not say their offset from UTC; run again with "
+                               "--timezone and the building's zone, such as --timezone "
+                               "Europe/Berlin",
+                               file.string()));
+  }
+  std::optional<metering::LocalCalendar> clock = calendar;
+  if (!clock) {
+    auto utc = metering::LocalCalendar::open("Etc/UTC");
+    if (!utc) return tl::unexpected(utc.error());
+    clock = std::move(*utc);
+    if (survey->table) survey->utc_offset = first_offset(file, *survey->table);
+  }
+  auto whole = read_whole(*survey, *clock);
+  if (!whole) return about(file, whole.error());
+  if (survey->table) {
+    if (auto tried = try_fixed_clock(*survey, *clock, *whole); !tried) {
+      return about(file, tried.error());
+    }
+  }
+  if (auto sound = require_sound(*survey, *whole); !sound) return tl::unexpected(sound.error());
+  take_results(*survey, *whole, *clock);
+  if (survey->meters.empty()) {
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("'{}': no meter has a value that can be used", file.string()));
+  }
+  if (whole->report.issues.total > 0) {
+    survey->notes.push_back(fmt::format("{}: {} of {} rows are refused or come twice; {}.",
+                                        file.filename().string(), whole->report.issues.total,
+                                        whole->report.lines, first_issue(whole->report.issues)));
+  }
+  return survey;
+}
+
+}  // namespace recald::daemon

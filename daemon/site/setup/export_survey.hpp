@@ -1,0 +1,62 @@
+/// What is in an export that nobody described: its meters, and how to read them.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/table/sniff.hpp"
+#include "core/metering/civil_time.hpp"
+#include "core/metering/reading.hpp"
+#include "core/result.hpp"
+#include "daemon/site/setup/meter_sums.hpp"
+
+namespace recald::daemon {
+
+/// A value of a site file, and why it is what it is.
+template <class T>
+struct Guess {
+  T value;
+  std::string because;
+};
+
+struct SurveyedMeter {
+  std::string name;          ///< As people call it.
+  std::string name_in_file;  ///< In the meter column of a long table; else empty.
+  std::string column;
+  Guess<std::string> unit;
+  Guess<metering::Utility> utility;
+  Guess<csv::Stamps> stamps{csv::Stamps::start, ""};
+  std::chrono::seconds interval{0};
+  bool needs_heating_value = false;  ///< Gas by volume.
+  bool is_register = false;
+  double rated_kW = 0.0;  ///< Of a register: more than it ever rose by.
+  double zero_share = 0.0;
+  double frozen_share = 0.0;  ///< In runs of equal values longer than a meter is believed to have.
+  double negative_share = 0.0;
+  std::uint64_t readings = 0;
+  std::uint64_t refused = 0;
+  metering::TimeSpan span{};
+  SampledReadings samples;
+};
+
+struct SurveyedExport {
+  std::filesystem::path file;
+  std::optional<table::TableGuess> table;  ///< None: recald's own CSV.
+  std::vector<SurveyedMeter> meters;
+  std::vector<std::string> notes;  ///< A sentence each: what is undecided, or left out.
+  std::string clock_because;       ///< Why the table has a zone of its own; empty: it has none.
+  std::optional<std::chrono::seconds> utc_offset;  ///< Of its first stamp, if stamps say theirs.
+};
+
+/// Looks at the first rows, then reads the file to its end the way that `replay` would. Memory does
+/// not grow with its length.
+/// @param calendar  Of the site; absent: nobody gave a zone.
+/// @return a sentence that names the file: it cannot be understood, its stamps need a zone, they
+///         are out of order, too many of its rows would be refused.
+[[nodiscard]] Result<SurveyedExport> survey_export(
+    const std::filesystem::path& file, const std::optional<metering::LocalCalendar>& calendar);
+
+}  // namespace recald::daemon

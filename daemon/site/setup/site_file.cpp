@@ -1,0 +1,326 @@
+#include "daemon/site/setup/site_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "core/text/number_text.hpp"
+#include "core/text/printable.hpp"
+
+namespace recald::daemon {
+namespace {
+
+constexpr std::size_t kIdMax = 40;
+constexpr double kManyZeros = 0.05;
+constexpr double kManyFrozen = 0.01;
+constexpr double kManyNegative = 0.005;
+
+/// As a TOML text; a single quote in it is no matter, a backslash is.
+std::string toml_text(std::string_view text) {
+  std::string out{'"'};
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (byte < 0x20 || byte == 0x7F) {
+      out += fmt::format("\\u{:04X}", byte);
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+/// Letters, digits and hyphens; German umlauts as people write them without.
+std::string slug(std::string_view text) {
+  std::string out;
+  const auto hyphen = [&] {
+    if (!out.empty() && out.back() != '-') out += '-';
+  };
+  for (std::size_t i = 0; i < text.size() && out.size() < kIdMax; ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (std::isalnum(byte) != 0) {
+      out += static_cast<char>(std::tolower(byte));
+    } else if (byte == 0xC3 && i + 1 < text.size()) {
+      switch (static_cast<unsigned char>(text[++i])) {
+        case 0xA4:
+        case 0x84:
+          out += "ae";
+          break;
+        case 0xB6:
+        case 0x96:
+          out += "oe";
+          break;
+        case 0xBC:
+        case 0x9C:
+          out += "ue";
+          break;
+        case 0x9F:
+          out += "ss";
+          break;
+        default:
+          hyphen();
+      }
+    } else {
+      hyphen();
+    }
+  }
+  out.resize(std::min(out.size(), kIdMax));
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out;
+}
+
+/// Ids of a site: no two alike.
+class Ids {
+ public:
+  std::string take(std::string_view name, std::string_view otherwise) {
+    std::string id = slug(name);
+    if (id.empty()) id = slug(otherwise);
+    if (id.empty()) id = "meter";
+    std::string one = id;
+    for (int number = 2; !taken_.insert(one).second; ++number) {
+      one = fmt::format("{}-{}", id.substr(0, kIdMax - 4), number);
+    }
+    return one;
+  }
+
+ private:
+  std::set<std::string> taken_;
+};
+
+/// Lines of a table, their comments in one column.
+class Lines {
+ public:
+  void head(std::string_view text) { text_ += fmt::format("{}\n", text); }
+  void comment(std::string_view text) { text_ += fmt::format("# {}\n", printable(text)); }
+  void key(std::string_view name, const std::string& value, std::string_view why = {}) {
+    const std::string line = fmt::format("{} = {}", name, value);
+    if (why.empty()) {
+      text_ += line + "\n";
+    } else {
+      text_ += fmt::format("{:<32} # {}\n", line, printable(why));
+    }
+  }
+  [[nodiscard]] std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+std::string relative_path(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code failed;
+  const auto from = std::filesystem::weakly_canonical(folder, failed);
+  const auto to = std::filesystem::weakly_canonical(file, failed);
+  const auto path = failed ? std::filesystem::path{} : to.lexically_relative(from);
+  const bool is_far = path.empty() || path.string().starts_with("../../..");
+  return is_far ? std::filesystem::absolute(file).lexically_normal().string() : path.string();
+}
+
+std::string_view separator_word(char separator) {
+  switch (separator) {
+    case '\t':
+      return "tab";
+    case ';':
+      return ";";
+    case '|':
+      return "|";
+    default:
+      return ",";
+  }
+}
+
+std::string duration(std::chrono::seconds length) {
+  return length == std::chrono::hours{1} ? "1h" : fmt::format("{}m", length.count() / 60);
+}
+
+bool is_supported_interval(std::chrono::seconds length) {
+  const auto minutes = length.count() / 60;
+  return std::set<std::int64_t>{1, 5, 10, 15, 30, 60}.contains(minutes);
+}
+
+void write_shape(const SurveyedExport& one, const SurveyedMeter& meter, Lines& lines) {
+  const table::TableGuess& guess = *one.table;
+  const table::TableShape& shape = guess.shape;
+  if (shape.container == table::Container::green_button) {
+    lines.key("format", "\"green_button\"");
+    lines.key("name_in_file", toml_text(meter.name_in_file));
+    return;
+  }
+  if (shape.container == table::Container::xlsx) {
+    lines.key("format", "\"xlsx\"");
+    lines.key("sheet", toml_text(shape.sheet));
+  } else {
+    lines.key("format", "\"table\"");
+    lines.key("separator", toml_text(separator_word(shape.separator)));
+  }
+  lines.key("time_column", toml_text(shape.time_column));
+  if (!shape.clock_column.empty()) lines.key("clock_column", toml_text(shape.clock_column));
+  lines.key("time_format", toml_text(table::to_string(shape.time_format)),
+            guess.time_format_because);
+  if (!shape.timezone.empty()) lines.key("timezone", toml_text(shape.timezone), one.clock_because);
+  lines.key("decimal", toml_text(std::string{shape.decimal}), guess.decimal_because);
+  if (!shape.meter_column.empty()) {
+    lines.key("meter_column", toml_text(shape.meter_column));
+    lines.key("name_in_file", toml_text(meter.name_in_file));
+  }
+  lines.key("column", toml_text(meter.column));
+  if (!shape.unit_column.empty()) {
+    lines.key("unit_column", toml_text(shape.unit_column));
+  } else {
+    lines.key("unit", toml_text(meter.unit.value), meter.unit.because);
+  }
+}
+
+std::string per_cent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+
+void write_limits(const SurveyedMeter& meter, Lines& lines) {
+  if (meter.is_register) {
+    lines.key("rated_kW", fmt::format("{}", meter.rated_kW),
+              "guessed: half as much again as it ever rose by; the most that it can draw");
+    lines.key("counter", "{ unit = \"kWh\" }",
+              "its values hardly ever fall: a cumulative register");
+    return;
+  }
+  if (meter.utility.value == metering::Utility::electricity && meter.zero_share > kManyZeros) {
+    lines.key("zero_run_max", "\"31d\"",
+              fmt::format("guessed: {} of its values are zero, taken for no load; else they are no "
+                          "data",
+                          per_cent(meter.zero_share)));
+  }
+  if (meter.negative_share > kManyNegative) {
+    lines.key("negative_is_valid", "true",
+              fmt::format("{} of its values are negative", per_cent(meter.negative_share)));
+  }
+  if (meter.frozen_share > kManyFrozen) {
+    lines.key("stuck_max", "\"31d\"",
+              fmt::format("guessed: {} of its values are in runs of equal ones, taken for a coarse "
+                          "or steady meter; else it is frozen there",
+                          per_cent(meter.frozen_share)));
+  }
+}
+
+void write_meter(const SurveyedExport& one, const SurveyedMeter& meter, const std::string& id,
+                 const std::filesystem::path& folder, Lines& lines) {
+  lines.head("\n[[meter]]");
+  lines.key("id", toml_text(id));
+  lines.key("utility", toml_text(metering::to_string(meter.utility.value)), meter.utility.because);
+  lines.key("file", toml_text(relative_path(one.file, folder)));
+  if (one.table) {
+    write_shape(one, meter, lines);
+  } else {
+    lines.key("name_in_file", toml_text(meter.name_in_file));
+  }
+  if (meter.needs_heating_value) {
+    lines.key("gas_kWh_per_m3", "10.55", "guessed: the bill says it; 1000 BTU/ft3 are 10.35");
+  }
+  if (is_supported_interval(meter.interval)) {
+    lines.key("interval", toml_text(duration(meter.interval)), "the commonest step");
+  }
+  lines.key("stamps", meter.stamps.value == csv::Stamps::end ? "\"end\"" : "\"start\"",
+            meter.stamps.because);
+  write_limits(meter, lines);
+}
+
+struct PlacedMeter {
+  const SurveyedExport* in;
+  const SurveyedMeter* meter;
+};
+
+/// Sums are looked for among meters alike, of whatever file.
+std::vector<FoundSum> sums_of(const std::vector<PlacedMeter>& all) {
+  std::vector<FoundSum> sums;
+  std::set<std::size_t> seen;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].meter->is_register || !seen.insert(i).second) continue;
+    std::vector<std::size_t> alike{i};
+    for (std::size_t k = i + 1; k < all.size(); ++k) {
+      const SurveyedMeter& other = *all[k].meter;
+      if (other.is_register || other.interval != all[i].meter->interval ||
+          other.utility.value != all[i].meter->utility.value) {
+        continue;
+      }
+      alike.push_back(k);
+      seen.insert(k);
+    }
+    std::vector<const SampledReadings*> samples;
+    for (const std::size_t k : alike) samples.push_back(&all[k].meter->samples);
+    for (FoundSum sum : find_sums(samples)) {
+      sum.sum = alike[sum.sum];
+      for (std::size_t& part : sum.parts) part = alike[part];
+      sums.push_back(std::move(sum));
+    }
+  }
+  return sums;
+}
+
+void add_guesses(const PlacedMeter& placed, const std::string& id, SiteDraft& draft) {
+  const SurveyedMeter& meter = *placed.meter;
+  const auto is_guess = [](const std::string& because) { return because.starts_with("guessed"); };
+  const auto add = [&](std::string sentence) { draft.guesses.push_back(std::move(sentence)); };
+  if (is_guess(meter.utility.because)) {
+    add(fmt::format("{}: taken for {}.", id, metering::to_string(meter.utility.value)));
+  }
+  if (is_guess(meter.unit.because)) add(fmt::format("{}: taken to be in kWh.", id));
+  if (is_guess(meter.stamps.because)) {
+    add(fmt::format("{}: stamps are taken for the starts of intervals.", id));
+  }
+  if (meter.is_register) {
+    add(fmt::format("{}: taken for a cumulative register; rated_kW = {}.", id, meter.rated_kW));
+  }
+  if (meter.needs_heating_value) {
+    add(fmt::format("{}: a volume of gas, taken for 10.55 kWh/m3.", id));
+  }
+}
+
+}  // namespace
+
+SiteDraft draft_site(std::span<const SurveyedExport> exports, const std::filesystem::path& folder,
+                     const Guess<std::string>& timezone) {
+  SiteDraft draft;
+  Lines lines;
+  lines.comment(
+      "Written by recald init. What a comment calls guessed is worth a look; every key is");
+  lines.comment("explained in daemon/examples/every-key.toml.");
+  lines.head("\n[site]");
+  Ids site_ids;
+  lines.key("id", toml_text(site_ids.take(exports.front().file.stem().string(), "site")),
+            "from the file's name");
+  lines.key("timezone", toml_text(timezone.value), timezone.because);
+  Ids ids;
+  std::vector<PlacedMeter> all;
+  for (const SurveyedExport& one : exports) {
+    for (const SurveyedMeter& meter : one.meters) {
+      all.push_back({&one, &meter});
+      draft.meter_ids.push_back(ids.take(meter.name, one.file.stem().string()));
+    }
+  }
+  const std::vector<FoundSum> sums = sums_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    write_meter(*all[i].in, *all[i].meter, draft.meter_ids[i], folder, lines);
+    const auto sum = std::ranges::find(sums, i, &FoundSum::sum);
+    if (sum != sums.end()) {
+      std::vector<std::string> parts;
+      for (const std::size_t part : sum->parts) parts.push_back(toml_text(draft.meter_ids[part]));
+      const std::string list = fmt::format("{}", fmt::join(parts, ", "));
+      lines.comment(
+          fmt::format("It is the sum of others: sum_of = [{}] in the place of the file "
+                      "says the same.",
+                      list));
+      lines.comment("Let a model have the sum or its parts among its outputs, not both.");
+      draft.guesses.push_back(
+          fmt::format("{}: at every stamp the sum of {}.", draft.meter_ids[i], list));
+    }
+    add_guesses(all[i], draft.meter_ids[i], draft);
+  }
+  for (const SurveyedExport& one : exports) {
+    draft.guesses.insert(draft.guesses.end(), one.notes.begin(), one.notes.end());
+  }
+  draft.text = lines.take();
+  return draft;
+}
+
+}  // namespace recald::daemon

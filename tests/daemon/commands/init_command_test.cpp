@@ -1,0 +1,473 @@
+/// Exports of other programs, one command to a site file, and the months that it leads to: those
+/// of the truth that the exports were made from.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "../command_line.hpp"
+#include "tests/support/sample_exports.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon::init_command_test {
+namespace {
+
+using metering::Day;
+using metering::Instant;
+using metering::LocalCalendar;
+using recald::testing::clock_text;
+using recald::testing::ExportSpan;
+using recald::testing::ExportTruth;
+using recald::testing::made_up_use;
+using recald::testing::read_text;
+using recald::testing::with_comma;
+using recald::testing::with_point;
+using recald::testing::write_text;
+using std::chrono::minutes;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Outcome;
+using testing::run;
+
+constexpr double kBtu_kWh = 1055.05585262 / 3.6e6;
+constexpr double kTonHour_kWh = 12'000.0 * kBtu_kWh;
+
+Day day(const std::string& text) { return *metering::parse_day(text); }
+LocalCalendar zone(const std::string& name) { return *LocalCalendar::open(name); }
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream in{line};
+  for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+class Init : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  [[nodiscard]] std::filesystem::path site() const { return path("site/site.toml"); }
+
+  Outcome init(const std::string& file, const std::string& timezone = "") {
+    std::vector<std::string> words{"init", path(file).string(), "--out", path("site").string()};
+    if (!timezone.empty()) words.insert(words.end(), {"--timezone", timezone});
+    return run(words);
+  }
+
+  /// kWh by meter and month, as `replay` has them.
+  std::map<std::string, std::map<std::string, double>> replayed() {
+    const Outcome outcome = run({"replay", site().string(), "--out", path("results").string()});
+    EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+    std::map<std::string, std::map<std::string, double>> energies;
+    std::ifstream in{path("results") / "months.csv"};
+    std::string line;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      const std::vector<std::string> fields = fields_of(line);
+      const double daily_kWh = fields.at(2).empty() ? 0.0 : std::stod(fields.at(2));
+      energies[fields.at(1)][fields.at(0)] =
+          daily_kWh * metering::days_in(*metering::parse_month(fields.at(0)));
+    }
+    return energies;
+  }
+
+  /// Every month of the truth, to a ten-thousandth.
+  static void expect_months(const std::map<std::string, double>& months, const ExportTruth& truth,
+                            double kWh_per_unit) {
+    EXPECT_EQ(months.size(), truth.month_sums.size());
+    for (const auto& [month, sum] : truth.month_sums) {
+      SCOPED_TRACE(month);
+      ASSERT_TRUE(months.contains(month));
+      EXPECT_NEAR(months.at(month), sum * kWh_per_unit, 1e-4 * sum * kWh_per_unit);
+    }
+  }
+
+  /// Refused in one sentence, with nothing written.
+  void expect_refused(const std::string& name, const std::string& text,
+                      const std::string& sentence) {
+    write_text(path(name), text);
+    const Outcome outcome = init(name, "Europe/Berlin");
+    EXPECT_EQ(outcome.exit_code, kFailure) << outcome.out << read_if_there();
+    EXPECT_THAT(outcome.err, HasSubstr(sentence));
+    EXPECT_THAT(outcome.err, HasSubstr(name));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(path("site")));
+  }
+
+  [[nodiscard]] std::string read_if_there() const {
+    return std::filesystem::exists(site()) ? read_text(site()) : "";
+  }
+
+  recald::testing::TemporaryFolder folder_;
+};
+
+// A German portal: words above the header, day and time apart, ends of intervals, a clock change.
+TEST_F(Init, PortalWithDecimalCommaAndDaysFirst) {
+  const LocalCalendar berlin = zone("Europe/Berlin");
+  const ExportTruth truth =
+      made_up_use(berlin, {day("2024-02-01"), day("2024-03-31"), minutes{15}}, 1, 25.0);
+  std::string text = "Lastgang;Rathaus\r\n\r\nDatum;Uhrzeit;Wirkarbeit (kWh);Status\r\n";
+  for (const auto& [start, value] : truth.intervals) {
+    const Instant end = start + minutes{15};
+    text += clock_text(berlin, end, "%d.%m.%Y;%H:%M") + ";" + with_comma(value) + ";W\r\n";
+  }
+  write_text(path("portal.csv"), text);
+  const Outcome outcome = init("portal.csv", "Europe/Berlin");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const std::string written = read_text(site());
+  EXPECT_THAT(written,
+              AllOf(HasSubstr("separator = \";\""), HasSubstr("decimal = \",\""),
+                    HasSubstr("time_format = \"dd/mm/yyyy\""),
+                    HasSubstr("clock_column = \"Uhrzeit\""), HasSubstr("stamps = \"end\"")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("Wrote "), HasSubstr("recald report "),
+                                 HasSubstr("columns not used: Status (text)")));
+  expect_months(replayed().at("wirkarbeit"), truth, 1.0);
+}
+
+// Dates are cells with a format; the first floor and the second are the whole.
+TEST_F(Init, WideWorkbookWithASum) {
+  const LocalCalendar new_york = zone("America/New_York");
+  const ExportSpan span{day("2023-10-01"), day("2023-12-31"), minutes{60}};
+  const ExportTruth first = made_up_use(new_york, span, 1, 40.0);
+  const ExportTruth second = made_up_use(new_york, span, 2, 30.0);
+  const ExportTruth chilled = made_up_use(new_york, span, 3, 55.0);
+  ExportTruth whole = first;
+  std::vector<recald::testing::WorkbookRow> rows;
+  whole.month_sums.clear();
+  for (std::size_t i = 0; i < first.intervals.size(); ++i) {
+    const Instant t = first.intervals[i].start;
+    const double sum = first.intervals[i].value + second.intervals[i].value;
+    whole.month_sums[metering::to_string(new_york.month_of(t))] += sum;
+    rows.push_back(
+        {recald::testing::spreadsheet_day(new_york, t),
+         {sum, first.intervals[i].value, second.intervals[i].value, chilled.intervals[i].value}});
+  }
+  recald::testing::write_workbook(
+      path("meters.xlsx"), {"Time", "Main kWh", "Floor 1 kWh", "Floor 2 kWh", "CHW [ton-hours]"},
+      rows);
+  const Outcome outcome = init("meters.xlsx", "America/New_York");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const std::string written = read_text(site());
+  EXPECT_THAT(written, AllOf(HasSubstr("format = \"xlsx\""), HasSubstr("sheet = \"Meters\""),
+                             HasSubstr("sum_of = [\"floor-1\", \"floor-2\"]"),
+                             HasSubstr("utility = \"chilled_water\"")));
+  const auto months = replayed();
+  expect_months(months.at("main"), whole, 1.0);
+  expect_months(months.at("floor-1"), first, 1.0);
+  expect_months(months.at("floor-2"), second, 1.0);
+  expect_months(months.at("chw"), chilled, kTonHour_kWh);
+}
+
+std::string feed_of(const ExportTruth& truth) {
+  const std::string base = "https://portal.example/espi/1_1/resource/";
+  const std::string reading = base + "Subscription/5/UsagePoint/1/MeterReading/7";
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<feed xmlns=\"http://www.w3.org/2005/Atom\">"
+      "<entry><link rel=\"self\" href=\"" +
+      base +
+      "Subscription/5/UsagePoint/1\"/><content><espi:UsagePoint xmlns:espi=\"http://naesb.org/"
+      "espi\"><espi:ServiceCategory><espi:kind>0</espi:kind></espi:ServiceCategory>"
+      "</espi:UsagePoint></content></entry><entry><link rel=\"self\" href=\"" +
+      reading + "\"/><link rel=\"related\" href=\"" + base +
+      "ReadingType/3\"/><title>Grid</title><content><espi:MeterReading xmlns:espi=\"http://"
+      "naesb.org/espi\"/></content></entry>";
+  constexpr std::size_t kBlock = 96;
+  // The newest block first, as portals have it; a whole number of thousandths of a kWh is a Wh.
+  for (std::size_t end = truth.intervals.size(); end > 0;) {
+    const std::size_t begin = end > kBlock ? end - kBlock : 0;
+    text += "<entry><link rel=\"self\" href=\"" + reading + "/IntervalBlock/" +
+            std::to_string(end) + "\"/><link rel=\"up\" href=\"" + reading +
+            "/IntervalBlock\"/><content><espi:IntervalBlock xmlns:espi=\"http://naesb.org/espi\">";
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [start, value] = truth.intervals[i];
+      text +=
+          "<espi:IntervalReading><espi:timePeriod><espi:duration>900</espi:duration>"
+          "<espi:start>" +
+          std::to_string(start.time_since_epoch().count()) +
+          "</espi:start></espi:timePeriod><espi:value>" +
+          std::to_string(std::llround(value * 1000.0)) + "</espi:value></espi:IntervalReading>";
+    }
+    text += "</espi:IntervalBlock></content></entry>\n";
+    end = begin;
+  }
+  return text + "<entry><link rel=\"self\" href=\"" + base +
+         "ReadingType/3\"/><content><espi:ReadingType xmlns:espi=\"http://naesb.org/espi\">"
+         "<espi:accumulationBehaviour>4</espi:accumulationBehaviour><espi:intervalLength>900"
+         "</espi:intervalLength><espi:powerOfTenMultiplier>0</espi:powerOfTenMultiplier>"
+         "<espi:uom>72</espi:uom></espi:ReadingType></content></entry></feed>";
+}
+
+TEST_F(Init, GreenButton) {
+  const LocalCalendar pacific = zone("America/Los_Angeles");
+  const ExportTruth truth =
+      made_up_use(pacific, {day("2024-02-01"), day("2024-03-31"), minutes{15}}, 4, 12.0);
+  write_text(path("usage.xml"), feed_of(truth));
+  const Outcome outcome = init("usage.xml", "America/Los_Angeles");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(read_text(site()),
+              AllOf(HasSubstr("format = \"green_button\""),
+                    HasSubstr("name_in_file = \"UsagePoint/1/MeterReading/7\"")));
+  expect_months(replayed().at("grid"), truth, 1.0);
+}
+
+// The register starts at some value and stands there at the end of each hour.
+TEST_F(Init, CumulativeRegister) {
+  const LocalCalendar london = zone("Europe/London");
+  const ExportTruth truth =
+      made_up_use(london, {day("2024-01-01"), day("2024-02-29"), minutes{60}}, 5, 80.0);
+  std::string text = "timestamp_utc,Heat meter [kWh]\n";
+  double stands = 123'456.0;
+  text += metering::to_string(truth.intervals.front().start) + "," + with_point(stands) + "\n";
+  for (const auto& [start, value] : truth.intervals) {
+    stands += value;
+    text += metering::to_string(start + minutes{60}) + "," + with_point(stands) + "\n";
+  }
+  write_text(path("register.csv"), text);
+  const Outcome outcome = init("register.csv", "Europe/London");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(read_text(site()),
+              AllOf(HasSubstr("counter = { unit = \"kWh\" }"), HasSubstr("utility = \"heating\"")));
+  EXPECT_THAT(outcome.out, HasSubstr("taken for a cumulative register"));
+  expect_months(replayed().at("heat-meter"), truth, 1.0);
+}
+
+TEST_F(Init, NaiveStampsOverBothClockChanges) {
+  const LocalCalendar berlin = zone("Europe/Berlin");
+  const ExportTruth truth =
+      made_up_use(berlin, {day("2024-03-01"), day("2024-11-30"), minutes{60}}, 6, 33.0);
+  std::string text = "time,load kW\n";
+  for (const auto& [start, value] : truth.intervals) {
+    text += clock_text(berlin, start, "%Y-%m-%d %H:%M:%S") + "," + with_point(value) + "\n";
+  }
+  write_text(path("naive.csv"), text);
+  ASSERT_EQ(init("naive.csv", "Europe/Berlin").exit_code, kSuccess);
+  expect_months(replayed().at("load"), truth, 1.0);
+}
+
+TEST_F(Init, HourlyGasInMmbtuWithMonthsFirst) {
+  const LocalCalendar chicago = zone("America/Chicago");
+  const ExportTruth truth =
+      made_up_use(chicago, {day("2023-11-01"), day("2024-01-31"), minutes{60}}, 7, 2.0);
+  std::string text = "Date/Time,Natural Gas (MMBtu)\n";
+  for (const auto& [start, value] : truth.intervals) {
+    text += clock_text(chicago, start, "%m/%d/%Y %I:%M:%S %p") + "," + with_point(value) + "\n";
+  }
+  write_text(path("gas.csv"), text);
+  const Outcome outcome = init("gas.csv", "America/Chicago");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(read_text(site()),
+              AllOf(HasSubstr("time_format = \"mm/dd/yyyy\""), HasSubstr("utility = \"gas\""),
+                    HasSubstr("unit = \"MMBtu\"")));
+  expect_months(replayed().at("natural-gas"), truth, 1e6 * kBtu_kWh);
+}
+
+// --- What is decided by the whole file. ---
+
+// Winter time all year: an hour of spring that summer time does not have.
+TEST_F(Init, AClockThatIsNeverChanged) {
+  const LocalCalendar berlin = zone("Europe/Berlin");
+  const LocalCalendar winter = zone("Etc/GMT-1");
+  const ExportTruth truth =
+      made_up_use(berlin, {day("2024-03-01"), day("2024-04-30"), minutes{60}}, 8, 10.0);
+  std::string text = "time,load kW\n";
+  for (const auto& [start, value] : truth.intervals) {
+    text += clock_text(winter, start, "%Y-%m-%d %H:%M") + "," + with_point(value) + "\n";
+  }
+  write_text(path("winter.csv"), text);
+  ASSERT_EQ(init("winter.csv", "Europe/Berlin").exit_code, kSuccess);
+  EXPECT_THAT(read_text(site()), HasSubstr("timezone = \"Etc/GMT-1\""));
+  expect_months(replayed().at("load"), truth, 1.0);
+}
+
+// A meter after the other, each with its unit.
+TEST_F(Init, LongTable) {
+  const LocalCalendar berlin = zone("Europe/Berlin");
+  const ExportSpan span{day("2024-05-01"), day("2024-05-31"), minutes{15}};
+  const ExportTruth east = made_up_use(berlin, span, 9, 10.0);
+  const ExportTruth heat = made_up_use(berlin, span, 10, 0.02);
+  std::string text = "Sensor\tZeit\tWert\tEinheit\n";
+  for (const auto& [start, value] : east.intervals) {
+    text += "Ost\t" + clock_text(berlin, start, "%d.%m.%Y %H:%M") + "\t" + with_comma(value) +
+            "\tkWh\n";
+  }
+  for (const auto& [start, value] : heat.intervals) {
+    text += "W\xC3\xA4rme\t" + clock_text(berlin, start, "%d.%m.%Y %H:%M") + "\t" +
+            with_comma(value) + "\tMWh\n";
+  }
+  write_text(path("long.txt"), text);
+  const Outcome outcome = init("long.txt", "Europe/Berlin");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(read_text(site()),
+              AllOf(HasSubstr("separator = \"tab\""), HasSubstr("meter_column = \"Sensor\""),
+                    HasSubstr("unit_column = \"Einheit\"")));
+  const auto months = replayed();
+  expect_months(months.at("ost"), east, 1.0);
+  expect_months(months.at("waerme"), heat, 1000.0);
+}
+
+std::string own_rows(int count) {
+  std::string text = "timestamp,meter,value,unit\n";
+  Instant t = std::chrono::sys_days{day("2024-01-01")};
+  for (int i = 0; i < count; ++i, t += minutes{15}) {
+    text += metering::to_string(t) + ",main," + std::to_string(10 + i % 7) + ",kW\n";
+  }
+  return text;
+}
+
+TEST_F(Init, ItsOwnFormatIsOneAmongThem) {
+  write_text(path("readings.csv"), own_rows(96 * 31));
+  const Outcome outcome = init("readings.csv");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(read_text(site()),
+              AllOf(HasSubstr("name_in_file = \"main\""), Not(HasSubstr("time_column")),
+                    HasSubstr("timezone = \"Etc/UTC\"")));
+  EXPECT_THAT(outcome.out, HasSubstr("The time zone is taken for Etc/UTC"));
+  EXPECT_EQ(replayed().at("main").size(), 1u);
+}
+
+TEST_F(Init, DatesThatNothingDecidesAreSaid) {
+  std::string text = "when,kWh\n";
+  for (int hour = 0; hour < 24; ++hour) {
+    text += "03/04/2024 " + std::string(hour < 10 ? "0" : "") + std::to_string(hour) + ":00," +
+            std::to_string(hour % 5) + ".5\n";
+  }
+  write_text(path("day.csv"), text);
+  const Outcome outcome = init("day.csv", "Europe/Berlin");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("it may be mm/dd/yyyy"), HasSubstr("would decide")));
+}
+
+TEST_F(Init, JsonNamesMetersAndTheNextCommand) {
+  write_text(path("readings.csv"), own_rows(200));
+  const Outcome outcome =
+      run({"init", path("readings.csv").string(), "--out", path("site").string(), "--timezone",
+           "Europe/Berlin", "--json", "--yes"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json.at("meters").at(0).at("meter"), "main");
+  EXPECT_EQ(json.at("meters").at(0).at("interval_s"), 900);
+  EXPECT_THAT(json.at("next").get<std::string>(), HasSubstr("recald report "));
+}
+
+// --- Bad input: one sentence each, nothing half-written. ---
+
+TEST_F(Init, EmptyAndBinaryAndMissingFiles) {
+  expect_refused("empty.csv", "", "it is empty");
+  expect_refused("blank.csv", "\n\n", "it is empty");
+  expect_refused("binary.csv", std::string("\x7F\x45\x4C\x46\x02\x01\x00\x00zz", 10), "no text");
+  expect_refused("old.xls", "\xD0\xCF\x11\xE0 and so on", ".xls workbook of the old kind");
+  expect_refused("broken.xlsx", "PK\x03\x04 and no more", "is not .xlsx");
+  expect_refused("page.xml", "<html><body>Log in</body></html>", "no interval readings");
+  const Outcome missing = init("nowhere.csv");
+  EXPECT_EQ(missing.exit_code, kFailure);
+  EXPECT_THAT(missing.err, HasSubstr("does not exist"));
+}
+
+std::string hours_of_june(const std::function<std::string(int)>& value) {
+  std::string text;
+  for (int hour = 0; hour < 30 * 24; ++hour) {
+    const int in_day = hour % 24;
+    const int date = hour / 24 + 1;
+    text += "2024-06-" + std::string(date < 10 ? "0" : "") + std::to_string(date) + " " +
+            (in_day < 10 ? "0" : "") + std::to_string(in_day) + ":00," + value(hour) + "\n";
+  }
+  return text;
+}
+
+std::string plain_value(int hour) { return std::to_string(hour % 9) + ".25"; }
+
+TEST_F(Init, TwoHeaders) {
+  expect_refused("two.csv",
+                 "Site,East,West\nTime,Main kWh,Light kWh\n" +
+                     hours_of_june([](int hour) { return plain_value(hour) + ",1.5"; }),
+                 "rows 1 and 2 both look like headers");
+}
+
+// A row of units below the names is no second header.
+TEST_F(Init, ARowOfUnitsIsUnderstood) {
+  write_text(path("units.csv"), "Time,Main\n,kWh\n" + hours_of_june(plain_value));
+  const Outcome outcome = init("units.csv", "Europe/Berlin");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(read_text(site()), HasSubstr("unit = \"kWh\"                     # as the header"));
+  EXPECT_EQ(replayed().at("main").size(), 1u);
+}
+
+TEST_F(Init, MixedFormats) {
+  std::string mixed = "Time,kWh\n";
+  for (int hour = 0; hour < 48; ++hour) {
+    const std::string clock = (hour % 24 < 10 ? "0" : "") + std::to_string(hour % 24) + ":00";
+    mixed += hour < 24 ? "2024-06-21 " + clock + ",1.5\n" : "22/06/2024 " + clock + ",1.5\n";
+  }
+  expect_refused("dates.csv", mixed, "its dates change their format");
+  expect_refused("numbers.csv", "Time,Main\n" + hours_of_june([](int hour) {
+                                  return hour % 2 == 0 ? "\"1,25\"" : plain_value(hour);
+                                }),
+                 "its numbers change their decimal sign");
+}
+
+TEST_F(Init, TextInThePlaceOfNumbers) {
+  expect_refused("text.csv",
+                 "Time,State\n" + hours_of_june([](int) { return std::string{"running"}; }),
+                 "no column has numbers");
+  expect_refused("notimes.csv", "a,b\n1,2\n3,1\n", "no column has dates and times");
+}
+
+TEST_F(Init, StampsOutOfOrder) {
+  std::vector<std::string> lines;
+  std::istringstream in{hours_of_june(plain_value)};
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  std::reverse(lines.begin(), lines.end());
+  std::string text = "Time,kWh\n";
+  for (const std::string& line : lines) text += line + "\n";
+  expect_refused("backwards.csv", text, "its stamps are out of order");
+}
+
+TEST_F(Init, NaiveStampsNeedAZone) {
+  write_text(path("naive.csv"), "Time,kWh\n" + hours_of_june(plain_value));
+  const Outcome outcome = init("naive.csv");
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, HasSubstr("run again with --timezone"));
+  EXPECT_FALSE(std::filesystem::exists(path("site")));
+  EXPECT_EQ(init("naive.csv", "Mars/Olympus").exit_code, kUsage);
+}
+
+TEST_F(Init, ASiteFileThatIsThereStays) {
+  write_text(path("readings.csv"), own_rows(200));
+  ASSERT_EQ(init("readings.csv").exit_code, kSuccess);
+  write_text(site(), "mine");
+  const Outcome outcome = init("readings.csv");
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, HasSubstr("is there already"));
+  EXPECT_EQ(read_text(site()), "mine");
+}
+
+// Ten times the rows, the same memory: within a few megabytes of noise.
+TEST_F(Init, MemoryDoesNotGrowWithRows) {
+  const auto largest_MB = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+  };
+  const auto write = [&](const std::string& name, int rows) {
+    std::ofstream out{path(name)};
+    out << "Time,Main kWh\n";
+    Instant t = std::chrono::sys_days{day("2010-01-01")};
+    for (int i = 0; i < rows; ++i, t += minutes{1}) {
+      out << metering::to_string(t) << ',' << i % 97 << ".5\n";
+    }
+  };
+  write("short.csv", 20'000);
+  write("long.csv", 200'000);
+  ASSERT_EQ(init("short.csv").exit_code, kSuccess);
+  std::filesystem::remove_all(path("site"));
+  const double before_MB = largest_MB();
+  ASSERT_EQ(init("long.csv").exit_code, kSuccess);
+  EXPECT_LT(largest_MB(), before_MB + 3.0);
+}
+
+}  // namespace
+}  // namespace recald::daemon::init_command_test
