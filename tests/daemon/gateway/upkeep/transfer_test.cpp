@@ -220,7 +220,9 @@ TEST_F(Transfer, BadLinesAreToldAndKeptOut) {
   const Outcome imported = import("timestamp,meter,value,unit\n" + std::string{kScaled} +
                                   ",main,77.5,kW\n2024-03-03T04:15:00Z,nobody,1,kW\n");
   EXPECT_EQ(imported.exit_code, 0);
-  EXPECT_THAT(imported.err, HasSubstr("out.csv: 1 meter is not configured, and its lines were left out: nobody (1)"));
+  EXPECT_THAT(
+      imported.err,
+      HasSubstr("out.csv: 1 meter is not configured, and its lines were left out: nobody (1)"));
   EXPECT_THAT(imported.out, HasSubstr("1 stored"));
   EXPECT_EQ(run({"import", site(), folder_ / "none.csv", "--reason", "r"}).exit_code, 1);
 }

@@ -1,4 +1,4 @@
-#include "daemon/site/starter/starter_building.hpp"
+#include "daemon/site/setup/starter_building.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
