@@ -16,6 +16,7 @@
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/site_schema.hpp"
+#include "daemon/site/setup/starter_building.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {
@@ -262,6 +263,20 @@ void add_init(CLI::App& command, InitArguments& arguments) {
   command.add_option("--timezone", arguments.timezone,
                      "The building's zone, such as Europe/Berlin: for stamps without an offset, "
                      "and for months");
+  StarterRequest& starter = arguments.starter;
+  CLI::Option* epw = command.add_option("--epw", starter.epw, "Weather of the place, an EPW file");
+  std::vector<std::string> uses;
+  for (const std::string_view use : starter_uses()) uses.emplace_back(use);
+  CLI::Option* use =
+      command.add_option("--use", starter.use, "Add a starter model of a typical building")
+          ->check(CLI::IsMember(uses))
+          ->needs(epw);
+  CLI::Option* area =
+      command.add_option("--area", starter.floor_area_m2, "Floor area of all storeys, m2");
+  use->needs(area);
+  area->needs(use);
+  command.add_option("--storeys", starter.storeys, "Storeys")->capture_default_str()->needs(use);
+  command.add_option("--built", starter.built, "Year; before energy codes by default")->needs(use);
   command.add_flag("--yes", arguments.asks_nothing, "Ask nothing (recald init never does)");
   command.add_flag("--json", arguments.json, "Print the result as one JSON object");
 }

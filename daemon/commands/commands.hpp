@@ -9,6 +9,7 @@
 
 #include "core/model/model_kind.hpp"
 #include "daemon/commands/console.hpp"
+#include "daemon/site/setup/starter_site.hpp"
 
 namespace recald::daemon {
 
@@ -108,6 +109,7 @@ struct InitArguments {
   std::filesystem::path out;  ///< Folder for site.toml; empty: here.
   std::string timezone;       ///< IANA name, or empty.
   bool asks_nothing = true;   ///< For scripts that say so; it never asks.
+  StarterRequest starter;
   bool json = false;
 };
 

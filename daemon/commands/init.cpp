@@ -116,10 +116,20 @@ int run_init(const InitArguments& arguments, const Console& console) {
   }
   const Guess<std::string> timezone = timezone_of(arguments, exports);
   const SiteDraft draft = draft_site(exports, folder, timezone);
+  if (!calendar) {
+    auto opened = metering::LocalCalendar::open(timezone.value);
+    if (!opened) return console.fail(opened.error());
+    calendar = std::move(*opened);
+  }
   // Nothing is written that would not load.
-  if (const auto site = parse_site(draft.text, file); !site) return console.fail(site.error());
+  const auto drafted = parse_site(draft.text, file);
+  if (!drafted) return console.fail(drafted.error());
+  const auto text =
+      with_starter(draft.text, *drafted, exports, *calendar, arguments.starter, folder);
+  if (!text) return console.fail(text.error());
+  if (const auto site = parse_site(*text, file); !site) return console.fail(site.error());
   if (auto made = system::make_folder(folder); !made) return console.fail(made.error());
-  if (auto written = system::write_file(file, draft.text); !written) {
+  if (auto written = system::write_file(file, *text); !written) {
     return console.fail(written.error());
   }
   const std::string next = fmt::format("recald report {} --out {}", shell_word(file),
@@ -127,11 +137,6 @@ int run_init(const InitArguments& arguments, const Console& console) {
   if (arguments.json) {
     console.out << json_of(exports, draft, file, next).dump(2) << "\n";
     return kSuccess;
-  }
-  if (!calendar) {
-    auto opened = metering::LocalCalendar::open(timezone.value);
-    if (!opened) return console.fail(opened.error());
-    calendar = std::move(*opened);
   }
   print_draft(exports, draft, timezone, *calendar, console);
   console.out << fmt::format("Wrote {} with {} meter{}. Next:\n  {}\n", file.string(),

@@ -1,0 +1,108 @@
+#include "daemon/site/setup/starter_site.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "adapters/epw/epw.hpp"
+#include "daemon/site/setup/starter_building.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Month;
+
+/// Months that all meters have from end to end.
+Result<metering::MonthRange> shared_months(std::span<const SurveyedExport> exports,
+                                           const metering::LocalCalendar& calendar) {
+  std::optional<metering::MonthRange> shared;
+  for (const SurveyedExport& one : exports) {
+    for (const SurveyedMeter& meter : one.meters) {
+      Month first = calendar.month_of(meter.span.begin);
+      if (calendar.month_span(first).begin < meter.span.begin) first = metering::next_month(first);
+      Month last = calendar.month_of(meter.span.end);
+      if (calendar.month_span(last).end > meter.span.end) last = metering::previous_month(last);
+      if (!shared) shared = metering::MonthRange{first, last};
+      shared->first = std::max(shared->first, first);
+      shared->last = std::min(shared->last, last);
+    }
+  }
+  if (shared && shared->first <= shared->last) return *shared;
+  return failure(ErrorCode::not_enough_data,
+                 "the meters have no whole month in common, so a model cannot be calibrated; leave "
+                 "--use out, or give exports of the same months");
+}
+
+/// One meter for each utility: a sum before its parts, otherwise the first.
+std::vector<std::pair<std::string, metering::Utility>> modelled_meters(const SiteConfig& site) {
+  std::set<std::string> parts;
+  for (const MeterConfig& meter : site.meters) {
+    for (const SumPart& part : meter.sum_of) parts.insert(part.meter);
+  }
+  std::vector<std::pair<std::string, metering::Utility>> chosen;
+  for (const MeterConfig& config : site.meters) {
+    const auto utility = config.meter.utility;
+    const bool has_one =
+        std::ranges::any_of(chosen, [&](const auto& other) { return other.second == utility; });
+    if (has_one || parts.contains(config.meter.id)) continue;
+    chosen.emplace_back(config.meter.id, utility);
+  }
+  return chosen;
+}
+
+std::string toml_path(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::filesystem::path relative = std::filesystem::proximate(file, folder, ignored);
+  if (relative.empty()) relative = file;
+  std::string quoted = "\"";
+  for (const char c : relative.generic_string()) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
+}  // namespace
+
+Result<std::string> with_starter(std::string text, const SiteConfig& drafted,
+                                 std::span<const SurveyedExport> exports,
+                                 const metering::LocalCalendar& calendar,
+                                 const StarterRequest& request,
+                                 const std::filesystem::path& folder) {
+  if (request.epw.empty()) {
+    if (request.use.empty()) return text;
+    return failure(ErrorCode::invalid_value,
+                   "a starter model needs the weather: give --epw with a file of the place");
+  }
+  const auto weather = epw::read_epw(request.epw);
+  if (!weather) return tl::unexpected(weather.error());
+  const epw::EpwLocation& place = weather->location;
+  const std::string where = fmt::format(
+      "latitude_deg = {:.2f}   # of the EPW file: {}, {}\nlongitude_deg = {:.2f}\n"
+      "altitude_m = {:.0f}\n",
+      place.latitude_deg, place.city, place.country, place.longitude_deg, place.elevation_m);
+  const auto end_of_site = text.find("\n[[meter]]");
+  text.insert(end_of_site == std::string::npos ? text.size() : end_of_site, where);
+  text +=
+      fmt::format("\n[weather]\nfile = {}{}\nformat = \"epw\"\n", toml_path(request.epw, folder),
+                  weather->typical ? "   # a typical year: give the weather of the months that "
+                                     "were metered, or forecasts mean little"
+                                   : "");
+  if (request.use.empty()) return text;
+  const auto zone = climate_zone_of(weather->series);
+  if (!zone) return tl::unexpected(zone.error());
+  const auto months = shared_months(exports, calendar);
+  if (!months) return tl::unexpected(months.error());
+  const auto model = starter_model({.use = request.use,
+                                    .floor_area_m2 = request.floor_area_m2,
+                                    .storeys = request.storeys,
+                                    .built = request.built,
+                                    .climate_zone = *zone,
+                                    .months = *months,
+                                    .meters = modelled_meters(drafted)});
+  if (!model) return tl::unexpected(model.error());
+  return text + "\n" + *model;
+}
+
+}  // namespace recald::daemon
