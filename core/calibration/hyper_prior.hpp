@@ -1,4 +1,4 @@
-/// What is believed about the size and smoothness of the model discrepancy and about the noise.
+/// Priors of the size and smoothness of the model discrepancy, and of the noise.
 ///
 /// The seed says "20 % model discrepancy, 5 % measurement error" and takes the families of Guillas
 /// et al. (2009): Gamma on the precisions, Beta on the correlations. All of it lives on outputs

@@ -7,7 +7,7 @@
 
 namespace recald::calibration {
 
-/// How far a parameter's posterior mean moves when the discrepancy is believed smaller or larger.
+/// How far a parameter's posterior mean moves when the discrepancy is assumed smaller or larger.
 struct ParameterSensitivity {
   double mean_at_smaller;  ///< lambda_delta's prior mean times `factor`, parameter's unit.
   double mean_at_larger;   ///< lambda_delta's prior mean over `factor`, parameter's unit.

@@ -1,5 +1,5 @@
-/// What day parts can inform besides the parameters that a site names, and what a diagnosis
-/// believes of them.
+/// Parameters that day parts can inform beyond those that a site lists, and their priors in a
+/// diagnosis.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ namespace recald::diagnosis {
 [[nodiscard]] std::vector<std::string_view> day_part_parameters(const model::Building& nominal);
 
 /// Where drawings may be wrong by a factor the prior is log-normal about them, wider than the
-/// library's range: a diagnosis must not take a misremembered number for an effect.
+/// library's range: a diagnosis must not mistake a wrong number in the site file for an effect.
 /// @return nothing where the library's prior will do, or the drawings say 0.
 [[nodiscard]] std::optional<Prior> wide_prior(std::string_view name,
                                               const model::Building& nominal);

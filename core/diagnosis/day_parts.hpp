@@ -66,8 +66,8 @@ struct SplitOptions {
 [[nodiscard]] std::vector<Role> split_months(const std::vector<metering::Month>& months,
                                              const SplitOptions& options);
 
-/// The same of those months that were read. One without readings proves nothing, so it is neither
-/// held nor kept to be shown: it counts as one to fit and adds nothing.
+/// The same of those months that were read. A month without readings proves nothing, so it is not
+/// held out: it counts as one to fit and adds nothing.
 /// @param read  Some of `months`, in their order.
 [[nodiscard]] std::vector<Role> split_months(const std::vector<metering::Month>& months,
                                              const std::vector<metering::Month>& read,

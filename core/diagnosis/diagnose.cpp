@@ -147,7 +147,8 @@ void take_back(const char* why, Diagnosis& result) {
   result.parameters_after = result.parameters_before;
 }
 
-/// What the months kept back say of one addition, and the base parameters with it and those before.
+/// The scores of the held-out months for one addition, and the base parameters with all additions
+/// so far.
 struct Shown {
   MonthScores change;
   bool confirmed;
@@ -167,9 +168,9 @@ void keep_first(std::size_t count, const std::vector<Shown>& shown, Diagnosis& r
   result.parameters_after = shown[count - 1].parameters;
 }
 
-/// The verdict of the first pass, unless the months kept back do not bear out what was added: then
-/// the most that they do bear out.
-/// @param shown  Of each addition; empty where no month was kept back.
+/// The verdict of the first pass, unless the held-out months do not confirm the additions: then as
+/// many of the first additions as they confirm.
+/// @param shown  Of each addition; empty if no month was held out.
 void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) {
   const Naming& verdict = result.passes.front().naming;
   result.outcome = verdict.outcome;
@@ -244,7 +245,8 @@ class Search {
     const Naming& naming = result_.passes.back().naming;
     auto added = take_up(result_.added.back(), naming.explanations[*naming.named].fit);
     if (!added) return tl::unexpected(added.error());
-    // What the months kept back do not bear out will be taken back, and all that would follow it.
+    // An addition that the held-out months do not confirm is withdrawn, and so are all that follow
+    // it.
     return assumed || (!shown_.empty() && shown_.back().confirmed);
   }
 
@@ -279,8 +281,8 @@ class Search {
   [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
   [[nodiscard]] Ground& now() { return latest_ ? *latest_ : first_; }
 
-  /// Where the rivals show a much better mode of the base model, the first look stood on the wrong
-  /// hill: once more from there.
+  /// If the rivals show a much better mode of the base model, the first look was around the wrong
+  /// mode: search again from the better one.
   Result<Pass> search_again(Predictor& predictor, const std::vector<Candidate>& open,
                             const NamingRules& rules, Rng& rng) {
     const auto once = [&] {
@@ -305,7 +307,7 @@ class Search {
                                              : options_.assumed.size());
   }
 
-  /// What the months kept back say of the effect just named, on the ground where it was found.
+  /// The scores of the held-out months for the effect just named, on the ground where it was found.
   [[nodiscard]] Shown show(const Naming& naming) const {
     const Explanation& e = naming.explanations[*naming.named];
     const HeldJudge judge = judge_of(site_, now(), now().show);

@@ -1,4 +1,4 @@
-/// A diagnosis from beginning to end: locate, name, and show on months that chose nothing.
+/// A complete diagnosis: locate the gap, name the effect, and check it on months not used before.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,9 @@ struct DiagnoseOptions {
   NamingRules rules;
   int additions_max = 4;
   std::uint64_t seed = 1;
-  /// What is known to be there, "damper_stuck_open" or "scale_fault:steam": added in this order,
-  /// whatever its probability, and kept whatever the months kept back say. Nothing else is added.
+  /// Effects known to be present, "damper_stuck_open" or "scale_fault:steam". They are added in
+  /// this order whatever their probability, and kept whatever the held-out months say. Nothing else
+  /// is added.
   std::vector<std::string> assumed = {};
 };
 
@@ -43,7 +44,7 @@ struct ParameterBelief {
   double q95;
 };
 
-/// One turn of the wheel.
+/// One pass of the search.
 struct Pass {
   std::vector<Misfit> located;
   FirstLook look;

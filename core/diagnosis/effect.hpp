@@ -21,7 +21,7 @@ namespace recald::diagnosis {
 enum class EffectClass { schedule, outdoor_air, air_system, envelope, plant, electrical, meter };
 [[nodiscard]] std::string_view to_string(EffectClass effect_class);
 
-/// What is known of the site when an effect's priors are written down.
+/// Facts about the site that the priors of effects may use.
 struct SiteFacts {
   const model::Building& building;
   const model::Drivers& drivers;
@@ -34,12 +34,13 @@ struct SiteFacts {
 struct EffectParameter {
   std::string name;  ///< snake_case
   std::string unit;
-  Prior prior;     ///< With physical sign and bounds.
-  double neutral;  ///< Here the model is its parent, bit by bit. Shape parameters have none: NaN.
+  Prior prior;  ///< With physical sign and bounds.
+  double
+      neutral;  ///< The model equals its parent here, bit for bit. Shape parameters have none: NaN.
   /// Values at which the first look tries a shape (threshold, hour, date); empty: an amount, which
   /// the first look takes as linear around a typical value.
   std::vector<double> scan = {};
-  /// One of the scanned values and nothing between them: a calendar. Never fitted, only chosen.
+  /// Only the scanned values are possible (a calendar, for instance). Chosen, never fitted.
   bool choice = false;
 };
 
@@ -63,7 +64,7 @@ enum class Dating {
   window,      ///< From one date to another.
 };
 
-/// A rival and what would part the two.
+/// A rival effect, and how to tell the two apart.
 struct Confusable {
   std::string_view effect;
   std::string_view separated_by;  ///< The measurement, as a building operator would order it.
@@ -83,7 +84,7 @@ struct Effect {
   EffectNeeds needs = {};
   std::vector<Confusable> confusable = {};
 
-  /// At most 3; the dates that `dating` asks for come on top and are not the entry's business.
+  /// At most 3, without the dates that `dating` adds.
   std::vector<EffectParameter> (*parameters)(const SiteFacts&);
   /// @param values  In order of `parameters`, in the support of their priors.
   /// @param meter   Index among the model's meters; -1 unless `of_one_meter`.

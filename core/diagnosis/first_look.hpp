@@ -1,8 +1,9 @@
-/// A first look at every candidate: how visible it is here, and how far the residuals speak for it.
+/// A first look at every candidate: how visible it is here, and how strongly the residuals support
+/// it.
 ///
-/// Linear: one run of the model for each shape that is tried, no refit beyond what integrating the
-/// base parameters out does. Decides who is worth a fit, what cannot be told apart and what cannot
-/// be seen at all.
+/// Linear: one run of the model per shape, and no refit beyond integrating out the base parameters.
+/// Decides which candidates are worth a fit, which cannot be told apart and which cannot be seen at
+/// all.
 #pragma once
 
 #include <vector>
@@ -23,7 +24,7 @@ struct Look {
 };
 
 struct CandidateLook {
-  Look best;                ///< The shape that the residuals like best.
+  Look best;                ///< The shape that fits the residuals best.
   double log_bayes_factor;  ///< Averaged over the shapes tried.
   double most_detectable;   ///< Largest d over the shapes.
   bool visible;             ///< d of at least 3 somewhere: may be named at this site.

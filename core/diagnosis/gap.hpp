@@ -1,4 +1,4 @@
-/// How far a model is from the meters on months that chose nothing, and whether that shrank.
+/// The gap between model and meters on held-out months, and whether it shrank.
 #pragma once
 
 #include <span>
@@ -9,7 +9,8 @@
 
 namespace recald::diagnosis {
 
-/// How well a model tells one meter's months. Shares of the mean measured; NaN where none was.
+/// How well a model predicts one meter's months, as shares of the measured mean; NaN if there is
+/// none.
 struct MeterGap {
   double nmbe_sim_minus_meas;  ///< Of the day parts' energy.
   double cvrmse_daily;
@@ -25,7 +26,7 @@ struct GapChange {
   bool confirmed = false;                   ///< Every effect that was added is.
 };
 
-/// Three to one: what months that chose nothing must say for an effect.
+/// Three to one: the support that an effect needs from held-out months.
 inline constexpr double kLeastConfirmation = 1.1;
 
 /// The judge of `ground` itself: what it was fitted to teaches, its noise scores.
@@ -43,11 +44,11 @@ inline constexpr double kLeastConfirmation = 1.1;
 [[nodiscard]] bool is_worse(const ScoreGain& meter);
 
 /// Better by `kLeastConfirmation` in units of the effect's null scale, and meters that are worse
-/// lose less than a quarter of what the others gain: an effect that is surely there may have an
-/// echo that the model gets wrong.
+/// lose less than a quarter of what the others gain: an effect that is certainly present may have a
+/// side effect on another meter that the model gets wrong.
 /// @param change  Of the scores of months that chose nothing: the effect and the base parameters
 ///                fitted together, over the base parameters fitted alone on the same ground. Two
-///                models that were searched for apart would differ by their hills as well.
+/// models that were searched for separately would also differ by their modes.
 [[nodiscard]] bool is_confirmed(const MonthScores& change, double null_scale);
 
 /// @param changes  One for each effect that was added.

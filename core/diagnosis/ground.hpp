@@ -1,5 +1,5 @@
-/// The base model fitted to the meters, and the noise that is left: what every question starts
-/// from.
+/// The ground of a diagnosis: the base model fitted to the meters, and the remaining noise. All
+/// candidates are judged on it.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ enum class ModelErrors {
 struct Ground {
   Observations fit;                          ///< Months to fit.
   Observations select;                       ///< Months to choose by; may be empty.
-  Observations show;                         ///< Months that are kept back; may be empty.
+  Observations show;                         ///< Held-out months; may be empty.
   std::shared_ptr<const UsualErrors> usual;  ///< Drawn at a mode near the last one.
   Eigen::MatrixXd errors;                    ///< E of the months to fit.
   std::vector<NoiseLevel> levels;            ///< (m) as fitted to what the base model leaves.
@@ -41,8 +41,8 @@ struct Ground {
 /// and one in date.
 [[nodiscard]] Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground);
 
-/// Finds scales, noise and mode by turns: the first fit finds the scales, the second the noise, the
-/// third stands.
+/// Finds scales, noise and mode in turn: the first fit gives the scales, the second the noise, and
+/// the third is the result.
 /// @param predictor  With the effects that the model has already.
 /// @return the ground; not_enough_data where a meter has fewer than 100 measured parts to fit; or
 ///         not_finite, not_positive_definite from the fits.
@@ -50,7 +50,7 @@ struct Ground {
                                         ModelErrors errors = ModelErrors::usual);
 
 /// The ground of a model with one effect more, from where that effect was found: same scales, noise
-/// and mode anew. What differs between two grounds is then the effect, not another hill.
+/// and mode anew. Two grounds then differ by the effect, not by another mode.
 /// @param predictor  With the effect.
 /// @param found      The base parameters fitted together with it, on `before`.
 [[nodiscard]] Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site,

@@ -1,4 +1,4 @@
-/// How well months that were not fitted are foretold.
+/// How well months that were not fitted are predicted.
 #pragma once
 
 #include <map>
@@ -16,9 +16,9 @@ namespace recald::diagnosis {
 /// slow structure, or the answer would leak across the split.
 using MonthScores = std::vector<std::map<int, double>>;
 
-/// What the model errs by in every week and weather alike is no news in a held month: each model
-/// brings the recurring patterns and the usual errors that it needs on the fitted months, and only
-/// what they leave open counts as noise.
+/// An error that the model makes in every week and weather is no evidence in a held month. Each
+/// model therefore includes the recurring patterns and usual errors that it needs on the fitted
+/// months; only the uncertainty that remains counts as noise.
 struct HeldJudge {
   const SiteProblem& site;
   const Observations& fit;             ///< Months that teach the patterns.

@@ -1,7 +1,7 @@
 /// A version of a site's model: the drawings, and the effects that were added to them one by one.
 ///
 /// Versions are never changed, only followed by others: what an effect was accepted on stays
-/// readable, and every addition can be taken back.
+/// readable, and every addition can be reverted.
 #pragma once
 
 #include <array>

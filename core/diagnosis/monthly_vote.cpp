@@ -15,7 +15,7 @@
 namespace recald::diagnosis {
 namespace {
 
-/// Months are not believed to be told better than this share of an output's mean.
+/// The assumed error of a predicted month is at least this share of an output's mean.
 constexpr double kLeastErrorShare = 0.02;
 constexpr double kFirstErrorShare = 0.05;
 constexpr int kErrorRounds = 3;
@@ -189,7 +189,7 @@ ScoreGain summed_gain(const std::vector<double>& gains) {
 }
 
 /// Changes of |NMBE| and CV(RMSE) over resampled months, before and after always of the same ones.
-/// Months kept back lie apart, so they are resampled one by one.
+/// Held-out months are far apart, so they are resampled one by one.
 std::pair<ChangeInterval, ChangeInterval> resampled(const Pairs& pairs, Rng& rng) {
   std::vector<double> nmbe;
   std::vector<double> cvrmse;

@@ -1,5 +1,5 @@
 /// Whether an effect that the hourly model was given also helps a monthly model: fitted on the
-/// months to fit and to choose by, judged on the months kept back.
+/// months to fit and to choose by, judged on the held-out months.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct ChangeInterval {
 };
 
 /// The gap of another model than the hourly one, before and after it got the same effects, on the
-/// same months kept back.
+/// same held-out months.
 struct ModelGap {
   /// One output; NaN where there is nothing to judge by.
   struct Figures {
@@ -56,9 +56,9 @@ struct MonthlyVote {
   int figures_shown;  ///< Measured monthly figures in them, of all outputs.
   /// Whether there is anything to judge by.
   [[nodiscard]] bool has_vote() const { return figures_shown > 0; }
-  /// The months kept back do not speak against the effect in this model either: not by more than a
-  /// nat beyond two standard errors. What leaves monthly figures as they are, a clock, must not
-  /// fall for their noise. @pre has_vote()
+  /// The held-out months do not contradict the effect in this model either: not by more than a nat
+  /// beyond two standard errors. What leaves monthly figures as they are, a clock, must not fall
+  /// for their noise. @pre has_vote()
   [[nodiscard]] bool agrees() const { return total.sum >= -2.0 * total.se - 1.0; }
 };
 
@@ -67,7 +67,7 @@ struct MonthlyFigures {
   std::vector<std::string> outputs;         ///< (n) as in calibration.json
   std::vector<std::vector<double>> values;  ///< (n) of (months); NaN: not measured.
   std::vector<std::size_t> fitted;          ///< Months to fit on.
-  std::vector<std::size_t> shown;           ///< Months kept back.
+  std::vector<std::size_t> shown;           ///< Held-out months.
 
   [[nodiscard]] double value(std::size_t output, std::size_t month) const {
     return values[output][month];

@@ -376,7 +376,7 @@ class Trial {
   const std::vector<LevelBlock>& blocks_;
 };
 
-/// Points from the first month that is believed until the last one that is known.
+/// Points from the first month that counts to the last one that is known.
 PosteriorData known_points(const ChangeCase& change) {
   std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < change.data.points.size(); ++i) {

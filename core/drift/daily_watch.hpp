@@ -46,7 +46,7 @@ class DailyWatch {
   /// @param days  In order of time, of all months; `learning_months` of them to learn from.
   DailyWatch(std::vector<WatchedDay> days, int learning_months, const DailyWatchOptions& options);
 
-  /// Looks at a month's days. After an alarm the reference is learnt anew from the change on.
+  /// Looks at a month's days. After an alarm the reference is learned again from the change on.
   /// @pre months ascend, the learning ones left out
   [[nodiscard]] std::optional<DailyAlarm> look(int month);
 

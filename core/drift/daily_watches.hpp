@@ -36,7 +36,7 @@ class DailyWatches {
 
   /// The building is another one since that month; meters that know of it by their own alarm go on.
   void begin_at(int month);
-  /// Its meter is not believed any more.
+  /// Its meter is no longer trusted.
   void set_aside(int output);
 
   /// Nothing where it is not watched.

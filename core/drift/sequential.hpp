@@ -92,7 +92,7 @@ class SequentialCalibration {
   /// @return or an error of the model or of sampling; then everything is as it was.
   [[nodiscard]] Result<MonthTaken> take(int month, const std::function<bool()>& proceed = {});
 
-  /// From now on nothing before `month` is believed: the building has become another one.
+  /// From now on nothing before `month` counts: the building has changed.
   /// @return as `take`. @pre some month is taken
   Result<void> begin_at(int month, const std::function<bool()>& proceed = {});
 

@@ -1,4 +1,4 @@
-/// The rules that a month is closed by, told apart by a short text.
+/// The rules for closing a month, identified by a short text.
 #pragma once
 
 #include <string>

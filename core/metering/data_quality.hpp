@@ -16,7 +16,7 @@ namespace recald::metering {
 struct Episode {
   TimeSpan span;
   int slots;
-  bool suspect;  ///< Values came but are not believed; otherwise none came.
+  bool suspect;  ///< Values came but were rejected; otherwise none came.
   Reason reasons;
   bool operator==(const Episode&) const = default;
 };

@@ -67,7 +67,7 @@ Extremes extremes_of(const MonthSlots& month) {
   return extremes;
 }
 
-/// The most that is believed of this meter in this month.
+/// The largest value accepted from this meter in this month.
 double range_limit_kW(const MonthSlots& month, double largest_kW, const Meter& meter,
                       const ValidationContext& context, const ValidationOptions& options) {
   if (meter.rated_kW) return options.range_factor * *meter.rated_kW;

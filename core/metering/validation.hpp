@@ -1,4 +1,4 @@
-/// Which readings of a month are not believed, and why.
+/// Which readings of a month are rejected, and why.
 ///
 /// A reading that fails becomes `suspect` with its reason and keeps its value: a fault is a
 /// finding.
@@ -13,7 +13,7 @@
 namespace recald::metering {
 
 struct ValidationOptions {
-  double range_factor = 1.2;  ///< Times `rated_kW`: the most that is believed.
+  double range_factor = 1.2;  ///< Times `rated_kW`: the largest accepted value.
   /// Without `rated_kW`: times the median of the month's positive readings. Monthly profiles of
   /// real meters stay under 10 (a school with an empty summer); a wrong word order or a unit slip
   /// of 1000 is above 100.

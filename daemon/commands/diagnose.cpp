@@ -52,7 +52,7 @@ Result<SiteDiagnosis> diagnose_aloud(const ModelledSite& modelled,
 std::string fate_words(const diagnosis::Diagnosis& diagnosis, const DiagnoseArguments& arguments,
                        const std::string& applied) {
   if (!applied.empty()) {
-    return fmt::format("Model version {} is now active.\n", diagnosis::short_version(applied));
+    return fmt::format("Model version {} is now in force.\n", diagnosis::short_version(applied));
   }
   if (arguments.apply) return "No effect was added. The model was not changed.\n";
   if (diagnosis.added.empty() || diagnosis.not_confirmed) return {};

@@ -102,8 +102,8 @@ class Gallery {
   std::string list_ =
       "# Footprints of the hidden effects\n\n"
       "What each effect adds to the meters of a building when nothing else changes: weather and\n"
-      "people are the same. The curves are its mean day. The bars are its months, as shares of the\n"
-      "meter's mean month without the effect, so their mean is the share of the year.\n\n"
+      "people are the same. The curves are its mean day. The bars are its months, as shares of\n"
+      "the meter's mean month without the effect, so their mean is the share of the year.\n\n"
       "Made by `recald-sim footprints --out FOLDER`.\n";
 };
 

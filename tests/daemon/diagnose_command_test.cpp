@@ -252,7 +252,7 @@ TEST_F(DepotWithMoreMachines, WhatIsNamedIsInForceUntilItIsReverted) {
   EXPECT_THAT(json["added"], Contains("equipment_step"));
   EXPECT_LT(json["gap"]["epc"]["change"]["electricity_daily_kWh"]["cvrmse"]["q95"], 0.0);
   const std::string version = json["model_version"].get<std::string>().substr(0, 12);
-  EXPECT_THAT(found.out, EndsWith("Model version " + version + " is now active.\n"));
+  EXPECT_THAT(found.out, EndsWith("Model version " + version + " is now in force.\n"));
   EXPECT_THAT(run({"model", "list", site()}).out, HasSubstr("* " + version));
 
   // A diagnosis starts from the drawings, which are not in force.

@@ -1,5 +1,5 @@
-/// Everything on its way to the store: gathered for a second, committed together, kept if that
-/// fails.
+/// Collects everything that is to be stored for a second and commits it together; keeps it if the
+/// commit fails.
 #pragma once
 
 #include <chrono>
@@ -17,9 +17,9 @@ namespace recald::daemon {
 struct CommitRules {
   std::chrono::milliseconds gather{1'000};  ///< Intervals do not wait: they are committed at once.
   std::chrono::milliseconds retry{10'000};  ///< After a failure.
-  /// What is kept while the store refuses: 24 hours of a hundred meters. Beyond it raw samples
-  /// are given up first, then the oldest intervals. While it takes them nothing is given up: so
-  /// many do not wait.
+  /// How much is kept while the store refuses: 24 hours of a hundred meters. Beyond that, raw
+  /// samples are dropped first, then the oldest intervals. While the store accepts commits, nothing
+  /// is dropped.
   std::size_t intervals_max = 10'000;
   std::size_t samples_max = 50'000;
 };
@@ -30,7 +30,7 @@ struct CommitHealth {
   std::string why;           ///< Then, what the store said.
   std::uint64_t commits = 0;
   std::uint64_t failures = 0;
-  std::uint64_t lost_intervals = 0;  ///< Given up, because the store refused for too long.
+  std::uint64_t lost_intervals = 0;  ///< Dropped, because the store refused for too long.
   std::uint64_t conflicts = 0;
   std::chrono::milliseconds last_duration{0};
   LatencyHistogram durations;  ///< Of all commits, those refused as well.

@@ -1,11 +1,11 @@
-/// Readings that somebody puts in the place of stored ones.
+/// Readings that replace stored ones on a person's request.
 #pragma once
 
 #include <string>
 
 namespace recald::daemon {
 
-/// Who puts readings right, and why; kept with them as an edit.
+/// Who corrects readings, and why; stored with them as an edit.
 struct Correction {
   std::string author;
   std::string reason;  ///< Not empty.

@@ -33,7 +33,7 @@ struct QuantityStatus {
   const weather::SensorQuantity* quantity;
   std::optional<double> now;                       ///< In its unit; of a polled sensor.
   std::optional<metering::Reading> last_interval;  ///< Committed.
-  std::optional<metering::Instant> known_until;    ///< End of the last interval that is believed.
+  std::optional<metering::Instant> known_until;    ///< End of the last valid interval.
   double open_month_coverage = 0.0;                ///< As MeterStatus's.
   ChannelState state;
 };

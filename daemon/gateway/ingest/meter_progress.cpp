@@ -39,7 +39,7 @@ void MeterProgress::recall(const metering::Reading& reading) {
   open_month.observe(reading);
   if (reading.validity != metering::Validity::ok) return;
   const metering::TimeSpan span{reading.start, reading.start + stored.meter.interval};
-  if (same_value && span.end <= same_value->end) return;  // late, or put right
+  if (same_value && span.end <= same_value->end) return;  // late, or corrected
   const bool goes_on = same_value && same_value->end == span.begin &&
                        weather::is_same_value(reading.mean_kW, same_value_is);
   same_value = {goes_on ? same_value->begin : span.begin, span.end};

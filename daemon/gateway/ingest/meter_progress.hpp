@@ -1,4 +1,4 @@
-/// How far a meter has come that the store keeps the readings of, whoever brings them.
+/// Progress of a meter whose readings are in the store, whether they are polled or pushed.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace recald::daemon {
 
-/// What became of a meter since the process began.
+/// Counts for a meter since the process began.
 struct MeterCounters {
   std::array<std::uint64_t, 5> intervals{};     ///< Committed, by Validity.
   std::uint64_t late = 0;                       ///< Of them, of months that were closed.
@@ -30,11 +30,12 @@ struct MeterProgress {
   MeterCounters counters{};
   std::optional<metering::Reading> last_interval = {};        ///< Committed.
   metering::Instant closed_until = metering::Instant::min();  ///< End of the last closed month.
-  /// The latest intervals without a hole that are believed and have the same value.
+  /// The latest run of valid intervals, without a hole, that have the same value.
   std::optional<metering::TimeSpan> same_value = {};
   double same_value_is = 0.0;
 
-  /// End of the latest interval that is believed; nothing before the first, or for a month.
+  /// End of the latest valid interval; nothing before the first one, or if there was none for a
+  /// month.
   [[nodiscard]] std::optional<metering::Instant> known_until() const {
     return same_value ? std::optional{same_value->end} : std::nullopt;
   }

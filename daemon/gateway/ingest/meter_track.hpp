@@ -1,7 +1,8 @@
-/// One live meter: from what its registers said to what is stored.
+/// One live meter: turns what its registers said into what is stored.
 ///
-/// Knows no bus and no store. It is given the outcome of each read and answers with what must be
-/// committed together: intervals, the state that explains them, samples worth keeping, events.
+/// It does not know the bus or the store. It takes the outcome of each read and returns what must
+/// be committed together: intervals, the state they were computed from, samples worth keeping,
+/// events.
 #pragma once
 
 #include <map>
@@ -50,10 +51,10 @@ class MeterTrack {
                                 std::chrono::sys_time<std::chrono::milliseconds> poll,
                                 metering::Instant at);
 
-  /// A sample of the counter from while there was no store to go on from, in order of time.
+  /// A sample of the counter from the time without a store, in order of time.
   [[nodiscard]] StoreBatch take_kept(const metering::RegisterSample& sample);
 
-  /// Somebody set the clock: what the register did meanwhile belongs to no interval.
+  /// The clock was set: what the register counted meanwhile belongs to no interval.
   void clock_was_set();
 
   [[nodiscard]] const TrackedMeter& meter() const { return meter_; }

@@ -1,4 +1,4 @@
-/// Closes months out of the store when they are due, and again when late readings changed them.
+/// Closes months from the stored readings when they are due, and again after late readings.
 #pragma once
 
 #include <functional>
@@ -24,15 +24,15 @@ struct ClosedFigure {
   metering::MonthlyFigure figure;  ///< With the revision that it has in the store.
 };
 
-/// A month's figure out of what is stored, by the rules of a replay.
+/// A month's figure from the stored readings, by the rules of a replay.
 /// @param known_until  Readings that start later are left out, as if they had not come yet.
 [[nodiscard]] Result<metering::MonthlyFigure> stored_figure(
     Store& store, const metering::LocalCalendar& calendar, const metering::CloserOptions& options,
     const StoredMeter& meter, metering::Month month,
     metering::Instant known_until = metering::Instant::max());
 
-/// Whose figures depend on a reading: its own month, the next, which is judged by what its meter
-/// was like before, and the one before where it starts soon after that.
+/// The months whose figures depend on a reading: its own; the next one, which is judged by how its
+/// meter behaved before; and the previous one, if the reading starts soon after it.
 [[nodiscard]] std::vector<metering::Month> months_that_depend_on(
     metering::Instant start, const metering::LocalCalendar& calendar);
 
@@ -55,7 +55,7 @@ class MonthKeeper {
       const std::function<void(const ClosedFigure&)>& on_closed = {},
       std::size_t at_most = std::numeric_limits<std::size_t>::max());
 
-  /// Months close by these rules from now on; those that were closed by others are closed anew.
+  /// Months close by these rules from now on; those closed by other rules are closed again.
   void set_options(metering::CloserOptions options) { options_ = std::move(options); }
 
  private:

@@ -1,4 +1,4 @@
-/// How much of the month under way is measured so far.
+/// How much of the current month is measured so far.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-/// Whether a clock can be believed at all.
+/// Whether a clock shows a plausible time.
 #pragma once
 
 #include <chrono>

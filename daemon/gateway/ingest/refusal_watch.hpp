@@ -1,4 +1,4 @@
-/// Registers that a device answers for with an exception: since when, and what people are told.
+/// Registers for which a device returns an exception: since when, and the events about it.
 #pragma once
 
 #include <cstdint>
@@ -26,20 +26,21 @@ struct RefusedRegisters {
 /// 2024-03-01T12:00:00Z"; one that is busy, or that its gateway answers for, does not refuse.
 [[nodiscard]] std::string sentence_of(const std::string& meter, const RefusedRegisters& refused);
 
-/// Of one meter. That registers are refused, and that they answer again, is an event each; a device
-/// that changes its mind at every poll gives no more than a pair of them an hour.
+/// For one meter. A refusal of registers and their next answer are one event each; a device that
+/// alternates at every poll gives at most one such pair an hour.
 class RefusalWatch {
  public:
   explicit RefusalWatch(std::string meter) : meter_(std::move(meter)) {}
 
-  /// The outcome of one read. "Busy", and what a gateway says for a silent device, may pass: they
-  /// are told when nothing else has come for five minutes, once, and then counted.
+  /// The outcome of one read. "Busy" answers, and a gateway's exceptions for a silent device, may
+  /// pass: they become an event after five minutes without any other answer, once, and are counted
+  /// after that.
   /// @return what people are to be told.
   [[nodiscard]] std::optional<StoreEvent> take(const modbus::PlannedRead& read,
                                                const modbus::ReadResult& result,
                                                metering::Instant at);
 
-  /// What deserves a look.
+  /// Refusals that should be looked at.
   [[nodiscard]] std::vector<RefusedRegisters> refused() const;
 
  private:

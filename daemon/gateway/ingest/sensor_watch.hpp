@@ -1,4 +1,4 @@
-/// Whether a weather sensor still gives what it used to, and what people are told of it.
+/// Whether a weather sensor still works, and the events about it.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ namespace recald::daemon {
 /// A hole that is longer is filled with typical hours instead of a straight line
 /// (`weather::fill_gaps`).
 inline constexpr std::chrono::hours kPolledSilenceMax{6};
-/// Others may send the weather of a day at a time.
+/// A pushed sensor may send a whole day at a time.
 inline constexpr std::chrono::hours kPushedSilenceMax{36};
 
 /// What is wrong with one quantity of a sensor.
@@ -25,8 +25,8 @@ struct ChannelState {
   std::optional<metering::Instant> frozen_since;
 };
 
-/// Of one sensor, polled or pushed. That quantities are silent is an event, and so is that they are
-/// there again, or that the dry bulb stands still.
+/// For one sensor, polled or pushed. There are events for quantities that fall silent, that return,
+/// and for a frozen dry bulb.
 class SensorWatch {
  public:
   SensorWatch(std::string sensor, bool is_polled)
@@ -35,8 +35,8 @@ class SensorWatch {
   [[nodiscard]] bool is_polled() const { return is_polled_; }
   [[nodiscard]] ChannelState state_of(const MeterProgress& channel, metering::Instant now) const;
 
-  /// @param channels  Of this sensor. Of one that sends, only what it has ever sent is missed, and
-  ///                  the dry bulb.
+  /// @param channels  Of this sensor. For a pushed one, only quantities that it has sent before can
+  /// be missing, and the dry bulb.
   [[nodiscard]] std::vector<StoreEvent> judge(std::span<const MeterProgress* const> channels,
                                               metering::Instant now);
 
@@ -52,10 +52,10 @@ class SensorWatch {
   std::set<std::string_view> frozen_;
 };
 
-/// "weather sensor 'roof' has given no dry_bulb_C since 2024-03-01T12:00:00Z"
+/// "weather sensor 'roof' has sent no dry_bulb_C since 2024-03-01T12:00:00Z"
 [[nodiscard]] std::string silence_words(std::string_view sensor, std::string_view quantity,
                                         metering::Instant since);
-/// "weather sensor 'roof' has shown the same dry_bulb_C since 2024-03-01T12:00:00Z"
+/// "weather sensor 'roof' has reported the same dry_bulb_C since 2024-03-01T12:00:00Z"
 [[nodiscard]] std::string frozen_words(std::string_view sensor, std::string_view quantity,
                                        metering::Instant since);
 

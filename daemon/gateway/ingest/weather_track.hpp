@@ -1,7 +1,7 @@
-/// One polled weather sensor: from what its registers said to stored interval means.
+/// One polled weather sensor: turns what its registers said into stored interval means.
 ///
-/// Like `MeterTrack` it knows no bus and no store: it is given the outcome of each read and answers
-/// with what must be committed together. Its values are of a moment; there is no counter.
+/// Like `MeterTrack` it does not know the bus or the store: it takes the outcome of each read and
+/// returns what must be committed together. Its values are instantaneous; there is no counter.
 #pragma once
 
 #include <array>
@@ -34,12 +34,12 @@ class WeatherTrack {
  public:
   explicit WeatherTrack(TrackedSensor sensor);
 
-  /// The outcome of one read, planned over `modbus::metered_fields`. A value that cannot be is no
-  /// value; that the sensor gives such is told once an hour.
+  /// The outcome of one read, planned over `modbus::metered_fields`. An impossible value counts as
+  /// none; an event says so, at most once an hour.
   [[nodiscard]] StoreBatch take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                                 metering::Instant at);
 
-  /// Somebody set the clock: what the weather did meanwhile belongs to no interval.
+  /// The clock was set: the weather in between belongs to no interval.
   void clock_was_set();
 
   /// The last value, in the quantity's unit; nothing where the last read had none.
@@ -57,7 +57,7 @@ class WeatherTrack {
     std::optional<double> now = {};
     metering::Instant relived_until =
         metering::Instant::min();                       ///< Stamps before a clock set back.
-    metering::Instant told = metering::Instant::min();  ///< Of a value that cannot be.
+    metering::Instant told = metering::Instant::min();  ///< Of an impossible value.
   };
 
   [[nodiscard]] Channel* channel_of(const std::string& field);

@@ -1,7 +1,8 @@
-/// What to ask which device next: the schedule of one bus, with everything that devices do wrong.
+/// Decides what to ask which device next: the schedule of one bus, including everything that
+/// devices do wrong.
 ///
-/// No sockets, no threads, no clock: it is told the time and the answers, and says what to do. The
-/// live daemon, a replay and a test on a virtual clock use it alike.
+/// It has no sockets, threads or clock: it is given the time and the answers, and says what to do.
+/// The live daemon, a replay and a test on a virtual clock all use it.
 #pragma once
 
 #include <chrono>
@@ -88,7 +89,7 @@ class BusPoller {
                 std::chrono::milliseconds duration, const Moment& now);
 
   /// Forgets what it knows of its units: misses, time-outs, refusals, the rest of the bus. All are
-  /// polled at once, as at the start. An order under way is not told any more.
+  /// polled at once, as at the start. The outcome of an order in progress is ignored.
   void begin_anew();
 
   [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }

@@ -20,8 +20,8 @@ struct PolledRead {
   Moment at;  ///< When the outcome was known: what its values are stamped with.
 };
 
-/// Whatever whoever is told throws, the bus is polled on. Lives on the loop's thread. May be
-/// destroyed at any time; what is under way is then not told.
+/// Polling continues whatever the listener throws. Lives on the loop's thread. May be destroyed at
+/// any time; the outcome of a request in progress is then not reported.
 class BusRunner {
  public:
   using OnRead = std::function<void(const PolledRead&)>;
@@ -29,8 +29,8 @@ class BusRunner {
   BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnRead on_read);
 
   void start();
-  /// As at the start, on another connection; what it has counted stays. What is under way is not
-  /// told.
+  /// Starts again on another connection and keeps its counts. The outcome of a request in progress
+  /// is not reported.
   /// @param make_bus  Called once the old bus has ended: a serial line has one owner.
   void begin_anew(const std::function<std::unique_ptr<Bus>()>& make_bus);
   [[nodiscard]] const BusPoller& poller() const { return poller_; }

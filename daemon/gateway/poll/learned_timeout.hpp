@@ -1,4 +1,4 @@
-/// How long to wait for a device: as long as it was ever slow, and not longer.
+/// How long to wait for a device, learned from how long it took before.
 #pragma once
 
 #include <array>

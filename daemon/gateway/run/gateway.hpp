@@ -57,20 +57,19 @@ class Gateway {
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
-  /// Takes in what a gateway has kept in memory while this one's store could not be opened:
+  /// Takes over what a gateway has kept in memory while this one's store could not be opened:
   /// counters go on through its samples, and other meters' intervals are added. Call it before the
   /// start.
   /// @param on_progress  Told now and then that it goes on.
-  /// @return or the store's failure: then it has nothing of it, and this gateway is of no more use.
+  /// @return or the store's failure: then nothing was taken over, and this gateway cannot be used.
   [[nodiscard]] Result<void> take_over(Store& memory,
                                        const std::function<void()>& on_progress = {});
 
-  /// Polls begin, and months that fell due while nobody ran are closed.
+  /// Starts polling, and closes months that became due while the daemon was not running.
   void start();
 
-  /// Goes on by another site file. All buses begin anew. Those of which it says what the old one
-  /// said keep their meters with their counters; the others are opened from where the store has
-  /// them.
+  /// Continues with another site file. All buses restart. A bus that is described as before keeps
+  /// its meters with their counters; the others are opened from the state in the store.
   /// @return or why not, as `open`; then everything is as it was.
   /// @pre the site's time zone is the same
   Result<void> reload(const SiteConfig& site);
@@ -82,7 +81,7 @@ class Gateway {
   /// Pushed readings, of a meter with source = "http" or of a channel of such a weather sensor
   /// ("roof.dry_bulb_C"). They are stored when it answers.
   /// @param readings    Their `meter` is not looked at.
-  /// @param correction  With one they take the place of good readings too, as an edit.
+  /// @param correction  With a correction they replace good readings too, as an edit.
   /// @return not_found for a meter that takes none, or the store's failure; then nothing is stored.
   [[nodiscard]] Result<CommitCounts> take_pushed(const std::string& meter,
                                                  std::vector<metering::Reading> readings,

@@ -1,5 +1,5 @@
-/// Calibrations and diagnoses beside polling: asked for, done one at a time, kept with what came of
-/// them.
+/// Calibrations and diagnoses beside polling: requested, run one at a time, stored with their
+/// results.
 #pragma once
 
 #include <atomic>
@@ -38,9 +38,10 @@ using DoJob = std::function<Result<JobOutcome>(const StoredJob& job, metering::I
 /// Told of every change of a job's state that has been stored.
 using OnJob = std::function<void(const StoredJob&)>;
 
-/// A job is stored before anyone hears of its number, and its outcome before the next one begins: a
-/// kill at any moment loses nothing that was asked for. What ran then runs again, up to three times
-/// in all: a job that has the process killed, for its memory perhaps, would do so for ever.
+/// A job is stored before its number is reported, and its outcome before the next one begins, so a
+/// kill at any moment loses no request. The job that was running runs again, three times at most,
+/// because a job that gets the process killed, perhaps for its memory, would otherwise do so for
+/// ever.
 class JobRunner {
  public:
   struct Ports {
@@ -53,13 +54,13 @@ class JobRunner {
   JobRunner(const JobRunner&) = delete;
   JobRunner& operator=(const JobRunner&) = delete;
 
-  /// Jobs that begin from now on are done so; what runs goes on as it began.
+  /// Applies to jobs that begin from now on; a running job continues unchanged.
   void set_work(DoJob work) { work_ = std::move(work); }
 
   /// Takes up what an earlier process was asked for; later, while the store refuses.
   void resume();
 
-  /// One that waits already serves: it will see the same readings.
+  /// A job that is already waiting serves the request: it will use the same readings.
   /// @return the job's number, or the store's failure.
   [[nodiscard]] Result<std::int64_t> ask(JobKind kind, const std::string& asked_by);
 
@@ -67,7 +68,8 @@ class JobRunner {
   /// @return not_found when no such job waits or runs.
   [[nodiscard]] Result<void> cancel(std::int64_t number);
 
-  /// The process ends: what runs is interrupted, and runs again in the next one.
+  /// Called when the process ends: a running job is interrupted, and runs again in the next
+  /// process.
   void interrupt();
 
  private:
@@ -87,7 +89,7 @@ class JobRunner {
   StoredJob current_;                      ///< Unless idle.
   std::vector<StoredForecast> forecasts_;  ///< Of `current_`, to be kept.
   std::optional<JobKind> next_;            ///< To be asked for before `current_` is kept.
-  bool cancelled_ = false;                 ///< Somebody took `current_` back.
+  bool cancelled_ = false;                 ///< `current_` was cancelled.
   std::shared_ptr<std::atomic<bool>> running_goes_on_;
   std::shared_ptr<JobRunner*> self_;
 };

@@ -1,4 +1,4 @@
-/// When the site's model is calibrated again by itself.
+/// When the site's model is calibrated again automatically.
 #pragma once
 
 #include <functional>
@@ -20,11 +20,12 @@ class Recalibration {
   Recalibration(const Recalibration&) = delete;
   Recalibration& operator=(const Recalibration&) = delete;
 
-  /// Waits for the times of the schedule, if it has any. A time at which nobody ran is over.
+  /// Waits for the times of the schedule, if it has any. Times at which the daemon was not running
+  /// are skipped.
   void start();
 
-  /// Asks where the last month of all modelled meters has closed and nobody has asked since: the
-  /// process may have been killed in between, or the months were imported.
+  /// Requests a calibration if the last month of all modelled meters has closed without a request
+  /// since: the process may have been killed in between, or the months were imported.
   /// @return or the store's failure.
   Result<void> catch_up(Store& store, const SiteConfig& site);
 

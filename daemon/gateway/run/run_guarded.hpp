@@ -1,4 +1,4 @@
-/// A loop that goes on whatever its calls throw.
+/// A loop that continues whatever its calls throw.
 #pragma once
 
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it

@@ -1,4 +1,4 @@
-/// The process's signals as a queue: one that comes while nobody listens waits until somebody does.
+/// The process's signals as a queue: a signal that arrives while nothing is listening waits.
 #pragma once
 
 #include <csignal>
@@ -12,8 +12,8 @@ namespace recald::daemon {
 /// mask of the one that made it.
 class Signals {
  public:
-  /// From now on SIGHUP and SIGUSR1 wait, which would end a process that does not listen yet;
-  /// SIGTERM and SIGINT end it still.
+  /// From now on SIGHUP and SIGUSR1 wait; they would otherwise end a process that is not listening
+  /// yet. SIGTERM and SIGINT still end it.
   /// @return or io_failed when the system has no descriptor left.
   [[nodiscard]] static Result<Signals> open();
 
@@ -21,7 +21,7 @@ class Signals {
   Signals(Signals&& other) noexcept;
   Signals& operator=(Signals&&) = delete;
 
-  /// From now on those that end the process wait too.
+  /// From now on SIGTERM and SIGINT wait too.
   void hold_ends();
   /// From now on they end it at once.
   void let_ends_through();

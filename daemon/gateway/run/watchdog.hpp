@@ -1,4 +1,4 @@
-/// Tells systemd, where it runs us, that we are ready and that we live.
+/// Tells systemd, if it started us, that we are ready and alive.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace recald::daemon {
 /// minutes. Tells systemd at most every ten seconds, however often it is called.
 void extend_start();
 
-/// Feeds it where the loop does not turn for a while but work goes on.
+/// Feeds it while the loop is blocked but work goes on.
 void feed_watchdog();
 
 /// Feeds the watchdog of the unit file for as long as the loop turns and the store answers. Where

@@ -1,4 +1,4 @@
-/// A calibration that lacked weather is made again when more of it has come.
+/// Requests a calibration that lacked weather again once more weather has arrived.
 #pragma once
 
 #include <chrono>

@@ -25,7 +25,7 @@ inline constexpr int kLimitUsual = 1'000;
                                                      std::string_view field = "");
 /// A failure of the store: 503, since it is tried again.
 [[nodiscard]] tl::unexpected<http::Response> refusal(const Error& error);
-/// 503 to what the store does not take at present, with when to send it again.
+/// 503 for what the store cannot take at present, with the time after which to send it again.
 [[nodiscard]] http::Response not_taken(std::string_view message);
 
 /// A query of no other names than these; a misspelt one would otherwise be taken for everything.
@@ -42,7 +42,7 @@ inline constexpr int kLimitUsual = 1'000;
 /// `limit`, 1 to 10 000; 1 000 where it is absent.
 [[nodiscard]] Checked<int> limit_of(const http::Request& request);
 
-/// `name` as a whole number; absent where it is. @param what  What stands there rightly.
+/// `name` as a whole number; absent where it is. @param what  What a valid value looks like.
 [[nodiscard]] Checked<std::optional<std::int64_t>> whole_number_of(const http::Request& request,
                                                                    const std::string& name,
                                                                    std::string_view what);

@@ -18,7 +18,7 @@ struct PushedReadings {
   const weather::SensorQuantity* quantity = nullptr;
   /// At least one; `meter` is 0. What the meter cannot read is `suspect`, with its reason.
   std::vector<metering::Reading> readings;
-  std::optional<Correction> correction;  ///< Puts right what is stored.
+  std::optional<Correction> correction;  ///< Corrects what is stored.
 
   /// Under which the store keeps them: a meter's, or a channel's.
   [[nodiscard]] std::string stored_id() const;

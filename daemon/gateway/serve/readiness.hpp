@@ -1,4 +1,4 @@
-/// Whether the daemon does what it is for: readings can be stamped and stored.
+/// Whether the daemon can do its job: stamp and store readings.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace recald::daemon {
 /// served, and restarting the daemon would not wake it.
 [[nodiscard]] std::vector<std::string> reasons_not_ready(const GatewayStatus& status);
 
-/// What deserves a look without making the daemon unready, in sentences: registers that a device
+/// What should be looked at although the daemon is ready, in sentences: registers that a device
 /// refuses, or is too busy for, devices that their gateway does not reach, and weather sensors that
 /// are silent or stand still.
 [[nodiscard]] std::vector<std::string> reasons_to_look(const GatewayStatus& status);

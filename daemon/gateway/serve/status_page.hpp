@@ -1,4 +1,5 @@
-/// The page at /: is it alive, are the data good, what happened lately. Plain HTML, no script.
+/// The page at /: whether the daemon runs, whether the data are good, recent events. Plain HTML, no
+/// script.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// A site's store as the daemon opens it: looked through, put right, with room in reserve.
+/// Opens a site's store as the daemon does: checked, recovered if damaged, with space in reserve.
 #pragma once
 
 #include "adapters/stores/open.hpp"

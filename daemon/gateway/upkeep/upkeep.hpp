@@ -1,5 +1,5 @@
-/// What keeps a store healthy while the daemon runs: a daily backup, room in reserve, and nothing
-/// that grows for ever but readings.
+/// Keeps a store healthy while the daemon runs: a daily backup, space in reserve, and nothing that
+/// grows for ever except readings.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-/// Whether a store says what it should: its file, its keys, its counters, its months.
+/// Checks a store for consistency: its file, its keys, its counters, its months.
 #pragma once
 
 #include <cstdint>

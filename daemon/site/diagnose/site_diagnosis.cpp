@@ -24,8 +24,8 @@ Result<void> require_drawings(const SiteConfig& site) {
                              site.file.string(), diagnosis::kBaseVersion));
 }
 
-/// What the same effects do to the monthly model, which has a vote: where it tells the months kept
-/// back worse with them, they are not confirmed. Empty where there was nothing to judge.
+/// The same effects in the monthly model, which has a vote: if it predicts the held-out months
+/// worse with them, they are not confirmed. Empty if there was nothing to judge.
 std::vector<diagnosis::ModelGap> ask_monthly_model(const ModelledSite& modelled,
                                                    const diagnosis::SiteProblem& problem,
                                                    diagnosis::Diagnosis& diagnosis) {

@@ -188,7 +188,7 @@ Json change_json(const ModelGap& gap) {
   return json;
 }
 
-/// One entry a model; null where nothing was added or no month was kept back.
+/// One entry per model; null if nothing was added or no month was held out.
 Json gap_json(const SiteProblem& site, const Diagnosis& d, const std::vector<ModelGap>& others) {
   Json json = Json::object();
   if (d.gap) json["hourly"] = hourly_gap_json(site, *d.gap);

@@ -90,7 +90,7 @@ report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d,
   return bar;
 }
 
-/// A meter without a reading on the months kept back is judged by nothing, not by zero.
+/// A meter without readings in the held-out months has no gap, rather than a gap of zero.
 std::vector<diagnosis::MeterGap> where_measured(const SiteProblem& site,
                                                 std::vector<diagnosis::MeterGap> gaps) {
   for (std::size_t g = 0; g < gaps.size(); ++g) {
@@ -105,7 +105,7 @@ std::vector<diagnosis::MeterGap> where_measured(const SiteProblem& site,
   return gaps;
 }
 
-/// The model as drawn, then one step an addition; empty where no month was kept back.
+/// The model as drawn, then one step per addition; empty if no month was held out.
 std::vector<report::GapStep> steps_of(const SiteProblem& site, const Diagnosis& d) {
   if (std::ranges::count(site.roles, Role::show) == 0) return {};
   std::vector<report::GapStep> steps{{"as drawn", where_measured(site, d.passes.front().gaps)}};

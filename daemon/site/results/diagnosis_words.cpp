@@ -28,12 +28,12 @@ using diagnosis::SiteProblem;
 
 constexpr std::size_t kFindingsInWords = 5;
 constexpr std::size_t kCandidatesInWords = 5;
-// A meter that an effect touches by less than this share of the most it does is not worth a word.
+// Changes smaller than this share of an effect's largest change are not mentioned.
 constexpr double kImpactWorthAWord = 0.05;
 constexpr double kLeastImpact_kWh = 0.5;
-// Beyond ten times the simulation a percentage says nothing: there is next to none.
+// Beyond ten times the simulation a percentage says nothing: almost nothing is simulated there.
 constexpr double kSharePeopleRead = 10.0;
-// Below this probability the likeliest effect is no lead worth a measurement.
+// Below this probability the likeliest effect is not worth a measurement.
 constexpr double kLeadWorthMeasuring = 0.1;
 
 std::string quoted_label(const SiteProblem& site, std::string_view effect, int meter) {
@@ -116,7 +116,7 @@ std::string addition_words(const SiteProblem& site, const Addition& addition) {
 
 std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
   if (!d.gap) {
-    // What was taken back for that reason says so itself.
+    // If something was withdrawn for that reason, the reason is stated already.
     return d.not_confirmed ? ""
                            : "The held-out months have no readings, so nothing confirms this yet.";
   }
@@ -155,7 +155,7 @@ std::string other_model_words(const ModelGap& gap) {
                      listed(items, "and"));
 }
 
-/// What the last search left open, after effects had been added.
+/// What remains unexplained after the last search.
 std::string remainder_words(const Diagnosis& d) {
   const diagnosis::Pass& last = d.passes.back();
   if (d.passes.size() < 2 || last.located.empty()) return {};

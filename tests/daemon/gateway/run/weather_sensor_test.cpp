@@ -99,7 +99,7 @@ TEST_F(WeatherSensor, SilentForAWeekItIsToldAndTheMonthCloses) {
   EXPECT_EQ(told[0].subject, "roof");
   const Instant since = march().begin + days{10};
   EXPECT_THAT(told[0].text,
-              AllOf(HasSubstr("has given no dry_bulb_C, rel_humidity_pct, wind_speed_m_s"),
+              AllOf(HasSubstr("has sent no dry_bulb_C, rel_humidity_pct, wind_speed_m_s"),
                     HasSubstr("since " + metering::to_string(since))));
   EXPECT_EQ(roof().poll->state, UnitState::down);
   EXPECT_EQ(roof().weather[0].state.silent_since, since);
