@@ -20,6 +20,7 @@ using weather::WeatherRecord;
 constexpr std::string_view kWeatherHeader =
     "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2";
 constexpr std::size_t kDryBulb = 0;  // in kWeatherVariables
+constexpr std::string_view kDryBulbF = "dry_bulb_F";
 constexpr seconds kStepToInfer{1800};
 
 /// What can have been measured on the ground, in order of kWeatherVariables. Slight excess that
@@ -84,8 +85,10 @@ class WeatherReader {
     }
     for (std::size_t i = 1; i < count; ++i) {
       const std::string_view column = trimmed(fields_[i]);
+      const bool is_fahrenheit = column == kDryBulbF;
+      const std::string_view name = is_fahrenheit ? kWeatherVariables[kDryBulb].name : column;
       const auto known = std::find_if(kWeatherVariables.begin(), kWeatherVariables.end(),
-                                      [&](const auto& v) { return v.name == column; });
+                                      [&](const auto& v) { return v.name == name; });
       if (known == kWeatherVariables.end()) {
         csv_.ignored_columns.push_back(printable(column));
         continue;
@@ -93,8 +96,11 @@ class WeatherReader {
       auto& place = columns_[static_cast<std::size_t>(known - kWeatherVariables.begin())];
       if (place) return wrong_header(header, "; column " + in_quotes(column) + " comes twice");
       place = i;
+      in_fahrenheit_ |= is_fahrenheit;
     }
-    if (!columns_[kDryBulb]) return wrong_header(header, "; dry_bulb_C is missing");
+    if (!columns_[kDryBulb]) {
+      return wrong_header(header, "; dry_bulb_C (or dry_bulb_F) is missing");
+    }
     column_count_ = count;
     return true;
   }
@@ -132,12 +138,14 @@ class WeatherReader {
   bool read_value(std::uint64_t line, std::size_t variable, std::string_view text,
                   WeatherHour& values) {
     if (text.empty()) return true;
-    const std::string name{kWeatherVariables[variable].name};
-    const auto value = parse_number(text);
+    const bool is_fahrenheit = variable == kDryBulb && in_fahrenheit_;
+    const std::string name{is_fahrenheit ? kDryBulbF : kWeatherVariables[variable].name};
+    auto value = parse_number(text);
     if (!value) {
       bad(line, number_problem(name, text));
       return false;
     }
+    if (is_fahrenheit) value = (*value - 32.0) / 1.8;
     const Range& range = kRanges[variable];
     if (*value < range.low - range.tolerated || *value > range.high + range.tolerated) {
       bad(line, name + " " + std::string{text} + " is impossible; taken as blank");
@@ -199,6 +207,7 @@ class WeatherReader {
   FieldSplitter fields_;
   WeatherColumns columns_;
   std::size_t column_count_ = 0;
+  bool in_fahrenheit_ = false;
   std::vector<WeatherRecord> records_;
   WeatherCsv csv_;
 };

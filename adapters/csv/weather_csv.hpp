@@ -32,9 +32,9 @@ struct WeatherCsv {
   LineIssues issues;  ///< Bad lines, impossible values (kept out as blanks), repeated stamps.
 };
 
-/// `timestamp` and `dry_bulb_C` are required, the other known columns (also dni_W_m2, dhi_W_m2,
-/// pressure_Pa) optional, in any order; unknown ones are ignored and named. Blanks are absent
-/// values. Same text rules as `read_readings`.
+/// `timestamp` and `dry_bulb_C`, or `dry_bulb_F`, are required, the other known columns (also
+/// dni_W_m2, dhi_W_m2, pressure_Pa) optional, in any order; unknown ones are ignored and named.
+/// Blanks are absent values. Same text rules as `read_readings`.
 /// @return not_found, io_failed, malformed (header), not_enough_data (no usable row).
 [[nodiscard]] Result<WeatherCsv> read_weather(const std::filesystem::path& file,
                                               const WeatherCsvOptions& options);

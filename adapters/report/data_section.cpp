@@ -18,7 +18,7 @@ Cell coverage_cell(const OutputMonth& month) {
 
 /// Years as rows, January to December as columns: three years fit one screen.
 void write_coverage_overview(Html& html, const std::vector<OutputResult>& outputs) {
-  Table table("Share of each month that was measured. ✕: too little to calibrate against.");
+  Table table("Share of each month that was measured. ✕: too little to use.");
   std::vector<std::string> columns{"Year"};
   for (unsigned month = 1; month <= 12; ++month) columns.push_back(month_name(month));
   table.columns(columns);

@@ -13,6 +13,20 @@
 namespace recald::report {
 namespace {
 
+constexpr std::string_view kForecastKey =
+    "<p class=\"key\" aria-hidden=\"true\">"
+    "<span><i class=\"sign model\"></i>forecast</span>"
+    "<span><i class=\"sign band\"></i>90 % band</span>"
+    "<span><i class=\"sign\">★</i>measured</span>"
+    "<span><i class=\"sign different\">◆</i>measured, outside the band</span>"
+    "<span><i class=\"sign ground\"></i>alarm</span></p>\n";
+
+constexpr std::string_view kBelievedKey =
+    "<p class=\"key\" aria-hidden=\"true\">"
+    "<span><i class=\"sign model\"></i>mean, from all months so far</span>"
+    "<span><i class=\"sign band\"></i>90 % band</span>"
+    "<span><i class=\"sign last-year\"></i>mean, from the last twelve months alone</span></p>\n";
+
 void write_alarm(Html& html, const AlarmCard& card) {
   html.markup("<li class=\"warning\">")
       .element("span", "▲ Alarm", "badge")
@@ -67,6 +81,7 @@ void write_forecast_section(Html& html, const DriftData& data) {
   html.element("p",
                "Each month was forecast from the months before it and its own weather, before its "
                "figures were looked at. What was said then is not changed by what came later.");
+  html.markup(kForecastKey);
   for (std::size_t i = 0; i < data.outputs.size(); ++i) {
     const ForecastSeries& series = data.outputs[i];
     write_figure(html,
@@ -101,7 +116,7 @@ Table believed_table(const BelievedParameter& parameter) {
 void write_believed_section(Html& html, const DriftData& data) {
   if (data.parameters.empty()) return;
   open_section(html, "believed", "What is believed of the building");
-  html.markup("<div class=\"multiples\">\n");
+  html.markup(kBelievedKey).markup("<div class=\"multiples\">\n");
   for (std::size_t i = 0; i < data.parameters.size(); ++i) {
     const BelievedParameter& parameter = data.parameters[i];
     write_figure(html,

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "adapters/report/first_screen.hpp"
 #include "adapters/report/format.hpp"
 #include "adapters/report/histogram.hpp"
 #include "adapters/report/script_json.hpp"
@@ -169,13 +170,15 @@ json array_of(const std::vector<Item>& items, json (*convert)(const Item&)) {
 
 }  // namespace
 
-std::string figure_json(const ReportData& data) {
-  const json root = {{"parameters", array_of(data.parameters, parameter_json)},
-                     {"outputs", array_of(data.outputs, output_json)},
-                     {"peaks", peaks_json(data)},
-                     {"dayTypes", array_of(data.profile.day_types, day_type_json)},
-                     {"loads", array_of(data.loads, load_json)}};
-  return script_safe_text(root);
+nlohmann::json report_json(const ReportData& data) {
+  return {{"parameters", array_of(data.parameters, parameter_json)},
+          {"overview", overview_json(model_overview(data))},
+          {"outputs", array_of(data.outputs, output_json)},
+          {"peaks", peaks_json(data)},
+          {"dayTypes", array_of(data.profile.day_types, day_type_json)},
+          {"loads", array_of(data.loads, load_json)}};
 }
+
+std::string figure_json(const ReportData& data) { return script_safe_text(report_json(data)); }
 
 }  // namespace recald::report

@@ -1,14 +1,17 @@
-/// The numbers that the page's script draws, as JSON safe to stand inside an HTML page.
+/// The numbers that the page's script draws, as JSON.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "adapters/report/report_data.hpp"
 
 namespace recald::report {
 
-/// @return compact JSON: absent and non-finite numbers are null, numbers have six significant
-///         digits (load four), and no "<" occurs, so no text can close the surrounding script tag.
+[[nodiscard]] nlohmann::json report_json(const ReportData& data);
+
+/// The same as compact JSON, safe inside a script tag. Numbers carry six significant digits, loads
+/// four; absent ones are null.
 [[nodiscard]] std::string figure_json(const ReportData& data);
 
 }  // namespace recald::report

@@ -73,11 +73,16 @@ Table& Table::row(std::vector<Cell> cells) {
   return *this;
 }
 
+Table& Table::with_labels() {
+  is_labelled_ = true;
+  return *this;
+}
+
 void Table::write(Html& html) const {
   html.element("p", caption_, "caption")
       .markup("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"")
       .text(caption_)
-      .markup("\"><table>\n");
+      .markup(is_labelled_ ? "\"><table class=\"labelled\">\n" : "\"><table>\n");
   write_head(html);
   write_body(html);
   html.markup("</table></div>\n");
@@ -111,21 +116,27 @@ bool Table::holds_numbers(std::size_t column) const {
          first->cells[column].css_class.starts_with("number");
 }
 
+std::string Table::attributes_of(const Row& row, std::size_t column) const {
+  if (row.is_group) {
+    return fmt::format(" scope=\"rowgroup\" class=\"group\" colspan=\"{}\"", columns_.size());
+  }
+  const Cell& cell = row.cells[column];
+  std::string attributes = column == 0 ? " scope=\"row\"" : "";
+  if (!cell.css_class.empty()) attributes += fmt::format(" class=\"{}\"", cell.css_class);
+  if (is_labelled_ && column > 0) {
+    attributes += fmt::format(" data-label=\"{}\"", escape(columns_[column]));
+  }
+  return attributes;
+}
+
 void Table::write_body(Html& html) const {
   html.markup("<tbody>\n");
   for (const Row& row : rows_) {
     html.markup("<tr>");
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      const Cell& cell = row.cells[i];
-      const std::string attributes =
-          row.is_group
-              ? fmt::format(" scope=\"rowgroup\" class=\"group\" colspan=\"{}\"", columns_.size())
-              : fmt::format(
-                    "{}{}", i == 0 ? " scope=\"row\"" : "",
-                    cell.css_class.empty() ? "" : fmt::format(" class=\"{}\"", cell.css_class));
       const std::string_view tag = i == 0 ? "th" : "td";
-      html.markup(fmt::format("<{}{}>", tag, attributes))
-          .text(cell.text)
+      html.markup(fmt::format("<{}{}>", tag, attributes_of(row, i)))
+          .text(row.cells[i].text)
           .markup(fmt::format("</{}>", tag));
     }
     html.markup("</tr>\n");
@@ -134,7 +145,7 @@ void Table::write_body(Html& html) const {
 }
 
 void write_figure(Html& html, const Figure& figure, const Table& data) {
-  html.markup("<figure>\n").element("h4", figure.title);
+  html.markup("<figure>\n").element("h3", figure.title);
   html.markup(fmt::format("<div class=\"plot-window\"><div class=\"plot {}\" data-figure=\"{}\" "
                           "data-index=\"{}\" role=\"img\"",
                           figure.size, figure.kind, figure.index))

@@ -46,26 +46,30 @@ class Table {
   /// A heading inside the body that spans the table.
   Table& group(std::string label);
   Table& row(std::vector<Cell> cells);
+  /// Each cell carries its column's name, so that a narrow window can show rows as lists.
+  Table& with_labels();
 
   /// Writes the caption, then the table inside a box that scrolls sideways where the window is too
   /// narrow.
   void write(Html& html) const;
 
  private:
-  void write_head(Html& html) const;
-  void write_body(Html& html) const;
-  /// Heads stand above their numbers, on the right.
-  [[nodiscard]] bool holds_numbers(std::size_t column) const;
-
   struct Row {
     std::vector<Cell> cells;
     bool is_group;
   };
 
+  void write_head(Html& html) const;
+  void write_body(Html& html) const;
+  [[nodiscard]] std::string attributes_of(const Row& row, std::size_t column) const;
+  /// Heads stand above their numbers, on the right.
+  [[nodiscard]] bool holds_numbers(std::size_t column) const;
+
   std::string caption_;
   std::vector<std::pair<std::string, int>> column_groups_;
   std::vector<std::string> columns_;
   std::vector<Row> rows_;
+  bool is_labelled_ = false;
 };
 
 /// Where the script draws a figure, and what stands around it.
@@ -75,7 +79,7 @@ struct Figure {
   std::string title;
   std::string description;     ///< What the figure shows, for those who do not see it.
   std::string caption;         ///< How to read it.
-  std::string_view size = "";  ///< "", "small", "tall", "map" or "small pair".
+  std::string_view size = "";  ///< "", "small", "tall", "map", "overview" or "small pair".
 };
 
 /// The figure with its data as a table below it; the table is there without JavaScript too.

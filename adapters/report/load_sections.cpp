@@ -160,16 +160,7 @@ constexpr std::string_view kLoadKey =
 
 }  // namespace
 
-void write_peak_section(Html& html, const ReportData& data) {
-  if (data.peaks.empty()) return;
-  open_section(html, "peaks", "How high were the peaks?");
-  if (!has_model(data)) {
-    html.element("p", "There is no calibrated model yet: the figures show measurements only.");
-  } else {
-    html.element("p",
-                 "This model works on monthly sums and has no peaks: the figures show measurements "
-                 "only, and nothing here was calibrated.");
-  }
+void write_peak_figures(Html& html, const ReportData& data) {
   html.markup(kPeakKey).markup("<div class=\"multiples wide\">\n");
   for (std::size_t i = 0; i < data.peaks.size(); ++i) {
     const PeakSeries& series = data.peaks[i];
@@ -182,7 +173,21 @@ void write_peak_section(Html& html, const ReportData& data) {
                   .size = "small"},
                  peak_table(data, series));
   }
-  html.markup("</div>\n</section>\n");
+  html.markup("</div>\n");
+}
+
+void write_peak_section(Html& html, const ReportData& data) {
+  if (data.peaks.empty()) return;
+  open_section(html, "peaks", "How high were the peaks?");
+  if (!has_model(data)) {
+    html.element("p", "There is no calibrated model yet: the figures show measurements only.");
+  } else {
+    html.element("p",
+                 "This model works on monthly sums and has no peaks: the figures show measurements "
+                 "only, and nothing here was calibrated.");
+  }
+  write_peak_figures(html, data);
+  html.markup("</section>\n");
 }
 
 void write_profile_section(Html& html, const ReportData& data) {

@@ -22,7 +22,7 @@ void write_head(Html& html, const PageHead& head) {
       .markup("<meta http-equiv=\"Content-Security-Policy\" content=\"")
       .markup(content_security_policy())
       .markup("\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n")
-      .markup("<meta name=\"color-scheme\" content=\"light\">\n")
+      .markup("<meta name=\"color-scheme\" content=\"light dark\">\n")
       .element("title", head.title)
       .markup("<style>")
       .markup(assets().style)

@@ -49,6 +49,19 @@ struct Notice {
   std::string sentence;
 };
 
+/// A number that a client takes along, with its sign, and what it is of.
+struct KeyNumber {
+  std::string number;  ///< "+4.2 %"
+  std::string what;
+};
+
+/// What a client sees first: one sentence, and three numbers beside one picture.
+struct FirstScreen {
+  std::string sentence;
+  std::string more;  ///< What follows from it; empty: nothing.
+  std::vector<KeyNumber> numbers;
+};
+
 /// ASHRAE Guideline 14 on one output.
 struct OutputVerdict {
   std::string output;
@@ -123,7 +136,10 @@ struct ReportData {
   std::optional<metering::LocalCalendar> calendar;  ///< Of the site; absent: times are in UTC.
   Provenance provenance;
 
-  std::vector<std::string> headlines;  ///< The first is the answer; the others explain it.
+  FirstScreen first;
+  std::string most_likely;             ///< Of a diagnosis of the same data; empty: there is none.
+  bool asks_for_diagnosis = false;     ///< Something is missing: whether it is known, or not yet.
+  std::vector<std::string> headlines;  ///< What stands behind the first sentence.
   std::vector<OutputVerdict> verdicts;
   std::vector<Notice> notices;
   /// Their `meter` as people say it.

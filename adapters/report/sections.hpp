@@ -25,6 +25,8 @@ void write_fit_section(Html& html, const ReportData& data);
 /// What did the data teach about the building? Priors against posteriors.
 void write_parameter_section(Html& html, const ReportData& data);
 
+/// A figure of peaks for each meter, with their key.
+void write_peak_figures(Html& html, const ReportData& data);
 void write_peak_section(Html& html, const ReportData& data);
 void write_profile_section(Html& html, const ReportData& data);
 void write_load_section(Html& html, const ReportData& data);

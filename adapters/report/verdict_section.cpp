@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <span>
 
+#include "adapters/report/first_screen.hpp"
+#include "adapters/report/most_likely.hpp"
 #include "adapters/report/sections.hpp"
 
 namespace recald::report {
@@ -25,10 +29,18 @@ Mark severity_mark(Severity severity) {
   return {"Note", "note"};
 }
 
+/// Without a first screen the first headline is the answer.
 void write_headlines(Html& html, const ReportData& data) {
+  const bool is_answered = !data.first.sentence.empty();
   for (std::size_t i = 0; i < data.headlines.size(); ++i) {
-    html.element("p", data.headlines[i], i == 0 ? "headline" : "lead");
+    html.element("p", data.headlines[i], is_answered ? "" : (i == 0 ? "headline" : "lead"));
   }
+}
+
+/// Where the diagnosis of the same data is, or what makes one. `put_diagnosis` finds it again.
+void write_most_likely(Html& html, const ReportData& data) {
+  if (!data.asks_for_diagnosis) return;
+  html.markup(kMostLikelyOpen).markup(most_likely_markup(data.most_likely)).markup("</p>\n");
 }
 
 void write_verdicts(Html& html, const ReportData& data) {
@@ -54,28 +66,53 @@ void write_verdicts(Html& html, const ReportData& data) {
   html.markup("</ul>\n");
 }
 
-}  // namespace
+constexpr std::size_t kNoticesShown = 5;
 
-void write_notices(Html& html, const std::vector<Notice>& notices) {
-  if (notices.empty()) return;
-  html.element("h3", "What to keep in mind").markup("<ul class=\"notices\">\n");
-  // The gravest first; within one severity the caller's order.
-  for (const Severity severity : {Severity::failure, Severity::warning, Severity::info}) {
-    const Mark mark = severity_mark(severity);
-    for (const Notice& notice : notices) {
-      if (notice.severity != severity) continue;
-      html.markup(fmt::format("<li class=\"{}\">", mark.css_class))
-          .element("span", mark.word, "badge")
-          .element("span", notice.sentence)
-          .markup("</li>\n");
-    }
+void write_notice_list(Html& html, std::span<const Notice> notices) {
+  html.markup("<ul class=\"notices\">\n");
+  for (const Notice& notice : notices) {
+    const Mark mark = severity_mark(notice.severity);
+    html.markup(fmt::format("<li class=\"{}\">", mark.css_class))
+        .element("span", mark.word, "badge")
+        .element("span", notice.sentence)
+        .markup("</li>\n");
   }
   html.markup("</ul>\n");
 }
 
+}  // namespace
+
+void write_notices(Html& html, const std::vector<Notice>& notices) {
+  if (notices.empty()) return;
+  std::vector<Notice> ranked =
+      notices;  // the gravest first; within one severity the caller's order
+  std::ranges::stable_sort(ranked, std::greater{}, &Notice::severity);
+  html.element("h3", "What to keep in mind");
+  const std::size_t shown = std::min(ranked.size(), kNoticesShown);
+  write_notice_list(html, std::span{ranked}.first(shown));
+  if (shown == ranked.size()) return;
+  html.markup(
+      fmt::format("<details class=\"more\"><summary>{} more</summary>\n", ranked.size() - shown));
+  write_notice_list(html, std::span{ranked}.subspan(shown));
+  html.markup("</details>\n");
+}
+
 void write_verdict_section(Html& html, const ReportData& data) {
-  if (data.headlines.empty() && data.verdicts.empty() && data.notices.empty()) return;
+  if (data.headlines.empty() && data.verdicts.empty() && data.notices.empty() &&
+      data.first.sentence.empty()) {
+    return;
+  }
   open_section(html, "verdict", "In short");
+  if (!data.first.sentence.empty()) {
+    write_first_words(html, data.first);
+    write_most_likely(html, data);
+    write_key_numbers(html, data.first);
+    write_overview(html, model_overview(data),
+                   {"calibrated model, as its parameters leave it",
+                    "Months outside the band are those that the model does not follow, whatever "
+                    "its parameters."});
+    if (!data.headlines.empty()) html.element("h3", "Forecasts and model in figures");
+  }
   write_headlines(html, data);
   write_verdicts(html, data);
   write_notices(html, data.notices);

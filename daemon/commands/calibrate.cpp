@@ -12,6 +12,7 @@
 #include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
+#include "daemon/site/results/meters_report.hpp"
 #include "daemon/site/results/result_table.hpp"
 
 namespace recald::daemon {
@@ -61,6 +62,22 @@ tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments&
   return std::move(*done);
 }
 
+/// A site without a model and without weather: what its meters tell by themselves.
+int report_meters(const OpenSite& site, const CalibrateArguments& arguments,
+                  const Console& console) {
+  VirtualClock clock{metering::Instant{}};
+  const auto recording = record_site(site, {}, clock, {});
+  if (!recording) return console.fail(recording.error());
+  print_data_words(*recording, console);
+  const auto page = render_meters_of(site, *recording, generated_at());
+  if (!page) return console.fail(page.error());
+  if (auto written = system::write_file(arguments.out, *page); !written) {
+    return console.fail(written.error());
+  }
+  if (!arguments.json) console.out << arguments.out.string() << "\n";
+  return kSuccess;
+}
+
 }  // namespace
 
 int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
@@ -81,11 +98,11 @@ int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
 }
 
 int run_report(const CalibrateArguments& arguments, const Console& console) {
+  if (auto site = open_site(arguments.site); site && !site->config.model && !site->config.weather) {
+    return report_meters(*site, arguments, console);
+  }
   const auto done = calibrate_aloud(arguments, console);
   if (!done) return done.error();
-  if (const auto& why = done->calibration.not_calibrated_because; !why.empty()) {
-    return console.fail(why + " `recald calibrate` has the forecasts.");
-  }
   if (auto written = system::write_file(arguments.out, render(*done, generated_at())); !written) {
     return console.fail(written.error());
   }

@@ -314,7 +314,7 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   add_site(*replay, given.replay);
   replay->add_option("--from", given.replay.from, "First local day, YYYY-MM-DD");
   replay->add_option("--to", given.replay.to, "Last local day, YYYY-MM-DD");
-  replay->add_option("--out", given.replay.out, "Folder for months.csv");
+  replay->add_option("--out", given.replay.out, "Folder for months.csv and the page of the meters");
   verbs.push_back(
       {replay, [&](const Console& console) { return run_replay(given.replay, console); }});
 

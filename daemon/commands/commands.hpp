@@ -29,7 +29,7 @@ struct RunArguments {
 struct ReplayArguments : SiteArguments {
   std::string from;  ///< Local day, or empty.
   std::string to;
-  std::filesystem::path out;  ///< Folder for months.csv, or empty.
+  std::filesystem::path out;  ///< Folder for months.csv and meters.html, or empty.
 };
 
 struct ProfileArguments : SiteArguments {

@@ -6,8 +6,10 @@
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/results/calibration_files.hpp"
+#include "daemon/site/results/meters_report.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -99,6 +101,11 @@ int run_replay(const ReplayArguments& arguments, const Console& console) {
     const auto written = system::write_file(arguments.out / "months.csv",
                                             months_csv(*recording, system::time_zone_release()));
     if (!written) return console.fail(written.error());
+    const auto page = render_meters_of(*site, *recording, generated_at());
+    if (!page) return console.fail(page.error());
+    if (auto saved = system::write_file(arguments.out / "meters.html", *page); !saved) {
+      return console.fail(saved.error());
+    }
   }
   if (arguments.json) console.out << summary_json(site->config, *recording).dump(2) << "\n";
   return kSuccess;

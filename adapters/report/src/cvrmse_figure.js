@@ -1,7 +1,7 @@
 // CV(RMSE) of each posterior draw, with the limit of Guideline 14; calibration above validation.
 import { mount } from "./echarts.js";
 import { histogramSeries, limitSeries } from "./shapes.js";
-import { axisName, tooltip, valueAxis } from "./theme.js";
+import { axisName, missingLine, tooltip, valueAxis } from "./theme.js";
 
 const limitPercent = 15;
 
@@ -49,7 +49,7 @@ export function drawCvrmse(place, data) {
         gridIndex: i,
         ...span,
         splitLine: { show: false },
-        axisLine: { show: true, lineStyle: { color: "#7b8591" } },
+        axisLine: { show: true, lineStyle: { color: missingLine } },
         axisTick: { show: true },
         name: i === panels.length - 1 ? "CV(RMSE), %" : "",
         nameLocation: "middle",

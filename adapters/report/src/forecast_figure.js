@@ -2,7 +2,7 @@
 import { mount } from "./echarts.js";
 import { monthText, numberText } from "./format.js";
 import { monthAxis, yearAxis } from "./month_axis.js";
-import { bandSeries } from "./shapes.js";
+import { bandSeries, monthBandSeries } from "./shapes.js";
 import {
   axisLabel,
   axisName,
@@ -10,41 +10,11 @@ import {
   ink,
   modelFill,
   modelLine,
+  page,
   star,
   tooltip,
   valueAxis,
 } from "./theme.js";
-
-/** The band between q05 and q95 as a polygon for each stretch without a hole. */
-function bandOf(months) {
-  const stretches = [];
-  let open = null;
-  months.forEach(({ q05, q95 }, i) => {
-    if (q05 === null || q95 === null) open = null;
-    else if (open) open.push([i, q05, q95]);
-    else stretches.push((open = [[i, q05, q95]]));
-  });
-  return {
-    type: "custom",
-    silent: true,
-    z: 1,
-    data: stretches.map((stretch, i) => [stretch[0][0], i]),
-    renderItem(params, api) {
-      const stretch = stretches[params.dataIndex];
-      const at = (i, value) => api.coord([i, value]);
-      return {
-        type: "polygon",
-        shape: {
-          points: [
-            ...stretch.map(([i, low]) => at(i, low)),
-            ...[...stretch].reverse().map(([i, , high]) => at(i, high)),
-          ],
-        },
-        style: { fill: modelFill, opacity: 0.6 },
-      };
-    },
-  };
-}
 
 /** Custom series do not stretch the axis, so it is told what has to fit. */
 function verticalAxis(unit, values) {
@@ -96,7 +66,10 @@ function draw(place, { unit, months, alarms, slotWidth }, extra, say) {
     ),
     series: [
       bandSeries(runs),
-      bandOf(months),
+      monthBandSeries(
+        months.map(({ q05, q95 }) => (q05 === null || q95 === null ? null : [q05, q95])),
+        modelFill,
+      ),
       line(
         months.map(({ q50 }) => q50),
         { lineStyle: { color: modelLine, width: 2 } },
@@ -127,7 +100,7 @@ export function drawForecast(place, data) {
       points(isOutside, {
         symbol: "diamond",
         symbolSize: 12,
-        itemStyle: { color: different, borderColor: "#fff", borderWidth: 0.8, opacity: 1 },
+        itemStyle: { color: different, borderColor: page, borderWidth: 0.8, opacity: 1 },
       }),
     ],
     (m) =>

@@ -11,6 +11,7 @@ import {
   loadColours,
   missing,
   missingLine,
+  page,
   suspectLine,
 } from "./theme.js";
 
@@ -44,7 +45,7 @@ const looks = {
     decal: { dashArrayX: [1, 0], dashArrayY: [1.5, 4], rotation: Math.PI / 4, color: missingLine },
   },
   s: {
-    fill: "#fff",
+    fill: page,
     decal: { dashArrayX: [1, 0], dashArrayY: [2, 3], rotation: -Math.PI / 4, color: suspectLine },
   },
   p: {

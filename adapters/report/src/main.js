@@ -6,27 +6,33 @@ import { drawCandidates } from "./candidates_figure.js";
 import { drawCvrmse } from "./cvrmse_figure.js";
 import { addDownloads } from "./csv.js";
 import { drawBelieved, drawForecast } from "./forecast_figure.js";
+import { drawDayProfile } from "./day_profile_figure.js";
 import { drawLoad } from "./load_figure.js";
 import { drawMonths } from "./months_figure.js";
+import { drawOverview } from "./overview_figure.js";
 import { drawParameter } from "./parameter_figure.js";
 import { drawPeaks } from "./peaks_figure.js";
 import { drawProfile, writeProfileKey } from "./profile_figure.js";
 import { drawTemperatureMap, drawWeekMap } from "./residual_map_figure.js";
 import { drawSignature } from "./signature_figure.js";
 import { drawSteps, writeStepKey } from "./steps_figure.js";
+import { drawTemperature } from "./temperature_figure.js";
 
 const drawings = {
   believed: drawBelieved,
   candidates: drawCandidates,
   cvrmse: drawCvrmse,
+  dayprofile: drawDayProfile,
   forecast: drawForecast,
   load: drawLoad,
   months: drawMonths,
+  overview: drawOverview,
   parameter: drawParameter,
   peaks: drawPeaks,
   profile: drawProfile,
   signature: drawSignature,
   steps: drawSteps,
+  temperature: drawTemperature,
   temperaturemap: drawTemperatureMap,
   weekmap: drawWeekMap,
 };
@@ -49,10 +55,12 @@ function draw(place) {
   }
 }
 
+const undrawn = [...document.querySelectorAll("[data-figure]")];
+
 /** Figure by figure, giving way in between, so that the words can be read at once. */
 async function drawAll() {
-  for (const place of document.querySelectorAll("[data-figure]")) {
-    draw(place);
+  while (undrawn.length > 0) {
+    draw(undrawn.shift());
     await new Promise((resume) => setTimeout(resume));
   }
   root.dataset.charts = charts;
@@ -68,9 +76,14 @@ function showChosenLoad() {
   }
 }
 
-/** On paper each meter's calendar is there, and with a view box a drawing scales like a picture. */
+/**
+ * On paper each meter's calendar is there, and with a view box a drawing scales like a picture.
+ * Who prints at once does not wait for the figures, so what is left is drawn here.
+ */
 function preparePrint() {
   for (const choice of document.querySelectorAll("[data-choice]")) choice.hidden = false;
+  for (const more of document.querySelectorAll("details.more")) more.open = true;
+  while (undrawn.length > 0) draw(undrawn.shift());
   for (const svg of document.querySelectorAll(".plot svg")) {
     svg.setAttribute("viewBox", `0 0 ${svg.getAttribute("width")} ${svg.getAttribute("height")}`);
   }

@@ -9,15 +9,16 @@ import {
   modelFill,
   modelLine,
   mutedInk,
+  page,
   star,
   tooltip,
   valueAxis,
 } from "./theme.js";
 
-const roleNames = { calibration: "Calibration", validation: "Validation", unused: "Not used" };
+const usualRoleNames = { calibration: "Calibration", validation: "Validation", unused: "Not used" };
 
 /** Stretches of months that serve one purpose. */
-function runsOf(months) {
+function runsOf(months, roleNames) {
   const runs = [];
   months.forEach(({ role }, i) => {
     const last = runs.at(-1);
@@ -62,7 +63,7 @@ function measuredSeries(months, accepts, style) {
   };
 }
 
-function tooltipText(month) {
+function tooltipText(month, roleNames) {
   const lines = [
     `${monthText(month.month)} · ${roleNames[month.role].toLowerCase()}`,
     `Measured ${numberText(month.measured)} kWh/day${month.usable ? "" : " (not usable)"}`,
@@ -89,6 +90,7 @@ function filledText(share) {
 
 export function drawMonths(place, data) {
   const { months } = data.outputs[place.dataset.index];
+  const roleNames = data.roleNames ?? usualRoleNames;
   place.style.minWidth = `${months.length * monthSlotWidth + 80}px`;
   const empty = [NaN, NaN, NaN, NaN, NaN];
   mount(place, {
@@ -97,7 +99,7 @@ export function drawMonths(place, data) {
       ...tooltip,
       trigger: "axis",
       axisPointer: { type: "shadow", shadowStyle: { color: "rgba(85,96,110,.12)" } },
-      formatter: (items) => tooltipText(months[items[0].dataIndex]),
+      formatter: (items) => tooltipText(months[items[0].dataIndex], roleNames),
     },
     xAxis: monthAxis(
       months.map(({ month }) => month),
@@ -105,7 +107,7 @@ export function drawMonths(place, data) {
     ),
     yAxis: verticalAxis(months),
     series: [
-      bandSeries(runsOf(months)),
+      bandSeries(runsOf(months, roleNames)),
       {
         type: "boxplot",
         z: 2,
@@ -124,17 +126,17 @@ export function drawMonths(place, data) {
       measuredSeries(months, (m) => m.usable && !m.different, {
         symbol: star,
         symbolSize: 13,
-        itemStyle: { color: ink, borderColor: "#fff", borderWidth: 0.8, opacity: 1 },
+        itemStyle: { color: ink, borderColor: page, borderWidth: 0.8, opacity: 1 },
       }),
       measuredSeries(months, (m) => !m.usable && !m.different, {
         symbol: star,
         symbolSize: 13,
-        itemStyle: { color: "#fff", borderColor: mutedInk, borderWidth: 1.4, opacity: 1 },
+        itemStyle: { color: page, borderColor: mutedInk, borderWidth: 1.4, opacity: 1 },
       }),
       measuredSeries(months, (m) => m.different, {
         symbol: "diamond",
         symbolSize: 15,
-        itemStyle: { color: different, borderColor: "#fff", borderWidth: 0.8, opacity: 1 },
+        itemStyle: { color: different, borderColor: page, borderWidth: 0.8, opacity: 1 },
       }),
     ],
   });

@@ -2,7 +2,7 @@
 import { mount } from "./echarts.js";
 import { numberText } from "./format.js";
 import { histogramSeries, summarySeries } from "./shapes.js";
-import { axisLabel, axisName, mutedInk, tooltip, valueAxis } from "./theme.js";
+import { axisLabel, axisName, missingLine, mutedInk, tooltip, valueAxis } from "./theme.js";
 
 export function drawParameter(place, data) {
   const parameter = data.parameters[place.dataset.index];
@@ -22,7 +22,7 @@ export function drawParameter(place, data) {
       min: min - margin,
       max: max + margin,
       splitLine: { show: false },
-      axisLine: { show: true, onZero: false, lineStyle: { color: "#7b8591" } },
+      axisLine: { show: true, onZero: false, lineStyle: { color: missingLine } },
       axisTick: { show: true },
       // The ends stand a margin outside the prior, at numbers that mean nothing.
       axisLabel: {

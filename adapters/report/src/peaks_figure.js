@@ -2,7 +2,7 @@
 import { mount } from "./echarts.js";
 import { monthText, numberText, plainText } from "./format.js";
 import { monthAxis } from "./month_axis.js";
-import { axisLabel, axisName, ink, modelLine, rule, tooltip, valueAxis } from "./theme.js";
+import { axisLabel, axisName, ink, modelLine, page, rule, tooltip, valueAxis } from "./theme.js";
 
 function tooltipText(month) {
   const lines = [`${monthText(month.month)}: ${numberText(month.kW)} kW`];
@@ -52,7 +52,7 @@ export function drawPeaks(place, data) {
         type: "scatter",
         symbol: "triangle",
         symbolSize: 10,
-        itemStyle: { color: "#fff", borderColor: ink, borderWidth: 1.5, opacity: 1 },
+        itemStyle: { color: page, borderColor: ink, borderWidth: 1.5, opacity: 1 },
         data: only((month) => month.exceedable),
       },
     ],

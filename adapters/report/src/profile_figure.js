@@ -1,7 +1,7 @@
 // Electricity by hour of the day: the parts stacked, the measured mean as a line.
 import { mount } from "./echarts.js";
 import { numberText, plainText } from "./format.js";
-import { axisLabel, axisName, ink, part, rule, tooltip, valueAxis } from "./theme.js";
+import { axisLabel, axisName, ink, page, part, parts, rule, tooltip, valueAxis } from "./theme.js";
 
 const hours = Array.from({ length: 24 }, (_, hour) => hour);
 
@@ -68,7 +68,7 @@ export function drawProfile(place, data) {
         itemStyle: {
           color: part(i).color,
           decal: part(i).decal,
-          borderColor: "#fff",
+          borderColor: page,
           borderWidth: 0.5,
         },
       })),
@@ -78,12 +78,16 @@ export function drawProfile(place, data) {
         symbol: "circle",
         symbolSize: 5,
         lineStyle: { color: ink, width: 2 },
-        itemStyle: { color: "#fff", borderColor: ink, borderWidth: 1.5 },
+        itemStyle: { color: page, borderColor: ink, borderWidth: 1.5 },
         z: 5,
       },
     ],
   });
 }
+
+/** Whether a part is more than nothing at some hour; what is not there has no place in a key. */
+const isThere = (dayTypes, i) =>
+  dayTypes.some(({ parts }) => parts[i].kW.some((kW) => kW !== null && kW > 0));
 
 /** Says which colour and pattern is which part; the parts' names are data, hence textContent. */
 export function writeProfileKey(data) {
@@ -97,5 +101,7 @@ export function writeProfileKey(data) {
     key.append(span);
   };
   entry("sign line dotted", "measured mean");
-  data.dayTypes[0].parts.forEach(({ label }, i) => entry(`sign part part-${i % 4}`, label));
+  data.dayTypes[0].parts.forEach(({ label }, i) => {
+    if (isThere(data.dayTypes, i)) entry(`sign part part-${i % parts.length}`, label);
+  });
 }

@@ -10,6 +10,7 @@ import {
   missing,
   missingLine,
   mutedInk,
+  page,
   residualColour,
   residualColours,
   tooltip,
@@ -92,7 +93,7 @@ function useSeries(uses, axes) {
       return {
         type: "rect",
         shape: { x: x - width / 2 + 1, y: coordSys.y - 9, width: width - 2, height: 6 },
-        style: { fill: kept ? ink : "#fff", stroke: kept ? ink : chooseMark, lineWidth: 1.2 },
+        style: { fill: kept ? ink : page, stroke: kept ? ink : chooseMark, lineWidth: 1.2 },
       };
     },
     ...axes,
@@ -113,7 +114,7 @@ function daySeries(axes) {
       return {
         type: "line",
         shape: { x1: x, x2: x + width, y1: y, y2: y },
-        style: { stroke: "#fff", lineWidth: 1.5 },
+        style: { stroke: page, lineWidth: 1.5 },
       };
     },
     ...axes,

@@ -135,3 +135,38 @@ export function bandSeries(runs) {
     },
   };
 }
+
+/**
+ * A band over places on a category axis, a polygon for each stretch without a hole.
+ * @param limits  [low, high] of each place, or null.
+ */
+export function monthBandSeries(limits, fill) {
+  const stretches = [];
+  let open = null;
+  limits.forEach((limit, i) => {
+    if (!limit) open = null;
+    else if (open) open.push([i, ...limit]);
+    else stretches.push((open = [[i, ...limit]]));
+  });
+  return {
+    type: "custom",
+    silent: true,
+    z: 1,
+    data: stretches.map((stretch, i) => [stretch[0][0], i]),
+    renderItem(params, api) {
+      const stretch = stretches[params.dataIndex];
+      const half = api.size([1, 0])[0] / 2;
+      const at = (i, value) => api.coord([i, value]);
+      const below = stretch.map(([i, low]) => at(i, low));
+      const above = stretch.map(([i, , high]) => at(i, high));
+      // A month alone is a bar, not a line that nobody sees.
+      const widened = (points) =>
+        points.length > 1 ? points : [-half, half].map((step) => [points[0][0] + step, points[0][1]]);
+      return {
+        type: "polygon",
+        shape: { points: [...widened(below), ...widened(above).reverse()] },
+        style: { fill, opacity: 0.6 },
+      };
+    },
+  };
+}

@@ -1,17 +1,21 @@
 // Colours and shapes. Hues after Okabe and Ito, told apart by every common kind of colour vision;
 // no meaning rests on colour alone, so each comes with a shape or a pattern of its own.
-export const ink = "#1d2733";
-export const mutedInk = "#55606e";
-export const rule = "#c9d0d8";
-export const grid = "#e6eaee";
-export const validationGround = "#f1f5f9";
-export const modelFill = "#a9cde4";
-export const modelLine = "#0b5f95";
-export const limit = "#a33c00";
-export const different = "#b34700";
-export const missing = "#dde1e6";
-export const missingLine = "#7b8591";
-export const suspectLine = "#a33c00";
+//
+// Colours are the style sheet's variables, which a drawing passes on as they are: it follows a light
+// page, a dark one and paper without being drawn anew. Only pictures and scales have fixed ones.
+export const page = "var(--page)";
+export const ink = "var(--ink)";
+export const mutedInk = "var(--muted)";
+export const rule = "var(--axis)";
+export const grid = "var(--grid)";
+export const validationGround = "var(--ground)";
+export const modelFill = "var(--model-fill)";
+export const modelLine = "var(--model-line)";
+export const limit = "var(--limit)";
+export const different = "var(--different)";
+export const missing = "var(--missing)";
+export const missingLine = "var(--missing-line)";
+export const suspectLine = "var(--suspect-line)";
 
 // Light to dark in even steps (ColorBrewer YlGnBu); no grey, which is kept for gaps.
 export const loadColours = [
@@ -26,7 +30,7 @@ export const loadColours = [
 
 // Less than the model, none, more than it (ColorBrewer's blue and orange ends): light in the middle.
 export const residualColours = ["#08519c", "#6baed6", "#f5f5f2", "#fd8d3c", "#a63603"];
-export const chooseMark = "#55606e";
+export const chooseMark = "var(--muted)";
 
 /** Colour of a share of the full scale, −1 to 1; beyond that it stays full. */
 export function residualColour(share) {
@@ -43,10 +47,10 @@ export function residualColour(share) {
 
 // Effects are full bars; what is no effect is pale or striped, so that it is not taken for one.
 export const candidateLooks = {
-  effect: { color: "#0b5f95" },
-  none: { color: "#e6eaee", borderColor: mutedInk, borderWidth: 1.2 },
+  effect: { color: modelLine },
+  none: { color: grid, borderColor: mutedInk, borderWidth: 1.2 },
   unknown: {
-    color: "#e6eaee",
+    color: grid,
     borderColor: mutedInk,
     borderWidth: 1.2,
     decal: {
@@ -54,17 +58,17 @@ export const candidateLooks = {
       dashArrayX: [1, 0],
       dashArrayY: [2, 4],
       rotation: Math.PI / 4,
-      color: "rgba(85,96,110,.8)",
+      color: mutedInk,
     },
   },
 };
 
 // Meters as lines: colour, shape and dash together. `sign` is the shape in the key.
 const meterLooks = [
-  { color: "#0b5f95", symbol: "circle", type: "solid", sign: "●" },
-  { color: "#b34700", symbol: "diamond", type: [7, 3], sign: "◆" },
-  { color: "#0b6446", symbol: "triangle", type: [2, 3], sign: "▲" },
-  { color: "#7a3e8e", symbol: "rect", type: [8, 3, 2, 3], sign: "■" },
+  { color: "var(--line-0)", symbol: "circle", type: "solid", sign: "●" },
+  { color: "var(--line-1)", symbol: "diamond", type: [7, 3], sign: "◆" },
+  { color: "var(--line-2)", symbol: "triangle", type: [2, 3], sign: "▲" },
+  { color: "var(--line-3)", symbol: "rect", type: [8, 3, 2, 3], sign: "■" },
 ];
 
 export function meterLook(index) {
@@ -135,7 +139,7 @@ export const part = (index) => parts[index % parts.length];
 export const tooltip = {
   renderMode: "richText",
   confine: true,
-  backgroundColor: "#ffffff",
+  backgroundColor: page,
   borderColor: mutedInk,
   borderWidth: 1,
   padding: [7, 10],

@@ -86,7 +86,8 @@ Cell coverage_cell(const MeterStatus* status) {
 
 void write_meters(Html& html, const Served& served, const GatewayStatus& status) {
   Table table{"Meters"};
-  table.columns({"Meter", "State", "Load", "Last answer", "Last interval", "Measured this month"});
+  table.with_labels().columns(
+      {"Meter", "State", "Load", "Last answer", "Last interval", "Measured this month"});
   for (const auto* const list : {&served.site.meters, &served.site.sensors}) {
     for (const MeterConfig& config : *list) {
       const auto found = std::ranges::find(status.meters, config.meter.id, &MeterStatus::id);
@@ -143,7 +144,7 @@ void write_jobs(Html& html, const Served& served, JobKind kind, std::string capt
   const auto jobs = served.store.jobs(kind, kJobsShown);
   if (!jobs || jobs->empty()) return;
   Table table{std::move(caption)};
-  table.columns({"Number", "State", "Requested", "By", "Message"});
+  table.with_labels().columns({"Number", "State", "Requested", "By", "Message"});
   for (const StoredJob& job : *jobs) {
     table.row({{std::to_string(job.number)},
                job_state_cell(job),
@@ -161,7 +162,7 @@ void write_alarms(Html& html, const Served& served) {
   const auto& drift = (*job)->result.drift;
   if (!drift || drift->alarms.empty()) return;
   Table table{"What has changed"};
-  table.columns({"Since", "What", "Details"});
+  table.with_labels().columns({"Since", "What", "Details"});
   for (const DriftAlarm& alarm : drift->alarms) {
     table.row({{alarm.since}, {alarm.output}, {alarm.sentence}});
   }
@@ -187,7 +188,7 @@ void write_events(Html& html, const Served& served) {
     return;
   }
   Table table{"Last events"};
-  table.columns({"When", "Severity", "What"});
+  table.with_labels().columns({"When", "Severity", "What"});
   for (const StoreEvent& event : *events) {
     table.row({{site_time_text(served.calendar, event.time)},
                severity_cell(event.severity),

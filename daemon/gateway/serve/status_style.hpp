@@ -30,6 +30,14 @@ th, td { text-align: left; vertical-align: top; padding: 0.35rem 0.8rem 0.35rem 
 tbody th { font-weight: 600; }
 th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; }
 .scroll { overflow-x: auto; }
+@media (max-width: 40rem) {
+  .labelled, .labelled tbody, .labelled tr, .labelled th, .labelled td { display: block; }
+  .labelled thead { display: none; }
+  .labelled tr { padding: 0.5rem 0; border-bottom: 1px solid var(--line); }
+  .labelled th, .labelled td, .labelled td.number { padding: 0.1rem 0; border: 0; text-align: left;
+    overflow-wrap: anywhere; }
+  .labelled td::before { content: attr(data-label) ": "; color: var(--muted); }
+}
 .muted { color: var(--muted); }
 .good { color: var(--good); }
 .warn { color: var(--warn); }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "core/absent.hpp"
 #include "core/assessment/given_data.hpp"
 #include "core/change_point/month_forecast.hpp"
 #include "core/change_point/regression.hpp"
+#include "daemon/site/calibrate/meter_days.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -19,64 +19,7 @@ using change_point::MeterDay;
 using metering::Day;
 using metering::Month;
 
-/// A day that has lost more of its hours than this is not usable.
-constexpr int kLeastHours = 20;
 constexpr int kBlockMonths = 3;
-
-double mean_dry_bulb_C(const metering::LocalCalendar& calendar, const SiteWeather& weather,
-                       Day day) {
-  const metering::TimeSpan span = calendar.day_span(day);
-  double sum = 0.0;
-  int count = 0;
-  for (auto t = std::chrono::ceil<std::chrono::hours>(span.begin); t < span.end;
-       t += std::chrono::hours{1}) {
-    const weather::WeatherHour* hour = weather.filled.series.find(t);
-    if (hour == nullptr || std::isnan(hour->dry_bulb_C)) continue;
-    sum += hour->dry_bulb_C;
-    ++count;
-  }
-  return count >= kLeastHours ? sum / count : kAbsent;
-}
-
-/// Mean power of the day's valid hours over a whole day, kWh.
-std::map<Day, double> energies_of(const MeterRecord& record) {
-  std::map<Day, std::pair<double, int>> sums;
-  for (const auto& [month, hours] : record.hours) {
-    for (const profile::HourlyLoad& hour : hours) {
-      if (std::isnan(hour.mean_kW) || hour.suspect) continue;
-      auto& [sum, count] = sums[hour.date];
-      sum += hour.mean_kW;
-      ++count;
-    }
-  }
-  std::map<Day, double> energies;
-  for (const auto& [day, sum] : sums) {
-    if (sum.second >= kLeastHours) energies[day] = 24.0 * sum.first / sum.second;
-  }
-  return energies;
-}
-
-/// Every day of the result's months with this role, ascending. A month without a usable figure
-/// teaches nothing.
-std::vector<MeterDay> days_of(const SiteConfig& site, const SiteCalibration& result,
-                              const assessment::OutputCalibration& output, MonthRole role,
-                              const std::map<Day, double>& temperatures,
-                              const std::map<Day, double>& energies) {
-  std::vector<MeterDay> days;
-  for (std::size_t i = 0; i < result.months.size(); ++i) {
-    if (result.roles[i] != role) continue;
-    const Month month = result.months[i];
-    for (int d = 1; d <= metering::days_in(month); ++d) {
-      const Day day = month / d;
-      const auto energy = energies.find(day);
-      const bool is_known = energy != energies.end() && !std::isnan(output.measured[i]);
-      days.push_back({day, model::day_type(day, site.holidays), is_known ? energy->second : kAbsent,
-                      temperatures.at(day)});
-    }
-  }
-  std::ranges::sort(days, {}, &MeterDay::date);
-  return days;
-}
 
 Forecast normal(double mean, double sd) {
   return {Eigen::VectorXd::Constant(1, mean), Eigen::VectorXd::Constant(1, sd),
@@ -118,20 +61,14 @@ void take_unseen(const SiteCalibration& result, const assessment::OutputCalibrat
 std::vector<std::optional<assessment::OutputForecasts>> yardsticks_of(
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
     const SiteWeather& weather, const SiteCalibration& result) {
-  std::map<Day, double> temperatures;
-  for (const Month month : result.months) {
-    for (int d = 1; d <= metering::days_in(month); ++d) {
-      const Day day = month / d;
-      temperatures[day] = mean_dry_bulb_C(calendar, weather, day);
-    }
-  }
+  const std::map<Day, double> temperatures = daily_dry_bulbs_C(calendar, weather, result.months);
   std::vector<std::optional<assessment::OutputForecasts>> yardsticks(result.outputs.size());
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     const assessment::OutputCalibration& output = result.outputs[k];
     if (output.unit == "kW") continue;  // days say nothing of a month's peak
-    const std::map<Day, double> energies = energies_of(recording.meters[output.meter]);
+    const std::map<Day, double> energies = daily_energies_kWh(recording.meters[output.meter]);
     const auto days = [&](MonthRole role) {
-      return days_of(site, result, output, role, temperatures, energies);
+      return meter_days(site.holidays, result, output, role, temperatures, energies);
     };
     const std::vector<MeterDay> training = days(MonthRole::calibration);
     const auto regression = change_point::fit_regression(training);

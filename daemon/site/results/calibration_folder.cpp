@@ -2,19 +2,30 @@
 
 #include <fmt/format.h>
 
+#include "adapters/report/meters_page.hpp"
 #include "adapters/report/report.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/site/results/calibration_files.hpp"
+#include "daemon/site/results/diagnosis_folder.hpp"
+#include "daemon/site/results/meters_report.hpp"
 #include "daemon/site/results/report_of.hpp"
 #include "daemon/site/results/result_folder.hpp"
 
 namespace recald::daemon {
 
-std::string render(const FinishedCalibration& done, const std::string& generated_at) {
+std::string render(const FinishedCalibration& done, const std::string& generated_at,
+                   const std::string& most_likely) {
   const ModelledSite& modelled = done.modelled;
-  return report::render_report(report_of(modelled.site.config, modelled.site.calendar,
-                                         modelled.recording, done.calibration, modelled.facts,
-                                         generated_at));
+  const OpenSite& site = modelled.site;
+  if (!done.calibration.not_calibrated_because.empty()) {
+    return report::render_meters(meters_report_of(site.config, site.calendar, modelled.recording,
+                                                  {&modelled.weather, &done.calibration, ""},
+                                                  modelled.facts, generated_at));
+  }
+  report::ReportData data = report_of(site.config, site.calendar, modelled.recording,
+                                      done.calibration, modelled.facts, generated_at);
+  data.most_likely = most_likely;
+  return report::render_report(data);
 }
 
 Result<void> write_calibration(const FinishedCalibration& done, const std::string& json,
@@ -33,10 +44,11 @@ Result<void> write_calibration(const FinishedCalibration& done, const std::strin
   };
   if (auto w = write("months.csv", months_csv(done.modelled.recording, facts.time_zone_data)); !w)
     return w;
-  // Profile and page are a model's.
-  if (!done.calibration.not_calibrated_because.empty()) return write("calibration.json", json);
-  if (auto w = write("profile.json", profile_json(done.calibration.profile)); !w) return w;
-  if (auto w = write("report.html", render(done, generated_at)); !w) return w;
+  if (done.calibration.not_calibrated_because.empty()) {  // the profile is a model's
+    if (auto w = write("profile.json", profile_json(done.calibration.profile)); !w) return w;
+  }
+  const std::string page = render(done, generated_at, most_likely_in(folder, facts.data_revision));
+  if (auto w = write("report.html", page); !w) return w;
   return write("calibration.json", json);
 }
 

@@ -10,12 +10,15 @@
 
 namespace recald::daemon {
 
-/// The report page. @param generated_at  Shown on it.
-[[nodiscard]] std::string render(const FinishedCalibration& done, const std::string& generated_at);
+/// The report page; where no model was calibrated, that of the meters.
+/// @param generated_at  Shown on it.
+/// @param most_likely   What a diagnosis of the same data holds most likely; empty: there is none.
+[[nodiscard]] std::string render(const FinishedCalibration& done, const std::string& generated_at,
+                                 const std::string& most_likely = "");
 
 /// Draws, months, profile, page and, last, calibration.json: who finds that finds everything it
 /// speaks of. What an earlier calibration left in the folder goes. Where no model was calibrated
-/// there are months and calibration.json alone.
+/// there are months, page and calibration.json alone.
 [[nodiscard]] Result<void> write_calibration(const FinishedCalibration& done,
                                              const std::string& json,
                                              const std::string& generated_at,

@@ -248,6 +248,7 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
   const diagnosis::Pass& first = d.passes.front();
   Json json = {{"outcome", to_string(d.outcome)},
                {"why", d.why},
+               {"most_likely", most_likely_words(d, site)},
                {"not_confirmed", d.not_confirmed},
                {"located", located_json(site, first.located)},
                {"candidates", candidates_json(site, d)},

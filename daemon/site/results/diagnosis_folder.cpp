@@ -1,10 +1,31 @@
 #include "daemon/site/results/diagnosis_folder.hpp"
 
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
 #include "adapters/report/diagnosis_page.hpp"
+#include "adapters/report/most_likely.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/site/results/diagnosis_report.hpp"
+#include "daemon/site/results/diagnosis_words.hpp"
 
 namespace recald::daemon {
+namespace {
+
+/// A report that is not there, or of other data, stays as it is.
+Result<void> complete_report(const std::filesystem::path& folder, const std::string& data_revision,
+                             const std::string& most_likely) {
+  std::ifstream in(folder / "report.html", std::ios::binary);
+  if (!in) return {};
+  std::ostringstream page;
+  page << in.rdbuf();
+  auto completed = report::with_most_likely(std::move(page).str(), data_revision, most_likely);
+  if (!completed) return {};
+  return system::write_file(folder / "report.html", *completed);
+}
+
+}  // namespace
 
 Result<void> write_diagnosis(const SiteDiagnosis& done, const ModelledSite& modelled,
                              const diagnosis::SiteProblem& problem, const std::string& json,
@@ -16,7 +37,19 @@ Result<void> write_diagnosis(const SiteDiagnosis& done, const ModelledSite& mode
   std::error_code ignored;  // what cannot be removed cannot be written either, which is reported
   std::filesystem::remove(folder / "diagnosis.json", ignored);
   if (auto written = system::write_file(folder / "diagnosis.html", page); !written) return written;
-  return system::write_file(folder / "diagnosis.json", json);
+  if (auto written = system::write_file(folder / "diagnosis.json", json); !written) return written;
+  return complete_report(folder, modelled.facts.data_revision,
+                         most_likely_words(done.diagnosis, problem));
+}
+
+std::string most_likely_in(const std::filesystem::path& folder, const std::string& data_revision) {
+  std::ifstream in(folder / "diagnosis.json");
+  const auto json = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+  const auto text = [&](const char* key) {
+    if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return std::string{};
+    return json[key].get<std::string>();
+  };
+  return text("data_revision") == data_revision ? text("most_likely") : "";
 }
 
 }  // namespace recald::daemon

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -380,6 +381,16 @@ OutcomeWords outcome_words(const Diagnosis& d, const SiteProblem& site,
     add(find_it_words(d));
   }
   return words;
+}
+
+std::string most_likely_words(const Diagnosis& d, const SiteProblem& site) {
+  if (d.not_confirmed || d.added.empty()) return headline_of(d, site);
+  const diagnosis::Candidate& candidate = d.added.front().candidate;
+  std::string meaning{candidate.effect->meaning};
+  if (!meaning.empty()) meaning[0] = static_cast<char>(std::tolower(meaning[0]));
+  if (candidate.meter < 0) return "Most likely: " + meaning;
+  const std::string& meter = site.meters[static_cast<std::size_t>(candidate.meter)].id;
+  return fmt::format("Most likely ({}): {}", meter_label(meter), meaning);
 }
 
 std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site,

@@ -21,6 +21,11 @@ struct OutcomeWords {
                                          const diagnosis::SiteProblem& site,
                                          const std::vector<diagnosis::ModelGap>& others = {});
 
+/// What the model lacks most likely, for the first screen of a calibration's page: the meaning of
+/// what was named, else the answer. @pre the diagnosis has a pass.
+[[nodiscard]] std::string most_likely_words(const diagnosis::Diagnosis& diagnosis,
+                                            const diagnosis::SiteProblem& site);
+
 /// For a terminal. @pre the diagnosis has a pass.
 [[nodiscard]] std::string diagnosis_words(const diagnosis::Diagnosis& diagnosis,
                                           const diagnosis::SiteProblem& site,

@@ -4,29 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/absent.hpp"
+#include "daemon/site/results/calibration_words.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
+#include "daemon/site/results/report_parts.hpp"
 
 namespace recald::daemon {
 namespace {
-
-report::Provenance provenance_of(const RunFacts& facts) {
-  return {.recald_version = facts.recald_version,
-          .data_revision = facts.data_revision,
-          .model_version = facts.model_version,
-          .time_zone_data = facts.time_zone_data,
-          .weather_values = facts.weather_values,
-          .sampler = facts.sampler,
-          .hyper_prior_profile = facts.hyper_prior_profile,
-          .seed = facts.seed,
-          .iterations = facts.iterations,
-          .burn_in = facts.burn_in,
-          // No computing time: the same data and seed give the same page.
-          .chains = facts.chains};
-}
 
 report::ParameterResult parameter_of(const SiteCalibration& result, std::size_t j) {
   report::ParameterResult shown{.label = std::string{result.definitions[j]->label},
@@ -69,33 +55,6 @@ std::vector<report::OutputMonth> months_of(const Recording& recording,
   std::ranges::sort(months, {},
                     [](const report::OutputMonth& month) { return month.figure.month; });
   return months;
-}
-
-report::HourStatus status_of(const profile::HourlyLoad& hour) {
-  if (hour.suspect) return report::HourStatus::suspect;
-  if (hour.ok_share <= 0.0) return report::HourStatus::missing;
-  return hour.ok_share < 1.0 ? report::HourStatus::partly_filled : report::HourStatus::ok;
-}
-
-report::LoadGrid load_of(const MeterRecord& record) {
-  report::LoadGrid grid{.meter = meter_label(record.meter.id)};
-  if (record.hours.empty()) return grid;
-  grid.first_day = record.hours.begin()->first / 1;
-  const metering::Month last = record.hours.rbegin()->first;
-  const std::chrono::sys_days begin{grid.first_day};
-  const std::chrono::sys_days end{metering::next_month(last) / 1};
-  const auto cells = static_cast<std::size_t>((end - begin).count()) * 24;
-  grid.mean_kW.assign(cells, std::numeric_limits<float>::quiet_NaN());
-  grid.status.assign(cells, report::HourStatus::missing);
-  for (const auto& [month, hours] : record.hours) {
-    for (const profile::HourlyLoad& hour : hours) {
-      const auto day = (std::chrono::sys_days{hour.date} - begin).count();
-      const auto cell = static_cast<std::size_t>(day * 24 + hour.hour);
-      grid.mean_kW[cell] = static_cast<float>(hour.mean_kW);
-      grid.status[cell] = status_of(hour);
-    }
-  }
-  return grid;
 }
 
 report::DayTypeProfile day_profile_of(const profile::ElectricityProfile& profile,
@@ -163,27 +122,18 @@ std::string model_sentence(const std::string& meter, const assessment::OutputAss
       percent(before->cvrmse), percent(after->cvrmse));
 }
 
-/// A calibrated model that is further off than the drawings had it is the first thing to say.
-bool has_become_worse(const assessment::OutputAssessment& a) {
-  constexpr double noticeable = 0.01;
-  const auto& before = a.before.validation ? a.before.validation : a.before.calibration;
-  const auto& after = a.after.validation ? a.after.validation : a.after.calibration;
-  return before && after &&
-         std::abs(after->nmbe_sim_minus_meas) > std::abs(before->nmbe_sim_minus_meas) + noticeable;
-}
-
-void add_headlines(const Recording& recording, const SiteCalibration& result,
-                   report::ReportData& data) {
-  std::string worse;
-  std::vector<std::string> forecasts;
+/// What stands first, and behind it the sentences that it is drawn from.
+void add_answer(const Recording& recording, const SiteCalibration& result,
+                report::ReportData& data) {
+  std::vector<FittedMeter> meters;
   std::vector<std::string> models;
   for (const assessment::OutputCalibration& output : result.outputs) {
     if (is_peak(output)) continue;
     const std::string meter = meter_label(recording.meters[output.meter].meter.id);
+    if (auto fitted = fitted_meter(meter, output.assessment)) meters.push_back(std::move(*fitted));
     if (auto text = forecast_sentence(meter, output.assessment); !text.empty()) {
-      forecasts.push_back(std::move(text));
+      data.headlines.push_back(std::move(text));
     }
-    if (has_become_worse(output.assessment)) worse += (worse.empty() ? "" : ", ") + meter;
     if (auto text = model_sentence(meter, output.assessment); !text.empty()) {
       models.push_back(std::move(text));
     }
@@ -192,21 +142,9 @@ void add_headlines(const Recording& recording, const SiteCalibration& result,
       data.verdicts.push_back({meter, assessment::guideline14_verdict(*after)});
     }
   }
-  if (!result.calibration.converged) {
-    data.headlines.emplace_back("The sampler has not converged: treat all figures as rough.");
-  }
-  data.headlines.insert(data.headlines.end(), result.alarms.begin(), result.alarms.end());
-  if (!worse.empty()) {
-    data.headlines.push_back(fmt::format(
-        "Calibrating has moved the model itself away from the meter of {}: its mean is further off "
-        "than before. The forecasts correct for that; savings computed from the model do not.",
-        worse));
-  }
-  data.headlines.insert(data.headlines.end(), forecasts.begin(), forecasts.end());
   data.headlines.insert(data.headlines.end(), models.begin(), models.end());
-  if (data.headlines.empty()) {
-    data.headlines.emplace_back("No output had enough measured months to judge the model.");
-  }
+  data.first = calibration_first_screen(meters, result.calibration.converged);
+  data.asks_for_diagnosis = asks_for_diagnosis(meters);
 }
 
 void add_not_known(const Recording& recording, const SiteCalibration& result,
@@ -249,11 +187,14 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                           .site = {site.id, site.name, site.timezone},
                           .calendar = calendar,
                           .provenance = provenance_of(facts)};
-  add_headlines(recording, result, data);
+  add_answer(recording, result, data);
   if (!result.calibration.converged) {
     data.notices.push_back({report::Severity::failure,
                             "The sampler has not converged to the limits set for it (R-hat, "
                             "effective sample size): treat intervals as rough."});
+  }
+  for (const std::string& alarm : result.alarms) {
+    data.notices.push_back({report::Severity::warning, alarm});
   }
   for (const std::string& warning : result.warnings) {
     data.notices.push_back({report::Severity::warning, warning});

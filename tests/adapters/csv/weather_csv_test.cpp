@@ -46,6 +46,21 @@ TEST(WeatherCsv, ColumnsInAnyOrderOthersIgnoredByName) {
   EXPECT_DOUBLE_EQ(csv->series.hours.at(0).pressure_Pa, 101400.0);
 }
 
+TEST(WeatherCsv, TemperaturesMayBeInFahrenheit) {
+  const auto csv = read(
+      "timestamp,dry_bulb_F\n2016-03-01T00:00:00Z,50\n2016-03-01T01:00:00Z,-4\n"
+      "2016-03-01T02:00:00Z,500\n",
+      kMeans);
+  ASSERT_TRUE(csv.has_value()) << csv.error().message;
+  EXPECT_NEAR(csv->series.hours.at(0).dry_bulb_C, 10.0, 1e-9);
+  EXPECT_NEAR(csv->series.hours.at(1).dry_bulb_C, -20.0, 1e-9);
+  ASSERT_EQ(csv->issues.total, 1u);
+  EXPECT_EQ(csv->issues.listed[0].reason, "dry_bulb_F 500 is impossible; taken as blank");
+  const auto both = read("timestamp,dry_bulb_C,dry_bulb_F\n");
+  ASSERT_FALSE(both.has_value());
+  EXPECT_NE(both.error().message.find("'dry_bulb_F' comes twice"), std::string::npos);
+}
+
 TEST(WeatherCsv, EndStampsAreMovedToTheStart) {
   WeatherCsvOptions options;
   options.stamps = Stamps::end;

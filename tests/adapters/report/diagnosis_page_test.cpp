@@ -146,7 +146,7 @@ TEST(DiagnosisPage, SaysHonestlyThatThereIsNothing) {
   EXPECT_THAT(page, HasSubstr("No month was kept back: the record is too short for it."));
   for (const std::string_view absent :
        {"<section id=\"gap\">", "<section id=\"signature\">", "href=\"#gap\"",
-        "before and after</h4>", "Added to the model", "What would tell them apart"}) {
+        "before and after</h3>", "Added to the model", "What would tell them apart"}) {
     EXPECT_THAT(page, Not(HasSubstr(std::string(absent))));
   }
 }

@@ -38,6 +38,16 @@ TEST(Table, MarksHeadsRowsAndNumbers) {
   EXPECT_THAT(html.str(), HasSubstr("<th scope=\"row\">Jan</th><td class=\"number\">1,200</td>"));
 }
 
+TEST(Table, NamesTheColumnAtEachCellWhereAsked) {
+  Table table("Meters");
+  table.with_labels().columns({"Meter", "Load <kW>"}).row({{"main"}, {"12", "number"}});
+  Html html;
+  table.write(html);
+  EXPECT_THAT(html.str(), HasSubstr("<table class=\"labelled\">"));
+  EXPECT_THAT(html.str(), HasSubstr("<th scope=\"row\">main</th><td class=\"number\" "
+                                    "data-label=\"Load &lt;kW&gt;\">12</td>"));
+}
+
 TEST(Figure, CarriesItsTableAndADescriptionForThoseWhoDoNotSeeIt) {
   Html html;
   write_figure(html,

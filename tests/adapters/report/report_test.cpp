@@ -8,6 +8,7 @@
 
 #include "adapters/report/assets.hpp"
 #include "adapters/report/figure_data.hpp"
+#include "adapters/report/most_likely.hpp"
 #include "tests/adapters/report/page_text.hpp"
 #include "tests/adapters/report/sample_report.hpp"
 
@@ -41,6 +42,54 @@ TEST(Report, AnswersTheReadersQuestionsInTheirOrder) {
   EXPECT_TRUE(page.starts_with("<!doctype html>\n<html lang=\"en\">"));
 }
 
+TEST(Report, BeginsWithWhatAClientUnderstands) {
+  const std::string page = own_markup(render_report(sample_report()));
+  const std::size_t sentence = page.find("The model uses 22\u00a0% too little chilled water");
+  const std::size_t most_likely = page.find("What is missing is not known yet");
+  const std::size_t number = page.find("<strong>−22.1\u00a0%</strong>");
+  const std::size_t picture = page.find("data-figure=\"overview\"");
+  const std::size_t guideline = page.find("ASHRAE Guideline 14");
+  EXPECT_LT(sentence, most_likely);
+  EXPECT_LT(most_likely, number);
+  EXPECT_LT(number, picture);
+  EXPECT_LT(picture, guideline);
+  EXPECT_NE(guideline, std::string::npos);
+}
+
+TEST(Report, ADiagnosisMadeLaterIsPutIntoThePage) {
+  ReportData data = sample_report();
+  const std::string page = render_report(data);
+  const auto known = with_most_likely(page, data.provenance.data_revision,
+                                      "Most likely: weekend operation <9 in 10>.");
+  ASSERT_TRUE(known);
+  EXPECT_THAT(*known, HasSubstr("Most likely: weekend operation &lt;9 in 10&gt;. "
+                                "<a href=\"diagnosis.html\">"));
+  EXPECT_THAT(*known, Not(HasSubstr("What is missing is not known yet")));
+  // A page that was made with it is the same page.
+  data.most_likely = "Most likely: weekend operation <9 in 10>.";
+  EXPECT_EQ(*known, render_report(data));
+}
+
+TEST(Report, ADiagnosisOfOtherDataIsNotItsOwn) {
+  ReportData data = sample_report();
+  EXPECT_FALSE(with_most_likely(render_report(data), "another revision", "Most likely: a fan."));
+  data.asks_for_diagnosis = false;
+  EXPECT_FALSE(with_most_likely(render_report(data), data.provenance.data_revision, "A fan."));
+}
+
+TEST(Report, ShowsFiveWarningsBeforeMore) {
+  ReportData data = sample_report();
+  data.notices.assign(6, {Severity::info, "A note."});
+  data.notices.push_back({Severity::failure, "The gravest."});
+  const std::string page = own_markup(render_report(data));
+  const std::size_t more = page.find("<summary>2 more</summary>");
+  ASSERT_NE(more, std::string::npos);
+  EXPECT_LT(page.find("The gravest."), page.find("A note."));
+  EXPECT_EQ(occurrences(page.substr(0, more), "A note."), 4u);
+  data.notices.resize(5);
+  EXPECT_THAT(own_markup(render_report(data)), Not(HasSubstr(" more</summary>")));
+}
+
 TEST(Report, SaysTheVerdictInWordsAndSigns) {
   const std::string page = render_report(sample_report());
   EXPECT_THAT(page, HasSubstr("2 of 3 outputs within the limits"));
@@ -52,9 +101,9 @@ TEST(Report, SaysTheVerdictInWordsAndSigns) {
 TEST(Report, HoldsEveryFiguresNumbersAsATableWithoutJavaScript) {
   const ReportData data = sample_report();
   const std::string page = own_markup(render_report(data));
-  // 3 months, 3 CV(RMSE), 3 parameters, 3 peaks, 3 day types, 3 loads.
-  EXPECT_EQ(occurrences(page, "data-figure="), 18u);
-  EXPECT_EQ(occurrences(page, "<summary>The data of this figure</summary>"), 18u);
+  // The overview; 3 months, 3 CV(RMSE), 3 parameters, 3 peaks, 3 day types, 3 loads.
+  EXPECT_EQ(occurrences(page, "data-figure="), 19u);
+  EXPECT_EQ(occurrences(page, "<summary>The data of this figure</summary>"), 19u);
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Mar 2020</th><td>calibration</td>"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Dec 2021</th><td>validation</td>"));
   EXPECT_THAT(page, HasSubstr("◆ different"));
@@ -99,6 +148,8 @@ TEST(Report, EscapesEveryTextFromOutside) {
   data.site = {hostile, hostile, hostile};
   data.provenance.recald_version = data.provenance.data_revision = hostile;
   data.provenance.model_version = data.provenance.sampler = hostile;
+  data.first.sentence = data.first.more = data.most_likely = hostile;
+  data.first.numbers[0] = {hostile, hostile};
   data.headlines[0] = data.verdicts[0].output = data.verdicts[0].verdict.why = hostile;
   data.notices[0].sentence = data.not_known[0] = data.profile.check_sentence = hostile;
   data.findings[0].meter = data.findings[0].sentence = hostile;

@@ -6,9 +6,11 @@
 
 #include "adapters/report/diagnosis_page.hpp"
 #include "adapters/report/drift_page.hpp"
+#include "adapters/report/meters_page.hpp"
 #include "adapters/report/report.hpp"
 #include "tests/adapters/report/sample_diagnosis.hpp"
 #include "tests/adapters/report/sample_drift.hpp"
+#include "tests/adapters/report/sample_meters.hpp"
 #include "tests/adapters/report/sample_report.hpp"
 
 namespace {
@@ -22,6 +24,8 @@ const std::map<std::string, Page>& pages() {
       {"readings-only", [] { return render_report(readings_only_report()); }},
       {"diagnosis", [] { return render_diagnosis(sample_diagnosis()); }},
       {"unconfirmed", [] { return render_diagnosis(unconfirmed_diagnosis()); }},
+      {"meters", [] { return render_meters(sample_meters()); }},
+      {"young-meters", [] { return render_meters(young_meters()); }},
       {"drift", [] { return render_drift(sample_drift()); }},
       {"empty-handed", [] { return render_diagnosis(empty_handed_diagnosis()); }},
   };

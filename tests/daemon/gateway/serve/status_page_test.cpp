@@ -23,12 +23,12 @@ TEST_F(Page, SaysHowItIs) {
   const http::Response page = get("/");
   EXPECT_EQ(page.status, 200);
   EXPECT_EQ(page.content_type, "text/html; charset=utf-8");
-  EXPECT_THAT(
-      page.body,
-      AllOf(StartsWith("<!doctype html><html lang=\"en\">"), HasSubstr("name=\"viewport\""),
-            HasSubstr("As of 2024-03-30 09:00 −05:00; times are in America/Chicago."),
-            HasSubstr("✔ All 2 polled meters answer."), HasSubstr("<td class=\"good\">✔ up</td>"),
-            HasSubstr("30 s ago"), HasSubstr("2024-03-30 08:45 −05:00 ok")));
+  EXPECT_THAT(page.body,
+              AllOf(StartsWith("<!doctype html><html lang=\"en\">"), HasSubstr("name=\"viewport\""),
+                    HasSubstr("As of 2024-03-30 09:00 −05:00; times are in America/Chicago."),
+                    HasSubstr("✔ All 2 polled meters answer."),
+                    HasSubstr("<td class=\"good\" data-label=\"State\">✔ up</td>"),
+                    HasSubstr("30 s ago"), HasSubstr("2024-03-30 08:45 −05:00 ok")));
 }
 
 TEST_F(Page, WhatTheSiteIsCalledIsText) {

@@ -1,0 +1,59 @@
+// A meter's usual day: the mean of each hour by kind of day, over the load that is always there.
+import { mount } from "./echarts.js";
+import { numberText } from "./format.js";
+import { axisLabel, axisName, meterLook, mutedInk, rule, tooltip, valueAxis } from "./theme.js";
+
+const hours = Array.from({ length: 24 }, (_, hour) => hour);
+
+function tooltipText({ kinds, base }, hour) {
+  const lines = kinds.map(({ label, kW }) => `${label} ${numberText(kW[hour])} kW`);
+  if (base !== null) lines.push(`Base load ${numberText(base)} kW`);
+  return [`${hour}:00 to ${hour + 1}:00`, ...lines].join("\n");
+}
+
+export function drawDayProfile(place, data) {
+  const shape = data.shapes[place.dataset.index];
+  const series = shape.kinds.map(({ kW }, i) => ({
+    type: "line",
+    data: kW,
+    z: 3,
+    ...meterLook(i),
+    symbolSize: 6,
+  }));
+  if (shape.base !== null) {
+    series.push({
+      type: "line",
+      data: hours.map(() => shape.base),
+      showSymbol: false,
+      z: 2,
+      lineStyle: { color: mutedInk, width: 1.5, type: [2, 3] },
+    });
+  }
+  mount(place, {
+    grid: { left: 52, right: 10, top: 30, bottom: 44 },
+    tooltip: {
+      ...tooltip,
+      trigger: "axis",
+      axisPointer: { type: "line" },
+      formatter: (items) => tooltipText(shape, items[0].dataIndex),
+    },
+    xAxis: {
+      type: "category",
+      data: hours,
+      axisTick: { show: false },
+      axisLine: { lineStyle: { color: rule } },
+      axisLabel: { ...axisLabel, interval: (hour) => hour % 6 === 0 },
+      name: "hour of the day",
+      nameLocation: "middle",
+      nameGap: 26,
+      nameTextStyle: axisName,
+    },
+    yAxis: valueAxis({
+      name: "kW",
+      nameGap: 12,
+      nameTextStyle: { ...axisName, align: "left", padding: [0, 0, 0, -40] },
+      axisLabel: { ...axisLabel, formatter: numberText },
+    }),
+    series,
+  });
+}

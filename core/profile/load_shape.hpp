@@ -1,0 +1,23 @@
+/// What a meter's hours alone tell: its usual day, and the load that is always there.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/model/schedule.hpp"
+#include "core/profile/electricity_profile.hpp"
+
+namespace recald::profile {
+
+struct LoadShape {
+  model::HourlySchedule mean_kW;             ///< NaN where a kind of day has no such hour.
+  std::array<int, model::kDayTypes> days{};  ///< Days with a measured hour, by kind of day.
+  double base_kW;     ///< What 95 of 100 hours exceed; NaN below a week of hours.
+  double base_share;  ///< Of the mean load, 0…1; NaN where the meter also counts backwards.
+};
+
+/// Hours that are not half measured, or suspect, do not count.
+[[nodiscard]] LoadShape load_shape(std::span<const HourlyLoad> loads,
+                                   const model::Holidays& holidays);
+
+}  // namespace recald::profile
