@@ -136,13 +136,16 @@ TEST_F(UntoldModel, IsNotCalibratedAndMetersAreForecast) {
   EXPECT_EQ(result["status"], "forecast");
   EXPECT_THAT(result["not_calibrated_because"].get<std::string>(), HasSubstr(why_));
   EXPECT_LT(result["forecast"]["validation"]["electricity_daily_kWh"]["cvrmse"], 0.05);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "report.html"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "report.html"));
 }
 
-TEST_F(UntoldModel, HasNoPage) {
+TEST_F(UntoldModel, HasThePageOfItsMeters) {
   const Outcome outcome = run({"report", path("site.toml"), "--out", path("page.html")});
-  EXPECT_NE(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr(why_));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string page = read_text(folder_ / "page.html");
+  EXPECT_THAT(page, HasSubstr("<h1>Meters of Tram depot</h1>"));
+  EXPECT_THAT(page, HasSubstr(why_));
+  EXPECT_THAT(page, HasSubstr("data-figure=\"temperature\""));
 }
 
 TEST_F(MeterForecast, WithoutATemperatureItSaysWhichMonthsLackIt) {

@@ -77,6 +77,14 @@ TEST_F(MetersReport, WeatherThatIsNotThereIsSaidAndLeavesTheRest) {
   EXPECT_THAT(replayed(), HasSubstr("Nothing is said of the weather: its file cannot be read."));
 }
 
+TEST_F(MetersReport, NeedsNeitherModelNorWeather) {
+  write("");
+  const std::string page = (folder_ / "page.html").string();
+  const Outcome outcome = run({"report", (folder_ / "site.toml").string(), "--out", page});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read_text(page), HasSubstr("<h1>Meters of Tram depot</h1>"));
+}
+
 TEST_F(MetersReport, TheSameReadingsGiveTheSamePage) {
   write("");
   setenv("SOURCE_DATE_EPOCH", "1700000000", 1);

@@ -46,9 +46,10 @@ export function overlappingLabels() {
   return faults;
 }
 
-/** Tables that need scrolling sideways even in a wide window. */
+/** Tables that need scrolling sideways even in a wide window; small figures' own ones may. */
 export function wideTables() {
   return [...document.querySelectorAll("table")]
+    .filter((table) => !table.closest(".multiples"))
     .filter((table) => table.parentElement.scrollWidth > table.parentElement.clientWidth + 1)
     .map((table) => {
       const name = table.parentElement.getAttribute("aria-label") ?? "a table";
