@@ -102,6 +102,10 @@ void Table::write_head(Html& html) const {
   }
   html.markup("<tr>");
   for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (columns_[i].empty()) {
+      html.markup("<td></td>");
+      continue;
+    }
     html.markup(holds_numbers(i) ? "<th scope=\"col\" class=\"number\">" : "<th scope=\"col\">")
         .text(columns_[i])
         .markup("</th>");

@@ -31,7 +31,7 @@ export function drawCandidates(place, data) {
     xAxis: valueAxis({
       min: 0,
       max: 1,
-      axisLabel: { ...axisLabel, formatter: (share) => percentText(share, 0) },
+      axisLabel: { ...axisLabel, hideOverlap: true, formatter: (share) => percentText(share, 0) },
       name: "probability",
       nameLocation: "middle",
       nameGap: 26,

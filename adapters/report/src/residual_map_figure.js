@@ -135,7 +135,7 @@ const titles = (panels, grids) =>
   panels.map(({ title }, i) => ({
     type: "text",
     left: grids[i].left,
-    top: 0,
+    top: 4,
     silent: true,
     style: { text: title, fill: ink, fontSize: 13, fontWeight: 600 },
   }));

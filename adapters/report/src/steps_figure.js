@@ -31,7 +31,7 @@ export function drawSteps(place, data) {
       boundaryGap: true,
       axisTick: { show: false },
       axisLine: { lineStyle: { color: rule }, onZero: false },
-      axisLabel: { ...axisLabel, interval: 0, width: labelWidth, overflow: "break" },
+      axisLabel: { ...axisLabel, interval: 0, width: labelWidth, overflow: "break", lineHeight: 16 },
     },
     yAxis: valueAxis({
       ...(percent ? { min: 0 } : {}),

@@ -35,7 +35,8 @@ export function overlappingLabels() {
       for (const b of texts.slice(i + 1)) {
         const across = Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left);
         const down = Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top);
-        if (across > 1 && down > 4) {
+        const low = Math.min(a.box.height, b.box.height);
+        if (across > 1 && down > 0.4 * low) {
           faults.push(
             `"${a.words}" lies over "${b.words}" in ${figure.figure} ${figure.index}`,
           );
