@@ -47,10 +47,10 @@ export function overlappingLabels() {
   return faults;
 }
 
-/** Tables that need scrolling sideways even in a wide window; small figures' own ones may. */
+/** Tables that need scrolling sideways even in a wide window; those that a figure folds away may. */
 export function wideTables() {
   return [...document.querySelectorAll("table")]
-    .filter((table) => !table.closest(".multiples"))
+    .filter((table) => !table.closest("details"))
     .filter((table) => table.parentElement.scrollWidth > table.parentElement.clientWidth + 1)
     .map((table) => {
       const name = table.parentElement.getAttribute("aria-label") ?? "a table";
