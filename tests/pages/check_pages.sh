@@ -13,7 +13,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 [ "$#" -gt 0 ] ||
-  set -- full readings-only meters young-meters diagnosis unconfirmed empty-handed drift
+  set -- full readings-only meters young-meters diagnosis empty-handed drift
 for name in "$@"; do
   "$write" "$name" "$folder/$name.html"
 done
