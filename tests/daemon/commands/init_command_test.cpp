@@ -1,9 +1,11 @@
 /// Exports of other programs, one command to a site file, and the months that it leads to: those
 /// of the truth that the exports were made from.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -339,6 +341,77 @@ TEST_F(Init, DatesThatNothingDecidesAreSaid) {
   const Outcome outcome = init("day.csv", "Europe/Berlin");
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("it may be mm/dd/yyyy"), HasSubstr("would decide")));
+}
+
+/// A cool year, as an EPW file. Hours are the ends of their intervals.
+std::string cool_year_epw() {
+  std::string text =
+      "LOCATION,Dresden,SN,Germany,X,104880,51.13,13.75,1.0,222.0\nDESIGN CONDITIONS,0\n"
+      "TYPICAL/EXTREME PERIODS,0\nGROUND TEMPERATURES,0\nHOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0\n"
+      "COMMENTS 1,\nCOMMENTS 2,\nDATA PERIODS,1,1,Data,Friday, 1/ 1,12/31\n";
+  const std::chrono::sys_days begin{std::chrono::year{2021} / 1 / 1};
+  for (int day = 0; day < 365; ++day) {
+    const std::chrono::year_month_day date{begin + std::chrono::days{day}};
+    for (int hour = 1; hour <= 24; ++hour) {
+      text += fmt::format(
+          "2021,{},{},{},0,?9,{:.1f},1.0,50,98000,9999,9999,300,100,200,50,0,0,0,0,270,3.5,0,0,16,"
+          "77777,9,999999999,5,0.0,0,88,0,0,0\n",
+          static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), hour,
+          9.0 - 9.0 * std::cos(day * 0.0172));
+    }
+  }
+  return text;
+}
+
+class InitStarter : public Init {
+ protected:
+  InitStarter() {
+    std::string text = "timestamp,meter,value,unit\n";
+    const std::chrono::sys_days begin{std::chrono::year{2021} / 1 / 1};
+    for (int hour = 0; hour < 24 * 200; ++hour) {
+      const std::string stamp = metering::to_string(begin + std::chrono::hours{hour});
+      text += fmt::format("{},main,{:.2f},kW\n", stamp, 40.0 + hour % 24 + std::sin(1.3 * hour));
+      text += fmt::format("{},heat,{:.2f},kW\n", stamp, 30.0 + std::cos(1.3 * hour));
+    }
+    write_text(path("readings.csv"), text);
+    write_text(path("place.epw"), cool_year_epw());
+  }
+  Outcome start(std::vector<std::string> more) {
+    std::vector<std::string> words{"init", path("readings.csv").string(), "--out",
+                                   path("site").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+};
+
+TEST_F(InitStarter, AddsWeatherAndATypicalBuilding) {
+  const Outcome outcome = start({"--epw", path("place.epw").string(), "--use", "office", "--area",
+                                 "7800", "--storeys", "3", "--built", "1985"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const std::string text = read_text(site());
+  EXPECT_THAT(text, AllOf(HasSubstr("latitude_deg = 51.13"), HasSubstr("file = \"../place.epw\""),
+                          HasSubstr("climate zone 5 (ASHRAE 90.1-1989"),
+                          HasSubstr("calibration = { from = \"2021-01\", to = \"2021-06\" }"),
+                          HasSubstr("outputs = [\"main\", \"heat\"]")));
+  EXPECT_EQ(run({"check", site().string()}).exit_code, kSuccess);
+}
+
+TEST_F(InitStarter, TheWeatherAloneMakesNoModel) {
+  ASSERT_EQ(start({"--epw", path("place.epw").string()}).exit_code, kSuccess);
+  EXPECT_THAT(read_text(site()), AllOf(HasSubstr("[weather]"), Not(HasSubstr("[[model]]"))));
+}
+
+TEST_F(InitStarter, WhatCannotBeIsRefusedWithNothingWritten) {
+  EXPECT_EQ(start({"--use", "office", "--area", "7800"}).exit_code, kUsage);
+  EXPECT_EQ(
+      start({"--epw", path("place.epw").string(), "--use", "castle", "--area", "7800"}).exit_code,
+      kUsage);
+  const Outcome small =
+      start({"--epw", path("place.epw").string(), "--use", "office", "--area", "2"});
+  EXPECT_EQ(small.exit_code, kFailure);
+  EXPECT_THAT(small.err, HasSubstr("a floor area of 2 m2 cannot be"));
+  EXPECT_EQ(start({"--epw", path("none.epw").string()}).exit_code, kFailure);
+  EXPECT_FALSE(std::filesystem::exists(site()));
 }
 
 TEST_F(Init, JsonNamesMetersAndTheNextCommand) {
