@@ -11,14 +11,6 @@
 #include "core/text/printable.hpp"
 
 namespace recald::daemon {
-namespace {
-
-constexpr std::size_t kIdMax = 40;
-constexpr double kManyZeros = 0.05;
-constexpr double kManyFrozen = 0.01;
-constexpr double kManyNegative = 0.005;
-
-/// As a TOML text; a single quote in it is no matter, a backslash is.
 std::string toml_text(std::string_view text) {
   std::string out{'"'};
   for (const char c : text) {
@@ -34,6 +26,27 @@ std::string toml_text(std::string_view text) {
   }
   return out + '"';
 }
+
+std::string relative_path(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code failed;
+  const auto whole = [&failed](const std::filesystem::path& one) {
+    // What is not there yet is relative to where the command runs.
+    const auto absolute = std::filesystem::absolute(one, failed);
+    return failed ? one : std::filesystem::weakly_canonical(absolute, failed);
+  };
+  const auto from = whole(folder);
+  const auto to = whole(file);
+  const auto path = failed ? std::filesystem::path{} : to.lexically_relative(from);
+  const bool is_far = path.empty() || path.string().starts_with("../../..");
+  return is_far ? to.string() : path.string();
+}
+
+namespace {
+
+constexpr std::size_t kIdMax = 40;
+constexpr double kManyZeros = 0.05;
+constexpr double kManyFrozen = 0.01;
+constexpr double kManyNegative = 0.005;
 
 /// Letters, digits and hyphens; German umlauts as people write them without.
 std::string slug(std::string_view text) {
@@ -110,15 +123,6 @@ class Lines {
  private:
   std::string text_;
 };
-
-std::string relative_path(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  std::error_code failed;
-  const auto from = std::filesystem::weakly_canonical(folder, failed);
-  const auto to = std::filesystem::weakly_canonical(file, failed);
-  const auto path = failed ? std::filesystem::path{} : to.lexically_relative(from);
-  const bool is_far = path.empty() || path.string().starts_with("../../..");
-  return is_far ? std::filesystem::absolute(file).lexically_normal().string() : path.string();
-}
 
 std::string_view separator_word(char separator) {
   switch (separator) {

@@ -4,11 +4,19 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/site/setup/export_survey.hpp"
 
 namespace recald::daemon {
+
+/// In double quotes, as TOML takes it.
+[[nodiscard]] std::string toml_text(std::string_view text);
+
+/// Of a site file's folder, where the file is not far from it; otherwise absolute.
+[[nodiscard]] std::string relative_path(const std::filesystem::path& file,
+                                        const std::filesystem::path& folder);
 
 struct SiteDraft {
   std::string text;                    ///< TOML.

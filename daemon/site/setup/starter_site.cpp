@@ -6,6 +6,7 @@
 #include <set>
 
 #include "adapters/epw/epw.hpp"
+#include "daemon/site/setup/site_file.hpp"
 #include "daemon/site/setup/starter_building.hpp"
 
 namespace recald::daemon {
@@ -51,18 +52,6 @@ std::vector<std::pair<std::string, metering::Utility>> modelled_meters(const Sit
   return chosen;
 }
 
-std::string toml_path(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  std::error_code ignored;
-  std::filesystem::path relative = std::filesystem::proximate(file, folder, ignored);
-  if (relative.empty()) relative = file;
-  std::string quoted = "\"";
-  for (const char c : relative.generic_string()) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
 }  // namespace
 
 Result<std::string> with_starter(std::string text, const SiteConfig& drafted,
@@ -84,11 +73,11 @@ Result<std::string> with_starter(std::string text, const SiteConfig& drafted,
       place.latitude_deg, place.city, place.country, place.longitude_deg, place.elevation_m);
   const auto end_of_site = text.find("\n[[meter]]");
   text.insert(end_of_site == std::string::npos ? text.size() : end_of_site, where);
-  text +=
-      fmt::format("\n[weather]\nfile = {}{}\nformat = \"epw\"\n", toml_path(request.epw, folder),
-                  weather->typical ? "   # a typical year: give the weather of the months that "
-                                     "were metered, or forecasts mean little"
-                                   : "");
+  text += fmt::format("\n[weather]\nfile = {}{}\nformat = \"epw\"\n",
+                      toml_text(relative_path(request.epw, folder)),
+                      weather->typical ? "   # a typical year: give the weather of the months that "
+                                         "were metered, or forecasts mean little"
+                                       : "");
   if (request.use.empty()) return text;
   const auto zone = climate_zone_of(weather->series);
   if (!zone) return tl::unexpected(zone.error());

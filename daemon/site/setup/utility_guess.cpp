@@ -40,6 +40,7 @@ constexpr std::array kWords{
     Word{"boiler", Utility::heating},
     Word{"elec", Utility::electricity},
     Word{"strom", Utility::electricity},
+    Word{"wirkarbeit", Utility::electricity},
     Word{"power", Utility::electricity},
     Word{"pv", Utility::electricity},
     Word{"solar", Utility::electricity},
