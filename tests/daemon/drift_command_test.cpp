@@ -91,7 +91,8 @@ TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
   EXPECT_EQ(alarm["output"], "chilled_water_daily_kWh");
   EXPECT_EQ(alarm["direction"], "more");
   EXPECT_EQ(alarm["since"], year + "-06");
-  EXPECT_THAT(alarm["sentence"].get<std::string>(), HasSubstr("chilled_water_daily_kWh is more"));
+  EXPECT_THAT(alarm["sentence"].get<std::string>(),
+              HasSubstr("chilled_water_daily_kWh has been more"));
   // Its days tell before the month is over.
   ASSERT_FALSE(alarm["days"].is_null());
   EXPECT_EQ(alarm["month"], year + "-06");
