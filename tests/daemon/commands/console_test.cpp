@@ -51,10 +51,10 @@ TEST(ProgressLine, DrawsEachPerCentOnceOverItselfAndLeavesNothing) {
     ProgressLine line{console};
     line.show(sampling(0, 100));
     line.show(sampling(0, 101));  // 50.5 %: nothing new
-    EXPECT_EQ(err.str(), "\r\033[Ksampling  50 %");
+    EXPECT_EQ(err.str(), "\r\033[KSampling  50 %");
     err.str("");
     line.show(sampling(1, 1));  // two chains now: (101 + 1) of 400
-    EXPECT_EQ(err.str(), "\r\033[Ksampling  25 %");
+    EXPECT_EQ(err.str(), "\r\033[KSampling  25 %");
     err.str("");
   }
   EXPECT_EQ(err.str(), "\r\033[K");

@@ -175,7 +175,9 @@ TEST(CheckMeters, JsonHoldsEachMeter) {
 
 TEST(CheckMeters, WithoutLiveMetersThereIsNothingToTry) {
   const TemporaryFolder folder;
-  recald::testing::write_text(folder / "x.csv", "timestamp,meter,value,unit\n");
+  recald::testing::write_text(folder / "x.csv",
+                              "timestamp,meter,value,unit\n2024-01-01T00:00:00Z,x,1,kW\n"
+                              "2024-01-01T00:15:00Z,x,2,kW\n");
   const std::string recorded =
       "[[meter]]\nid = \"x\"\nutility = \"electricity\"\nfile = \"x.csv\"\n";
   const Outcome done = run({"check", site_file(folder, 1502, recorded), "--meters"});
