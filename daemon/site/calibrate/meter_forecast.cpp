@@ -45,12 +45,7 @@ Result<SiteCalibration> forecast_meters(const SiteConfig& site,
                                metering::to_string(site.period->calibration.first),
                                metering::to_string(site.period->calibration.last)));
   }
-  result.months = months.all;
-  result.roles = months.roles;
-  for (const Month month : months.all) {
-    result.month_names.push_back(metering::to_string(month));
-    result.month_days.push_back(metering::days_in(month));
-  }
+  take_months(months, result);
   result.outputs = daily_outputs(site, recording, months.all);
 
   const auto forecasts = yardsticks_of(site, calendar, recording, weather, result);

@@ -230,6 +230,15 @@ Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
   return fit_site_profile(site, recording, place, months.calibration);
 }
 
+void take_months(const SiteMonths& months, SiteCalibration& result) {
+  result.months = months.all;
+  result.roles = months.roles;
+  for (const Month month : months.all) {
+    result.month_names.push_back(metering::to_string(month));
+    result.month_days.push_back(metering::days_in(month));
+  }
+}
+
 Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                   const Recording& recording, const SiteWeather& weather,
                                   std::vector<diagnosis::AddedEffect> added) {
@@ -240,12 +249,7 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
     return tl::unexpected(enough.error());
   }
   result.model = site.model->kind;
-  result.months = months.all;
-  for (const Month month : months.all) {
-    result.month_names.push_back(metering::to_string(month));
-    result.month_days.push_back(metering::days_in(month));
-  }
-  result.roles = months.roles;
+  take_months(months, result);
   auto chosen = site_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
   result.definitions = std::move(chosen->definitions);

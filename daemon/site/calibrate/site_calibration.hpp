@@ -13,6 +13,7 @@
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "daemon/site/model/model_effects.hpp"
+#include "daemon/site/model/site_parts.hpp"
 #include "daemon/site/replay/recording.hpp"
 #include "daemon/site/replay/site_weather.hpp"
 
@@ -53,6 +54,9 @@ struct CalibrateOptions {
   bool prior_sensitivity = false;
   DiscrepancyForm discrepancy = DiscrepancyForm::sound;
 };
+
+/// Their names, lengths and roles.
+void take_months(const SiteMonths& months, SiteCalibration& result);
 
 /// Profile, model and measurements.
 /// @param added  Effects of the version in force.

@@ -364,6 +364,14 @@ Result<std::vector<metering::MonthlyFigure>> months_of_sum(const SiteConfig& sit
   return figures;
 }
 
+void keep_report(const FileGroup& group, csv::ReadingsReport report, Recording& recording) {
+  recording.readings += report.readings;
+  for (std::size_t k = 0; k < group.meters.size(); ++k) {
+    recording.meters[group.meters[k]].rows = report.meters[k];
+  }
+  recording.files.push_back({group.file, std::move(report.issues), std::move(report.others)});
+}
+
 }  // namespace
 
 bool is_site_different(const Recording& recording, metering::Month month) {
@@ -421,11 +429,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                      }};
     auto report = read_group(site, group, calendar, sink);
     if (!report) return tl::unexpected(report.error());
-    recording.readings += report->readings;
-    for (std::size_t k = 0; k < indices.size(); ++k) {
-      recording.meters[indices[k]].rows = report->meters[k];
-    }
-    recording.files.push_back({group.file, std::move(report->issues), std::move(report->others)});
+    keep_report(group, std::move(*report), recording);
   }
   if (auto whole = require_rows(site, recording); !whole) return tl::unexpected(whole.error());
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
