@@ -1,9 +1,8 @@
 // A meter's usual day: the mean of each hour by kind of day, over the load that is always there.
 import { mount } from "./echarts.js";
 import { numberText } from "./format.js";
-import { axisLabel, axisName, meterLook, mutedInk, rule, tooltip, valueAxis } from "./theme.js";
-
-const hours = Array.from({ length: 24 }, (_, hour) => hour);
+import { hourAxis, hours } from "./hour_axis.js";
+import { axisLabel, axisName, meterLook, mutedInk, tooltip, valueAxis } from "./theme.js";
 
 function tooltipText({ kinds, base }, hour) {
   const lines = kinds.map(({ label, kW }) => `${label} ${numberText(kW[hour])} kW`);
@@ -37,17 +36,7 @@ export function drawDayProfile(place, data) {
       axisPointer: { type: "line" },
       formatter: (items) => tooltipText(shape, items[0].dataIndex),
     },
-    xAxis: {
-      type: "category",
-      data: hours,
-      axisTick: { show: false },
-      axisLine: { lineStyle: { color: rule } },
-      axisLabel: { ...axisLabel, interval: (hour) => hour % 6 === 0 },
-      name: "hour of the day",
-      nameLocation: "middle",
-      nameGap: 26,
-      nameTextStyle: axisName,
-    },
+    xAxis: hourAxis,
     yAxis: valueAxis({
       name: "kW",
       nameGap: 12,

@@ -1,9 +1,8 @@
 // Electricity by hour of the day: the parts stacked, the measured mean as a line.
 import { mount } from "./echarts.js";
 import { numberText, plainText } from "./format.js";
-import { axisLabel, axisName, ink, page, part, parts, rule, tooltip, valueAxis } from "./theme.js";
-
-const hours = Array.from({ length: 24 }, (_, hour) => hour);
+import { hourAxis, hours } from "./hour_axis.js";
+import { axisLabel, axisName, ink, page, part, parts, tooltip, valueAxis } from "./theme.js";
 
 /** One scale for all day types, so that a Sunday looks as small as it is. */
 function highest(dayTypes) {
@@ -41,17 +40,7 @@ export function drawProfile(place, data) {
       axisPointer: { type: "shadow", shadowStyle: { color: "rgba(85,96,110,.12)" } },
       formatter: (items) => tooltipText(dayType, items[0].dataIndex),
     },
-    xAxis: {
-      type: "category",
-      data: hours,
-      axisTick: { show: false },
-      axisLine: { lineStyle: { color: rule } },
-      axisLabel: { ...axisLabel, interval: (hour) => hour % 6 === 0 },
-      name: "hour of the day",
-      nameLocation: "middle",
-      nameGap: 26,
-      nameTextStyle: axisName,
-    },
+    xAxis: hourAxis,
     yAxis: valueAxis({
       name: "kW",
       nameGap: 12,
