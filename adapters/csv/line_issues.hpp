@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/text/printable.hpp"
@@ -37,6 +38,13 @@ struct LineIssues {
     ++total;
     // Reasons quote what stands in the file, whatever that is.
     if (listed.size() < listed_max) listed.push_back({line, printable(reason), excerpt(text)});
+  }
+
+  void append(LineIssues more) {
+    total += more.total;
+    for (LineIssue& issue : more.listed) {
+      if (listed.size() < listed_max) listed.push_back(std::move(issue));
+    }
   }
 };
 

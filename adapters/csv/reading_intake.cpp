@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "adapters/csv/fields.hpp"
 #include "core/metering/interval_book.hpp"
@@ -197,6 +198,27 @@ void ReadingIntake::keep_sample(IntakeMeter& meter, const Row& row) {
   }
   if (meter.samples.size() < kHeadRows) meter.head.push_back({row, excerpt(row.text)});
   meter.samples.push_back({row.stamp, row.value * row.conversion.factor * meter.rows.multiplier});
+}
+
+Result<FileReport> ReadingIntake::end_file(std::string_view name) {
+  for (IntakeMeter& meter : meters_) {
+    const std::uint64_t readings = meter.report.readings - meter.readings_before;
+    const bool is_first = meter.readings_before == 0;
+    const bool follows = 2 * meter.follows >= readings || readings < kHeadRows;
+    if (!is_first && !follows) {
+      return failure(ErrorCode::malformed,
+                     in_quotes(name) + ": meter " + in_quotes(meter.rows.name) +
+                         " does not come every " + in_words(meter.report.shown.interval) +
+                         " as in the file before; give it a [[meter]] of its own, or bring the "
+                         "files to one interval");
+    }
+    meter.readings_before = meter.report.readings;
+    meter.follows = 0;
+  }
+  LineIssues none;
+  none.listed_max = report_.issues.listed_max;
+  return FileReport{std::exchange(report_.issues, std::move(none)),
+                    std::exchange(report_.others, {})};
 }
 
 ReadingsReport ReadingIntake::finish() {

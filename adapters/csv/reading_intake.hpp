@@ -45,6 +45,14 @@ struct IntakeMeter {
   std::optional<metering::Instant> last;    ///< Start of the row before.
   std::optional<metering::Instant> newest;  ///< Latest start so far.
   std::optional<metering::Instant> earliest;
+  std::uint64_t readings_before = 0;  ///< Of earlier files.
+  std::uint64_t follows = 0;          ///< In this file: readings right after the one before.
+};
+
+/// What one file had besides readings.
+struct FileReport {
+  LineIssues issues;
+  OtherMeters others;  ///< Whose lines were left out.
 };
 
 /// Finds each meter's interval in its first rows, shifts end stamps, converts units, differences
@@ -78,6 +86,10 @@ class ReadingIntake {
   void count_line() { ++report_.lines; }
   void count_other(std::string_view meter) { report_.others.add(meter); }
 
+  /// Between the files of the same meters, in order of time: what this one had to say.
+  /// @return or malformed: a meter's interval is another one than in the files before.
+  [[nodiscard]] Result<FileReport> end_file(std::string_view name);
+
   /// Hands on what waits, and sums up. The intake is of no use afterwards.
   [[nodiscard]] ReadingsReport finish();
 
@@ -97,6 +109,7 @@ class ReadingIntake {
     const bool follows =
         meter.last && start == *meter.last + shown.interval && meter.last == meter.newest;
     if (!follows && !check_order(meter, row, start)) return;
+    if (follows) ++meter.follows;
     meter.last = start;
     if (!meter.newest || start > *meter.newest) meter.newest = start;
     ++meter.report.readings;

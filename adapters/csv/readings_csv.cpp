@@ -85,14 +85,14 @@ Result<Columns> read_header(std::string_view header, FieldSplitter& fields, std:
 class ReadingsReader {
  public:
   ReadingsReader(ByteSource source, std::string_view name, const ReadingsOptions& options,
-                 const ReadingsSink& sink)
-      : lines_{std::move(source)}, name_{name}, options_{options}, intake_{options, sink} {
+                 ReadingIntake& intake)
+      : lines_{std::move(source)}, name_{name}, options_{options}, intake_{intake} {
     for (std::size_t i = 0; i < options.meters.size(); ++i) {
       by_name_.emplace(options.meters[i].name, static_cast<std::uint32_t>(i));
     }
   }
 
-  Result<ReadingsReport> run() {
+  Result<void> run() {
     Line line{};
     bool header_seen = false;
     while (lines_.next(line)) {
@@ -110,7 +110,7 @@ class ReadingsReader {
     }
     if (lines_.error()) return tl::unexpected(*lines_.error());
     if (!header_seen) return failure(ErrorCode::malformed, empty_file());
-    return intake_.finish();
+    return {};
   }
 
  private:
@@ -302,7 +302,7 @@ class ReadingsReader {
   LineReader lines_;
   std::string name_;
   const ReadingsOptions& options_;
-  ReadingIntake intake_;
+  ReadingIntake& intake_;
   FieldSplitter fields_;
   Columns columns_;
   IntakeMeter* meter_ = nullptr;  ///< Of the line that is being read.
@@ -314,17 +314,25 @@ class ReadingsReader {
 
 }  // namespace
 
-Result<ReadingsReport> read_readings(const std::filesystem::path& file,
-                                     const ReadingsOptions& options, const ReadingsSink& sink) {
+Result<void> read_readings(const std::filesystem::path& file, const ReadingsOptions& options,
+                           ReadingIntake& intake) {
   auto source = open_file(file, "readings file");
   if (!source) return tl::unexpected(source.error());
-  return ReadingsReader{std::move(*source), file.string(), options, sink}.run();
+  return ReadingsReader{std::move(*source), file.string(), options, intake}.run();
+}
+
+Result<ReadingsReport> read_readings(const std::filesystem::path& file,
+                                     const ReadingsOptions& options, const ReadingsSink& sink) {
+  ReadingIntake intake{options, sink};
+  return read_readings(file, options, intake).map([&] { return intake.finish(); });
 }
 
 Result<ReadingsReport> read_readings_text(std::string_view text, std::string_view name,
                                           const ReadingsOptions& options,
                                           const ReadingsSink& sink) {
-  return ReadingsReader{bytes_of(text), name, options, sink}.run();
+  ReadingIntake intake{options, sink};
+  return ReadingsReader{bytes_of(text), name, options, intake}.run().map(
+      [&] { return intake.finish(); });
 }
 
 }  // namespace recald::csv

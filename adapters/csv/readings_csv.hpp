@@ -92,6 +92,13 @@ struct ReadingsReport {
                                                    const ReadingsOptions& options,
                                                    const ReadingsSink& sink);
 
+class ReadingIntake;
+
+/// The same into an intake that goes on to further files of the same meters.
+/// @param options  Those of the intake.
+[[nodiscard]] Result<void> read_readings(const std::filesystem::path& file,
+                                         const ReadingsOptions& options, ReadingIntake& intake);
+
 /// The same from memory; `name` stands in messages.
 [[nodiscard]] Result<ReadingsReport> read_readings_text(std::string_view text,
                                                         std::string_view name,

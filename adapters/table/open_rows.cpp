@@ -45,13 +45,12 @@ Result<std::unique_ptr<RowSource>> open_rows(const std::filesystem::path& file,
   return delimited_rows(std::move(*bytes), separator);
 }
 
-Result<csv::ReadingsReport> read_table(const std::filesystem::path& file, const TableShape& shape,
-                                       std::span<const TableMeter> meters,
-                                       const metering::LocalCalendar& calendar,
-                                       const csv::ReadingsSink& sink, ClockFacts* facts) {
+Result<void> read_table(const std::filesystem::path& file, const TableShape& shape,
+                        std::span<const TableMeter> meters, const metering::LocalCalendar& calendar,
+                        csv::ReadingIntake& intake, ClockFacts* facts) {
   auto rows = open_rows(file, shape);
   if (!rows) return tl::unexpected(rows.error());
-  return read_table(**rows, file.string(), shape, meters, calendar, sink, facts);
+  return read_table(**rows, file.string(), shape, meters, calendar, intake, facts);
 }
 
 }  // namespace recald::table

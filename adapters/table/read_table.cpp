@@ -22,6 +22,7 @@ using std::chrono::seconds;
 
 constexpr std::uint64_t kHeaderRowsMax = 200;  // above which a header is looked for
 constexpr std::size_t kColumnsShown = 12;
+constexpr std::size_t kOrderRows = 64;  // that show whether the file runs from old to new
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// "#3": the third column, 2 from 0.
@@ -41,24 +42,72 @@ std::size_t decimals_of(std::string_view cell, char decimal) {
   return sign == std::string_view::npos ? 0 : cell.size() - sign - 1;
 }
 
+/// Rows in one piece of memory, for a file that has to be kept.
+class KeptRows {
+ public:
+  void add(const TableRow& row) {
+    rows_.push_back({row.number, bytes_.size(), row.text.size(), ends_.size(), row.cells.size()});
+    bytes_ += row.text;
+    for (const std::string_view cell : row.cells) {
+      bytes_ += cell;
+      ends_.push_back(bytes_.size());
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
+
+  /// @return valid until the next call.
+  [[nodiscard]] const TableRow& row(std::size_t index) {
+    const Place& place = rows_[index];
+    const std::string_view bytes = bytes_;
+    shown_.number = place.number;
+    shown_.text = bytes.substr(place.begin, place.text_length);
+    shown_.cells.clear();
+    std::size_t begin = place.begin + place.text_length;
+    for (std::size_t i = 0; i < place.cells; ++i) {
+      const std::size_t end = ends_[place.first_cell + i];
+      shown_.cells.push_back(bytes.substr(begin, end - begin));
+      begin = end;
+    }
+    return shown_;
+  }
+
+ private:
+  struct Place {
+    std::uint64_t number;
+    std::size_t begin;
+    std::size_t text_length;
+    std::size_t first_cell;
+    std::size_t cells;
+  };
+  std::vector<Place> rows_;
+  std::vector<std::size_t> ends_;  ///< Of cells.
+  std::string bytes_;
+  TableRow shown_;
+};
+
+enum class Order : std::uint8_t { unknown, old_to_new, new_to_old };
+
 class TableReader {
  public:
   TableReader(RowSource& rows, std::string_view name, const TableShape& shape,
-              std::span<const TableMeter> meters, const csv::ReadingsOptions& options,
-              const metering::LocalCalendar& calendar, const csv::ReadingsSink& sink)
+              std::span<const TableMeter> meters, const metering::LocalCalendar& calendar,
+              csv::ReadingIntake& intake)
       : rows_{rows},
         name_{name},
         shape_{shape},
         meters_{meters},
         calendar_{calendar},
-        intake_{options, sink} {}
+        intake_{intake} {}
 
-  Result<csv::ReadingsReport> run() {
-    if (auto found = find_header(); !found) return tl::unexpected(found.error());
+  Result<void> run() {
+    if (auto found = find_header(); !found) return found;
     TableRow row;
     while (rows_.next(row)) read_row(row);
     if (rows_.error()) return failed_source();
-    return intake_.finish();
+    if (order_ == Order::unknown) find_order();
+    hand_on_kept();
+    return {};
   }
 
   [[nodiscard]] const ClockFacts& facts() const { return facts_; }
@@ -153,8 +202,48 @@ class TableReader {
     }
     last_cells_ = row.cells.size();
     last_decimals_ = row.cells.empty() ? 0 : decimals_of(row.cells.back(), shape_.decimal);
+    if (order_ == Order::old_to_new) return take_row(row);
+    kept_.add(row);
+    if (order_ == Order::new_to_old || kept_.size() < kOrderRows) return;
+    find_order();
+    if (order_ == Order::old_to_new) hand_on_kept();
+  }
+
+  /// Portals often list the newest row first; such a file is kept and handed on from its end.
+  void find_order() {
+    std::size_t rises = 0;
+    std::size_t falls = 0;
+    std::optional<Instant> last;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      const auto clock = clock_of(kept_.row(i));
+      if (!clock) continue;
+      if (last && *clock > *last) ++rises;
+      if (last && *clock < *last) ++falls;
+      last = clock;
+    }
+    order_ = falls > rises ? Order::new_to_old : Order::old_to_new;
+  }
+
+  void hand_on_kept() {
+    const std::size_t count = kept_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      take_row(kept_.row(order_ == Order::new_to_old ? count - 1 - i : i));
+    }
+    kept_ = {};
+  }
+
+  void take_row(const TableRow& row) {
     if (meter_ == kNone) return read_wide(row);
     read_long(row);
+  }
+
+  /// What the row's clock shows, whatever its zone.
+  [[nodiscard]] std::optional<Instant> clock_of(const TableRow& row) const {
+    const auto written = parse_stamp(cell(row, time_), shape_.time_format);
+    if (!written) return {};
+    if (clock_ == kNone) return written->clock;
+    const auto time = parse_time_of_day(cell(row, clock_));
+    return time ? std::optional{written->clock + *time} : std::nullopt;
   }
 
   [[nodiscard]] static std::string_view cell(const TableRow& row, std::size_t column) {
@@ -264,7 +353,7 @@ class TableReader {
   const TableShape& shape_;
   std::span<const TableMeter> meters_;
   const metering::LocalCalendar& calendar_;
-  csv::ReadingIntake intake_;
+  csv::ReadingIntake& intake_;
   std::vector<std::string> header_;
   std::vector<std::size_t> value_;  ///< By meter.
   std::size_t time_ = kNone;
@@ -277,6 +366,8 @@ class TableReader {
   bool is_below_header_ = false;
   std::size_t last_cells_ = 0;
   std::size_t last_decimals_ = 0;
+  Order order_ = Order::unknown;
+  KeptRows kept_;
   ClockFacts facts_;
 };
 
@@ -307,8 +398,21 @@ Result<csv::ReadingsReport> read_table(RowSource& rows, std::string_view name,
                                        const TableShape& shape, std::span<const TableMeter> meters,
                                        const metering::LocalCalendar& calendar,
                                        const csv::ReadingsSink& sink, ClockFacts* facts) {
+  csv::ReadingIntake intake{intake_options(meters), sink};
+  return read_table(rows, name, shape, meters, calendar, intake, facts).map([&] {
+    return intake.finish();
+  });
+}
+
+csv::ReadingsOptions intake_options(std::span<const TableMeter> meters) {
   csv::ReadingsOptions options;
   for (const TableMeter& meter : meters) options.meters.push_back(meter.rows);
+  return options;
+}
+
+Result<void> read_table(RowSource& rows, std::string_view name, const TableShape& shape,
+                        std::span<const TableMeter> meters, const metering::LocalCalendar& calendar,
+                        csv::ReadingIntake& intake, ClockFacts* facts) {
   const metering::LocalCalendar* clock = &calendar;
   std::optional<metering::LocalCalendar> own;
   if (!shape.timezone.empty()) {
@@ -317,10 +421,10 @@ Result<csv::ReadingsReport> read_table(RowSource& rows, std::string_view name,
     own = std::move(*opened);
     clock = &*own;
   }
-  TableReader reader{rows, name, shape, meters, options, *clock, sink};
-  auto report = reader.run();
+  TableReader reader{rows, name, shape, meters, *clock, intake};
+  auto read = reader.run();
   if (facts != nullptr) *facts = reader.facts();
-  return report;
+  return read;
 }
 
 }  // namespace recald::table

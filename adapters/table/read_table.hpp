@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "adapters/csv/reading_intake.hpp"
 #include "adapters/table/row_source.hpp"
 #include "adapters/table/table_shape.hpp"
 
@@ -21,27 +22,35 @@ struct ClockFacts {
   std::uint64_t skipped = 0;  ///< Of them, times that the clock jumps over.
 };
 
-/// Reads the rows once, from start to end; memory does not grow with their number, but for
-/// counters. The header is the first row with the time column's name; what stands above is left
-/// alone, and so are blank rows, a row of units below the header and headers that come again. A
-/// bad row is reported with its number and kept out. The last line of a text without a line end
-/// counts only when it is surely whole: as many cells as before, the last one with as many
-/// decimals.
+/// What an intake has to know of these meters.
+[[nodiscard]] csv::ReadingsOptions intake_options(std::span<const TableMeter> meters);
+
+/// Reads the rows once, in order of time; memory does not grow with their number, but for counters
+/// and for tables whose first rows run from new to old, which are kept and read from their end. The
+/// header is the first row with the time column's name; what stands above is left alone, and so are
+/// blank rows, a row of units below the header and headers that come again. A bad row is reported
+/// with its number and kept out. The last line of a text without a line end counts only when it is
+/// surely whole: as many cells as before, the last one with as many decimals.
 ///
 /// Stamps without an offset are on the clock of the shape's zone, else of `calendar`; see
 /// `ClockReader` for the hour that comes twice. A time that the clock jumps over is a bad row.
 ///
-/// @param name  Stands in messages.
-/// @return the report, or malformed (no such column; the message lists those there are), not_found
-///         (no such zone), or the source's failure.
-[[nodiscard]] Result<csv::ReadingsReport> read_table(RowSource& rows, std::string_view name,
-                                                     const TableShape& shape,
-                                                     std::span<const TableMeter> meters,
-                                                     const metering::LocalCalendar& calendar,
-                                                     const csv::ReadingsSink& sink,
-                                                     ClockFacts* facts = nullptr);
+/// @param name    Stands in messages.
+/// @param intake  Of these meters; it may go on to further files of theirs.
+/// @return malformed (no such column; the message lists those there are), not_found (no such
+///         zone), or the source's failure.
+[[nodiscard]] Result<void> read_table(RowSource& rows, std::string_view name,
+                                      const TableShape& shape, std::span<const TableMeter> meters,
+                                      const metering::LocalCalendar& calendar,
+                                      csv::ReadingIntake& intake, ClockFacts* facts = nullptr);
 
-[[nodiscard]] Result<csv::ReadingsReport> read_table(const std::filesystem::path& file,
+[[nodiscard]] Result<void> read_table(const std::filesystem::path& file, const TableShape& shape,
+                                      std::span<const TableMeter> meters,
+                                      const metering::LocalCalendar& calendar,
+                                      csv::ReadingIntake& intake, ClockFacts* facts = nullptr);
+
+/// A table that is all there is of its meters.
+[[nodiscard]] Result<csv::ReadingsReport> read_table(RowSource& rows, std::string_view name,
                                                      const TableShape& shape,
                                                      std::span<const TableMeter> meters,
                                                      const metering::LocalCalendar& calendar,

@@ -122,7 +122,7 @@ class TableSniffer {
                    "2024-03-31 14:15, 31/03/2024 14:15 or 03/31/2024 2:15 PM");
   }
 
-  /// Days of a spreadsheet, or seconds since 1970: numbers that rise all the way.
+  /// Days of a spreadsheet, or seconds since 1970: numbers that rise, or fall, all the way.
   bool find_counted_times(std::size_t column) {
     std::vector<double> counts;
     std::size_t first = kNowhere;
@@ -135,6 +135,7 @@ class TableSniffer {
       counts.push_back(*count);
     }
     if (counts.size() < 3 || counts.size() + first < rows_.size() * 9 / 10) return false;
+    if (counts.front() > counts.back()) std::reverse(counts.begin(), counts.end());
     if (!std::is_sorted(counts.begin(), counts.end())) return false;
     const double begin = counts.front();
     const double end = counts.back();

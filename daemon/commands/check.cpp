@@ -46,7 +46,7 @@ void print_meters(const SiteConfig& site, const Console& console) {
     }
     console.out << fmt::format(
         "  meter {:<16} {:<14} {} ('{}', {}-stamped, interval {})\n", meter.id,
-        metering::to_string(meter.utility), config.file.string(),
+        metering::to_string(meter.utility), files_words(config.files),
         config.table && config.table->shape.meter_column.empty() ? config.table->column
                                                                  : config.name_in_file,
         config.stamps == csv::Stamps::end ? "end" : "start",
@@ -82,7 +82,7 @@ void print_weather(const WeatherConfig& config, const weather::ValuesTaken& take
                    const Console& console) {
   console.out << fmt::format(
       "  weather {} ({}-stamped, temperature, humidity, wind and pressure: {})\n",
-      config.more_files.empty() ? config.file.string() : config.file_words(),
+      files_words(config.files),
       config.format == WeatherFormat::epw || config.stamps == csv::Stamps::end ? "end" : "start",
       to_string(taken));
 }
@@ -158,8 +158,10 @@ std::vector<std::string> check_pushed(const SiteConfig& site) {
 /// What the models will miss in the weather: a problem where the site has one, else good to know.
 std::vector<std::string> check_weather(const SiteConfig& site, const Console& console) {
   if (!site.weather) return {};
-  const std::filesystem::path& file = site.weather->file;
-  if (!file.empty() && !system::require_file(file, "the weather file")) return {};
+  const bool has_all = std::ranges::all_of(site.weather->files, [](const auto& file) {
+    return system::require_file(file, "the weather file").has_value();
+  });
+  if (!has_all) return {};
   const auto lack = lack_of_weather(site);
   if (!lack) return {site.file.filename().string() + ": " + lack.error().message};
   if (site.model && !lack->sentence.empty()) {
@@ -172,7 +174,7 @@ std::vector<std::string> check_weather(const SiteConfig& site, const Console& co
 }
 
 bool has_weather_file(const SiteConfig& site) {
-  return site.weather && !site.weather->file.empty();
+  return site.weather && !site.weather->files.empty();
 }
 
 std::vector<std::string> check_files(const SiteConfig& site) {
@@ -184,13 +186,12 @@ std::vector<std::string> check_files(const SiteConfig& site) {
         fmt::format("{}: {}", site.file.filename().string(), is_file.error().message));
   };
   for (const MeterConfig& config : site.meters) {
-    if (config.source != MeterSource::csv) continue;
-    require(config.file, fmt::format("the file of meter '{}',", config.meter.id));
+    for (const std::filesystem::path& file : config.files) {
+      require(file, fmt::format("the file of meter '{}',", config.meter.id));
+    }
   }
-  if (has_weather_file(site)) {
-    require(site.weather->file, "the weather file");
-    for (const auto& file : site.weather->more_files) require(file, "the weather file");
-  }
+  if (!site.weather) return problems;
+  for (const auto& file : site.weather->files) require(file, "the weather file");
   return problems;
 }
 

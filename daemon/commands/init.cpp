@@ -6,6 +6,7 @@
 #include "adapters/system/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/site/config/site_config.hpp"
+#include "daemon/site/setup/joined_exports.hpp"
 #include "daemon/site/setup/site_file.hpp"
 
 namespace recald::daemon {
@@ -114,6 +115,7 @@ int run_init(const InitArguments& arguments, const Console& console) {
     if (!survey) return console.fail(survey.error());
     exports.push_back(std::move(*survey));
   }
+  exports = joined_exports(std::move(exports));
   const Guess<std::string> timezone = timezone_of(arguments, exports);
   const SiteDraft draft = draft_site(exports, folder, timezone);
   if (!calendar) {

@@ -74,7 +74,17 @@ class Schema {
       const toml::array* array = node.as_array();
       if (array != nullptr && !array->empty())
         add_type(type_name(array->front()), property["items"]);
+      if (node.is_string() && may_be_list(property)) {
+        property["type"] = Json::array({"string", "array"});
+        property["items"]["type"] = "string";
+      }
     }
+  }
+
+  /// The comment says so, as the one of a file that may be several.
+  [[nodiscard]] static bool may_be_list(const Json& property) {
+    return property.contains("description") &&
+           property["description"].get<std::string>().find(" a list") != std::string::npos;
   }
 
   /// A port is a number of TCP or the name of a device.

@@ -98,16 +98,11 @@ WeatherConfig read_weather(TomlReader table, const std::filesystem::path& site_f
   const auto files = table.one_or_more("file");
   if (!has_none && !table.has("file")) table.problem("'file' is missing");
   for (const std::string& file : files.value_or(std::vector<std::string>{})) {
-    const std::filesystem::path path = resolve(site_file, file, "file", table);
-    if (weather.file.empty()) {
-      weather.file = path;
-    } else {
-      weather.more_files.push_back(path);
-    }
+    weather.files.push_back(resolve(site_file, file, "file", table));
   }
   weather.format =
       table.word("format", {"csv", "epw"}) == "epw" ? WeatherFormat::epw : WeatherFormat::csv;
-  if (!weather.more_files.empty() && weather.format != WeatherFormat::epw) {
+  if (weather.files.size() > 1 && weather.format != WeatherFormat::epw) {
     table.problem_at("file",
                      "'file' lists several files, which only EPW years may be; add format = "
                      "\"epw\", or put the rows into one CSV file");
@@ -233,7 +228,10 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   if (is_live) {
     config.live = read_live_meter(table, maps);
   } else if (config.source == MeterSource::csv) {
-    config.file = resolve(site.file, table.required_text("file"), "file", table);
+    if (!table.has("file")) table.problem("'file' is missing");
+    for (const std::string& file : table.one_or_more("file").value_or(std::vector<std::string>{})) {
+      config.files.push_back(resolve(site.file, file, "file", table));
+    }
     config.name_in_file = table.text_or("name_in_file", meter.id);
     config.stamps = read_stamps(table);
   }
@@ -256,8 +254,8 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   config.units.steam_kWh_per_kg =
       table.number_or("steam_kWh_per_kg", config.units.steam_kWh_per_kg, kFactor);
   config.units.gas_kWh_per_m3 = table.number("gas_kWh_per_m3", kFactor);
-  if (config.source == MeterSource::csv && is_table(table, config.file)) {
-    config.table = read_table_config(table, config.file, meter.utility, config.units);
+  if (!config.files.empty() && is_table(table, config.files.front())) {
+    config.table = read_table_config(table, config.files.front(), meter.utility, config.units);
   }
   if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
   if (auto counter = table.table("counter")) {
@@ -594,9 +592,10 @@ std::string_view name_of(MeterSource source) {
   return "csv";
 }
 
-std::string WeatherConfig::file_words() const {
-  const std::string name = file.filename().string();
-  return more_files.empty() ? name : fmt::format("{} and {} more", name, more_files.size());
+std::string files_words(std::span<const std::filesystem::path> files) {
+  if (files.empty()) return "";
+  const std::string name = files.front().filename().string();
+  return files.size() == 1 ? name : fmt::format("{} and {} more", name, files.size() - 1);
 }
 
 bool ModelConfig::has_output(const std::string& meter_id) const {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,9 +49,9 @@ struct MeterConfig {
   metering::Meter meter;
   MeterRole role = MeterRole::energy;
   MeterSource source = MeterSource::csv;
-  std::filesystem::path file;        ///< source = "csv"; else empty.
-  std::string name_in_file;          ///< In the file's `meter` column.
-  std::optional<TableConfig> table;  ///< Absent: the file is recald's own CSV.
+  std::vector<std::filesystem::path> files;  ///< source = "csv": in order of time; else empty.
+  std::string name_in_file;                  ///< In the file's `meter` column.
+  std::optional<TableConfig> table;          ///< Absent: the file is recald's own CSV.
   csv::Stamps stamps = csv::Stamps::start;
   /// Of a weather sensor that sends: instants are values at the start of their interval.
   weather::RecordedValues values = weather::RecordedValues::mean;
@@ -69,17 +70,18 @@ struct MeterConfig {
   }
 };
 
+/// "2021.csv", "2021.csv and 2 more"
+[[nodiscard]] std::string files_words(std::span<const std::filesystem::path> files);
+
 enum class WeatherFormat { csv, epw };
 
 struct WeatherConfig {
-  std::filesystem::path file;  ///< Empty: the weather comes from the site's sensors alone.
-  std::vector<std::filesystem::path> more_files;  ///< Further EPW files, each of a year of its own.
+  /// Several: EPW, each of a year of its own. None: the weather comes from the site's sensors
+  /// alone.
+  std::vector<std::filesystem::path> files;
   WeatherFormat format = WeatherFormat::csv;
   csv::Stamps stamps = csv::Stamps::start;
   std::optional<weather::RecordedValues> values;  ///< Absent: as the file shows or usually is.
-
-  /// "2021.epw", "2021.epw and 2 more"
-  [[nodiscard]] std::string file_words() const;
 };
 
 struct PeriodConfig {

@@ -15,10 +15,9 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
   if (auto added = data_digest.add_file(site.file); !added) return tl::unexpected(added.error());
   std::set<std::filesystem::path> files;
   for (const MeterConfig& meter : site.meters) {
-    if (meter.source == MeterSource::csv) files.insert(meter.file);
+    files.insert(meter.files.begin(), meter.files.end());
   }
-  if (site.weather && !site.weather->file.empty()) files.insert(site.weather->file);
-  if (site.weather) files.insert(site.weather->more_files.begin(), site.weather->more_files.end());
+  if (site.weather) files.insert(site.weather->files.begin(), site.weather->files.end());
   for (const auto& file : files) {
     if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
   }

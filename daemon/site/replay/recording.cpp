@@ -30,15 +30,15 @@ csv::MeterRows rows_of(const MeterConfig& config) {
           .counter = config.counter};
 }
 
-/// Meters that are read from one file in one go.
+/// Meters that are read from the same files in one go.
 struct FileGroup {
-  std::filesystem::path file;
-  std::optional<table::TableShape> shape;  ///< None: recald's own CSV.
+  std::vector<std::filesystem::path> files;  ///< In order of time.
+  std::optional<table::TableShape> shape;    ///< None: recald's own CSV.
   std::vector<std::size_t> meters;
 };
 
 /// In order of first mention.
-std::vector<FileGroup> group_by_file(const SiteConfig& site) {
+std::vector<FileGroup> group_by_files(const SiteConfig& site) {
   std::vector<FileGroup> groups;
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
@@ -46,31 +46,64 @@ std::vector<FileGroup> group_by_file(const SiteConfig& site) {
     std::optional<table::TableShape> shape;
     if (config.table) shape = config.table->shape;
     const auto known = std::ranges::find_if(groups, [&](const FileGroup& group) {
-      return group.file == config.file && group.shape == shape;
+      return group.files == config.files && group.shape == shape;
     });
     if (known != groups.end()) {
       known->meters.push_back(i);
     } else {
-      groups.push_back({config.file, std::move(shape), {i}});
+      groups.push_back({config.files, std::move(shape), {i}});
     }
   }
   return groups;
 }
 
-Result<csv::ReadingsReport> read_group(const SiteConfig& site, const FileGroup& group,
-                                       const metering::LocalCalendar& calendar,
-                                       const csv::ReadingsSink& sink) {
-  if (!group.shape) {
-    csv::ReadingsOptions options;
-    for (const std::size_t i : group.meters) options.meters.push_back(rows_of(site.meters[i]));
-    return csv::read_readings(group.file, options, sink);
+/// Reads one file of a group into an intake.
+class GroupReader {
+ public:
+  GroupReader(const SiteConfig& site, const FileGroup& group,
+              const metering::LocalCalendar& calendar)
+      : group_(group), calendar_(calendar) {
+    for (const std::size_t i : group.meters) {
+      const MeterConfig& config = site.meters[i];
+      options_.meters.push_back(rows_of(config));
+      if (!config.table) continue;
+      tables_.push_back({rows_of(config), config.table->column, config.table->unit});
+    }
   }
-  std::vector<table::TableMeter> meters;
-  for (const std::size_t i : group.meters) {
-    const MeterConfig& config = site.meters[i];
-    meters.push_back({rows_of(config), config.table->column, config.table->unit});
+
+  [[nodiscard]] const csv::ReadingsOptions& options() const { return options_; }
+
+  Result<void> read(const std::filesystem::path& file, csv::ReadingIntake& intake) const {
+    if (!group_.shape) return csv::read_readings(file, options_, intake);
+    return table::read_table(file, *group_.shape, tables_, calendar_, intake);
   }
-  return table::read_table(group.file, *group.shape, meters, calendar, sink);
+
+ private:
+  const FileGroup& group_;
+  const metering::LocalCalendar& calendar_;
+  csv::ReadingsOptions options_;
+  std::vector<table::TableMeter> tables_;
+};
+
+/// @param recording  Gets what the files had to say.
+Result<void> read_group(const SiteConfig& site, const FileGroup& group,
+                        const metering::LocalCalendar& calendar, const csv::ReadingsSink& sink,
+                        Recording& recording) {
+  const GroupReader reader{site, group, calendar};
+  csv::ReadingIntake intake{reader.options(), sink};
+  for (const std::filesystem::path& file : group.files) {
+    if (auto read = reader.read(file, intake); !read) return read;
+    auto said = intake.end_file(file.string());
+    if (!said) return tl::unexpected(said.error());
+    recording.files.push_back({file, std::move(said->issues), std::move(said->others)});
+  }
+  csv::ReadingsReport report = intake.finish();
+  recording.files.back().issues.append(std::move(report.issues));
+  recording.readings += report.readings;
+  for (std::size_t k = 0; k < group.meters.size(); ++k) {
+    recording.meters[group.meters[k]].rows = std::move(report.meters[k]);
+  }
+  return {};
 }
 
 /// What the site says itself of zeros need not be asked.
@@ -313,10 +346,12 @@ Result<void> require_rows(const SiteConfig& site, const Recording& recording) {
   for (std::size_t i = 0; i < recording.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
     if (recording.meters[i].in_file || config.source != MeterSource::csv) continue;
-    const auto file = std::ranges::find(recording.files, config.file, &FileIssues::file);
+    const auto file = std::ranges::find(recording.files, config.files.front(), &FileIssues::file);
+    const std::string names =
+        config.files.size() == 1 ? config.files.front().string() : files_words(config.files);
     return failure(ErrorCode::not_enough_data,
-                   fmt::format("{} has no usable row of meter '{}'{}", config.file.string(),
-                               config.name_in_file, refusal_words(recording.meters[i], *file)));
+                   fmt::format("{} has no usable row of meter '{}'{}", names, config.name_in_file,
+                               refusal_words(recording.meters[i], *file)));
   }
   return {};
 }
@@ -364,14 +399,6 @@ Result<std::vector<metering::MonthlyFigure>> months_of_sum(const SiteConfig& sit
   return figures;
 }
 
-void keep_report(const FileGroup& group, csv::ReadingsReport report, Recording& recording) {
-  recording.readings += report.readings;
-  for (std::size_t k = 0; k < group.meters.size(); ++k) {
-    recording.meters[group.meters[k]].rows = report.meters[k];
-  }
-  recording.files.push_back({group.file, std::move(report.issues), std::move(report.others)});
-}
-
 }  // namespace
 
 bool is_site_different(const Recording& recording, metering::Month month) {
@@ -411,7 +438,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   };
 
   std::vector<RegisterWatch> watches(site.meters.size());
-  for (const FileGroup& group : group_by_file(site)) {
+  for (const FileGroup& group : group_by_files(site)) {
     const std::vector<std::size_t>& indices = group.meters;
     const csv::ReadingsSink sink{.on_meter =
                                      [&](const csv::MeterInFile& shown) {
@@ -427,9 +454,9 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                        for (Sum& sum : sums)
                                          sum.take(indices[reading.meter], reading);
                                      }};
-    auto report = read_group(site, group, calendar, sink);
-    if (!report) return tl::unexpected(report.error());
-    keep_report(group, std::move(*report), recording);
+    if (auto read = read_group(site, group, calendar, sink, recording); !read) {
+      return tl::unexpected(read.error());
+    }
   }
   if (auto whole = require_rows(site, recording); !whole) return tl::unexpected(whole.error());
   for (std::size_t i = 0; i < site.meters.size(); ++i) {

@@ -275,7 +275,7 @@ Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
   }
   if (file) {
     sources.push_back({&file->series, false, file->is_typical_year});
-    names.push_back(site.weather->file_words());
+    names.push_back(files_words(site.weather->files));
   }
   weather::MergedWeather merged = weather::merge_weather(span, sources);
   auto lacking = never_measured(merged.series, file, site, live);

@@ -22,7 +22,8 @@ namespace {
 constexpr std::size_t kDryBulb = 0;  // in `weather::kWeatherVariables`
 
 Result<csv::WeatherCsv> read_csv(const WeatherConfig& config) {
-  return csv::read_weather(config.file, {.stamps = config.stamps, .values = config.values});
+  return csv::read_weather(config.files.front(),
+                           {.stamps = config.stamps, .values = config.values});
 }
 
 Result<weather::WeatherSeries> read_csv(const WeatherConfig& config, SiteWeather& result) {
@@ -54,7 +55,7 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
                                    SiteWeather& result) {
   result.values = epw_values(config);
   std::vector<std::string>& notes = result.notes;
-  const auto own = epw::read_epw(config.file, {}, result.values.values);
+  const auto own = epw::read_epw(config.files.front(), {}, result.values.values);
   if (!own) return tl::unexpected(own.error());
   if (!own->typical) {
     notes.insert(notes.end(), own->notes.begin(), own->notes.end());
@@ -67,7 +68,7 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
   // A year of local standard time ends within a day of the UTC year, so one more on each side.
   for (int year = static_cast<int>(months.first.year()) - 1;
        year <= static_cast<int>(months.last.year()) + 1; ++year) {
-    const auto one = epw::read_epw(config.file, year, result.values.values);
+    const auto one = epw::read_epw(config.files.front(), year, result.values.values);
     if (!one) return tl::unexpected(one.error());
     if (all.hours.empty()) all.begin = one->series.begin;
     all.hours.insert(all.hours.end(), one->series.hours.begin(), one->series.hours.end());
@@ -79,9 +80,7 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
 Result<FileWeather> read_epw_list(const WeatherConfig& config, SiteWeather& result) {
   result.values = epw_values(config);
   std::map<metering::Instant, std::pair<std::string, weather::WeatherSeries>> years;
-  std::vector<std::filesystem::path> files = config.more_files;
-  files.insert(files.begin(), config.file);
-  for (const std::filesystem::path& file : files) {
+  for (const std::filesystem::path& file : config.files) {
     auto one = epw::read_epw(file, {}, result.values.values);
     if (!one) return tl::unexpected(one.error());
     const std::string name = file.filename().string();
@@ -114,7 +113,7 @@ Result<FileWeather> read_epw_list(const WeatherConfig& config, SiteWeather& resu
 /// @pre the site has a file
 Result<FileWeather> read_file(const WeatherConfig& config, const metering::MonthRange& months,
                               SiteWeather& result) {
-  if (!config.more_files.empty()) return read_epw_list(config, result);
+  if (config.files.size() > 1) return read_epw_list(config, result);
   if (config.format == WeatherFormat::epw) return read_epw_years(config, months, result);
   auto series = read_csv(config, result);
   if (!series) return tl::unexpected(series.error());
@@ -148,10 +147,10 @@ bool has_any(const weather::WeatherSeries& series, std::size_t variable) {
 }
 
 std::string no_dry_bulb_words(const SiteConfig& site) {
-  std::string whose = "in " + site.weather->file_words();
+  std::string whose = "in " + files_words(site.weather->files);
   if (!site.sensors.empty()) {
     whose =
-        "of " + sensor_words(site.sensors) + (site.weather->file.empty() ? "" : " and " + whose);
+        "of " + sensor_words(site.sensors) + (site.weather->files.empty() ? "" : " and " + whose);
   }
   return "the weather " + whose +
          " has no dry_bulb_C. Without the temperature no model can be run: calibrate, report, "
@@ -178,7 +177,7 @@ bool is_measured(const SiteConfig& site, std::size_t variable) {
 void describe_file(const SiteConfig& site, const metering::LocalCalendar& calendar,
                    const metering::MonthRange& months, const weather::WeatherSeries& series,
                    SiteWeather& result) {
-  const std::string name = site.weather->file_words();
+  const std::string name = files_words(site.weather->files);
   for (metering::Month month = months.first; month <= months.last;
        month = metering::next_month(month)) {
     const auto found =
@@ -225,7 +224,7 @@ Result<SiteWeather> read_all(const SiteConfig& site, const metering::LocalCalend
     describe_file(site, calendar, months, file->series, result);
   } else {
     std::optional<FileWeather> file;
-    if (!site.weather->file.empty()) {
+    if (!site.weather->files.empty()) {
       auto read = read_file(*site.weather, months, result);
       if (!read) return tl::unexpected(read.error());
       file = std::move(*read);
@@ -266,7 +265,7 @@ bool is_assumed(const SiteWeather& weather, std::size_t variable) {
 Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
   const WeatherConfig& config = *site.weather;
   weather::WeatherSeries series;
-  if (!config.file.empty()) {
+  if (!config.files.empty()) {
     if (config.format == WeatherFormat::epw) return WeatherLack{};  // has all of it
     auto read = read_csv(config);
     if (!read) return tl::unexpected(read.error());

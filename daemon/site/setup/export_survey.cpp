@@ -259,18 +259,13 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
     const bool is_said = survey.table && survey.table->shape.unit_column.empty();
     meters.push_back({std::move(rows), meter.column, is_said ? meter.unit.value : ""});
   }
-  if (survey.table) {
-    auto report =
-        table::read_table(survey.file, survey.table->shape, meters, calendar, sink, &whole.clock);
-    if (!report) return tl::unexpected(report.error());
-    whole.report = std::move(*report);
-    return whole;
-  }
-  csv::ReadingsOptions options;
-  for (const table::TableMeter& meter : meters) options.meters.push_back(meter.rows);
-  auto report = csv::read_readings(survey.file, options, sink);
-  if (!report) return tl::unexpected(report.error());
-  whole.report = std::move(*report);
+  csv::ReadingIntake intake{table::intake_options(meters), sink};
+  const std::filesystem::path& file = survey.files.front();
+  auto read = survey.table ? table::read_table(file, survey.table->shape, meters, calendar, intake,
+                                               &whole.clock)
+                           : csv::read_readings(file, table::intake_options(meters), intake);
+  if (!read) return tl::unexpected(read.error());
+  whole.report = intake.finish();
   return whole;
 }
 
@@ -324,7 +319,8 @@ std::string first_issue(const csv::LineIssues& issues) {
 Result<void> require_sound(const SurveyedExport& survey, const WholeFile& whole) {
   const csv::ReadingsReport& report = whole.report;
   const auto unfit = [&](const std::string& why) -> Result<void> {
-    return failure(ErrorCode::malformed, fmt::format("'{}': {}", survey.file.string(), why));
+    return failure(ErrorCode::malformed,
+                   fmt::format("'{}': {}", survey.files.front().string(), why));
   };
   if (report.readings == 0) {
     return unfit("no row can be used; " + (report.issues.total == 0
@@ -466,7 +462,7 @@ Result<std::vector<SurveyedMeter>> meters_of_own(const std::filesystem::path& fi
 }
 
 Result<SurveyedExport> described_export(const std::filesystem::path& file) {
-  SurveyedExport survey{.file = file};
+  SurveyedExport survey{.files = {file}};
   const auto begin = first_bytes(file);
   if (!begin) return tl::unexpected(begin.error());
   const auto container = table::guess_container(*begin);

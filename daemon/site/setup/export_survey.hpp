@@ -43,8 +43,8 @@ struct SurveyedMeter {
 };
 
 struct SurveyedExport {
-  std::filesystem::path file;
-  std::optional<table::TableGuess> table;  ///< None: recald's own CSV.
+  std::vector<std::filesystem::path> files;  ///< Several: in order of time.
+  std::optional<table::TableGuess> table;    ///< None: recald's own CSV.
   std::vector<SurveyedMeter> meters;
   std::vector<std::string> notes;  ///< A sentence each: what is undecided, or left out.
   std::string clock_because;       ///< Why the table has a zone of its own; empty: it has none.

@@ -207,12 +207,20 @@ void write_limits(const SurveyedMeter& meter, Lines& lines) {
   }
 }
 
+/// One file, or a list of them.
+std::string files_value(const std::vector<std::filesystem::path>& files,
+                        const std::filesystem::path& folder) {
+  std::vector<std::string> texts;
+  for (const auto& file : files) texts.push_back(toml_text(relative_path(file, folder)));
+  return texts.size() == 1 ? texts.front() : fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
 void write_meter(const SurveyedExport& one, const SurveyedMeter& meter, const std::string& id,
                  const std::filesystem::path& folder, Lines& lines) {
   lines.head("\n[[meter]]");
   lines.key("id", toml_text(id));
   lines.key("utility", toml_text(metering::to_string(meter.utility.value)), meter.utility.because);
-  lines.key("file", toml_text(relative_path(one.file, folder)));
+  lines.key("file", files_value(one.files, folder));
   if (one.table) {
     write_shape(one, meter, lines);
   } else {
@@ -291,15 +299,19 @@ SiteDraft draft_site(std::span<const SurveyedExport> exports, const std::filesys
   lines.comment("explained in daemon/examples/every-key.toml.");
   lines.head("\n[site]");
   Ids site_ids;
-  lines.key("id", toml_text(site_ids.take(exports.front().file.stem().string(), "site")),
-            "from the file's name");
+  const std::string of_folder = folder.filename().string();
+  const bool is_named = !of_folder.empty() && of_folder != "." && of_folder != "..";
+  lines.key("id",
+            toml_text(site_ids.take(
+                is_named ? of_folder : exports.front().files.front().stem().string(), "site")),
+            is_named ? "from the folder's name" : "from the file's name");
   lines.key("timezone", toml_text(timezone.value), timezone.because);
   Ids ids;
   std::vector<PlacedMeter> all;
   for (const SurveyedExport& one : exports) {
     for (const SurveyedMeter& meter : one.meters) {
       all.push_back({&one, &meter});
-      draft.meter_ids.push_back(ids.take(meter.name, one.file.stem().string()));
+      draft.meter_ids.push_back(ids.take(meter.name, one.files.front().stem().string()));
     }
   }
   const std::vector<FoundSum> sums = sums_of(all);

@@ -110,6 +110,39 @@ TEST(ReadTable, ATimeThatTheClockJumpsOverIsRefused) {
   EXPECT_EQ(read(text, winter, {column("Ost")}).report.error().code, ErrorCode::not_found);
 }
 
+// Portals that list the newest row first: read from the end, the hour that comes twice included.
+TEST(ReadTable, FromNewToOld) {
+  const std::string text =
+      "Zeit;Ost\n27.10.2024 03:00;5\n27.10.2024 02:00;4\n27.10.2024 02:00;3\n"
+      "27.10.2024 01:00;2\nsoon;1\n27.10.2024 00:00;1\n";
+  const Outcome outcome = read(text, portal(), {column("Ost")});
+  ASSERT_EQ(outcome.readings.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_DOUBLE_EQ(outcome.readings[i].mean_kW, static_cast<double>(i + 1));
+    EXPECT_EQ(outcome.readings[i].start,
+              outcome.readings[0].start + std::chrono::hours{1} * static_cast<int>(i));
+  }
+  ASSERT_EQ(outcome.report->issues.total, 1u);
+  EXPECT_EQ(outcome.report->issues.listed[0].line, 6u);
+  EXPECT_EQ(outcome.report->issues.listed[0].text, "soon;1");
+}
+
+TEST(ReadTable, ALongFileFromNewToOld) {
+  std::string text = "Zeit;Ost\n";
+  for (int row = 499; row >= 0; --row) {
+    const int hour = row % 24;
+    const int date = row / 24 + 1;
+    text += (date < 10 ? "0" : "") + std::to_string(date) + ".06.2024 " + (hour < 10 ? "0" : "") +
+            std::to_string(hour) + ":00;" + std::to_string(row) + "\n";
+  }
+  const Outcome outcome = read(text, portal(), {column("Ost")});
+  ASSERT_EQ(outcome.readings.size(), 500u);
+  EXPECT_EQ(outcome.report->issues.total, 0u);
+  for (std::size_t i = 0; i < 500; ++i) {
+    EXPECT_DOUBLE_EQ(outcome.readings[i].mean_kW, static_cast<double>(i));
+  }
+}
+
 // 12,5 may have been 12,55: a last line without its end counts only when it surely is whole.
 TEST(ReadTable, ALastLineThatMayBeCutIsKeptOut) {
   const std::string rows = "Zeit;Ost\n01.02.2024 00:00;12,25\n01.02.2024 00:15;12,50\n";

@@ -95,6 +95,9 @@ TEST_F(SiteSchema, KnowsNoOtherKeysAndTypes) {
   EXPECT_THAT(wrong_in(toml::parse("[bus.any]\nport = true")),
               ElementsAre(HasSubstr("bus.any.port is no ")));
   EXPECT_THAT(wrong_in(toml::parse("[bus.any]\nport = \"ttyS0\"")), IsEmpty());
+  EXPECT_THAT(wrong_in(toml::parse("[[meter]]\nfile = [\"2023.csv\", \"2024.csv\"]")), IsEmpty());
+  EXPECT_THAT(wrong_in(toml::parse("[weather]\nfile = [\"2023.epw\", 7]")),
+              ElementsAre(HasSubstr("weather.file is no ")));
 }
 
 TEST_F(SiteSchema, ExplainsKeys) {

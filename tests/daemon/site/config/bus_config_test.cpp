@@ -103,7 +103,7 @@ TEST(BusConfig, SaysWhatTheFileSays) {
   ASSERT_EQ(site->meters.size(), 3u);
   const MeterConfig& main = site->meters[0];
   ASSERT_TRUE(main.live.has_value());
-  EXPECT_TRUE(main.file.empty());
+  EXPECT_TRUE(main.files.empty());
   EXPECT_EQ(main.live->bus, "plant");
   EXPECT_EQ(main.live->unit, 7);
   EXPECT_EQ(main.live->poll, seconds{10});
@@ -215,7 +215,7 @@ TEST(BusConfig, AWeatherSensorIsNoMeter) {
   EXPECT_EQ(roof.live->poll, seconds{30});
   EXPECT_EQ(roof.meter.interval, std::chrono::minutes{10});
   ASSERT_TRUE(site->weather.has_value());  // without a [weather] table
-  EXPECT_TRUE(site->weather->file.empty());
+  EXPECT_TRUE(site->weather->files.empty());
   ASSERT_EQ(channels_of(roof).size(), 4U);
   EXPECT_EQ(channels_of(roof)[0].id(), "roof.dry_bulb_C");
   EXPECT_EQ(find_channel(*site, "roof.wind_dir_deg")->quantity->unit, "deg");
@@ -273,7 +273,7 @@ TEST(BusConfig, AWeatherSensorThatSendsSaysWhatItsValuesAre) {
 TEST(BusConfig, AWeatherSensorAndAFile) {
   const auto site = loaded(kSite + kRoof + "\n[weather]\nfile = \"before.csv\"\n");
   ASSERT_TRUE(site.has_value()) << site.error().front();
-  EXPECT_EQ(site->weather->file.filename(), "before.csv");
+  EXPECT_EQ(site->weather->files.front().filename(), "before.csv");
   const auto sun =
       loaded(edited(kSite + kRoof, "map = \"sunspec-weather\"", "map = \"sunspec-irradiance\"") +
              "\n[weather]\nfile = \"before.csv\"\n");

@@ -66,7 +66,7 @@ TEST(SiteConfig, SaysWhatTheFileSays) {
   EXPECT_EQ(site.holidays.size(), 1u);
   EXPECT_EQ(site.closing.closing.fill.holidays.size(), 1u);
   ASSERT_EQ(site.meters.size(), 2u);
-  EXPECT_EQ(site.meters[0].file, file.folder() / "readings.csv");
+  EXPECT_EQ(site.meters[0].files, std::vector{file.folder() / "readings.csv"});
   EXPECT_EQ(site.meters[0].name_in_file, "electricity");
   EXPECT_EQ(site.meters[0].meter.rated_kW, 400.0);
   EXPECT_EQ(site.meters[1].name_in_file, "heat");
@@ -148,7 +148,7 @@ TEST(SiteConfig, PathMayBeginWithAVariable) {
   ::setenv("RECALD_TEST_FOLDER", "/srv/data", 1);
   const SiteFile file{with("\"weather.csv\"", "\"$RECALD_TEST_FOLDER/weather.csv\"")};
   ::unsetenv("RECALD_TEST_FOLDER");
-  EXPECT_EQ(file.config().weather->file, "/srv/data/weather.csv");
+  EXPECT_EQ(file.config().weather->files.front(), "/srv/data/weather.csv");
 }
 
 /// One edit of the sample site and the one sentence it earns.
