@@ -1,6 +1,6 @@
 #!/bin/sh
-# Simulation-based calibration and interval coverage of both ways of calibrating, 500 replicates each.
-# Takes about fifteen minutes on two cores. Argument: the build folder.
+# Simulation-based calibration and interval coverage of the ways of calibrating, 500 replicates each.
+# Takes about twenty minutes on two cores. Argument: the build folder.
 set -eu
 cmake --build "$1" --target sbc_study
 "$1/tests/long/sbc_study" "${REPLICATES:-500}"

@@ -1,6 +1,6 @@
 // The full simulation-based calibration of both ways, as a table for tests/results/calibration.md.
 //
-//   sbc_study [replicates] [seed|gaps|epc|default]
+//   sbc_study [replicates] [seed|gaps|epc|default|model]
 
 #include <cstdio>
 #include <cstdlib>
@@ -62,8 +62,13 @@ int main(int argc, char** argv) {
     print("EPC, six months, DRAM", run_sbc(c.sbc, replicates, 30'001, executor));
   }
   if (only.empty() || only == "default") {
-    const OwnedSbcCase c = emulated_epc_case(12, 2);
+    const OwnedSbcCase c = emulated_epc_case(12, 2, /*data_from_model=*/false);
     print("EPC, twelve months, as a calibration of a site goes by default",
+          run_sbc(c.sbc, replicates, 40'001, executor));
+  }
+  if (only.empty() || only == "model") {
+    const OwnedSbcCase c = emulated_epc_case(12, 2, /*data_from_model=*/true);
+    print("The same, with data from the model itself",
           run_sbc(c.sbc, replicates, 40'001, executor));
   }
   return 0;

@@ -162,7 +162,9 @@ inline OwnedSbcCase epc_case(int months, int inputs) {
 
 /// The EPC path as a site's calibration goes by default: a polynomial in the chains, its error
 /// among the points' variances, and the sampler that recald picks.
-inline OwnedSbcCase emulated_epc_case(int months, int inputs) {
+/// @param data_from_model  The data come from the model itself, which the polynomial only follows.
+///                         Without, from the polynomial and its error, as the posterior assumes.
+inline OwnedSbcCase emulated_epc_case(int months, int inputs, bool data_from_model) {
   OwnedSbcCase c = epc_case(months, inputs);
   Rng rng(14);
   const Eigen::MatrixXd theta = design::latin_hypercube(c.sbc.parameters, 200, rng);
@@ -171,10 +173,15 @@ inline OwnedSbcCase emulated_epc_case(int months, int inputs) {
   Emulator emulator = emulate(theta, runs, c.model->output_count(), c.model->month_count()).value();
   PosteriorData with_error = c.sbc.data;
   add_emulator_error(emulator.error_sd, months, with_error);
-  c.sbc.stand_in_variances = with_error.extra_variances - c.sbc.data.extra_variances;
   c.stand_in = std::make_unique<model::metamodel::QuadraticModel>(std::move(emulator.model));
-  c.sbc.stand_in = c.stand_in.get();
-  return c;
+  if (data_from_model) {
+    c.sbc.stand_in_variances = with_error.extra_variances - c.sbc.data.extra_variances;
+    c.sbc.stand_in = c.stand_in.get();
+    return c;
+  }
+  const MonthlyModel& polynomial = *c.stand_in;
+  return {std::move(c.stand_in),
+          {polynomial, c.sbc.parameters, with_error, c.sbc.prior, c.sbc.input_names, {}}};
 }
 
 }  // namespace recald::calibration

@@ -63,6 +63,13 @@ TEST(SimulationBasedCalibration, OfTheEpcPath) {
   expect_calibrated(run_sbc(c.sbc, 40, 2001, for_each_index_serially));
 }
 
+TEST(SimulationBasedCalibration, OfTheDefault) {
+  OwnedSbcCase c = emulated_epc_case(12, 1, /*data_from_model=*/false);
+  c.sbc.sampling = short_chains("nuts", 500, 150);
+  c.sbc.draws = 39;
+  expect_calibrated(run_sbc(c.sbc, 100, 3001, for_each_index_serially));
+}
+
 // The test of the tests: a likelihood that believes in twice the noise there is makes intervals too
 // wide, and the ranks have to say so.
 TEST(SimulationBasedCalibration, SeesAPosteriorThatIsTooWide) {
