@@ -63,12 +63,17 @@ struct SetPoints {
   double closed_start_h = 0.0;  ///< After the start with outdoor-air dampers shut.
 };
 
-/// Days of every year on which the building is used otherwise, such as a school's summer.
+/// Days of every year on which the building runs otherwise: a school's summer, a boiler that is
+/// off.
 struct Season {
   std::chrono::month_day first;  ///< May be later in the year than `last`: over New Year.
   std::chrono::month_day last;   ///< Inclusive.
-  HourlySchedule occupied_fraction;
+  std::optional<HourlySchedule> occupied_fraction;  ///< Absent: as all year.
   bool closed = false;  ///< Set-points and fans keep their unoccupied values all day.
+  bool heating = true;  ///< False: rooms and supply air are not heated. Taps still are.
+  bool cooling = true;
+
+  [[nodiscard]] bool has_own_use() const { return closed || occupied_fraction; }
 
   [[nodiscard]] bool contains(metering::Day day) const {
     const std::chrono::month_day date{day.month(), day.day()};
@@ -119,7 +124,9 @@ struct Building {
   std::vector<Surface> surfaces;
   Use use;
   HourlySchedule occupied_fraction;
-  std::vector<Season> seasons;  ///< The first that holds a day counts; none: as all year.
+  /// Of those that hold a day the first with a use of its own counts. Plant is off in any that says
+  /// so.
+  std::vector<Season> seasons;
   SetPoints set_points;
   double leakage_cm2_m2 = 1.0;    ///< Effective leakage area at 4 Pa per exterior area.
   double ventilation_m3_s = 0.0;  ///< Outdoor air straight to the zone, where no air system is.

@@ -51,10 +51,18 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
   const DayType day = day_type(local.date, holidays);
   const int hour = local.minute_of_day / 60;
   const auto calendar_month = static_cast<unsigned>(local.date.month());
-  const auto season = std::ranges::find_if(
-      building.seasons, [&](const Season& one) { return one.contains(local.date); });
+  const auto season = std::ranges::find_if(building.seasons, [&](const Season& one) {
+    return one.has_own_use() && one.contains(local.date);
+  });
   const bool in_season = season != building.seasons.end();
-  const HourlySchedule& people = in_season ? season->occupied_fraction : building.occupied_fraction;
+  const HourlySchedule& people = in_season && season->occupied_fraction
+                                     ? *season->occupied_fraction
+                                     : building.occupied_fraction;
+  const auto runs = [&](bool Season::*plant) {
+    return std::ranges::all_of(building.seasons, [&](const Season& one) {
+      return one.*plant || !one.contains(local.date);
+    });
+  };
   const double factor = loads.month_factor[calendar_month - 1];
   const double humidity_pct =
       drivers.has_humidity ? weather.rel_humidity_pct : kAssumedHumidity_pct;
@@ -74,6 +82,8 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
           .day = day,
           .local_hour = hour,
           .occupied = !(in_season && season->closed) && is_occupied(building.set_points, day, hour),
+          .heating = runs(&Season::heating),
+          .cooling = runs(&Season::cooling),
           .dry_bulb_C = weather.dry_bulb_C,
           .humidity_ratio =
               weather::humidity_ratio(weather.dry_bulb_C, relative_humidity, drivers.pressure_Pa),

@@ -35,6 +35,8 @@ struct DriverHour {
   DayType day;
   int local_hour;  ///< 0…23
   bool occupied;   ///< Set-points and fans at their daytime values.
+  bool heating;    ///< The plant runs.
+  bool cooling;
   double dry_bulb_C;
   double humidity_ratio;  ///< kg/kg
   double wind_m_s;

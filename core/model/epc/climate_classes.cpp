@@ -150,6 +150,13 @@ ClimateMonth make_month(const Drivers& drivers, std::size_t month, std::size_t f
   result.occupied = make_state(drivers, std::move(occupied), classes_per_state, out);
   result.unoccupied = make_state(drivers, std::move(unoccupied), classes_per_state, out);
   result.stretches = merge_like(find_stretches(drivers, from, to));
+  const auto share = [&](bool DriverHour::*plant) {
+    const std::span hours{drivers.hours.data() + from, to - from};
+    return static_cast<double>(std::ranges::count(hours, true, plant)) /
+           static_cast<double>(hours.size());
+  };
+  result.heating_share = share(&DriverHour::heating);
+  result.cooling_share = share(&DriverHour::cooling);
   return result;
 }
 

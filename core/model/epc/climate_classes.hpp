@@ -51,6 +51,8 @@ struct ClimateMonth {
   ClimateState occupied;
   ClimateState unoccupied;
   std::vector<StretchClass> stretches;
+  double heating_share = 1.0;  ///< Of the hours, those in which the plant runs.
+  double cooling_share = 1.0;
 };
 
 struct ClimateClasses {

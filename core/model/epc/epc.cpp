@@ -236,14 +236,15 @@ void Epc::evaluate_month(const Building& building, const ClimateMonth& month,
   energy[EndUse::hot_water] = hot_water_kWh(building, month);
   if (building.air) add_air_side(building, month, energy);
 
+  // Of a month in which the plant is switched off, its part of the need.
   const double heating_factor =
-      (1.0 + building.heating_loss_fraction) / building.heating_efficiency;
+      month.heating_share * (1.0 + building.heating_loss_fraction) / building.heating_efficiency;
   for (const EndUse use :
        {EndUse::zone_heating, EndUse::reheat, EndUse::preheat, EndUse::humidification}) {
     energy[use] *= heating_factor;
   }
   for (const EndUse use : {EndUse::sensible_cooling, EndUse::latent_cooling}) {
-    energy[use] *= 1.0 + building.cooling_loss_fraction;
+    energy[use] *= month.cooling_share * (1.0 + building.cooling_loss_fraction);
   }
   if (building.chiller_cop) {
     energy[EndUse::chiller] =

@@ -88,6 +88,8 @@ Hourly::Hourly(std::shared_ptr<const Drivers> drivers, const HourlyOptions& opti
          .hours_to_stop = static_cast<float>(h.hours_to_stop),
          .day_of_year = h.day_of_year,
          .occupied = h.occupied,
+         .heating = h.heating,
+         .cooling = h.cooling,
          .sunlit = (sun != 0.0).any(),
          .begins = begins});
     for (Eigen::Index k = 0; k < sides; ++k) irradiance_W_m2_.push_back(sun[k]);
@@ -153,6 +155,25 @@ void Hourly::follow_timetable(const Hour& hour, StepOperation& operation) const 
   }
 }
 
+/// Plant that is switched off for a season: set-points out of reach, and air as it comes in.
+void Hourly::switch_off(const Hour& hour, StepOperation& operation) {
+  constexpr double kOutOfReach_K = 100.0;
+  if (!hour.heating) {
+    operation.heating_occupied_C = operation.heating_unoccupied_C = -kOutOfReach_K;
+  }
+  if (!hour.cooling) {
+    operation.cooling_occupied_C = operation.cooling_unoccupied_C = kOutOfReach_K;
+    operation.supply_C = std::max(operation.supply_C, operation.dry_bulb_C);
+  }
+}
+
+void Hourly::switch_off(const Hour& hour, StepLoads& loads) {
+  if (!hour.heating) {
+    loads.zone_heating_W = loads.reheat_W = loads.preheat_W = loads.humidification_W = 0.0;
+  }
+  if (!hour.cooling) loads.sensible_cooling_W = loads.latent_cooling_W = 0.0;
+}
+
 /// Rooms that are left at night warm up slowly, and their handlers begin with shut dampers.
 Hourly::Morning Hourly::morning_of(const Hour& hour) const {
   const SetPoints& set = building_.set_points;
@@ -179,6 +200,7 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
   operation.plugs_W = h.plugs_W;
   operation.exterior_W = 1000.0 * building_.use.exterior_kW * h.dark_share;
   follow_timetable(h, operation);
+  switch_off(h, operation);
   if (options_.steps_per_hour == 1) return operation;
 
   // Weather between the middles of hours; at the ends of a stretch the last value stands.
@@ -300,6 +322,7 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
     add_air_handlers(*building_.air, heat_capacity_J_m3K_, running_share, zones, latent_W, dampers,
                      loads);
   }
+  switch_off(hours_[hour], loads);
   for (const Alteration* alteration : alterations) {
     alteration->supply(building_, drivers_->hours[hour], operation, loads);
   }

@@ -66,6 +66,8 @@ class Hourly {
     float hours_to_stop;
     int day_of_year;
     bool occupied;
+    bool heating;  ///< The plant runs.
+    bool cooling;
     bool sunlit;  ///< Any sun on any side.
     bool begins;  ///< First hour, or first after a jump in time.
   };
@@ -85,6 +87,8 @@ class Hourly {
   };
   [[nodiscard]] Morning morning_of(const Hour& hour) const;
   void follow_timetable(const Hour& hour, StepOperation& operation) const;
+  static void switch_off(const Hour& hour, StepOperation& operation);
+  static void switch_off(const Hour& hour, StepLoads& loads);
   [[nodiscard]] ZoneTotals solve_zones(std::size_t hour, const StepOperation& operation,
                                        const Morning& morning, double served_share);
   void serve_closets(double heat_W, const StepOperation& operation, ZoneTotals& totals) const;

@@ -101,11 +101,17 @@ model::Season read_season(TomlReader& table) {
   model::Season season{.first = read_month_day(table, "from"),
                        .last = read_month_day(table, "to"),
                        .occupied_fraction = {},
-                       .closed = table.boolean("closed").value_or(false)};
+                       .closed = table.boolean("closed").value_or(false),
+                       .heating = table.boolean("heating").value_or(true),
+                       .cooling = table.boolean("cooling").value_or(true)};
+  if (season.closed) season.occupied_fraction.emplace();
   if (auto schedule = table.table("schedule")) {
-    read_schedule(*schedule, season.occupied_fraction, /*whole=*/false);
-  } else if (!season.closed) {
-    table.problem("a season is closed = true, has a schedule of its own, or both");
+    read_schedule(*schedule, season.occupied_fraction.emplace(), /*whole=*/false);
+  }
+  if (!season.has_own_use() && season.heating && season.cooling) {
+    table.problem(
+        "a season says nothing; give it closed = true, heating = false, cooling = false, or a "
+        "schedule of its own");
   }
   table.finish();
   return season;

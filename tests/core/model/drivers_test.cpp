@@ -65,9 +65,9 @@ TEST(Drivers, ASeasonHasItsOwnPeopleAndMayBeClosed) {
   Building building = sample_building();
   Season summer{.first = std::chrono::July / 5,
                 .last = std::chrono::August / 20,
-                .occupied_fraction = {},
+                .occupied_fraction = HourlySchedule{},
                 .closed = true};
-  summer.occupied_fraction.at(DayType::workday, 10) = 0.1;
+  summer.occupied_fraction->at(DayType::workday, 10) = 0.1;
   building.seasons = {summer};
   const Drivers with = sample_drivers(building, 12);
   const Drivers without = sample_drivers(sample_building(), 12);
@@ -83,6 +83,34 @@ TEST(Drivers, ASeasonHasItsOwnPeopleAndMayBeClosed) {
     EXPECT_FALSE(hour.occupied);
     const bool is_ten_of_workday = hour.day == DayType::workday && hour.local_hour == 10;
     EXPECT_EQ(hour.occupied_fraction, is_ten_of_workday ? 0.1 : 0.0);
+  }
+}
+
+TEST(Drivers, PlantThatIsOffLeavesPeopleAlone) {
+  Building building = sample_building();
+  building.seasons = {{.first = std::chrono::May / 1,
+                       .last = std::chrono::September / 30,
+                       .occupied_fraction = {},
+                       .heating = false},
+                      {.first = std::chrono::July / 5,
+                       .last = std::chrono::August / 20,
+                       .occupied_fraction = {},
+                       .closed = true,
+                       .cooling = false}};
+  const Drivers with = sample_drivers(building, 12);
+  const Drivers without = sample_drivers(sample_building(), 12);
+  const auto is_between = [](const DriverHour& hour, std::chrono::month_day from,
+                             std::chrono::month_day to) {
+    const std::chrono::month_day date{hour.date.month(), hour.date.day()};
+    return from <= date && date <= to;
+  };
+  for (std::size_t i = 0; i < with.hours.size(); ++i) {
+    const DriverHour& hour = with.hours[i];
+    const bool is_closed = is_between(hour, std::chrono::July / 5, std::chrono::August / 20);
+    EXPECT_EQ(hour.heating, !is_between(hour, std::chrono::May / 1, std::chrono::September / 30));
+    EXPECT_EQ(hour.cooling, !is_closed);
+    EXPECT_EQ(hour.occupied, !is_closed && without.hours[i].occupied);
+    EXPECT_EQ(hour.occupied_fraction, without.hours[i].occupied_fraction);
   }
 }
 

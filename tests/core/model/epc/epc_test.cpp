@@ -62,6 +62,28 @@ TEST(Epc, ClassesAgreeWithHourlySums) {
               0.01 * year_kWh(by_hour, kHeating));
 }
 
+/// Off from June to the middle of September.
+Building with_boiler_off() {
+  Building building = sample_building();
+  building.seasons = {{.first = std::chrono::June / 1,
+                       .last = std::chrono::September / 15,
+                       .occupied_fraction = {},
+                       .heating = false}};
+  return building;
+}
+
+TEST(Epc, PlantThatIsOffUsesNothing) {
+  const auto on = evaluate(sample_building());
+  const auto off = evaluate(with_boiler_off());
+  for (std::size_t month = 0; month < 12; ++month) {
+    SCOPED_TRACE(month);
+    const double share = month >= 5 && month <= 7 ? 0.0 : month == 8 ? 0.5 : 1.0;
+    EXPECT_NEAR(year_kWh({off[month]}, kHeating), share * year_kWh({on[month]}, kHeating), 1e-6);
+    EXPECT_DOUBLE_EQ(off[month][hot_water], on[month][hot_water]);
+    EXPECT_DOUBLE_EQ(year_kWh({off[month]}, kCooling), year_kWh({on[month]}, kCooling));
+  }
+}
+
 TEST(Epc, LatentPrefixSumsEqualThePlainSum) {
   const auto climate = classes_of(sample_building(), kClassesPerState, 2);
   const ClimateState& state = climate->months[1].occupied;

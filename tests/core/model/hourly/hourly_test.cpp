@@ -46,6 +46,36 @@ double heat_kWh(const EndUseEnergy& e) {
   return e[EndUse::zone_heating] + e[EndUse::reheat] + e[EndUse::preheat];
 }
 
+TEST(Hourly, PlantThatIsOffUsesNothing) {
+  Building building = sample_building();
+  building.seasons = {{.first = std::chrono::June / 1,
+                       .last = std::chrono::August / 31,
+                       .occupied_fraction = {},
+                       .heating = false},
+                      {.first = std::chrono::December / 1,
+                       .last = std::chrono::February / 15,
+                       .occupied_fraction = {},
+                       .cooling = false}};
+  Hourly on = make_hourly(12);
+  Hourly off{std::make_shared<const Drivers>(sample_drivers(building, 12)), {.steps_per_hour = 1}};
+  const auto with = end_uses_of(on, sample_building());
+  const auto without = end_uses_of(off, building);
+  const auto cold_kWh = [](const EndUseEnergy& e) {
+    return e[EndUse::sensible_cooling] + e[EndUse::latent_cooling];
+  };
+  for (std::size_t month = 5; month <= 7; ++month) {
+    EXPECT_GT(heat_kWh(with[month]), 0.0);
+    EXPECT_EQ(heat_kWh(without[month]), 0.0);
+    EXPECT_GT(without[month][EndUse::hot_water], 0.0);
+    // Rooms that nobody reheats need less cold.
+    EXPECT_LT(cold_kWh(without[month]), cold_kWh(with[month]));
+  }
+  EXPECT_GT(cold_kWh(with[0]), 0.0);
+  EXPECT_EQ(cold_kWh(without[0]), 0.0);
+  EXPECT_EQ(cold_kWh(without[11]), 0.0);
+  EXPECT_DOUBLE_EQ(heat_kWh(without[3]), heat_kWh(with[3]));
+}
+
 /// An alteration of one hook, given as a function.
 struct Operating final : Alteration {
   explicit Operating(std::function<void(const DriverHour&, StepOperation&)> change)
