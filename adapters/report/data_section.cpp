@@ -106,9 +106,10 @@ void write_findings(Html& html, const ReportData& data) {
 }  // namespace
 
 void write_data_section(Html& html, const ReportData& data) {
-  if (data.outputs.empty() && data.findings.empty()) return;
+  const bool is_covered = std::ranges::any_of(data.outputs, has_known_coverage);
+  if (!is_covered && data.findings.empty()) return;
   open_section(html, "data", "Are the data good?");
-  if (!data.outputs.empty()) {
+  if (is_covered) {
     write_coverage_words(html, data.outputs);
     write_coverage_overview(html, data.outputs);
     write_coverage_details(html, data.outputs);

@@ -79,10 +79,10 @@ json forecast_json(const std::optional<assessment::MonthForecast>& forecast) {
       std::array{forecast->q05, forecast->q25, forecast->q50, forecast->q75, forecast->q95});
 }
 
-json month_json(const OutputMonth& month) {
-  return {{"month", month_key(month.figure.month)},
+json month_json(const OutputResult& output, const OutputMonth& month) {
+  return {{"month", month_key(month.figure.month, month.number)},
           {"role", role_text(month.role)},
-          {"measured", number(month.figure.daily_average_kWh)},
+          {"measured", number(measured_of(output, month))},
           {"usable", month.figure.usable},
           {"filled", json_number(month.figure.filled_share, 4)},
           {"different", month.flagged_different},
@@ -99,10 +99,11 @@ json metric_histogram_json(const std::vector<double>& values) {
 
 json output_json(const OutputResult& output) {
   json months = json::array();
-  for (const OutputMonth& month : output.months) months.push_back(month_json(month));
+  for (const OutputMonth& month : output.months) months.push_back(month_json(output, month));
   const assessment::OutputAssessment fit =
       output.assessment.value_or(assessment::OutputAssessment{});
   return {{"label", output.label},
+          {"unit", output.unit},
           {"months", months},
           {"cvrmse",
            {{"calibration", metric_histogram_json(fit.draw_cvrmse_calibration)},

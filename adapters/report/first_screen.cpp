@@ -36,9 +36,10 @@ Table overview_table(std::span<const OverviewMeter> meters, bool with_band) {
   if (with_band) columns.insert(columns.end(), {"Expected: 5 %", "Middle", "95 %"});
   table.columns(columns);
   for (const OverviewMeter& meter : meters) {
-    table.group(fmt::format("{}, {}", meter.label, meter.unit));
+    table.group(with_unit(meter.label, meter.unit));
     for (const OverviewMonth& month : meter.months) {
-      std::vector<Cell> cells{{month_text(month.month)}, {number_text(month.measured), "number"}};
+      std::vector<Cell> cells{{month_text(month.month, month.number)},
+                              {number_text(month.measured), "number"}};
       for (std::size_t i = 0; with_band && i < 3; ++i) {
         cells.push_back({month.band ? number_text((*month.band)[i]) : "–", "number"});
       }
@@ -64,13 +65,14 @@ void write_overview_key(Html& html, bool with_band, const Expected& expected) {
 std::vector<OverviewMeter> model_overview(const ReportData& data) {
   std::vector<OverviewMeter> meters;
   for (const OutputResult& output : data.outputs) {
-    OverviewMeter meter{output.label, "kWh/day", {}};
+    OverviewMeter meter{output.label, output.unit, {}};
     for (const OutputMonth& month : output.months) {
       if (month.role == assessment::MonthRole::unused && !month.box) continue;
       OverviewMonth& shown = meter.months.emplace_back(
           OverviewMonth{month.figure.month,
+                        month.number,
                         month.role,
-                        month.figure.usable ? month.figure.daily_average_kWh : NAN,
+                        month.figure.usable ? measured_of(output, month) : NAN,
                         {}});
       if (month.box) shown.band = {month.box->low_whisker, month.box->q50, month.box->high_whisker};
     }
@@ -127,7 +129,7 @@ nlohmann::json overview_json(const std::vector<OverviewMeter>& meters) {
     nlohmann::json months = nlohmann::json::array();
     for (const OverviewMonth& month : meter.months) {
       months.push_back(
-          {{"month", month_key(month.month)},
+          {{"month", month_key(month.month, month.number)},
            {"role", month.role == MonthRole::validation ? "validation" : "other"},
            {"measured", json_number(month.measured)},
            {"band", month.band ? json_numbers(*month.band) : nlohmann::json(nullptr)}});

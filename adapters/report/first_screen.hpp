@@ -14,6 +14,7 @@ namespace recald::report {
 /// One meter's panel of the picture.
 struct OverviewMonth {
   metering::Month month;
+  std::string number;  ///< As `OutputMonth::number`.
   assessment::MonthRole role;
   double measured;                            ///< NaN: none that may be used.
   std::optional<std::array<double, 3>> band;  ///< 5 %, middle and 95 % of what was expected.

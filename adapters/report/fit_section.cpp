@@ -47,7 +47,7 @@ void add_stage(Table& table, const char* stage, const std::optional<FitMetrics>&
 /// "before".
 void write_metrics(Html& html, const std::vector<OutputResult>& outputs) {
   Table table(
-      "Bias and scatter of the monthly daily averages. ✓ within and ✕ outside the limits of "
+      "Bias and scatter of the monthly figures. ✓ within and ✕ outside the limits of "
       "Guideline 14");
   table.column_groups({{"", 1}, {"Calibration months", 3}, {"Validation months", 3}});
   const std::string model_high = "NMBE, expected\u00a0−\u00a0meter";
@@ -68,15 +68,19 @@ void write_metrics(Html& html, const std::vector<OutputResult>& outputs) {
     add_stage(table, "Model, after", fit.after.calibration, fit.after.validation);
   }
   html.element("h3", "Forecast and model against the meters");
+  const bool has_yardstick = std::ranges::any_of(outputs, [](const OutputResult& output) {
+    return output.assessment && output.assessment->yardstick;
+  });
+  const std::string regression =
+      has_yardstick ? "The regression takes the meter's days and the outdoor temperature alone. "
+                    : "";
   html.element(
       "p",
       "NMBE is the mean bias and CV(RMSE) the scatter, both as a share of the mean measured "
       "consumption. Expected − meter is positive where too much is expected; Guideline 14 itself "
       "writes meter − expected, so both are given. The forecast is the model with what the "
-      "calibration months say of its error; a calibration month is forecast from the others. The "
-      "regression takes the meter's days and the outdoor temperature alone. The model alone is "
-      "what "
-      "savings and diagnoses are computed with.");
+      "calibration months say of its error; a calibration month is forecast from the others. " +
+          regression + "The model alone is what savings and diagnoses are computed with.");
   table.write(html);
 }
 
@@ -98,7 +102,9 @@ void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
     return fit && (fit->forecast.calibration.scores || fit->forecast.validation.scores);
   });
   if (!any) return;
-  Table table("Measured months inside the forecasts' intervals, and their scores in kWh/day");
+  Table table(
+      "Measured months inside the forecasts' intervals, and their scores in the unit of each "
+      "output");
   table.column_groups({{"", 1}, {"Calibration months", 4}, {"Validation months", 4}});
   table.columns({"Output", "Inside 50 %", "Inside 90 %", "CRPS", "Score of 90 %", "Inside 50 %",
                  "Inside 90 %", "CRPS", "Score of 90 %"});
@@ -110,7 +116,7 @@ void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
       add_score_cells(cells, forecast.validation);
       table.row(std::move(cells));
     };
-    row(output.label, output.assessment->forecast);
+    row(with_unit(output.label, output.unit), output.assessment->forecast);
     if (output.assessment->yardstick) row("  Regression of days", *output.assessment->yardstick);
   }
   html.element("h3", "Is the stated uncertainty honest?");
@@ -134,14 +140,21 @@ std::string role_word(MonthRole role) {
   return "";
 }
 
+/// "daily average consumption", or what else a month of this output is.
+std::string_view figure_words(const OutputResult& output) {
+  if (output.unit == "kWh/day") return "daily average consumption";
+  return output.unit == "kW" ? "peak demand" : "figure";
+}
+
 Table month_table(const OutputResult& output) {
-  Table table(output.label + ": daily average consumption by month, kWh/day");
+  Table table(
+      with_unit(fmt::format("{}: {} by month", output.label, figure_words(output)), output.unit));
   table.columns({"Month", "Role", "Measured", "Remark", "Estimated", "Forecast: mean", "5 %",
                  "95 %", "Model: 25 %", "Median", "75 %"});
   for (const OutputMonth& month : output.months) {
-    std::vector<Cell> cells{{month_text(month.figure.month)},
+    std::vector<Cell> cells{{month_text(month.figure.month, month.number)},
                             {role_word(month.role)},
-                            {number_text(month.figure.daily_average_kWh), "number"}};
+                            {number_text(measured_of(output, month)), "number"}};
     std::string remark = month.figure.usable ? "" : "✕ not usable";
     if (month.flagged_different) remark += remark.empty() ? "◆ different" : ", ◆ different";
     cells.push_back({remark, "nowrap"});
@@ -166,12 +179,13 @@ bool modelled(const OutputResult& output) {
 std::string months_caption(const OutputResult& output) {
   const bool any_measured = std::any_of(
       output.months.begin(), output.months.end(),
-      [](const OutputMonth& month) { return std::isfinite(month.figure.daily_average_kWh); });
+      [&](const OutputMonth& month) { return std::isfinite(measured_of(output, month)); });
   std::string caption = any_measured ? "" : "Nothing was measured in these months. ";
   caption += modelled(output)
                  ? "Box: the middle half of what was expected; whiskers: nine tenths of it. A "
                    "calibration month is forecast from the others. Dash: the model alone. "
                  : "There is no calibrated model yet: measurements only. ";
+  if (!has_known_coverage(output)) return caption;
   return caption +
          "The number under a month is the share of its intervals that are estimated, not measured.";
 }
@@ -182,9 +196,8 @@ void write_months_figure(Html& html, const OutputResult& output, int index) {
       {.kind = "months",
        .index = index,
        .title = output.label + ", month by month",
-       .description = fmt::format("Monthly daily average consumption of {}, {} months: "
-                                  "measured values{}.",
-                                  output.label, output.months.size(),
+       .description = fmt::format("Monthly {} of {}, {} months: measured values{}.",
+                                  figure_words(output), output.label, output.months.size(),
                                   modelled(output) ? " against box plots of the forecasts" : ""),
        .caption = months_caption(output)},
       month_table(output));
@@ -262,7 +275,7 @@ void write_fit_section(Html& html, const ReportData& data) {
       std::any_of(data.outputs.begin(), data.outputs.end(),
                   [](const OutputResult& output) { return output.assessment.has_value(); });
   if (judged) write_metrics(html, data.outputs);
-  html.element("h3", "Monthly consumption").markup("<p class=\"key\" aria-hidden=\"true\">");
+  html.element("h3", "Month by month").markup("<p class=\"key\" aria-hidden=\"true\">");
   if (has_model(data)) {
     html.markup("<span><i class=\"sign box\"></i>forecast</span>");
   }

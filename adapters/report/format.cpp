@@ -79,6 +79,18 @@ std::string month_key(metering::Month month) {
   return fmt::format("{:04}-{:02}", int{month.year()}, unsigned{month.month()});
 }
 
+std::string month_text(metering::Month month, const std::string& number) {
+  return number.empty() ? month_text(month) : "Month " + number;
+}
+
+std::string month_key(metering::Month month, const std::string& number) {
+  return number.empty() ? month_key(month) : number;
+}
+
+std::string with_unit(const std::string& label, const std::string& unit) {
+  return unit.empty() ? label : label + ", " + unit;
+}
+
 std::string day_key(metering::Day day) {
   return fmt::format("{:04}-{:02}-{:02}", int{day.year()}, unsigned{day.month()},
                      unsigned{day.day()});

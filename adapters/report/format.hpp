@@ -20,6 +20,9 @@ namespace recald::report {
 /// A share in percent: 0.1534 → "15.3 %", with a no-break space.
 [[nodiscard]] std::string percent_text(double share, int decimals = 1);
 
+/// "Steam, kWh/day"; the label alone where the unit is empty.
+[[nodiscard]] std::string with_unit(const std::string& label, const std::string& unit);
+
 /// A probability: 0.1534 → "15.3 %"; the ends, which no data reach, are "over 99.9 %" and
 /// "under 0.1 %".
 [[nodiscard]] std::string probability_text(double probability);
@@ -29,8 +32,11 @@ namespace recald::report {
 
 [[nodiscard]] std::string month_text(metering::Month month);  ///< "Mar 2021"
 [[nodiscard]] std::string month_key(metering::Month month);   ///< "2021-03"
-[[nodiscard]] std::string day_key(metering::Day day);         ///< "2021-03-09"
-[[nodiscard]] std::string month_name(unsigned month);         ///< 1 → "Jan"
+/// The same of a month that may have no calendar: "Month 7" and "7". @param number  "7", or empty.
+[[nodiscard]] std::string month_text(metering::Month month, const std::string& number);
+[[nodiscard]] std::string month_key(metering::Month month, const std::string& number);
+[[nodiscard]] std::string day_key(metering::Day day);  ///< "2021-03-09"
+[[nodiscard]] std::string month_name(unsigned month);  ///< 1 → "Jan"
 
 /// "2021-03-09 15:45" on the clock of the place, or in UTC without one.
 [[nodiscard]] std::string local_text(metering::Instant t,

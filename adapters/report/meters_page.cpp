@@ -41,6 +41,7 @@ std::vector<OverviewMeter> forecast_overview(const MetersData& data) {
     for (const OutputMonth& month : output.months) {
       OverviewMonth& shown = meter.months.emplace_back(
           OverviewMonth{month.figure.month,
+                        month.number,
                         month.role,
                         month.figure.usable ? month.figure.daily_average_kWh : NAN,
                         {}});

@@ -4,12 +4,15 @@
 /// so a site that has readings but no calibration yet gets a report too.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/absent.hpp"
 #include "core/assessment/output_assessment.hpp"
 #include "core/calibration/summary.hpp"
 #include "core/metering/civil_time.hpp"
@@ -76,21 +79,38 @@ struct ParameterResult {
   std::vector<double> draws;  ///< Posterior; 30 bins are made of them.
 };
 
-/// One month of one output; energies are daily averages in kWh/day.
+/// One month of one output, in the output's unit; energies are daily averages in kWh/day.
 struct OutputMonth {
-  metering::MonthlyFigure figure;  ///< Coverage 0 and NaN where the meter has no such month.
+  /// Coverage 0 and NaN where the meter has no such month; coverage NaN where nobody knows it.
+  metering::MonthlyFigure figure;
+  std::string number;  ///< Of a month without a calendar: "7". Empty: the figure's month counts.
   assessment::MonthRole role = assessment::MonthRole::unused;
-  std::optional<assessment::BoxPlot> box;             ///< Of the posterior draws, kWh/day.
+  std::optional<assessment::BoxPlot> box;             ///< Of the posterior draws.
   std::optional<assessment::MonthForecast> forecast;  ///< What the meter was expected to show.
   bool flagged_different = false;  ///< Measured apart from what the model expects.
 };
 
-/// One meter's monthly consumption, measured and modelled.
+/// One meter's monthly consumption, or its monthly peak, measured and modelled.
 struct OutputResult {
   std::string label;
+  std::string unit = "kWh/day";  ///< "kW": of the figures the peaks are meant. Empty: not known.
   std::vector<OutputMonth> months;
   std::optional<assessment::OutputAssessment> assessment;  ///< Its boxes stand in `months`.
 };
+
+/// Whether anybody knows which share of the output's months was measured: not of a design, which
+/// has figures and no readings.
+[[nodiscard]] inline bool has_known_coverage(const OutputResult& output) {
+  return std::ranges::any_of(
+      output.months, [](const OutputMonth& month) { return !std::isnan(month.figure.coverage); });
+}
+
+/// What was measured in a month, in the output's unit; NaN where nothing was.
+[[nodiscard]] inline double measured_of(const OutputResult& output, const OutputMonth& month) {
+  const metering::MonthlyFigure& figure = month.figure;
+  if (output.unit != "kW") return figure.daily_average_kWh;
+  return figure.peak ? figure.peak->kW : kAbsent;
+}
 
 struct PeakSeries {
   std::string meter;

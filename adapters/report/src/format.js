@@ -30,7 +30,10 @@ export function percentText(share, decimals = 1) {
 export const yearOf = (key) => key.slice(0, 4);
 export const monthNumber = (key) => Number(key.slice(5, 7));
 export const monthName = (number) => monthNames[number - 1];
-export const monthText = (key) => `${monthName(monthNumber(key))} ${yearOf(key)}`;
+/** A design may number its months, without a calendar: "7". */
+export const isNumbered = (key) => !key.includes("-");
+export const monthText = (key) =>
+  isNumbered(key) ? `Month ${key}` : `${monthName(monthNumber(key))} ${yearOf(key)}`;
 
 /** Names are data: what ECharts reads as rich-text markup in them is taken out. */
 export const plainText = (text) => text.replace(/[{}|]/g, " ");

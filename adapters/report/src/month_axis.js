@@ -1,6 +1,6 @@
 // A category axis of months: names of months, the year under its first month, optionally a line of
 // small text between the two.
-import { monthName, monthNumber, yearOf } from "./format.js";
+import { isNumbered, monthName, monthNumber, yearOf } from "./format.js";
 import { axisLabel, ink, mutedInk, rule } from "./theme.js";
 
 export const monthSlotWidth = 28; // Pixels a month needs for "Mar" and "12 %".
@@ -12,28 +12,30 @@ const categoryAxis = (keys) => ({
   axisLine: { lineStyle: { color: rule } },
 });
 
-/** Years alone, where months have no room. @param keys  "2021-03" … */
+/** Years alone, where months have no room. @param keys  "2021-03" …, or numbers of months */
 export function yearAxis(keys) {
   return {
     ...categoryAxis(keys),
     axisLabel: {
       ...axisLabel,
-      interval: (i) => monthNumber(keys[i]) === 1,
-      formatter: yearOf,
+      ...(keys.every(isNumbered)
+        ? { hideOverlap: true }
+        : { interval: (i) => monthNumber(keys[i]) === 1, formatter: yearOf }),
     },
   };
 }
 
-/** @param keys  "2021-03" …; @param below  one short text a month, or null for none. */
+/** @param keys  "2021-03" …, or numbers of months; @param below  one short text a month, or null for none. */
 export function monthAxis(keys, { below = null, initials = false } = {}) {
-  const isYearStart = (i) => i === 0 || yearOf(keys[i]) !== yearOf(keys[i - 1]);
+  const isYearStart = (i) =>
+    !isNumbered(keys[i]) && (i === 0 || yearOf(keys[i]) !== yearOf(keys[i - 1]));
   return {
     ...categoryAxis(keys),
     axisLabel: {
       ...axisLabel,
       interval: 0,
       formatter(key, i) {
-        const name = monthName(monthNumber(key));
+        const name = isNumbered(key) ? key : monthName(monthNumber(key));
         const lines = [initials ? name[0] : name];
         if (below) lines.push(`{below|${below[i] || " "}}`);
         if (isYearStart(i)) lines.push(`{year|${yearOf(key)}}`);

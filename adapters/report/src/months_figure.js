@@ -37,7 +37,7 @@ function runsOf(months, roleNames) {
 }
 
 /** Zero where that leaves room to see anything; otherwise the axis says that it starts elsewhere. */
-function verticalAxis(months) {
+function verticalAxis(months, unit) {
   const values = months
     .flatMap(({ measured, forecast, box }) => [measured, ...(forecast ?? []), ...(box ?? [])])
     .filter(Number.isFinite);
@@ -45,7 +45,7 @@ function verticalAxis(months) {
   const high = Math.max(...values);
   const fromZero = values.length === 0 || low < 0.6 * high;
   return valueAxis({
-    name: fromZero ? "kWh/day" : "kWh/day (axis does not start at 0)",
+    name: fromZero ? unit : `${unit} (axis does not start at 0)`.trim(),
     nameLocation: "end",
     nameGap: 34,
     nameTextStyle: { color: mutedInk, fontSize: 12, align: "left", padding: [0, 0, 0, -62] },
@@ -63,12 +63,12 @@ function measuredSeries(months, accepts, style) {
   };
 }
 
-function tooltipText(month, roleNames) {
+function tooltipText(month, unit, roleNames) {
   const lines = [
     `${monthText(month.month)} · ${roleNames[month.role].toLowerCase()}`,
-    `Measured ${numberText(month.measured)} kWh/day${month.usable ? "" : " (not usable)"}`,
-    `Estimated intervals ${percentText(month.filled)}`,
+    `Measured ${numberText(month.measured)} ${unit}${month.usable ? "" : " (not usable)"}`,
   ];
+  if (month.filled !== null) lines.push(`Estimated intervals ${percentText(month.filled)}`);
   if (month.forecast) {
     const [low, q25, q50, q75, high] = month.forecast.map(numberText);
     lines.push(
@@ -89,7 +89,7 @@ function filledText(share) {
 }
 
 export function drawMonths(place, data) {
-  const { months } = data.outputs[place.dataset.index];
+  const { months, unit } = data.outputs[place.dataset.index];
   const roleNames = data.roleNames ?? usualRoleNames;
   place.style.minWidth = `${months.length * monthSlotWidth + 80}px`;
   const empty = [NaN, NaN, NaN, NaN, NaN];
@@ -99,13 +99,13 @@ export function drawMonths(place, data) {
       ...tooltip,
       trigger: "axis",
       axisPointer: { type: "shadow", shadowStyle: { color: "rgba(85,96,110,.12)" } },
-      formatter: (items) => tooltipText(months[items[0].dataIndex], roleNames),
+      formatter: (items) => tooltipText(months[items[0].dataIndex], unit, roleNames),
     },
     xAxis: monthAxis(
       months.map(({ month }) => month),
       { below: months.map(({ filled }) => filledText(filled)) },
     ),
-    yAxis: verticalAxis(months),
+    yAxis: verticalAxis(months, unit),
     series: [
       bandSeries(runsOf(months, roleNames)),
       {

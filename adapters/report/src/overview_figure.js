@@ -108,7 +108,7 @@ export function drawOverview(place, data) {
       valueAxis({
         gridIndex,
         ...spanOf(months),
-        name: `${plainText(label)}, ${unit}`,
+        name: [plainText(label), unit].filter(Boolean).join(", "),
         nameLocation: "end",
         nameGap: 10,
         nameTextStyle: {

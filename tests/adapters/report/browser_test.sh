@@ -56,6 +56,9 @@ expect full '>Validation</text>' "the validation months are not labelled"
 expect full '<image ' "the load calendar has no picture"
 expect full 'Save all hours as CSV' "the hourly values cannot be saved"
 check_figures "$1" readings-only
+check_figures "$1" design
+expect design '>36</text>' "months are not labelled by their numbers"
+expect design '>kW</text>' "the peaks have no unit"
 check_figures "$1" diagnosis
 expect diagnosis '>Before</text>' "the maps before are not labelled"
 expect diagnosis '>Something else</text>' "the unknown does not stand among the candidates"

@@ -56,6 +56,24 @@ TEST(Report, BeginsWithWhatAClientUnderstands) {
   EXPECT_NE(guideline, std::string::npos);
 }
 
+TEST(Report, OfADesignLeavesOutWhatItsFolderDoesNotKnow) {
+  const std::string page = own_markup(render_report(design_report()));
+  for (const char* id : {"data", "peaks", "profile", "load"}) {
+    EXPECT_THAT(page, Not(HasSubstr("<section id=\"" + std::string{id} + "\">")));
+  }
+  EXPECT_THAT(page, Not(HasSubstr("share of its intervals that are estimated")));
+  EXPECT_THAT(page, HasSubstr("Month 36"));
+  EXPECT_THAT(page, Not(HasSubstr("Dec 2")));
+  EXPECT_THAT(page, HasSubstr("Steam peak: peak demand by month, kW"));
+  const json data = report_json(design_report());
+  EXPECT_EQ(data["outputs"][1]["unit"], "kW");
+  EXPECT_EQ(data["outputs"][1]["months"][35]["month"], "36");
+  EXPECT_EQ(data["outputs"][1]["months"][0]["measured"],
+            report_json(sample_report())["outputs"][1]["months"][0]["measured"]);
+  EXPECT_TRUE(data["outputs"][1]["months"][0]["filled"].is_null());
+  EXPECT_EQ(data["overview"][1]["unit"], "kW");
+}
+
 TEST(Report, ADiagnosisMadeLaterIsPutIntoThePage) {
   ReportData data = sample_report();
   const std::string page = render_report(data);

@@ -366,4 +366,33 @@ ReportData readings_only_report() {
   return data;
 }
 
+ReportData design_report() {
+  ReportData data = sample_report();
+  data.title = "Calibration on a design (sample, invented numbers)";
+  data.site = {.id = {}, .name = "sample design", .time_zone = {}};
+  data.calendar.reset();
+  data.asks_for_diagnosis = false;
+  data.findings.clear();
+  data.profile = {};
+  data.peaks.clear();
+  data.loads.clear();
+  data.outputs[1].label += " peak";
+  data.outputs[1].unit = "kW";
+  data.outputs[2].unit.clear();
+  for (OutputResult& output : data.outputs) {
+    int number = 0;
+    for (OutputMonth& month : output.months) {
+      const double measured = month.figure.daily_average_kWh;
+      month.number = std::to_string(++number);
+      month.flagged_different = false;
+      month.figure = {.daily_average_kWh = output.unit == "kW" ? NAN : measured,
+                      .coverage = NAN,
+                      .filled_share = NAN,
+                      .usable = std::isfinite(measured)};
+      if (output.unit == "kW") month.figure.peak = metering::PeakDemand{.kW = measured};
+    }
+  }
+  return data;
+}
+
 }  // namespace recald::report

@@ -12,4 +12,8 @@ namespace recald::report {
 /// recorded nothing at all.
 [[nodiscard]] ReportData readings_only_report();
 
+/// A design of experiments: the same figures with months that have numbers and no calendar, a peak
+/// among the outputs, one output without a unit, and nothing of the readings.
+[[nodiscard]] ReportData design_report();
+
 }  // namespace recald::report

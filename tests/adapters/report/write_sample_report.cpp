@@ -22,6 +22,7 @@ const std::map<std::string, Page>& pages() {
   static const std::map<std::string, Page> kPages = {
       {"full", [] { return render_report(sample_report()); }},
       {"readings-only", [] { return render_report(readings_only_report()); }},
+      {"design", [] { return render_report(design_report()); }},
       {"diagnosis", [] { return render_diagnosis(sample_diagnosis()); }},
       {"unconfirmed", [] { return render_diagnosis(unconfirmed_diagnosis()); }},
       {"meters", [] { return render_meters(sample_meters()); }},
