@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "core/absent.hpp"
 #include "core/assessment/level_forecast.hpp"
 #include "core/assessment/spread.hpp"
-#include "core/calibration/conditional.hpp"
 #include "core/calibration/leave_out.hpp"
+#include "core/calibration/points_at_draw.hpp"
 #include "core/calibration/psis.hpp"
 
 namespace recald::assessment {
@@ -104,40 +103,20 @@ class DrawnErrors {
       : result_(result),
         data_(std::move(data)),
         simulated_(simulated),
-        covariance_(calibration::make_covariance(data_, result.calibration.hyper_prior)),
-        residual_(data_.values.size()),
-        precision_(data_.values.size(), data_.values.size()) {}
+        points_(data_, result.calibration.hyper_prior),
+        residual_(data_.values.size()) {}
 
   [[nodiscard]] Result<void> go_to(Index draw) {
     const calibration::ThinnedDraws& thinned = result_.calibration.thinned;
     const auto d = static_cast<std::size_t>(draw);
-    const auto& chain = result_.calibration.chains[static_cast<std::size_t>(thinned.chain[d])];
-    const int row = thinned.iteration[d];
-    bool jittered = false;
-    if (!calibration::factorise(*covariance_,
-                                {chain.discrepancy_precision(row), chain.error_precision(row),
-                                 chain.beta.row(row).transpose()},
-                                jittered)) {
-      return failure(ErrorCode::not_positive_definite,
-                     "the covariance of the measured points has no Cholesky factor at a draw of "
-                     "the posterior; the assumed measurement error is far too small");
-    }
     for (Index p = 0; p < residual_.size(); ++p) {
       residual_(p) = data_.values(p) - scale_of(p).normalise(simulated(draw, p));
     }
-    covariance_->precision(precision_);
-    weighted_ = precision_ * residual_;
-    if (weighted_.allFinite()) return {};
-    return failure(ErrorCode::not_finite,
-                   "the model gives a value that is not finite at a draw of the posterior");
+    return points_.go_to(result_.calibration.chains[static_cast<std::size_t>(thinned.chain[d])],
+                         thinned.iteration[d], residual_);
   }
 
-  [[nodiscard]] calibration::ConditionalNormal given_others(const std::vector<Index>& asked) const {
-    return calibration::condition(precision_, residual_, weighted_, asked);
-  }
-  [[nodiscard]] double log_score(const std::vector<Index>& block) const {
-    return calibration::log_density_given_others(precision_, weighted_, block);
-  }
+  [[nodiscard]] const calibration::PointsAtDraw& points() const { return points_; }
   /// What the model has at a point, in units.
   [[nodiscard]] double simulated(Index draw, Index p) const {
     const calibration::PointIndex& point = data_.points[static_cast<std::size_t>(p)];
@@ -152,10 +131,8 @@ class DrawnErrors {
   const AssessedCalibration& result_;
   PosteriorData data_;
   const Eigen::MatrixXd& simulated_;
-  std::unique_ptr<calibration::ErrorCovariance> covariance_;
+  calibration::PointsAtDraw points_;
   Eigen::VectorXd residual_;
-  Eigen::MatrixXd precision_;
-  Eigen::VectorXd weighted_;
 };
 
 Forecast mixture_of(Index draws) {
@@ -209,7 +186,7 @@ Result<void> forecast_unseen(const AssessedCalibration& result, const WholePerio
   Eigen::VectorXd expected(count);
   for (Index d = 0; d < simulated.rows(); ++d) {
     if (auto there = errors.go_to(d); !there) return there;
-    const calibration::ConditionalNormal given = errors.given_others(asked);
+    const calibration::ConditionalNormal given = errors.points().given_others(asked);
     const Eigen::MatrixXd covariance = range.asDiagonal() * given.covariance * range.asDiagonal();
     for (Index a = 0; a < count; ++a) {
       expected(a) =
@@ -246,8 +223,8 @@ struct LeftOut {
 
   void take(const DrawnErrors& errors, Index d) {
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-      scores(d, static_cast<Index>(b)) = errors.log_score(blocks[b]);
-      const calibration::ConditionalNormal given = errors.given_others(blocks[b]);
+      scores(d, static_cast<Index>(b)) = errors.points().log_score(blocks[b]);
+      const calibration::ConditionalNormal given = errors.points().given_others(blocks[b]);
       for (std::size_t i = 0; i < blocks[b].size(); ++i) {
         const Index p = blocks[b][i];
         const auto row = static_cast<Index>(i);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/calibration/conditional.hpp"
+#include "core/calibration/points_at_draw.hpp"
 #include "core/calibration/psis.hpp"
 #include "core/calibration/summary.hpp"
 
@@ -40,32 +40,20 @@ Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
     return failure(ErrorCode::not_enough_data, "there is no measured month to leave out");
   }
   const ThinnedDraws thinned = thin(chains, count);
-  const Eigen::Index m = posterior.point_count();
-  Eigen::MatrixXd precision(m, m);
+  PointsAtDraw points(posterior.data(), posterior.prior());
   Eigen::MatrixXd scores(thinned.theta.rows(), static_cast<Eigen::Index>(blocks.size()));
   for (Eigen::Index d = 0; d < scores.rows(); ++d) {
     const auto draw = static_cast<std::size_t>(d);
     const ChainDraws& chain = chains[static_cast<std::size_t>(thinned.chain[draw])];
-    const int row = thinned.iteration[draw];
-    const Hyperparameters hyper{chain.discrepancy_precision(row), chain.error_precision(row),
-                                chain.beta.row(row).transpose()};
-    if (!posterior.set_hyperparameters(hyper)) {
-      return failure(ErrorCode::not_positive_definite,
-                     "the covariance of the measured points has no Cholesky factor at a draw of "
-                     "the posterior; the assumed measurement error is far too small");
-    }
-    posterior.precision(precision);
     const Eigen::VectorXd theta = thinned.theta.row(d);
-    const Eigen::VectorXd weighted =
-        precision * posterior.residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      scores(d, static_cast<Eigen::Index>(b)) =
-          log_density_given_others(precision, weighted, blocks[b]);
+    const Eigen::VectorXd& residual =
+        posterior.residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
+    if (auto there = points.go_to(chain, thinned.iteration[draw], residual); !there) {
+      return tl::unexpected(there.error());
     }
-  }
-  if (!scores.allFinite()) {
-    return failure(ErrorCode::not_finite,
-                   "the model gives a value that is not finite at a draw of the posterior");
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      scores(d, static_cast<Eigen::Index>(b)) = points.log_score(blocks[b]);
+    }
   }
   return scores;
 }

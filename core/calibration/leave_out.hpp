@@ -23,7 +23,7 @@ using PointBlocks = std::vector<std::vector<Eigen::Index>>;
 /// Points are correlated through the discrepancy, so the density of a block given all others is
 /// Gaussian with precision P_bb and residual P_bb^-1 (P r)_b, P = Sigma^-1.
 ///
-/// @param posterior  Its factor is replaced.
+/// @param posterior  The one that the chains are of.
 /// @param count      Draws taken, pooled over chains.
 /// @return not_enough_data without a block, not_positive_definite when a draw's covariance has no
 ///         factor, an error of the model.
