@@ -2,18 +2,15 @@
 
 #include <chrono>
 
-#include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"
-#include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
 #include "daemon/site/results/meters_report.hpp"
-#include "daemon/site/results/result_table.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -49,13 +46,8 @@ tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments&
 
   const InterruptGuard guard;
   ProgressLine line{console};
-  const calibration::RunContext context{.seed = arguments.seed,
-                                        .executor = system::parallel_for(arguments.threads),
-                                        .observer = [&](const calibration::Progress& progress) {
-                                          line.show(progress);
-                                          return !guard.interrupted();
-                                        }};
-  auto done = finish_calibration(std::move(*modelled), options, context);
+  auto done =
+      finish_calibration(std::move(*modelled), options, run_context(arguments, guard, line));
   if (!done) return tl::unexpected(console.fail(done.error()));
   done->modelled.facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -86,15 +78,10 @@ int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
   if (!done) return done.error();
   const InterruptGuard until_written;
   const std::string json = calibration_json(done->calibration, done->modelled.facts);
-  const bool sound = is_sound(done->calibration);
-  const auto folder = folder_for(sound, arguments);
-  if (!arguments.out.empty()) {
-    if (auto written = write_calibration(*done, json, generated_at(), folder); !written) {
-      return console.fail(written.error());
-    }
-  }
-  console.out << (arguments.json ? json : result_table(done->calibration));
-  return gate_verdict(sound, arguments, folder, console);
+  return deliver(done->calibration, json, arguments, console,
+                 [&](const std::filesystem::path& folder) {
+                   return write_calibration(*done, json, generated_at(), folder);
+                 });
 }
 
 int run_report(const CalibrateArguments& arguments, const Console& console) {

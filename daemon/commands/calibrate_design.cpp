@@ -2,17 +2,14 @@
 
 #include <chrono>
 
-#include "adapters/system/parallel_for.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
-#include "daemon/commands/interrupt.hpp"
+#include "daemon/commands/generated_at.hpp"
 #include "daemon/site/calibrate/design_calibration.hpp"
 #include "daemon/site/calibrate/design_site.hpp"
 #include "daemon/site/results/calibration_files.hpp"
-#include "daemon/site/results/design_files.hpp"
-#include "daemon/site/results/result_folder.hpp"
-#include "daemon/site/results/result_table.hpp"
+#include "daemon/site/results/calibration_folder.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -41,28 +38,10 @@ DesignCalibrationOptions design_options(const CalibrateArguments& arguments,
   return options;
 }
 
-Result<void> write_all(const DesignCalibration& result, const doe::DesignFolder& design,
-                       const RunFacts& facts, const std::string& json,
-                       const std::filesystem::path& folder) {
-  clear_results(folder);
-  for (std::size_t chain = 0; chain < result.calibration.chains.size(); ++chain) {
-    const std::string name = fmt::format("draws_{}.csv", chain + 1);
-    auto written = write_result(folder, name.c_str(), draws_csv(result, chain, facts));
-    if (!written) return written;
-  }
-  if (result.screening) {
-    auto written =
-        write_result(folder, "screen.json",
-                     screen_json(*result.screening, design.parameters, design.notes, facts));
-    if (!written) return written;
-  }
-  if (result.fitted) {
-    auto written = write_result(folder, "metamodel.json",
-                                metamodel_json(*result.fitted, result.fitted->notes, facts));
-    if (!written) return written;
-  }
-  // Last: who finds calibration.json finds everything it speaks of.
-  return write_result(folder, "calibration.json", json);
+/// "campus_lab" of "designs/campus_lab/".
+std::string folder_name(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(folder, ignored).filename().string();
 }
 
 }  // namespace
@@ -71,7 +50,7 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
   const auto begin = std::chrono::steady_clock::now();
   auto calibration = calibration_options(arguments, console);
   if (!calibration) return calibration.error();
-  const auto design = open_design_folder(arguments.design, console);
+  auto design = open_design_folder(arguments.design, console);
   if (!design) return design.error();
   const auto measured = doe::read_measurements(measurements_file(arguments), *design);
   if (!measured) return console.fail(measured.error());
@@ -85,28 +64,24 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
   const InterruptGuard guard;
   auto calibrated = [&] {
     ProgressLine line{console};
-    const calibration::RunContext context{.seed = arguments.seed,
-                                          .executor = system::parallel_for(arguments.threads),
-                                          .observer = [&](const calibration::Progress& progress) {
-                                            line.show(progress);
-                                            return !guard.interrupted();
-                                          }};
-    return calibrate_design(*design, *measured, options, context);
+    return calibrate_design(*design, *measured, options, run_context(arguments, guard, line));
   }();
   if (!calibrated) return console.fail(calibrated.error());
   calibrated->warnings.insert(calibrated->warnings.end(), design_site->notes.begin(),
                               design_site->notes.end());
   RunFacts complete = with_sampling(std::move(*facts), arguments.seed, calibrated->calibration);
-  complete.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  FinishedDesign done{.name = folder_name(arguments.design.folder),
+                      .design = std::move(*design),
+                      .calibration = std::move(*calibrated),
+                      .facts = std::move(complete)};
+  done.facts.wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  const std::string json = calibration_json(*calibrated, complete);
-  const auto folder = folder_for(calibrated->calibration.converged, arguments);
-  if (!arguments.out.empty()) {
-    auto written = write_all(*calibrated, *design, complete, json, folder);
-    if (!written) return console.fail(written.error());
-  }
-  console.out << (arguments.json ? json : result_table(*calibrated));
-  return gate_verdict(calibrated->calibration.converged, arguments, folder, console);
+  const std::string json = calibration_json(done.calibration, done.facts);
+  return deliver(
+      done.calibration, json, arguments, console, [&](const std::filesystem::path& folder) {
+        return write_calibration(done, months_csv(done.calibration), json, generated_at(), folder);
+      });
 }
 
 }  // namespace recald::daemon

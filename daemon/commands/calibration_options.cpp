@@ -1,8 +1,10 @@
 #include "daemon/commands/calibration_options.hpp"
 
+#include "adapters/system/parallel_for.hpp"
 #include "core/calibration/samplers.hpp"
 #include "daemon/site/config/hyper_prior_file.hpp"
 #include "daemon/site/results/result_folder.hpp"
+#include "daemon/site/results/result_table.hpp"
 
 namespace recald::daemon {
 
@@ -28,14 +30,28 @@ tl::expected<calibration::CalibrationOptions, int> calibration_options(
   return options;
 }
 
-std::filesystem::path folder_for(bool converged, const CalibrateArguments& arguments) {
-  if (arguments.out.empty()) return {};
-  return result_folder(arguments.out, converged, arguments.iterations.has_value());
+calibration::RunContext run_context(const SamplingArguments& arguments, const InterruptGuard& guard,
+                                    ProgressLine& line) {
+  return {.seed = arguments.seed,
+          .executor = system::parallel_for(arguments.threads),
+          .observer = [&guard, &line](const calibration::Progress& progress) {
+            line.show(progress);
+            return !guard.interrupted();
+          }};
 }
 
-int gate_verdict(bool converged, const CalibrateArguments& arguments,
-                 const std::filesystem::path& folder, const Console& console) {
-  if (converged) return kSuccess;
+int deliver(const assessment::AssessedCalibration& result, const std::string& json,
+            const CalibrateArguments& arguments, const Console& console,
+            const std::function<Result<void>(const std::filesystem::path&)>& write) {
+  const bool sound = is_sound(result);
+  const std::filesystem::path folder =
+      arguments.out.empty() ? arguments.out
+                            : result_folder(arguments.out, sound, arguments.iterations.has_value());
+  if (!folder.empty()) {
+    if (auto written = write(folder); !written) return console.fail(written.error());
+  }
+  console.out << (arguments.json ? json : result_table(result));
+  if (sound) return kSuccess;
   if (folder != arguments.out) return console.fail(kept_sentence(folder));
   if (arguments.iterations) return kSuccess;
   return console.fail("the chains have not converged; do not rely on these figures");

@@ -1,8 +1,12 @@
-/// What a command line says about sampling, as core takes it.
+/// What a command line says about sampling, as core takes it, and how a calibration ends.
 #pragma once
 
+#include <functional>
+
+#include "core/assessment/assessed_calibration.hpp"
 #include "core/calibration/calibration.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/interrupt.hpp"
 
 namespace recald::daemon {
 
@@ -11,10 +15,17 @@ namespace recald::daemon {
 [[nodiscard]] tl::expected<calibration::CalibrationOptions, int> calibration_options(
     const SamplingArguments& arguments, const Console& console);
 
-/// Where the files of a calibration go, and the exit code after they are written: a gate that
-/// failed is a failure unless the user set the number of draws and nothing good was there to lose.
-[[nodiscard]] std::filesystem::path folder_for(bool converged, const CalibrateArguments& arguments);
-[[nodiscard]] int gate_verdict(bool converged, const CalibrateArguments& arguments,
-                               const std::filesystem::path& folder, const Console& console);
+/// Seed and threads of the command line, progress on the terminal; an interrupt stops the work.
+/// @pre `guard` and `line` outlive the context
+[[nodiscard]] calibration::RunContext run_context(const SamplingArguments& arguments,
+                                                  const InterruptGuard& guard, ProgressLine& line);
+
+/// Writes the files of a calibration where they belong, then prints its table or `json`.
+/// @param write  Into the folder it is given; not called without --out.
+/// @return the exit code: a gate that failed is a failure unless the user set the number of draws
+///         and nothing good was there to lose.
+[[nodiscard]] int deliver(const assessment::AssessedCalibration& result, const std::string& json,
+                          const CalibrateArguments& arguments, const Console& console,
+                          const std::function<Result<void>(const std::filesystem::path&)>& write);
 
 }  // namespace recald::daemon

@@ -181,7 +181,7 @@ int run_import(const ImportArguments& arguments, const Console& console);
 int run_profile(const ProfileArguments& arguments, const Console& console);
 /// Writes calibration.json, draws, months.csv, profile.json and report.html into the folder.
 int run_calibrate(const CalibrateArguments& arguments, const Console& console);
-/// The same from a design of experiments: calibration.json, draws, screen.json, metamodel.json.
+/// The same from a design of experiments, with screen.json and metamodel.json for profile.json.
 int run_calibrate_design(const CalibrateArguments& arguments, const Console& console);
 /// The site's calibration, of which only the page is kept.
 int run_report(const CalibrateArguments& arguments, const Console& console);

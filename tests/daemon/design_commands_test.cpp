@@ -191,7 +191,8 @@ TEST_F(DesignCommands, CalibrationLeavesItsContract) {
   const Outcome outcome = calibrate({"--json", "--out", path("out")});
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   EXPECT_EQ(read_text(folder_ / "out/calibration.json"), outcome.out);
-  for (const char* file : {"draws_1.csv", "draws_4.csv", "screen.json", "metamodel.json"}) {
+  for (const char* file : {"draws_1.csv", "draws_4.csv", "screen.json", "metamodel.json",
+                           "months.csv", "report.html"}) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / file)) << file;
   }
   const Json json = Json::parse(outcome.out);
@@ -201,6 +202,7 @@ TEST_F(DesignCommands, CalibrationLeavesItsContract) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_EQ(json["model"], "metamodel");
+  EXPECT_EQ(json["chains"], 4);
   EXPECT_EQ(json["months"].size(), 15U);
   EXPECT_EQ(json["months"][11]["role"], "calibration");
   EXPECT_EQ(json["months"][12]["role"], "validation");
@@ -225,6 +227,56 @@ TEST_F(DesignCommands, CalibrationLeavesItsContract) {
                          "month says nothing of them: there the one for all months is used")));
 }
 
+// The page and the months of a site's calibration, as far as the folder knows them.
+TEST_F(DesignCommands, CalibrationHasAPageAndItsMonths) {
+  ASSERT_EQ(calibrate({"--out", path("out")}).exit_code, kSuccess);
+  const std::string page = read_text(folder_ / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("<h1>Calibration of design</h1>"));
+  EXPECT_THAT(page, HasSubstr("<strong>Chw peak</strong>"));  // the verdict of Guideline 14
+  EXPECT_THAT(page, HasSubstr("Chw: daily average consumption by month, kWh/day"));
+  EXPECT_THAT(page, HasSubstr("class=\"code\">set_point<"));
+  EXPECT_THAT(page, ::testing::Not(HasSubstr("recald diagnose")));
+  std::istringstream months{read_text(folder_ / "out/months.csv")};
+  std::istringstream measured{read_text(design() / "measurements.csv")};
+  std::string line;
+  std::getline(months, line);
+  EXPECT_EQ(line,
+            "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
+            "revision,tzdata");
+  std::getline(measured, line);
+  int count = 0;
+  for (std::string figures; std::getline(measured, figures); ++count) {
+    ASSERT_TRUE(std::getline(months, line));
+    const std::regex columns{"([^,]*),([^,]*),([^,]*),.*"};
+    std::smatch of;
+    ASSERT_TRUE(std::regex_match(figures, of, columns));
+    const auto rounded = [](const std::string& number) {
+      std::ostringstream text;  // six digits
+      text << std::stod(number);
+      return text.str();
+    };
+    EXPECT_EQ(line, of[1].str() + ",chw," + rounded(of[2]) + ",kWh/day,,," + rounded(of[3]) +
+                        ",,,yes,,,");
+  }
+  EXPECT_EQ(count, 15);
+}
+
+TEST_F(DesignCommands, MonthsMayBeNumbers) {
+  for (const char* file : {"doe_outputs.csv", "inputs.csv", "measurements.csv"}) {
+    std::string text = read_text(design() / file);
+    const auto months = recald::testing::sample_months(15);
+    for (std::size_t i = 0; i < months.size(); ++i) {
+      text = std::regex_replace(text, std::regex{months[i].name}, std::to_string(i + 1));
+    }
+    write_text(design() / file, text);
+  }
+  ASSERT_EQ(calibrate({"--out", path("out")}).exit_code, kSuccess);
+  EXPECT_THAT(read_text(folder_ / "out/months.csv"), HasSubstr("\n15,chw,"));
+  const std::string page = read_text(folder_ / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("Month 15"));
+  EXPECT_THAT(page, HasSubstr("\"month\":\"15\""));
+}
+
 // Noise of 2 % on a simulation that the meta-model knows: the data must bring the model closer, and
 // the truth must not be far out.
 TEST_F(DesignCommands, CalibrationFindsTheTruth) {
@@ -242,8 +294,10 @@ TEST_F(DesignCommands, CalibrationFindsTheTruth) {
 }
 
 TEST_F(DesignCommands, CalibrationRepeatsItself) {
+  ::setenv("SOURCE_DATE_EPOCH", "1600000000", 1);  // the page says when it was made
   const Outcome one = calibrate({"--threads", "1", "--out", path("one")});
   const Outcome two = calibrate({"--threads", "2", "--out", path("two")});
+  ::unsetenv("SOURCE_DATE_EPOCH");
   ASSERT_EQ(one.exit_code, kSuccess) << one.err;
   EXPECT_EQ(one.out, two.out);
   for (const auto& entry : fs::directory_iterator(folder_ / "one")) {

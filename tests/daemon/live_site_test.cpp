@@ -327,7 +327,12 @@ TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   std::map<std::string, int> months;
   for (const json& month : result["months"]) ++months[month["role"].get<std::string>()];
   EXPECT_EQ(months, (std::map<std::string, int>{{"calibration", 9}, {"validation", 2}}));
-  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path{outcome->folder} / "calibration.json"));
+  const std::filesystem::path folder{outcome->folder};
+  EXPECT_TRUE(std::filesystem::exists(folder / "calibration.json"));
+  // The same page as of a site's own model, and the months as they were recorded.
+  EXPECT_THAT(read_text(folder / "report.html"), HasSubstr("<h1>Calibration of Tram depot</h1>"));
+  EXPECT_THAT(read_text(folder / "months.csv"), HasSubstr("\n2021-11,district_heat,"));
+  EXPECT_THAT(read_text(folder / "months.csv"), HasSubstr(",block-"));
 }
 
 TEST_F(LiveSite, ADesignOfAnotherSiteIsRefused) {

@@ -74,14 +74,15 @@ JobOutcome outcome_of(const assessment::AssessedCalibration& calibration, const 
 
 Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
                                        const std::filesystem::path& design,
-                                       const std::filesystem::path& folder,
+                                       const std::filesystem::path& folder, metering::Instant now,
                                        const calibration::RunContext& context) {
   const auto done = calibrate_on_metamodel(modelled, design, context);
   if (!done) return tl::unexpected(done.error());
   JobOutcome outcome = outcome_of(done->calibration, done->facts, modelled.site.config, folder);
-  if (auto written = write_calibration(*done, outcome.result.document, folder); !written) {
-    return tl::unexpected(written.error());
-  }
+  const auto written =
+      write_calibration(*done, months_csv(modelled.recording, done->facts.time_zone_data),
+                        outcome.result.document, metering::to_string(now), folder);
+  if (!written) return tl::unexpected(written.error());
   return outcome;
 }
 
@@ -157,7 +158,7 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   const calibration::RunContext context{
       .seed = kSeed, .observer = [&](const calibration::Progress&) { return goes_on(); }};
   if (const auto& design = modelled->site.config.recalibration.design; !design.empty()) {
-    return calibrate_metamodel(*modelled, design, folder, context);
+    return calibrate_metamodel(*modelled, design, folder, now, context);
   }
   const auto done = finish_calibration(std::move(*modelled), {}, context);
   if (!done) return tl::unexpected(done.error());

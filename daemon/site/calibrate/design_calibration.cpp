@@ -152,6 +152,7 @@ std::string unit_of(const std::string& output) {
 void take_measurements(const doe::DesignFolder& design, const doe::MonthlyTable& measured,
                        const std::vector<doe::DesignMonth>& months, DesignCalibration& result) {
   result.model = ModelKind::metamodel;
+  result.months = months;
   for (std::size_t i = 0; i < months.size(); ++i) {
     result.month_names.push_back(months[i].text());
     result.roles.push_back(i < design.months.size() ? MonthRole::calibration
@@ -306,6 +307,13 @@ Result<Metamodel> make_metamodel(const doe::DesignFolder& design, const doe::Mon
 }
 
 }  // namespace
+
+std::vector<std::size_t> in_order_of_time(const std::vector<doe::DesignMonth>& months) {
+  std::vector<std::size_t> order(months.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return months[i]; });
+  return order;
+}
 
 Result<std::vector<int>> named_parameters(const std::vector<Parameter>& parameters,
                                           const std::string& names) {

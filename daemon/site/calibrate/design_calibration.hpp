@@ -12,6 +12,7 @@
 #include "core/result.hpp"
 #include "core/screening/screen.hpp"
 #include "daemon/site/calibrate/design_metamodel.hpp"
+#include "daemon/site/model/run_facts.hpp"
 
 namespace recald::daemon {
 
@@ -27,9 +28,22 @@ struct DesignCalibrationOptions {
 };
 
 struct DesignCalibration : assessment::AssessedCalibration {
+  std::vector<doe::DesignMonth> months;           ///< Those of `month_names`.
   std::optional<screening::Screening> screening;  ///< Where it chose the parameters.
   std::optional<FittedMetamodel> fitted;          ///< Absent where one was given.
 };
+
+/// Everything that a calibration on a design leaves behind.
+struct FinishedDesign {
+  std::string name;  ///< Of the building: the folder's, or the site's.
+  doe::DesignFolder design;
+  DesignCalibration calibration;
+  RunFacts facts;
+};
+
+/// Indices of months, ascending by time.
+[[nodiscard]] std::vector<std::size_t> in_order_of_time(
+    const std::vector<doe::DesignMonth>& months);
 
 /// Calibrates on the months of the design that are measured; measured months beyond it validate.
 ///

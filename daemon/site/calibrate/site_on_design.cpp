@@ -61,9 +61,9 @@ Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
   return measured;
 }
 
-Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
-                                            const std::filesystem::path& folder,
-                                            const calibration::RunContext& context) {
+Result<FinishedDesign> calibrate_on_metamodel(const ModelledSite& modelled,
+                                              const std::filesystem::path& folder,
+                                              const calibration::RunContext& context) {
   auto design = doe::read_design_folder(folder);
   if (!design) return tl::unexpected(design.error());
   for (std::string& note : set_aside_outliers(*design)) design->notes.push_back(std::move(note));
@@ -81,7 +81,7 @@ Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
   }
   auto version = active_version(site);
   if (!version) return tl::unexpected(version.error());
-  SiteOnDesign done{.calibration = {}, .facts = modelled.facts};
+  FinishedDesign done{.name = site.name, .design = {}, .calibration = {}, .facts = modelled.facts};
   const auto prepared = prepare_site(site, modelled.site.calendar, modelled.recording,
                                      modelled.weather, std::move(version->effects));
   if (!prepared) return tl::unexpected(prepared.error());
@@ -104,6 +104,7 @@ Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
   done.facts.data_revision = both.hex();
   done.facts.model_version = design_facts->model_version;
   done.facts = with_sampling(std::move(done.facts), context.seed, done.calibration.calibration);
+  done.design = std::move(*design);
   return done;
 }
 

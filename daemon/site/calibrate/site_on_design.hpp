@@ -16,15 +16,11 @@ namespace recald::daemon {
 [[nodiscard]] Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
                                                          const PreparedSite& site);
 
-struct SiteOnDesign {
-  DesignCalibration calibration;
-  RunFacts facts;  ///< Of site, readings and design.
-};
-
-/// As `recald calibrate --model metamodel --design` does it, but with the site's own months.
-/// @return or what reading the design, the site and the calibration find.
-[[nodiscard]] Result<SiteOnDesign> calibrate_on_metamodel(const ModelledSite& modelled,
-                                                          const std::filesystem::path& design,
-                                                          const calibration::RunContext& context);
+/// As `recald calibrate --doe` does it, but with the site's own months.
+/// @return the calibration, its facts those of site, readings and design; or what reading the
+///         design, the site and the calibration find.
+[[nodiscard]] Result<FinishedDesign> calibrate_on_metamodel(const ModelledSite& modelled,
+                                                            const std::filesystem::path& design,
+                                                            const calibration::RunContext& context);
 
 }  // namespace recald::daemon

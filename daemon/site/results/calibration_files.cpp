@@ -9,6 +9,7 @@
 
 #include "adapters/results/job_result_json.hpp"
 #include "core/absent.hpp"
+#include "core/regression/fit_quality.hpp"
 #include "daemon/site/results/provenance_json.hpp"
 
 namespace recald::daemon {
@@ -17,6 +18,10 @@ namespace {
 // Keys in the order they are written: files are read by people too.
 using Json = nlohmann::ordered_json;
 using assessment::MonthRole;
+
+constexpr const char* kMonthsHeader =
+    "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
+    "revision,tzdata\n";
 
 const char* role_word(MonthRole role) {
   switch (role) {
@@ -512,9 +517,7 @@ std::string draws_csv(const assessment::AssessedCalibration& result, std::size_t
 }
 
 std::string months_csv(const Recording& recording, const std::string& tzdata) {
-  std::string text =
-      "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
-      "revision,tzdata\n";
+  std::string text = kMonthsHeader;
   for (const MeterRecord& record : recording.meters) {
     for (const metering::MonthlyFigure& figure : record.figures) {
       const std::string value = std::isfinite(figure.daily_average_kWh)
@@ -528,6 +531,31 @@ std::string months_csv(const Recording& recording, const std::string& tzdata) {
                           figure.peak_window.count(), figure.usable ? "yes" : "no",
                           is_site_different(recording, figure.month) ? "yes" : "no",
                           figure.revision, tzdata);
+    }
+  }
+  return text;
+}
+
+std::string months_csv(const DesignCalibration& result) {
+  std::vector<std::string> names;
+  for (const assessment::OutputCalibration& output : result.outputs) names.push_back(output.name);
+  std::string text = kMonthsHeader;
+  for (const regression::MeterOutputs& meter : regression::group_by_meter(names)) {
+    const auto value_of = [&](int output, std::size_t month) {
+      const double value =
+          output < 0 ? kAbsent : result.outputs[static_cast<std::size_t>(output)].measured[month];
+      return std::isnan(value) ? std::string{} : fmt::format("{:.6g}", value);
+    };
+    const std::string unit = meter.consumption < 0
+                                 ? "kWh/day"
+                                 : result.outputs[static_cast<std::size_t>(meter.consumption)].unit;
+    const auto first = static_cast<std::size_t>(meter.existing().front());
+    const std::string& id = meter.meter.empty() ? names[first] : meter.meter;
+    for (const std::size_t i : in_order_of_time(result.months)) {
+      const std::string value = value_of(meter.consumption, i);
+      const std::string peak = value_of(meter.peak, i);
+      text += fmt::format("{},{},{},{},,,{},,,{},,,\n", result.month_names[i], id, value, unit,
+                          peak, value.empty() && peak.empty() ? "no" : "yes");
     }
   }
   return text;

@@ -6,6 +6,7 @@
 
 #include "adapters/ports/job_result.hpp"
 #include "core/result.hpp"
+#include "daemon/site/calibrate/design_calibration.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/run_facts.hpp"
 
@@ -34,6 +35,10 @@ using FollowUp = tl::expected<DriftSummary, std::string>;
 /// tzdata`, one row a meter and month; `different` when any meter says that the month is not like
 /// the same months before.
 [[nodiscard]] std::string months_csv(const Recording& recording, const std::string& tzdata);
+
+/// The same of a design's measurements. What only readings can tell is blank; a month without a
+/// calendar is its number; outputs are put together by `regression::group_by_meter`.
+[[nodiscard]] std::string months_csv(const DesignCalibration& result);
 
 /// The profile as JSON: schedules in kW by kind of day and hour.
 [[nodiscard]] std::string profile_json(const profile::ElectricityProfile& profile);

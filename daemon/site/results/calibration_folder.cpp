@@ -2,16 +2,44 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "adapters/report/meters_page.hpp"
 #include "adapters/report/report.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/site/results/calibration_files.hpp"
+#include "daemon/site/results/design_files.hpp"
 #include "daemon/site/results/diagnosis_folder.hpp"
 #include "daemon/site/results/meters_report.hpp"
 #include "daemon/site/results/report_of.hpp"
 #include "daemon/site/results/result_folder.hpp"
 
 namespace recald::daemon {
+namespace {
+
+struct ResultFile {
+  std::string name;
+  std::string text;
+};
+
+/// The draws, these files and, last, calibration.json.
+Result<void> write_files(const assessment::AssessedCalibration& result, const RunFacts& facts,
+                         const std::vector<ResultFile>& files, const std::string& json,
+                         const std::filesystem::path& folder) {
+  if (auto made = system::make_folder(folder); !made) return made;
+  clear_results(folder);
+  for (std::size_t chain = 0; chain < result.calibration.chains.size(); ++chain) {
+    const auto file = folder / fmt::format("draws_{}.csv", chain + 1);
+    auto written = system::write_file(file, draws_csv(result, chain, facts));
+    if (!written) return written;
+  }
+  for (const ResultFile& file : files) {
+    if (auto written = system::write_file(folder / file.name, file.text); !written) return written;
+  }
+  return system::write_file(folder / "calibration.json", json);
+}
+
+}  // namespace
 
 std::string render(const FinishedCalibration& done, const std::string& generated_at,
                    const std::string& most_likely) {
@@ -31,37 +59,32 @@ std::string render(const FinishedCalibration& done, const std::string& generated
 Result<void> write_calibration(const FinishedCalibration& done, const std::string& json,
                                const std::string& generated_at,
                                const std::filesystem::path& folder) {
-  if (auto made = system::make_folder(folder); !made) return made;
-  clear_results(folder);
   const RunFacts& facts = done.modelled.facts;
-  for (std::size_t chain = 0; chain < done.calibration.calibration.chains.size(); ++chain) {
-    const auto file = folder / fmt::format("draws_{}.csv", chain + 1);
-    auto written = system::write_file(file, draws_csv(done.calibration, chain, facts));
-    if (!written) return written;
-  }
-  const auto write = [&](const char* name, const std::string& text) {
-    return system::write_file(folder / name, text);
-  };
-  if (auto w = write("months.csv", months_csv(done.modelled.recording, facts.time_zone_data)); !w)
-    return w;
+  std::vector<ResultFile> files{
+      {"months.csv", months_csv(done.modelled.recording, facts.time_zone_data)}};
   if (done.calibration.not_calibrated_because.empty()) {  // the profile is a model's
-    if (auto w = write("profile.json", profile_json(done.calibration.profile)); !w) return w;
+    files.push_back({"profile.json", profile_json(done.calibration.profile)});
   }
-  const std::string page = render(done, generated_at, most_likely_in(folder, facts.data_revision));
-  if (auto w = write("report.html", page); !w) return w;
-  return write("calibration.json", json);
+  files.push_back(
+      {"report.html", render(done, generated_at, most_likely_in(folder, facts.data_revision))});
+  return write_files(done.calibration, facts, files, json, folder);
 }
 
-Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,
+Result<void> write_calibration(const FinishedDesign& done, const std::string& months,
+                               const std::string& json, const std::string& generated_at,
                                const std::filesystem::path& folder) {
-  if (auto made = system::make_folder(folder); !made) return made;
-  clear_results(folder);
-  for (std::size_t chain = 0; chain < done.calibration.calibration.chains.size(); ++chain) {
-    auto written = system::write_file(folder / fmt::format("draws_{}.csv", chain + 1),
-                                      draws_csv(done.calibration, chain, done.facts));
-    if (!written) return written;
+  const DesignCalibration& result = done.calibration;
+  std::vector<ResultFile> files{{"months.csv", months}};
+  if (result.screening) {
+    files.push_back({"screen.json", screen_json(*result.screening, done.design.parameters,
+                                                done.design.notes, done.facts)});
   }
-  return system::write_file(folder / "calibration.json", json);
+  if (result.fitted) {
+    files.push_back(
+        {"metamodel.json", metamodel_json(*result.fitted, result.fitted->notes, done.facts)});
+  }
+  files.push_back({"report.html", report::render_report(report_of(done, generated_at))});
+  return write_files(result, done.facts, files, json, folder);
 }
 
 }  // namespace recald::daemon

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/result.hpp"
+#include "daemon/site/calibrate/design_calibration.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
-#include "daemon/site/calibrate/site_on_design.hpp"
 
 namespace recald::daemon {
 
@@ -24,8 +24,11 @@ namespace recald::daemon {
                                              const std::string& generated_at,
                                              const std::filesystem::path& folder);
 
-/// Draws and, last, calibration.json.
-[[nodiscard]] Result<void> write_calibration(const SiteOnDesign& done, const std::string& json,
+/// The same of a calibration on a design, which has no profile but a screening and a meta-model.
+/// @param months  months.csv.
+[[nodiscard]] Result<void> write_calibration(const FinishedDesign& done, const std::string& months,
+                                             const std::string& json,
+                                             const std::string& generated_at,
                                              const std::filesystem::path& folder);
 
 }  // namespace recald::daemon

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/absent.hpp"
+#include "core/regression/fit_quality.hpp"
 #include "daemon/site/results/calibration_words.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
 #include "daemon/site/results/report_parts.hpp"
@@ -14,8 +15,17 @@
 namespace recald::daemon {
 namespace {
 
-report::ParameterResult parameter_of(const SiteCalibration& result, std::size_t j) {
-  report::ParameterResult shown{.label = std::string{result.definitions[j]->label},
+using assessment::AssessedCalibration;
+
+/// An output that the page shows, as it calls it.
+struct ShownOutput {
+  std::size_t index;  ///< Into the result's outputs.
+  std::string label;  ///< "Chilled water"
+};
+
+report::ParameterResult parameter_of(const AssessedCalibration& result, std::size_t j,
+                                     std::string label) {
+  report::ParameterResult shown{.label = std::move(label),
                                 .prior = result.parameters[j].prior,
                                 .summary = result.calibration.parameters[j],
                                 .draws = {}};
@@ -122,15 +132,20 @@ std::string model_sentence(const std::string& meter, const assessment::OutputAss
       percent(before->cvrmse), percent(after->cvrmse));
 }
 
-/// What stands first, and behind it the sentences that it is drawn from.
-void add_answer(const Recording& recording, const SiteCalibration& result,
+/// What stands first, and behind it the sentences that it is drawn from. Peaks come first only
+/// where there is nothing else.
+void add_answer(const AssessedCalibration& result, const std::vector<ShownOutput>& shown,
                 report::ReportData& data) {
+  const bool has_peaks_alone = std::ranges::all_of(
+      shown, [&](const ShownOutput& output) { return is_peak(result.outputs[output.index]); });
   std::vector<FittedMeter> meters;
   std::vector<std::string> models;
-  for (const assessment::OutputCalibration& output : result.outputs) {
-    if (is_peak(output)) continue;
-    const std::string meter = meter_label(recording.meters[output.meter].meter.id);
-    if (auto fitted = fitted_meter(meter, output.assessment)) meters.push_back(std::move(*fitted));
+  for (const auto& [index, meter] : shown) {
+    const assessment::OutputCalibration& output = result.outputs[index];
+    if (!is_peak(output) || has_peaks_alone) {
+      auto fitted = fitted_meter(meter, output.assessment);
+      if (fitted) meters.push_back(std::move(*fitted));
+    }
     if (auto text = forecast_sentence(meter, output.assessment); !text.empty()) {
       data.headlines.push_back(std::move(text));
     }
@@ -147,13 +162,11 @@ void add_answer(const Recording& recording, const SiteCalibration& result,
   data.asks_for_diagnosis = asks_for_diagnosis(meters);
 }
 
-void add_not_known(const Recording& recording, const SiteCalibration& result,
+void add_not_known(const AssessedCalibration& result, const std::vector<ShownOutput>& shown,
                    report::ReportData& data) {
-  for (const assessment::OutputCalibration& output : result.outputs) {
-    if (is_peak(output) || output.not_fitted_because.empty()) continue;
-    data.not_known.push_back(fmt::format("{} is not fitted. {}",
-                                         meter_label(recording.meters[output.meter].meter.id),
-                                         output.not_fitted_because));
+  for (const auto& [index, label] : shown) {
+    const std::string& because = result.outputs[index].not_fitted_because;
+    if (!because.empty()) data.not_known.push_back(label + " is not fitted. " + because);
   }
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     if (assessment::is_identified(result, j)) continue;
@@ -162,19 +175,75 @@ void add_not_known(const Recording& recording, const SiteCalibration& result,
         fmt::format("{}: not identified. The measurements narrow its variance by {:.0f} %, and "
                     "could by {:.0f} % "
                     "at most; its value is mostly what was assumed.",
-                    result.definitions[j]->label, 100.0 * std::max(s.contraction, 0.0),
+                    data.parameters[j].label, 100.0 * std::max(s.contraction, 0.0),
                     100.0 * assessment::contraction_max(result, j)));
   }
   data.not_known.emplace_back(
       "A parameter that fits is not a parameter that was measured: another combination of values, "
       "or an effect that the model lacks, may explain the same months.");
   data.not_known.emplace_back(
-      facts_of(result.model).has_peaks
-          ? "Peak demand is shown as measured; how the model tells it stands in calibration.json."
-          : "Peak demand is measured only. The monthly model has no peaks.");
-  data.not_known.emplace_back(
       "The discrepancy between model and building is known in size, not in cause, and is not "
       "carried into other operating conditions.");
+}
+
+/// What a page says of any calibration, wherever its model came from. Its parameters are there.
+void add_calibration(const AssessedCalibration& result, const std::vector<ShownOutput>& shown,
+                     report::ReportData& data) {
+  add_answer(result, shown, data);
+  if (!result.calibration.converged) {
+    data.notices.push_back({report::Severity::failure,
+                            "The sampler has not converged to the limits set for it (R-hat, "
+                            "effective sample size): treat intervals as rough."});
+  }
+  for (const auto* sentences : {&result.alarms, &result.warnings}) {
+    for (const std::string& sentence : *sentences) {
+      data.notices.push_back({report::Severity::warning, sentence});
+    }
+  }
+  add_not_known(result, shown, data);
+}
+
+/// Outputs of a design as people say them: "Steam" and "Steam peak" of "steam_daily_kWh" and
+/// "steam_peak_kW". A name of another kind stays as it is.
+std::vector<ShownOutput> shown_of(const DesignCalibration& result) {
+  std::vector<std::string> names;
+  for (const assessment::OutputCalibration& output : result.outputs) names.push_back(output.name);
+  std::vector<ShownOutput> shown;
+  for (std::size_t k = 0; k < names.size(); ++k) shown.push_back({k, names[k]});
+  for (const regression::MeterOutputs& meter : regression::group_by_meter(names)) {
+    if (meter.consumption >= 0) {
+      const auto k = static_cast<std::size_t>(meter.consumption);
+      if (meter.meter.empty()) shown[k].label = "Consumption";
+      if (!meter.meter.empty() && meter.meter != names[k])
+        shown[k].label = meter_label(meter.meter);
+    }
+    if (meter.peak >= 0) {
+      shown[static_cast<std::size_t>(meter.peak)].label =
+          meter.meter.empty() ? "Peak demand" : meter_label(meter.meter) + " peak";
+    }
+  }
+  return shown;
+}
+
+/// What the folder knows of a month: a figure, and nothing of the readings behind it.
+report::OutputMonth month_of(const DesignCalibration& result,
+                             const assessment::OutputCalibration& output, std::size_t i) {
+  report::OutputMonth shown{.figure = {.daily_average_kWh = output.measured[i],
+                                       .coverage = kAbsent,
+                                       .filled_share = kAbsent,
+                                       .usable = !std::isnan(output.measured[i])},
+                            .role = result.roles[i],
+                            .box = output.assessment.boxes[i],
+                            .forecast = output.assessment.forecast.months[i]};
+  if (is_peak(output) && shown.figure.usable) {
+    shown.figure.peak = metering::PeakDemand{.kW = output.measured[i]};
+  }
+  if (const auto month = metering::parse_month(result.month_names[i])) {
+    shown.figure.month = *month;
+  } else {
+    shown.number = result.month_names[i];
+  }
+  return shown;
 }
 
 }  // namespace
@@ -187,27 +256,24 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                           .site = {site.id, site.name, site.timezone},
                           .calendar = calendar,
                           .provenance = provenance_of(facts)};
-  add_answer(recording, result, data);
-  if (!result.calibration.converged) {
-    data.notices.push_back({report::Severity::failure,
-                            "The sampler has not converged to the limits set for it (R-hat, "
-                            "effective sample size): treat intervals as rough."});
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    data.parameters.push_back(parameter_of(result, j, std::string{result.definitions[j]->label}));
   }
-  for (const std::string& alarm : result.alarms) {
-    data.notices.push_back({report::Severity::warning, alarm});
-  }
-  for (const std::string& warning : result.warnings) {
-    data.notices.push_back({report::Severity::warning, warning});
-  }
-  for (const assessment::OutputCalibration& output : result.outputs) {
+  std::vector<ShownOutput> shown;
+  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
+    const assessment::OutputCalibration& output = result.outputs[k];
     if (is_peak(output)) continue;  // the page shows peaks as measured, beside each other
-    data.outputs.push_back({.label = meter_label(recording.meters[output.meter].meter.id),
+    shown.push_back({k, meter_label(recording.meters[output.meter].meter.id)});
+    data.outputs.push_back({.label = shown.back().label,
+                            .unit = output.unit,
                             .months = months_of(recording, result, output),
                             .assessment = output.assessment});
   }
-  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
-    data.parameters.push_back(parameter_of(result, j));
-  }
+  add_calibration(result, shown, data);
+  data.not_known.emplace_back(
+      facts_of(result.model).has_peaks
+          ? "Peak demand is shown as measured; how the model tells it stands in calibration.json."
+          : "Peak demand is measured only. The monthly model has no peaks.");
   for (const MeterRecord& record : recording.meters) {
     for (metering::DataFinding finding : record.findings) {
       finding.meter = meter_label(finding.meter);
@@ -222,7 +288,29 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                     day_profile_of(result.profile, saturday, "Saturday"),
                     day_profile_of(result.profile, sunday_or_holiday, "Sunday and holiday")},
       .check_sentence = result.profile.check.words};
-  add_not_known(recording, result, data);
+  return data;
+}
+
+report::ReportData report_of(const FinishedDesign& done, std::string generated_at) {
+  const DesignCalibration& result = done.calibration;
+  report::ReportData data{.title = "Calibration of " + done.name,
+                          .generated_at = std::move(generated_at),
+                          .site = {.id = {}, .name = done.name, .time_zone = {}},
+                          .provenance = provenance_of(done.facts)};
+  for (std::size_t j = 0; j < result.parameters.size(); ++j) {
+    data.parameters.push_back(parameter_of(result, j, result.parameters[j].name));
+  }
+  const std::vector<ShownOutput> shown = shown_of(result);
+  const std::vector<std::size_t> in_order = in_order_of_time(result.months);
+  for (const auto& [index, label] : shown) {
+    const assessment::OutputCalibration& output = result.outputs[index];
+    report::OutputResult& page = data.outputs.emplace_back(report::OutputResult{
+        .label = label, .unit = output.unit, .months = {}, .assessment = output.assessment});
+    for (const std::size_t i : in_order) page.months.push_back(month_of(result, output, i));
+  }
+  add_calibration(result, shown, data);
+  // What the effects library looks for, it looks for at a site.
+  data.asks_for_diagnosis = false;
   return data;
 }
 

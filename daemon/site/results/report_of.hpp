@@ -4,6 +4,7 @@
 #include <string>
 
 #include "adapters/report/report_data.hpp"
+#include "daemon/site/calibrate/design_calibration.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/run_facts.hpp"
 
@@ -15,5 +16,9 @@ namespace recald::daemon {
                                            const Recording& recording,
                                            const SiteCalibration& result, const RunFacts& facts,
                                            std::string generated_at);
+
+/// The same of a design, without what its folder cannot know: readings, hours, schedules, and how
+/// much of a month was measured. Peaks are outputs like others.
+[[nodiscard]] report::ReportData report_of(const FinishedDesign& done, std::string generated_at);
 
 }  // namespace recald::daemon
