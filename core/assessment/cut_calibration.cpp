@@ -108,6 +108,21 @@ void take_over(CutDraws cut, const CutOptions& how, const CalibrationOptions& op
   c.sampling.chains = std::move(cut.statistics);
 }
 
+/// @param problem  Of θ alone, without the outputs that were set aside; `all` has η too.
+Result<void> predict_with_eta(const MonthlyModel& model, const CalibrationProblem& all,
+                              const CalibrationProblem& problem, const RunContext& context,
+                              AssessedCalibration& result) {
+  Calibration& c = result.calibration;
+  const auto posterior = calibration::Posterior::make(
+      model, all.parameters, calibration::normalise_problem(problem, c.normalisation),
+      c.hyper_prior);
+  if (!posterior) return tl::unexpected(posterior.error());
+  auto predictions = calibration::predict_points(*posterior, c.chains, context);
+  if (!predictions) return tl::unexpected(predictions.error());
+  c.predictions = std::move(*predictions);
+  return {};
+}
+
 }  // namespace
 
 Eigen::MatrixXd spread_eta(const Eigen::MatrixXd& draws) {
@@ -125,7 +140,9 @@ Result<Eigen::MatrixXd> taught_by_months(const MonthlyModel& model,
       if (!teaches[i]) output.values[i] = kAbsent;
     }
   }
-  const auto learnt = calibration::calibrate(model, later, options, context);
+  CalibrationOptions how = options;
+  how.predictive = false;  // whoever asks means the months that teach θ
+  const auto learnt = calibration::calibrate(model, later, how, context);
   if (!learnt) return tl::unexpected(learnt.error());
   // Whoever gives a number of draws gets what they find.
   if (!learnt->converged && !options.sampling.iterations) {
@@ -145,8 +162,10 @@ Result<void> calibrate_given_eta(const MonthlyModel& model, const CalibrationPro
   auto design = calibration::run_design(at_mean, problem, options.design_runs, context);
   if (!design) return tl::unexpected(design.error());
   set_aside_unresponsive(*design, result, problem);
-  if (auto done = calibrate_into(at_mean, problem, options, prior_sensitivity, std::move(*design),
-                                 context, result);
+  CalibrationOptions at_mean_options = options;
+  at_mean_options.predictive = false;
+  if (auto done = calibrate_into(at_mean, problem, at_mean_options, prior_sensitivity,
+                                 std::move(*design), context, result);
       !done) {
     return done;
   }
@@ -154,7 +173,8 @@ Result<void> calibrate_given_eta(const MonthlyModel& model, const CalibrationPro
   auto cut = calibration::sample_given_eta(model, result.calibration, problem, eta, how, context);
   if (!cut) return tl::unexpected(cut.error());
   take_over(std::move(*cut), how, options, context, result);
-  return {};
+  if (!options.predictive) return {};
+  return predict_with_eta(model, all, problem, context, result);
 }
 
 }  // namespace recald::assessment

@@ -140,6 +140,11 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
   add_posterior_findings(problem, result);
   append(result.findings, std::move(sampled->findings));
   check_model(*posterior, sampled->points, problem, context, result);
+  if (options.predictive) {
+    auto predictions = predict_points(*posterior, result.chains, context);
+    if (!predictions) return tl::unexpected(std::move(predictions.error()));
+    result.predictions = std::move(*predictions);
+  }
   return result;
 }
 

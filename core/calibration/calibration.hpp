@@ -18,6 +18,7 @@
 #include "core/calibration/hyper_prior.hpp"
 #include "core/calibration/leave_out.hpp"
 #include "core/calibration/normalisation.hpp"
+#include "core/calibration/predictive.hpp"
 #include "core/calibration/problem.hpp"
 #include "core/calibration/sampling.hpp"
 #include "core/calibration/weak_directions.hpp"
@@ -34,6 +35,7 @@ struct CalibrationOptions {
   /// Samples a polynomial fitted to the design's runs in the place of a model without a Jacobian,
   /// where there are runs enough; its error is counted as known variance.
   bool emulate = false;
+  bool predictive = false;  ///< Also fills `Calibration::predictions`.
 };
 
 /// The model at every point of a Latin hypercube through the priors.
@@ -59,7 +61,9 @@ struct Calibration {
   /// log p(y) by bridge sampling; absent where it was not found. Compare models by it only where
   /// both calibrations converged, and know that it moves with the width of the priors.
   std::optional<BridgeEstimate> evidence;
-  std::vector<LeaveOutScore> leave_out;        ///< Single months, then quarters of a year.
+  std::vector<LeaveOutScore> leave_out;  ///< Single months, then quarters of a year.
+  /// Of all kept draws; absent where nobody asked.
+  std::optional<PointPredictions> predictions;
   std::vector<WeakDirection> weak_directions;  ///< What the data leave as the priors had it.
   bool converged;     ///< The gate holds for every parameter and hyper-parameter.
   Findings findings;  ///< Everything to be said in words; empty for a calibration without a remark.

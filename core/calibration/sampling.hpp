@@ -22,10 +22,10 @@ namespace recald::calibration {
 /// What is being done. Comes from any thread the executor uses, so the observer has to be safe for
 /// that.
 struct Progress {
-  enum class Stage { design, sampling };
+  enum class Stage { design, sampling, predicting };
   Stage stage;
   int chain;  ///< 0 during the design.
-  int done;   ///< Design runs, or iterations of this chain.
+  int done;   ///< Design runs, or iterations of this chain, or its draws predicted with.
   int total;
 };
 

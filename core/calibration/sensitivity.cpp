@@ -20,6 +20,7 @@ Result<Calibration> rerun(const MonthlyModel& prototype, const CalibrationProble
   prior.name += ", lambda_delta prior mean x " + number_text(mean_factor);
   prior.discrepancy_precision.rate /= mean_factor;
   options.hyper_prior = prior;
+  options.predictive = false;
   return calibrate_on_design(prototype, problem, options, base.design, context);
 }
 

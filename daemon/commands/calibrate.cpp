@@ -22,10 +22,11 @@ tl::expected<ModelledSite, int> open_for_calibration(const CalibrateArguments& a
   if (!site || site->config.model || !site->config.weather) {
     return open_modelled_site(arguments.site, console, arguments.model);
   }
-  if (arguments.model || arguments.prior_sensitivity || arguments.discrepancy != "sound") {
+  if (arguments.model || arguments.prior_sensitivity || arguments.predictive ||
+      arguments.discrepancy != "sound") {
     return tl::unexpected(console.fail(fmt::format(
-        "{} has no [[model]], so --model, --discrepancy and --prior-sensitivity have nothing to "
-        "act on; leave them out",
+        "{} has no [[model]], so --model, --discrepancy, --predictive and --prior-sensitivity have "
+        "nothing to act on; leave them out",
         arguments.site.filename().string())));
   }
   return load_aloud(std::move(*site), console);

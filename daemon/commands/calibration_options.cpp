@@ -25,6 +25,7 @@ tl::expected<calibration::CalibrationOptions, int> calibration_options(
   options.sampling.iterations = arguments.iterations;
   options.sampling.burn_in = arguments.burn_in;
   options.sampling.chains = arguments.chains;
+  options.predictive = arguments.predictive;
   const auto usable = calibration::check_sampling(options.sampling);
   if (!usable) return tl::unexpected(console.misused(usable.error().message));
   return options;

@@ -131,8 +131,13 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
     command.get_option(name)->needs(doe);
   }
   add_calibration(command, arguments);
-  command.add_option("--out", arguments.out,
-                     "Folder for calibration.json, the draws, the months and the report");
+  CLI::Option* out = command.add_option(
+      "--out", arguments.out, "Folder for calibration.json, the draws, the months and the report");
+  command
+      .add_flag("--predictive", arguments.predictive,
+                "Also write predictive draws and log-likelihoods of the measured months (y_rep and "
+                "log_lik, for ArviZ)")
+      ->needs(out);
 }
 
 void add_screen(CLI::App& command, ScreenArguments& arguments) {

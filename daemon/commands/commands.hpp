@@ -54,6 +54,7 @@ struct SamplingArguments {
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: one a core. No result depends on it.
   bool prior_sensitivity = false;
+  bool predictive = false;  ///< Also write y_rep and log_lik of each draw and measured point.
 };
 
 /// A site, or a design of experiments in its place.
@@ -179,7 +180,8 @@ int run_export(const ExportArguments& arguments, const Console& console);
 /// Readings CSV into the store, as an edit with author and reason. Not while a daemon runs on it.
 int run_import(const ImportArguments& arguments, const Console& console);
 int run_profile(const ProfileArguments& arguments, const Console& console);
-/// Writes calibration.json, draws, months.csv, profile.json and report.html into the folder.
+/// Writes calibration.json, draws, months.csv, profile.json and report.html into the folder; where
+/// predictions are asked for also points.json.
 int run_calibrate(const CalibrateArguments& arguments, const Console& console);
 /// The same from a design of experiments, with screen.json and metamodel.json for profile.json.
 int run_calibrate_design(const CalibrateArguments& arguments, const Console& console);

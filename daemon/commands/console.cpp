@@ -37,13 +37,15 @@ ProgressLine::~ProgressLine() {
 void ProgressLine::show(const calibration::Progress& progress) {
   if (!console_.is_terminal) return;
   const std::scoped_lock lock{mutex_};
-  const bool sampling = progress.stage == calibration::Progress::Stage::sampling;
+  using enum calibration::Progress::Stage;
   const auto chain = static_cast<std::size_t>(progress.chain);
   if (done_.size() <= chain) done_.resize(chain + 1, 0);
   done_[chain] = progress.done;
   // Chains run side by side; until all have reported, the line speaks of those that have.
   const double done = std::accumulate(done_.begin(), done_.end(), 0.0);
-  draw(sampling ? "Sampling" : "Running the model",
+  draw(progress.stage == sampling     ? "Sampling"
+       : progress.stage == predicting ? "Predicting"
+                                      : "Running the model",
        done / (static_cast<double>(progress.total) * static_cast<double>(done_.size())));
 }
 

@@ -416,6 +416,7 @@ TEST_F(DesignCommands, WrongUsageIsTwo) {
       {"calibrate", "--doe", doe, "--model", "epc"},
       {"calibrate", "--doe", doe, "--metamodel", "a.csv", "--parameters", "air"},
       {"calibrate", "--doe", doe, "--metamodel", "a.csv", "--form", "seed"},
+      {"calibrate", "--doe", doe, "--predictive"},
       {"calibrate", "--doe", doe, "--hyper-prior", "none"},
       {"calibrate", "--doe", doe, "--sampler", "dram", "--draws", "200", "--burn-in", "300"},
       {"doe", "site.toml"},

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "command_line.hpp"
 #include "depot_versions.hpp"
@@ -48,10 +50,26 @@ class EffectsInForce : public ::testing::Test {
 
   /// Short chains: these tests are of what goes in and comes out, not of the figures' precision.
   Outcome calibrate(const std::string& out, const std::string& model = "epc", int draws = 1400,
-                    int burn_in = 400) {
-    return run({"calibrate", path("site.toml"), "--model", model, "--out", path(out), "--json",
-                "--sampler", "dram", "--draws", std::to_string(draws), "--burn-in",
-                std::to_string(burn_in), "--chains", "2", "--design-runs", "50"});
+                    int burn_in = 400, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"calibrate",
+                                       path("site.toml"),
+                                       "--model",
+                                       model,
+                                       "--out",
+                                       path(out),
+                                       "--json",
+                                       "--sampler",
+                                       "dram",
+                                       "--draws",
+                                       std::to_string(draws),
+                                       "--burn-in",
+                                       std::to_string(burn_in),
+                                       "--chains",
+                                       "2",
+                                       "--design-runs",
+                                       "50"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
   }
   [[nodiscard]] Json result(const std::string& out) const {
     return Json::parse(read_text(folder_ / (out + "/calibration.json")));
@@ -110,6 +128,40 @@ TEST_F(EffectsInForce, CalibrationHasThemUntilTheyAreReverted) {
     EXPECT_TRUE(read_text(folder_ / "before" / file) == read_text(folder_ / "after" / file))
         << file;
   }
+}
+
+// A cut pools draws that were made at many values of the effect's share; each is predicted with.
+TEST_F(EffectsInForce, PooledDrawsHavePredictionsToo) {
+  put_in_force(half_missing_setback(months(1, 12)));
+  const Outcome outcome = calibrate("cut", "epc", 1400, 400, {"--predictive"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  const Json points = Json::parse(read_text(folder_ / "cut/points.json"));
+  ASSERT_EQ(points["y"].size(), 9u);  // heat, January to September
+  std::istringstream draws{read_text(folder_ / "cut/draws_1.csv")};
+  std::string line;
+  while (std::getline(draws, line) && line.starts_with('#')) {
+  }
+  std::vector<std::string> columns;
+  std::istringstream head{line};
+  for (std::string column; std::getline(head, column, ',');) columns.push_back(column);
+  ASSERT_EQ(columns.back(), "log_lik.9");
+  ASSERT_EQ(columns[columns.size() - 18], "y_rep.1");
+  int rows = 0;
+  double measured = 0.0;
+  double drawn = 0.0;
+  for (; std::getline(draws, line); ++rows) {
+    std::vector<double> values;
+    std::istringstream row{line};
+    for (std::string value; std::getline(row, value, ',');) values.push_back(std::stod(value));
+    ASSERT_EQ(values.size(), columns.size());
+    for (std::size_t p = 0; p < 9; ++p) {
+      measured += points["y"][p].get<double>();
+      drawn += values[values.size() - 18 + p];
+      EXPECT_TRUE(std::isfinite(values[values.size() - 9 + p]));
+    }
+  }
+  EXPECT_EQ(rows, result("cut")["sampling"]["draws"].get<int>());
+  EXPECT_NEAR(drawn / measured, 1.0, 0.1);
 }
 
 TEST_F(EffectsInForce, TheSameSeedGivesTheSameCut) {

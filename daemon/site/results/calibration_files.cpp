@@ -503,6 +503,15 @@ std::string draws_csv(const assessment::AssessedCalibration& result, std::size_t
       chain + 1);
   for (const Parameter& parameter : result.parameters) text += "," + parameter.name;
   for (const calibration::Summary& s : result.calibration.hyperparameters) text += "," + s.name;
+  const calibration::ChainPredictions* predictions = nullptr;
+  if (result.calibration.predictions) {
+    predictions = &result.calibration.predictions->chains[chain];
+    for (const char* name : {"y_rep", "log_lik"}) {
+      for (std::size_t p = 1; p <= result.calibration.predictions->points.size(); ++p) {
+        text += fmt::format(",{}.{}", name, p);
+      }
+    }
+  }
   text += '\n';
   auto out = std::back_inserter(text);
   for (Eigen::Index i = 0; i < draws.log_density.size(); ++i) {
@@ -511,9 +520,33 @@ std::string draws_csv(const assessment::AssessedCalibration& result, std::size_t
     fmt::format_to(out, ",{:.10g},{:.10g}", draws.discrepancy_precision[i],
                    draws.error_precision[i]);
     for (const double value : draws.beta.row(i)) fmt::format_to(out, ",{:.10g}", value);
+    if (predictions != nullptr) {
+      for (const double value : predictions->replicates.row(i)) {
+        fmt::format_to(out, ",{:.7g}", value);
+      }
+      for (const double value : predictions->log_likelihood.row(i)) {
+        fmt::format_to(out, ",{:.10g}", value);
+      }
+    }
     text += '\n';
   }
   return text;
+}
+
+std::string points_json(const assessment::AssessedCalibration& result) {
+  Json json = {{"y", Json::array()},
+               {"output", Json::array()},
+               {"unit", Json::array()},
+               {"month", Json::array()}};
+  for (const calibration::PointIndex& point : result.calibration.predictions->points) {
+    const auto& output = result.outputs[static_cast<std::size_t>(point.output)];
+    const auto month = static_cast<std::size_t>(point.month);
+    json["y"].push_back(output.measured[month]);
+    json["output"].push_back(output.name);
+    json["unit"].push_back(output.unit);
+    json["month"].push_back(result.month_names[month]);
+  }
+  return json.dump(2) + "\n";
 }
 
 std::string months_csv(const Recording& recording, const std::string& tzdata) {

@@ -1,4 +1,4 @@
-/// The files of a calibration: calibration.json, draws_<chain>.csv, months.csv.
+/// The files of a calibration: calibration.json, draws_<chain>.csv, points.json, months.csv.
 #pragma once
 
 #include <filesystem>
@@ -27,9 +27,15 @@ using FollowUp = tl::expected<DriftSummary, std::string>;
                                            const RunFacts& facts,
                                            const FollowUp* follow_up = nullptr);
 
-/// Draws of one chain as CmdStan writes them, so that ArviZ and R's posterior read them.
+/// Draws of one chain as CmdStan writes them, so that ArviZ and R's posterior read them. With
+/// predictions also `y_rep.1` … in the units of the outputs, and `log_lik.1` …, for the points in
+/// the order of `points_json`: see calibration/predictive.hpp.
 [[nodiscard]] std::string draws_csv(const assessment::AssessedCalibration& result,
                                     std::size_t chain, const RunFacts& facts);
+
+/// The points of the predictions in arrays of one length: `y`, what was measured; `output`, `unit`,
+/// `month`. @pre the result has predictions
+[[nodiscard]] std::string points_json(const assessment::AssessedCalibration& result);
 
 /// `month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,revision,
 /// tzdata`, one row a meter and month; `different` when any meter says that the month is not like

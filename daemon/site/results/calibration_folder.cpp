@@ -33,6 +33,10 @@ Result<void> write_files(const assessment::AssessedCalibration& result, const Ru
     auto written = system::write_file(file, draws_csv(result, chain, facts));
     if (!written) return written;
   }
+  if (result.calibration.predictions) {
+    auto written = system::write_file(folder / "points.json", points_json(result));
+    if (!written) return written;
+  }
   for (const ResultFile& file : files) {
     if (auto written = system::write_file(folder / file.name, file.text); !written) return written;
   }

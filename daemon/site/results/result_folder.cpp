@@ -24,7 +24,7 @@ void clear_results(const std::filesystem::path& folder) {
   std::error_code ignored;  // what cannot be removed cannot be written either, and that is reported
   std::filesystem::remove(folder / "calibration.json", ignored);
   for (const char* name :
-       {"screen.json", "metamodel.json", "profile.json", "report.html"}) {
+       {"screen.json", "metamodel.json", "profile.json", "points.json", "report.html"}) {
     std::filesystem::remove(folder / name, ignored);
   }
   for (int chain = 1;

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/calibration/leave_out.hpp"
+#include "core/calibration/predictive.hpp"
 #include "core/calibration/weak_directions.hpp"
 #include "tests/core/calibration/toy_models.hpp"
 
@@ -81,6 +83,94 @@ TEST(LeaveOut, ScoresAreRatiosOfLikelihoods) {
                   of_all - others.log_likelihood(at).value(), 1e-8);
     }
   }
+}
+
+/// One draw of the posterior, `count` times over.
+ChainDraws repeated_draw(const Posterior& posterior, Eigen::Index count) {
+  ChainDraws chain = single_draws(posterior, 1).front();
+  chain.theta = chain.theta.row(0).replicate(count, 1).eval();
+  chain.discrepancy_precision = chain.discrepancy_precision.replicate(count, 1).eval();
+  chain.error_precision = chain.error_precision.replicate(count, 1).eval();
+  chain.beta = chain.beta.row(0).replicate(count, 1).eval();
+  chain.log_density.setZero(count);
+  return chain;
+}
+
+// Densities of figures in units: normalised, and with the range of the output that they are of.
+TEST(Predictive, LogLikelihoodsAreRatiosOfLikelihoodsPerUnit) {
+  const PosteriorData data = data_of(problem_with_a_gap());
+  Posterior whole = Posterior::make(toy_model(2, 12), toy_parameters(), data, kPrior).value();
+  const auto chains = single_draws(whole, 3);
+  const PointPredictions predictions = predict_points(whole, chains, {}).value();
+  ASSERT_EQ(predictions.points.size(), 23u);
+  PointBlocks points;
+  for (Eigen::Index p = 0; p < 23; ++p) points.push_back({p});
+  const Eigen::MatrixXd scores = block_log_scores(whole, chains, 3, points).value();
+  for (Eigen::Index p = 0; p < 23; ++p) {
+    const int output = predictions.points[static_cast<std::size_t>(p)].output;
+    const double range = output == 0 ? 2100.0 : 4100.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(predictions.chains[k].log_likelihood(0, p),
+                  scores(static_cast<Eigen::Index>(k), p) - std::log(range), 1e-8);
+    }
+  }
+}
+
+// What is drawn has the mean and the spread of the point given the others, in units. Both are found
+// from Sigma without its inverse: a regression of the point on the others.
+TEST(Predictive, ReplicatesScatterAsThePointGivenTheOthers) {
+  const PosteriorData data = data_of(problem_with_a_gap());
+  Posterior posterior = Posterior::make(toy_model(2, 12), toy_parameters(), data, kPrior).value();
+  constexpr Eigen::Index count = 20'000;
+  const ChainDraws chain = repeated_draw(posterior, count);
+  const PointPredictions predictions = predict_points(posterior, {chain}, {.seed = 5}).value();
+  ASSERT_TRUE(posterior.set_hyperparameters(
+      {chain.discrepancy_precision(0), chain.error_precision(0), chain.beta.row(0).transpose()}));
+  Eigen::MatrixXd precision(23, 23);
+  posterior.precision(precision);
+  const Eigen::MatrixXd sigma = precision.inverse();
+  const Eigen::VectorXd theta = chain.theta.row(0);
+  const Eigen::VectorXd residual = posterior.residual_at({theta.data(), 2});
+  for (const Eigen::Index p : {0, 7, 12, 22}) {
+    std::vector<Eigen::Index> others;
+    for (Eigen::Index i = 0; i < 23; ++i) {
+      if (i != p) others.push_back(i);
+    }
+    const Eigen::VectorXd slopes =
+        sigma(others, others).ldlt().solve(Eigen::VectorXd{sigma(others, p)});
+    const double sd = std::sqrt(sigma(p, p) - slopes.dot(Eigen::VectorXd{sigma(others, p)}));
+    const double normalised =
+        data.values(p) - residual(p) + slopes.dot(Eigen::VectorXd{residual(others)});
+    const OutputScale scale =
+        data.scales[static_cast<std::size_t>(data.points[static_cast<std::size_t>(p)].output)];
+    const double mean = scale.min + scale.range() * normalised;
+    const Eigen::ArrayXd drawn = predictions.chains[0].replicates.col(p).array();
+    const double sd_in_units = sd * scale.range();
+    EXPECT_NEAR(drawn.mean(), mean, 4.0 * sd_in_units / std::sqrt(count)) << p;
+    EXPECT_NEAR(std::sqrt((drawn - drawn.mean()).square().mean()), sd_in_units,
+                4.0 * sd_in_units / std::sqrt(2.0 * count))
+        << p;
+  }
+}
+
+TEST(Predictive, AnyExecutorGivesTheSameNumbersAndMayStop) {
+  const Posterior posterior =
+      Posterior::make(toy_model(2, 12), toy_parameters(), data_of(problem_with_a_gap()), kPrior)
+          .value();
+  const std::vector<ChainDraws> chains(3, repeated_draw(posterior, 5));
+  const auto forwards = predict_points(posterior, chains, {}).value();
+  const ForEachIndex backwards = [](std::size_t n, const std::function<void(std::size_t)>& body) {
+    for (std::size_t i = n; i-- > 0;) body(i);
+  };
+  const auto reversed = predict_points(posterior, chains, {.executor = backwards}).value();
+  for (std::size_t k = 0; k < chains.size(); ++k) {
+    EXPECT_EQ(forwards.chains[k].replicates, reversed.chains[k].replicates);
+  }
+  EXPECT_NE(forwards.chains[0].replicates, forwards.chains[1].replicates);
+  const auto stopped = predict_points(
+      posterior, chains, {.observer = [](const Progress& progress) { return progress.done < 2; }});
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
 }
 
 TEST(LeaveOut, NamesWhatItCannotDo) {
