@@ -24,4 +24,8 @@ std::string percent_text(double share) {
   return to_text(100.0 * share, std::chars_format::fixed, 1) + " %";
 }
 
+std::string signed_percent_text(double share) {
+  return (share < 0.0 ? "" : "+") + to_text(100.0 * share, std::chars_format::fixed, 0) + " %";
+}
+
 }  // namespace recald

@@ -11,4 +11,7 @@ namespace recald {
 /// A share of one as per cent with one decimal: "15.3 %".
 [[nodiscard]] std::string percent_text(double share);
 
+/// A share as whole per cent with its sign: "+31 %", "-4 %".
+[[nodiscard]] std::string signed_percent_text(double share);
+
 }  // namespace recald
