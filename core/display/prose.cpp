@@ -15,7 +15,7 @@ std::string fahrenheit(const std::string& celsius) {
 
 std::string with_temperatures_in(UnitSystem system, const std::string& text) {
   if (system == UnitSystem::si) return text;
-  static const std::regex kTemperature{"(?:(-?[0-9]+) (to|and) )?(-?[0-9]+) °C"};
+  static const std::regex kTemperature{"(?:(-?[0-9.]+) (to|and) )?(-?[0-9.]+) °C"};
   std::string shown;
   auto rest = text.cbegin();
   for (std::sregex_iterator it{text.begin(), text.end(), kTemperature}, end; it != end; ++it) {

@@ -40,7 +40,7 @@ TEST(DisplayUnit, IpOfBuildings) {
   expect_ip("m3/day", any, "gal/day", 26'417.21);
   expect_ip("W/m2", any, "W/ft²", 9.290304);
   expect_ip("W/m2K", any, "Btu/(h·ft²·°F)", 17.61102);
-  expect_ip("kJ/m2K", any, "Btu/(ft²·°F)", 4.891966);
+  expect_ip("kJ/m2K", any, "Btu/(ft²·°F)", 4.891949);
   expect_ip("person/m2", any, "persons/1,000 ft²", 9290.304);
   expect_ip("cm2/m2", any, "in²/100 ft²", 144.0);
   expect_ip("kWh/day per K", Utility::heating, "MMBtu/day per °F", 0.3412142 / 1.8);
