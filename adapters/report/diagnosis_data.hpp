@@ -26,7 +26,13 @@ struct EffectParameterRow {
   std::string high;  ///< 95 %
 };
 
-/// An effect that was added, or tried and taken back.
+/// What an effect does to a meter.
+struct Impact {
+  std::string meter;
+  std::string a_month;  ///< On average: "+4,200 kWh".
+};
+
+/// An effect that was added, or tried and withdrawn.
 struct AddedEffectCard {
   std::string title;
   std::string meaning;
@@ -91,7 +97,7 @@ struct DiagnosisData {
   Provenance provenance;
 
   diagnosis::Outcome outcome = diagnosis::Outcome::none;
-  bool not_confirmed = false;  ///< Named, then taken back: the months kept back did not agree.
+  bool not_confirmed = false;  ///< Named, then withdrawn: the months kept back did not agree.
   std::string headline;
   std::vector<std::string> explanations;
   std::vector<Notice> notices;

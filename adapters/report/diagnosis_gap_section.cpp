@@ -79,7 +79,7 @@ void write_judgement(Html& html, const DiagnosisData& data) {
     html.element("p",
                  "Not confirmed: on the months kept back the model with the additions is not "
                  "better by three to one, or tells one meter clearly worse, or the monthly "
-                 "model speaks against them. What was tried has been taken back.",
+                 "model speaks against them. What was tried has been withdrawn.",
                  "bad");
   } else if (data.outcome == diagnosis::Outcome::named) {
     html.element("p",

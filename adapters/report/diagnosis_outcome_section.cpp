@@ -53,9 +53,9 @@ void write_impacts(Html& html, const AddedEffectCard& card) {
   table.write(html);
 }
 
-void write_card(Html& html, const AddedEffectCard& card, bool taken_back) {
-  html.markup(taken_back ? "<li class=\"fail\">" : "<li class=\"pass\">")
-      .element("span", taken_back ? "✕ Tried and taken back" : "✓ Named and confirmed", "badge")
+void write_card(Html& html, const AddedEffectCard& card, bool withdrawn) {
+  html.markup(withdrawn ? "<li class=\"fail\">" : "<li class=\"pass\">")
+      .element("span", withdrawn ? "✕ Tried and withdrawn" : "✓ Named and confirmed", "badge")
       .element("strong", card.title)
       .element("p", card.meaning)
       .element("p",

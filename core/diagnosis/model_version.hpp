@@ -74,7 +74,7 @@ enum class VersionStatus {
   proposed,  ///< Written, and never in force.
   accepted,
   retired,   ///< Later data spoke against its effect.
-  reverted,  ///< Taken back.
+  reverted,  ///< Withdrawn.
 };
 inline constexpr std::array<std::string_view, 4> kVersionStatuses = {"proposed", "accepted",
                                                                      "retired", "reverted"};

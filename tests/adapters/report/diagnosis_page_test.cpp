@@ -105,7 +105,7 @@ TEST(DiagnosisPage, SaysInRedWordsThatNothingWasConfirmed) {
   EXPECT_THAT(page, HasSubstr("✕ Not confirmed"));
   EXPECT_THAT(page, HasSubstr("<p class=\"headline bad\">Not confirmed:"));
   EXPECT_THAT(page, HasSubstr("<p class=\"bad\">Not confirmed: on the months kept back"));
-  EXPECT_THAT(page, HasSubstr("✕ Tried and taken back"));
+  EXPECT_THAT(page, HasSubstr("✕ Tried and withdrawn"));
   EXPECT_THAT(page, Not(HasSubstr("✓ Added to the model")));
   EXPECT_THAT(page, Not(HasSubstr("confirm it:")));
 }

@@ -154,7 +154,7 @@ DiagnosisData sample_diagnosis() {
 DiagnosisData unconfirmed_diagnosis() {
   DiagnosisData data = sample_diagnosis();
   data.not_confirmed = true;
-  data.headline = "Not confirmed: \"Night set-back missing\" was tried and taken back.";
+  data.headline = "Not confirmed: \"Night set-back missing\" was tried and withdrawn.";
   const std::string hostile = "</script><script>alert(\"&'\")</script><!--";
   data.title = data.site.name = hostile;
   data.added[0].title = data.added[0].meaning = data.added[0].physics = hostile;

@@ -9,7 +9,7 @@ namespace recald::report {
 /// month. Titled as invented; the same bytes every time.
 [[nodiscard]] DiagnosisData sample_diagnosis();
 
-/// The awkward one: the same effect tried and taken back, a meter that was never read on the months
+/// The awkward one: the same effect tried and withdrawn, a meter that was never read on the months
 /// kept back, and words that try to break the page.
 [[nodiscard]] DiagnosisData unconfirmed_diagnosis();
 

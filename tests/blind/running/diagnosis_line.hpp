@@ -29,7 +29,7 @@ struct CaseRun {
 /// A case without a diagnosis counts as "none", and says why.
 [[nodiscard]] Json failure_line(const CaseRun& run, const std::string& why);
 
-/// Nothing of what was tried and taken back counts: then there is no gap in the line, and the names
+/// Nothing of what was tried and withdrawn counts: then there is no gap in the line, and the names
 /// tried stand in `extra`.
 /// @param diagnosis  diagnosis.json, as `recald diagnose` writes it.
 /// @return malformed if a key is missing, or what it holds makes no line.

@@ -93,7 +93,7 @@ TEST(DiagnosisLine, BaseParametersIfTheyAreThere) {
   EXPECT_EQ(line["parameters_after"]["cooling_setpoint"]["mean"], 23.9);
 }
 
-// With the gap of what was taken back the scorer would take the reverted model for the result.
+// With the gap of what was withdrawn the scorer would take the reverted model for the result.
 TEST(DiagnosisLine, WhatWasTakenBackClosesNoGap) {
   Json diagnosis = made_up::diagnosis();
   diagnosis["outcome"] = "unknown";
