@@ -63,6 +63,9 @@ void read_site(TomlReader table, SiteConfig& config) {
       table.problem_at("timezone", calendar.error().message);
     }
   }
+  if (const auto units = table.word("units", {"SI", "IP"})) {
+    config.units = *units == "IP" ? display::UnitSystem::ip : display::UnitSystem::si;
+  }
   const auto latitude = table.number("latitude_deg", {-90.0, 90.0});
   const auto longitude = table.number("longitude_deg", {-180.0, 180.0});
   const double altitude_m = table.number_or("altitude_m", 0.0, {-430.0, 6000.0});

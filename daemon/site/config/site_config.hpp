@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adapters/csv/line_issues.hpp"
+#include "core/display/unit.hpp"
 #include "core/metering/close_month.hpp"
 #include "core/metering/counter.hpp"
 #include "core/metering/month_closer.hpp"
@@ -119,6 +120,7 @@ struct SiteConfig {
   std::string id;
   std::string name;
   std::string timezone;
+  display::UnitSystem units = display::UnitSystem::si;  ///< Of pages and the console.
   std::chrono::seconds interval{900};
   std::optional<weather::Location> location;
   model::Holidays holidays;

@@ -11,6 +11,7 @@
 
 #include <cstdlib>
 
+#include "core/display/unit.hpp"
 #include "core/model/parameter_library.hpp"
 #include "tests/support/allocations.hpp"
 #include "tests/support/sample_site.hpp"
@@ -465,6 +466,19 @@ heating = 0.2
   EXPECT_THAT(
       wrong.error(),
       ElementsAre(::testing::HasSubstr("'from' and 'to' are the same hour; leave both out")));
+}
+
+TEST(SiteConfig, UnitsOfDisplayAreSiUnlessSaid) {
+  const auto units = [](const std::string& line) {
+    const auto site =
+        parse_site(edited(std::string{kSampleMeters}, "[site]\n", "[site]\n" + line), "site.toml");
+    if (!site) throw std::runtime_error(site.error().front());
+    return site->units;
+  };
+  EXPECT_EQ(units(""), display::UnitSystem::si);
+  EXPECT_EQ(units("units = \"SI\"\n"), display::UnitSystem::si);
+  EXPECT_EQ(units("units = \"IP\"\n"), display::UnitSystem::ip);
+  EXPECT_THROW((void)units("units = \"metric\"\n"), std::runtime_error);
 }
 
 // Each meter is compared with those of its address alone, and a map is read once.
