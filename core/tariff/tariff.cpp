@@ -65,4 +65,12 @@ MonthBill bill_of(const Tariff& tariff, metering::Utility utility,
   return bill;
 }
 
+Rates rates_of(const Tariff& tariff, metering::Utility utility,
+               std::span<const profile::HourlyLoad> hours, const model::Holidays& holidays) {
+  Rates rates{.per_kWh = mean_price_per_kWh(tariff, utility, hours, holidays),
+              .emissions_kg_per_kWh = tariff.emissions_of(utility)};
+  if (const auto& prices = tariff.prices_of(utility)) rates.per_kW_month = prices->per_kW_month;
+  return rates;
+}
+
 }  // namespace recald::tariff

@@ -69,4 +69,15 @@ struct MonthBill {
                                                        std::span<const profile::HourlyLoad> hours,
                                                        const model::Holidays& holidays);
 
+/// What a meter's use costs and emits. Absent where the tariff does not say.
+struct Rates {
+  std::optional<double> per_kWh{};       ///< Money; `mean_price_per_kWh`.
+  std::optional<double> per_kW_month{};  ///< Money, for a month's highest demand.
+  std::optional<double> emissions_kg_per_kWh{};
+};
+
+[[nodiscard]] Rates rates_of(const Tariff& tariff, metering::Utility utility,
+                             std::span<const profile::HourlyLoad> hours,
+                             const model::Holidays& holidays);
+
 }  // namespace recald::tariff

@@ -1,0 +1,15 @@
+#include "daemon/site/model/meter_rates.hpp"
+
+#include <vector>
+
+namespace recald::daemon {
+
+tariff::Rates rates_of(const SiteConfig& site, const MeterRecord& record) {
+  std::vector<profile::HourlyLoad> hours;
+  for (const auto& [month, loads] : record.hours) {
+    hours.insert(hours.end(), loads.begin(), loads.end());
+  }
+  return tariff::rates_of(site.tariff, record.meter.utility, hours, site.holidays);
+}
+
+}  // namespace recald::daemon
