@@ -39,7 +39,7 @@ struct AddedEffectCard {
   std::string physics;
   std::string when;  ///< "At all times of the record", "Since about 12 Mar 2021 (…)".
   double probability;
-  std::vector<diagnosis::MeterImpact> impacts;  ///< Of a mean month; meters as people say them.
+  std::vector<Impact> impacts;
   std::vector<EffectParameterRow> parameters;
 };
 
@@ -65,7 +65,7 @@ struct Separation {
 /// One meter's residuals before, and after what was added.
 struct MeterMaps {
   std::string meter;
-  double mean_kW;  ///< Measured; what the shares are shares of.
+  std::string mean_load;  ///< Measured, "41.2 kW"; what the shares are shares of.
   diagnosis::ResidualMap before;
   std::optional<diagnosis::ResidualMap> after;
 };
@@ -103,10 +103,12 @@ struct DiagnosisData {
   std::vector<Notice> notices;
   std::vector<AddedEffectCard> added;
 
-  std::vector<std::string> meters;      ///< (m)
-  std::vector<metering::Month> months;  ///< Of the maps' columns.
-  std::vector<diagnosis::Role> uses;    ///< (months)
-  std::vector<double> temperature_limits_C;
+  std::vector<std::string> meters;         ///< (m)
+  std::vector<display::MeterUnits> units;  ///< (m)
+  std::vector<metering::Month> months;     ///< Of the maps' columns.
+  std::vector<diagnosis::Role> uses;       ///< (months)
+  std::vector<double> temperature_limits;  ///< In the unit of temperature.
+  std::string temperature_unit = "°C";
   std::vector<MeterMaps> maps;  ///< (m)
 
   std::vector<diagnosis::Misfit> located;

@@ -143,7 +143,8 @@ std::string diagnosis_figure_json(const DiagnosisData& data) {
   for (const EffectSignature& s : data.signatures) signatures.push_back(effect_signature_json(s));
   return script_safe_text({{"months", months},
                            {"uses", uses},
-                           {"temperatureLimits", json_numbers(data.temperature_limits_C)},
+                           {"temperatureLimits", json_numbers(data.temperature_limits)},
+                           {"temperatureUnit", data.temperature_unit},
                            {"maps", maps},
                            {"candidates", candidates},
                            {"steps", data.steps.empty() ? json(nullptr) : steps_json(data)},

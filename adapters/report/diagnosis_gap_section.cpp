@@ -103,7 +103,9 @@ void write_other_models(Html& html, const DiagnosisData& data) {
     for (std::size_t i = 0; i < gap.outputs.size(); ++i) {
       const auto& before = gap.before[i];
       const auto& after = gap.after[i];
-      table.row({{fmt::format("{}: {}", name_of(gap.model), gap.outputs[i])},
+      const std::string_view model =
+          gap.model == ModelKind::epc ? "Monthly model" : name_of(gap.model);
+      table.row({{fmt::format("{}: {}", model, gap.outputs[i])},
                  {percent_text(before.cvrmse), "number"},
                  {percent_text(after.cvrmse), "number"},
                  {signed_percent_text(before.nmbe_sim_minus_meas), "number"},

@@ -24,10 +24,6 @@ std::string share_words(const diagnosis::Misfit& row) {
                      row.share > 0.0 ? "more" : "less", percent_text(row.share_se));
 }
 
-std::string kWh_words(double kWh_month) {
-  return kWh_month > 0.0 ? "+" + count_text(kWh_month) : count_text(kWh_month);
-}
-
 void write_rows(Html& html, const DiagnosisData& data, const std::vector<diagnosis::Misfit>& rows,
                 std::string caption) {
   const std::size_t shown = std::min(rows.size(), kRowsShown);
@@ -35,13 +31,13 @@ void write_rows(Html& html, const DiagnosisData& data, const std::vector<diagnos
     caption += fmt::format(" ({} of {} places; diagnosis.json has more)", shown, rows.size());
   }
   Table table(std::move(caption));
-  table.columns({"Meter", "When", "The meter reads", "kWh a month"});
+  table.columns({"Meter", "When", "The meter reads", "A month"});
   for (std::size_t i = 0; i < shown; ++i) {
     const diagnosis::Misfit& row = rows[i];
     table.row({{data.meters[row.meter]},
                {row.words, "words"},
                {share_words(row), "nowrap"},
-               {kWh_words(row.kWh_month), "number"}});
+               {signed_amount_text(row.kWh_month, data.units[row.meter].energy), "number"}});
   }
   table.write(html);
 }

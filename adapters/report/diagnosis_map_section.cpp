@@ -66,9 +66,10 @@ void add_temperature_rows(Table& table, const char* label, const Eigen::ArrayXXd
 Table temperature_table(const DiagnosisData& data, const MeterMaps& maps) {
   Table table(maps.meter + ": measured minus modelled by outdoor temperature and part of the day");
   std::vector<std::string> columns{"Part of the day"};
-  for (std::size_t i = 0; i + 1 < data.temperature_limits_C.size(); ++i) {
-    columns.push_back(fmt::format("{} to {} °C", count_text(data.temperature_limits_C[i]),
-                                  count_text(data.temperature_limits_C[i + 1])));
+  for (std::size_t i = 0; i + 1 < data.temperature_limits.size(); ++i) {
+    columns.push_back(fmt::format("{} to {} {}", count_text(data.temperature_limits[i]),
+                                  count_text(data.temperature_limits[i + 1]),
+                                  data.temperature_unit));
   }
   table.columns(std::move(columns));
   add_temperature_rows(table, "Before", maps.before.by_temperature);
@@ -79,8 +80,8 @@ Table temperature_table(const DiagnosisData& data, const MeterMaps& maps) {
 std::string map_caption(const MeterMaps& maps) {
   return fmt::format(
       "Orange: the meter reads more than the model; blue: less. Colours are full at {} of the "
-      "meter's mean of {} kW{}. Hatched: no reading there.",
-      percent_text(colour_scale(maps), 0), number_text(maps.mean_kW),
+      "meter's mean of {}{}. Hatched: no reading there.",
+      percent_text(colour_scale(maps), 0), maps.mean_load,
       maps.after ? ", on the left and on the right" : "");
 }
 
@@ -96,7 +97,7 @@ void write_meter(Html& html, const DiagnosisData& data, const MeterMaps& maps, i
                 .caption = map_caption(maps),
                 .size = "map"},
                month_table(data, maps));
-  if (data.temperature_limits_C.size() < 2) return;
+  if (data.temperature_limits.size() < 2) return;
   write_figure(
       html,
       {.kind = "temperaturemap",

@@ -30,11 +30,6 @@ Mark outcome_mark(const DiagnosisData& data) {
   return {"○ Nothing named", "note"};
 }
 
-std::string kWh_text(double kWh_month) {
-  const std::string text = count_text(kWh_month) + " kWh";
-  return kWh_month > 0.0 ? "+" + text : text;
-}
-
 void write_parameters(Html& html, const AddedEffectCard& card) {
   Table table("Its size, fitted together with the rest of the model");
   table.columns({"Parameter", "Most likely", "5 %", "95 %"});
@@ -47,8 +42,8 @@ void write_parameters(Html& html, const AddedEffectCard& card) {
 void write_impacts(Html& html, const AddedEffectCard& card) {
   Table table("What it does to the meters");
   table.columns({"Meter", "A month, on average"});
-  for (const diagnosis::MeterImpact& impact : card.impacts) {
-    table.row({{impact.meter}, {kWh_text(impact.monthly_kWh), "number"}});
+  for (const Impact& impact : card.impacts) {
+    table.row({{impact.meter}, {impact.a_month, "number"}});
   }
   table.write(html);
 }

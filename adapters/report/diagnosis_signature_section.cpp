@@ -26,8 +26,8 @@ Table signature_table(const DiagnosisData& data, const EffectSignature& s) {
   table.group("By outdoor temperature");
   for (int bin = 0; bin < s.residual.by_temperature.size(); ++bin) {
     const auto i = static_cast<std::size_t>(bin);
-    row(fmt::format("{} to {} °C", count_text(data.temperature_limits_C[i]),
-                    count_text(data.temperature_limits_C[i + 1])),
+    row(fmt::format("{} to {} {}", count_text(data.temperature_limits[i]),
+                    count_text(data.temperature_limits[i + 1]), data.temperature_unit),
         s.residual.by_temperature[bin], s.change.by_temperature[bin],
         s.effect_alone.by_temperature[bin]);
   }

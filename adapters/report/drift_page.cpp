@@ -32,6 +32,7 @@ void write_alarm(Html& html, const AlarmCard& card) {
       .element("span", "▲ Alarm", "badge")
       .element("strong", card.title)
       .element("p", card.sentence);
+  if (!card.cost.empty()) html.element("p", card.cost);
   if (!card.causes.empty()) {
     Table table("What it may come from");
     table.columns({"Cause", "Probability"});
@@ -99,8 +100,14 @@ void write_forecast_section(Html& html, const DriftData& data) {
   html.markup("</section>\n");
 }
 
+/// "Outdoor airflow rate, m³/s"
+std::string titled(const BelievedParameter& parameter) {
+  return parameter.unit.empty() ? parameter.label
+                                : fmt::format("{}, {}", parameter.label, parameter.unit);
+}
+
 Table believed_table(const BelievedParameter& parameter) {
-  Table table(fmt::format("{}, {}", parameter.label, parameter.unit));
+  Table table(titled(parameter));
   table.columns({"After", "5 %", "Mean", "95 %", "Mean of the last twelve months alone"});
   for (std::size_t i = 0; i < parameter.months.size(); ++i) {
     const BelievedMonth& month = parameter.months[i];
@@ -122,7 +129,7 @@ void write_believed_section(Html& html, const DriftData& data) {
     write_figure(html,
                  {.kind = "believed",
                   .index = static_cast<int>(i),
-                  .title = fmt::format("{}, {}", parameter.label, parameter.unit),
+                  .title = titled(parameter),
                   .description = fmt::format("Posterior mean and 90 % band of {} after each month.",
                                              parameter.label),
                   .caption = "Line and band: all months so far. Dashed: the last twelve alone.",

@@ -40,6 +40,7 @@ struct LikelyCause {
 struct AlarmCard {
   std::string title;                ///< "Chilled water is more than forecast since Jul 2021"
   std::string sentence;             ///< How sure, by how much, when raised.
+  std::string cost = {};            ///< What the change costs a year; empty: not known.
   std::vector<LikelyCause> causes;  ///< The likeliest first; empty: too little was known before.
   std::string consequence;          ///< What was done about it; empty: nothing.
   std::string advice;

@@ -8,6 +8,7 @@
 #include "adapters/report/format.hpp"
 #include "adapters/report/histogram.hpp"
 #include "adapters/report/script_json.hpp"
+#include "core/display/unit.hpp"
 
 namespace recald::report {
 namespace {
@@ -30,10 +31,10 @@ const char* role_text(MonthRole role) {
 }
 
 /// Corners of the prior's density, [value, density] each, over all but 0.1 % of an endless tail.
-json curve(const Prior& prior) {
+json curve(const Prior& prior, const display::Unit& unit) {
   json corners = json::array();
   const auto corner = [&](double value, double density) {
-    corners.push_back(json_numbers(std::array{value, density}));
+    corners.push_back(json_numbers(std::array{unit.shown(value), density / unit.factor}));
   };
   if (const auto* triangle = std::get_if<TriangularPrior>(&prior.distribution())) {
     corner(triangle->min, 0.0);
@@ -53,41 +54,49 @@ json curve(const Prior& prior) {
   return corners;
 }
 
-json parameter_json(const ParameterResult& parameter) {
+json parameter_json(const ParameterResult& parameter, const display::Unit& unit) {
   const Histogram histogram = make_histogram(parameter.draws, kPosteriorBins);
+  std::vector<double> density = histogram.density();
+  for (double& value : density) value /= unit.factor;
   const calibration::Summary& summary = parameter.summary;
   return {{"label", parameter.label},
-          {"unit", summary.unit},
-          {"prior", curve(parameter.prior)},
-          {"binStart", number(histogram.start)},
-          {"binWidth", number(histogram.width)},
-          {"density", json_numbers(histogram.density())},
-          {"mean", number(summary.mean)},
-          {"q05", number(summary.q05)},
-          {"q95", number(summary.q95)}};
+          {"unit", unit.name},
+          {"prior", curve(parameter.prior, unit)},
+          {"binStart", number(unit.shown(histogram.start))},
+          {"binWidth", number(unit.shown_difference(histogram.width))},
+          {"density", json_numbers(density)},
+          {"mean", number(unit.shown(summary.mean))},
+          {"q05", number(unit.shown(summary.q05))},
+          {"q95", number(unit.shown(summary.q95))}};
 }
 
-json box_json(const std::optional<assessment::BoxPlot>& box) {
+json shown_numbers(std::array<double, 5> values, const display::Unit& unit) {
+  for (double& value : values) value = unit.shown(value);
+  return json_numbers(values);
+}
+
+json box_json(const std::optional<assessment::BoxPlot>& box, const display::Unit& unit) {
   if (!box) return nullptr;
-  return json_numbers(
-      std::array{box->low_whisker, box->q25, box->q50, box->q75, box->high_whisker});
+  return shown_numbers({box->low_whisker, box->q25, box->q50, box->q75, box->high_whisker}, unit);
 }
 
-json forecast_json(const std::optional<assessment::MonthForecast>& forecast) {
+json forecast_json(const std::optional<assessment::MonthForecast>& forecast,
+                   const display::Unit& unit) {
   if (!forecast) return nullptr;
-  return json_numbers(
-      std::array{forecast->q05, forecast->q25, forecast->q50, forecast->q75, forecast->q95});
+  return shown_numbers({forecast->q05, forecast->q25, forecast->q50, forecast->q75, forecast->q95},
+                       unit);
 }
 
 json month_json(const OutputResult& output, const OutputMonth& month) {
+  const display::Unit& unit = output.unit();
   return {{"month", month_key(month.figure.month, month.number)},
           {"role", role_text(month.role)},
-          {"measured", number(measured_of(output, month))},
+          {"measured", number(unit.shown(measured_of(output, month)))},
           {"usable", month.figure.usable},
           {"filled", json_number(month.figure.filled_share, 4)},
           {"different", month.flagged_different},
-          {"box", box_json(month.box)},
-          {"forecast", forecast_json(month.forecast)}};
+          {"box", box_json(month.box, unit)},
+          {"forecast", forecast_json(month.forecast, unit)}};
 }
 
 json metric_histogram_json(const std::vector<double>& values) {
@@ -103,7 +112,7 @@ json output_json(const OutputResult& output) {
   const assessment::OutputAssessment fit =
       output.assessment.value_or(assessment::OutputAssessment{});
   return {{"label", output.label},
-          {"unit", output.unit},
+          {"unit", output.unit().name},
           {"months", months},
           {"cvrmse",
            {{"calibration", metric_histogram_json(fit.draw_cvrmse_calibration)},
@@ -117,11 +126,12 @@ json peaks_json(const ReportData& data) {
     for (const metering::MonthlyFigure& figure : series.months) {
       const auto& peak = figure.peak;
       months.push_back({{"month", month_key(figure.month)},
-                        {"kW", peak ? number(peak->kW) : json(nullptr)},
+                        {"peak", peak ? number(series.units.power.shown(peak->kW)) : json(nullptr)},
                         {"start", peak ? local_text(peak->start, data.calendar) : ""},
                         {"exceedable", peak && peak->could_be_exceeded}});
     }
-    peaks.push_back({{"label", series.meter}, {"months", months}});
+    peaks.push_back(
+        {{"label", series.meter}, {"unit", series.units.power.name}, {"months", months}});
   }
   return peaks;
 }
@@ -156,7 +166,10 @@ json load_json(const LoadGrid& load) {
   for (const float value : load.mean_kW) values.push_back(json_number(value, 4));
   std::string letters;
   for (const HourStatus status : load.status) letters += status_letter(status);
+  const display::Unit& power = load.units.power;
   return {{"label", load.meter},
+          {"unit", power.name},
+          {"unitsPerKW", json_number(power.factor, 9)},
           {"firstDay", day_key(load.first_day)},
           {"kW", std::move(values)},
           {"status", letters}};
@@ -172,7 +185,12 @@ json array_of(const std::vector<Item>& items, json (*convert)(const Item&)) {
 }  // namespace
 
 nlohmann::json report_json(const ReportData& data) {
-  return {{"parameters", array_of(data.parameters, parameter_json)},
+  json parameters = json::array();
+  for (const ParameterResult& parameter : data.parameters) {
+    parameters.push_back(
+        parameter_json(parameter, display::unit_of(data.units, parameter.summary.unit)));
+  }
+  return {{"parameters", parameters},
           {"overview", overview_json(model_overview(data))},
           {"outputs", array_of(data.outputs, output_json)},
           {"peaks", peaks_json(data)},

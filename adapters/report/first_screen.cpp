@@ -7,6 +7,7 @@
 #include <span>
 
 #include "adapters/report/format.hpp"
+#include "core/display/unit.hpp"
 
 namespace recald::report {
 namespace {
@@ -65,16 +66,19 @@ void write_overview_key(Html& html, bool with_band, const Expected& expected) {
 std::vector<OverviewMeter> model_overview(const ReportData& data) {
   std::vector<OverviewMeter> meters;
   for (const OutputResult& output : data.outputs) {
-    OverviewMeter meter{output.label, output.unit, {}};
+    const display::Unit& unit = output.unit();
+    OverviewMeter meter{output.label, unit.name, {}};
     for (const OutputMonth& month : output.months) {
       if (month.role == assessment::MonthRole::unused && !month.box) continue;
       OverviewMonth& shown = meter.months.emplace_back(
           OverviewMonth{month.figure.month,
                         month.number,
                         month.role,
-                        month.figure.usable ? measured_of(output, month) : NAN,
+                        month.figure.usable ? unit.shown(measured_of(output, month)) : NAN,
                         {}});
-      if (month.box) shown.band = {month.box->low_whisker, month.box->q50, month.box->high_whisker};
+      if (!month.box) continue;
+      shown.band = {unit.shown(month.box->low_whisker), unit.shown(month.box->q50),
+                    unit.shown(month.box->high_whisker)};
     }
     if (!meter.months.empty()) meters.push_back(std::move(meter));
   }

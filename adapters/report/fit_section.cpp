@@ -7,6 +7,7 @@
 #include "adapters/report/format.hpp"
 #include "adapters/report/histogram.hpp"
 #include "adapters/report/sections.hpp"
+#include "core/display/unit.hpp"
 
 namespace recald::report {
 namespace {
@@ -84,7 +85,7 @@ void write_metrics(Html& html, const std::vector<OutputResult>& outputs) {
   table.write(html);
 }
 
-void add_score_cells(std::vector<Cell>& cells, const ForecastFit& fit) {
+void add_score_cells(std::vector<Cell>& cells, const ForecastFit& fit, const display::Unit& unit) {
   if (!fit.scores) {
     cells.insert(cells.end(), 4, Cell{"–", "number"});
     return;
@@ -92,8 +93,8 @@ void add_score_cells(std::vector<Cell>& cells, const ForecastFit& fit) {
   const double months = fit.scores->months;
   cells.push_back({percent_text(fit.scores->inside_50 / months, 0), "number"});
   cells.push_back({percent_text(fit.scores->inside_90 / months, 0), "number"});
-  cells.push_back({number_text(fit.scores->crps), "number"});
-  cells.push_back({number_text(fit.scores->interval_score_90), "number"});
+  cells.push_back({number_text(unit.shown(fit.scores->crps)), "number"});
+  cells.push_back({number_text(unit.shown(fit.scores->interval_score_90)), "number"});
 }
 
 void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
@@ -102,9 +103,7 @@ void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
     return fit && (fit->forecast.calibration.scores || fit->forecast.validation.scores);
   });
   if (!any) return;
-  Table table(
-      "Measured months inside the forecasts' intervals, and their scores in the unit of each "
-      "output");
+  Table table("Measured months inside the forecasts' intervals, and their scores");
   table.column_groups({{"", 1}, {"Calibration months", 4}, {"Validation months", 4}});
   table.columns({"Output", "Inside 50 %", "Inside 90 %", "CRPS", "Score of 90 %", "Inside 50 %",
                  "Inside 90 %", "CRPS", "Score of 90 %"});
@@ -112,11 +111,11 @@ void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
     if (!output.assessment) continue;
     const auto row = [&](const std::string& name, const assessment::ForecastAssessment& forecast) {
       std::vector<Cell> cells{{name}};
-      add_score_cells(cells, forecast.calibration);
-      add_score_cells(cells, forecast.validation);
+      add_score_cells(cells, forecast.calibration, output.unit());
+      add_score_cells(cells, forecast.validation, output.unit());
       table.row(std::move(cells));
     };
-    row(with_unit(output.label, output.unit), output.assessment->forecast);
+    row(with_unit(output.label, output.unit().name), output.assessment->forecast);
     if (output.assessment->yardstick) row("  Regression of days", *output.assessment->yardstick);
   }
   html.element("h3", "Is the stated uncertainty honest?");
@@ -140,21 +139,22 @@ std::string role_word(MonthRole role) {
   return "";
 }
 
-/// "daily average consumption", or what else a month of this output is.
+/// What a month of this output is.
 std::string_view figure_words(const OutputResult& output) {
-  if (output.unit == "kWh/day") return "daily average consumption";
-  return output.unit == "kW" ? "peak demand" : "figure";
+  if (output.is_peak) return "peak demand";
+  return output.unit().name.empty() ? "figure" : "daily mean";
 }
 
 Table month_table(const OutputResult& output) {
-  Table table(
-      with_unit(fmt::format("{}: {} by month", output.label, figure_words(output)), output.unit));
+  const display::Unit& unit = output.unit();
+  Table table(with_unit(fmt::format("{}: {} of each month", output.label, figure_words(output)),
+                        unit.name));
   table.columns({"Month", "Role", "Measured", "Remark", "Estimated", "Forecast: mean", "5 %",
                  "95 %", "Model: 25 %", "Median", "75 %"});
   for (const OutputMonth& month : output.months) {
     std::vector<Cell> cells{{month_text(month.figure.month, month.number)},
                             {role_word(month.role)},
-                            {number_text(measured_of(output, month)), "number"}};
+                            {number_text(unit.shown(measured_of(output, month))), "number"}};
     std::string remark = month.figure.usable ? "" : "✕ not usable";
     if (month.flagged_different) remark += remark.empty() ? "◆ different" : ", ◆ different";
     cells.push_back({remark, "nowrap"});
@@ -164,7 +164,7 @@ Table month_table(const OutputResult& output) {
         month.forecast.value_or(assessment::MonthForecast{NAN, NAN, NAN, NAN, NAN, NAN});
     for (const double value :
          {forecast.mean, forecast.q05, forecast.q95, box.q25, box.q50, box.q75}) {
-      cells.push_back({number_text(value), "number"});
+      cells.push_back({number_text(unit.shown(value)), "number"});
     }
     table.row(std::move(cells));
   }
@@ -195,9 +195,10 @@ void write_months_figure(Html& html, const OutputResult& output, int index) {
       html,
       {.kind = "months",
        .index = index,
-       .title = output.label + ", month by month",
-       .description = fmt::format("Monthly {} of {}, {} months: measured values{}.",
-                                  figure_words(output), output.label, output.months.size(),
+       .title = fmt::format("{}, {} of each month", output.label, figure_words(output)),
+       .description = fmt::format("{} of each month of {}, {} months: measured values{}.",
+                                  display::capitalised(std::string{figure_words(output)}),
+                                  output.label, output.months.size(),
                                   modelled(output) ? " against box plots of the forecasts" : ""),
        .caption = months_caption(output)},
       month_table(output));

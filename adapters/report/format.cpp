@@ -43,6 +43,18 @@ std::string number_text(std::optional<double> value) {
   return value ? number_text(*value) : std::string(kDash);
 }
 
+std::string amount_text(double si, const display::Unit& unit) {
+  if (!std::isfinite(si)) return number_text(si);
+  return number_text(unit.shown(si)) + "\u00a0" + unit.name;
+}
+
+std::string signed_amount_text(double si, const display::Unit& unit) {
+  const double shown = unit.shown_difference(si);
+  // Small units are whole numbers; in large ones a month may be less than one.
+  const std::string number = std::abs(shown) < 10.0 ? number_text(shown) : count_text(shown);
+  return (shown > 0.0 ? "+" : "") + number + "\u00a0" + unit.name;
+}
+
 std::string count_text(double count) {
   if (!std::isfinite(count)) return kDash;
   return fmt::format("{}{}", sign_text(count),

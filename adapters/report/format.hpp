@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/display/unit.hpp"
 #include "core/metering/civil_time.hpp"
 
 namespace recald::report {
@@ -13,6 +14,13 @@ namespace recald::report {
 /// NaN and infinity → "–".
 [[nodiscard]] std::string number_text(double value);
 [[nodiscard]] std::string number_text(std::optional<double> value);
+
+/// A number in SI with its unit of display: 352.0 kW → "100.1 tons", with a no-break space. NaN →
+/// "–".
+[[nodiscard]] std::string amount_text(double si, const display::Unit& unit);
+
+/// The same of a change, with its sign and at most three digits behind the point: "+4,200 kWh".
+[[nodiscard]] std::string signed_amount_text(double si, const display::Unit& unit);
 
 /// A whole number, thousands separated: 4776 → "4,776". NaN → "–".
 [[nodiscard]] std::string count_text(double count);

@@ -7,17 +7,19 @@
 
 #include "adapters/report/format.hpp"
 #include "adapters/report/sections.hpp"
+#include "core/display/unit.hpp"
 
 namespace recald::report {
 namespace {
 
 Table peak_table(const ReportData& data, const PeakSeries& series) {
-  Table table(series.meter + ": measured peak demand by month");
-  table.columns({"Month", "Peak, kW", "Began (local time)", "Measured share", "Remark"});
+  const display::Unit& unit = series.units.power;
+  Table table(series.meter + ": monthly peak, measured");
+  table.columns({"Month", "Peak, " + unit.name, "Began (local time)", "Measured share", "Remark"});
   for (const metering::MonthlyFigure& figure : series.months) {
     const auto& peak = figure.peak;
     table.row({{month_text(figure.month)},
-               {number_text(peak ? peak->kW : NAN), "number"},
+               {number_text(peak ? unit.shown(peak->kW) : NAN), "number"},
                {peak ? local_text(peak->start, data.calendar) : "", "nowrap"},
                {percent_text(figure.coverage), "number"},
                {peak && peak->could_be_exceeded ? "△ the true peak may be higher" : ""}});
@@ -87,9 +89,10 @@ DaySummary summarise_day(const LoadGrid& load, std::size_t day) {
 /// Days as rows: hours would be a table of tens of thousands of cells, which no one reads and
 /// every browser feels. The hours are in the CSV file that the page's script offers.
 Table load_table(const LoadGrid& load) {
+  const display::Unit& unit = load.units.power;
   Table table(load.meter + ": measured load by day");
-  table.columns({"Day", "Mean, kW", "Highest hour, kW", "Hours measured", "Partly estimated",
-                 "Missing", "Suspect"});
+  table.columns({"Day", "Mean, " + unit.name, "Highest hour, " + unit.name, "Hours measured",
+                 "Partly estimated", "Missing", "Suspect"});
   const std::chrono::sys_days first{load.first_day};
   for (std::size_t day = 0; day < load.mean_kW.size() / 24; ++day) {
     const DaySummary summary = summarise_day(load, day);
@@ -97,8 +100,9 @@ Table load_table(const LoadGrid& load) {
       return std::to_string(summary.hours_by_status[static_cast<std::size_t>(status)]);
     };
     table.row({{day_key(metering::Day{first + std::chrono::days{day}})},
-               {number_text(summary.hours > 0 ? summary.sum_kW / summary.hours : NAN), "number"},
-               {number_text(summary.highest_kW), "number"},
+               {number_text(summary.hours > 0 ? unit.shown(summary.sum_kW / summary.hours) : NAN),
+                "number"},
+               {number_text(unit.shown(summary.highest_kW)), "number"},
                {hours(HourStatus::ok), "number"},
                {hours(HourStatus::partly_filled), "number"},
                {hours(HourStatus::missing), "number"},
@@ -167,8 +171,9 @@ void write_peak_figures(Html& html, const ReportData& data) {
     write_figure(html,
                  {.kind = "peaks",
                   .index = static_cast<int>(i),
-                  .title = series.meter + ", monthly peak demand",
-                  .description = "Measured monthly peak demand of " + series.meter + " in kW.",
+                  .title = series.meter + ", monthly peak",
+                  .description = "Measured monthly peak of " + series.meter + " in " +
+                                 series.units.power.name + ".",
                   .caption = peak_caption(series),
                   .size = "small"},
                  peak_table(data, series));

@@ -9,6 +9,7 @@
 #include "adapters/report/format.hpp"
 #include "adapters/report/page.hpp"
 #include "adapters/report/sections.hpp"
+#include "core/display/unit.hpp"
 
 namespace recald::report {
 namespace {
@@ -37,16 +38,18 @@ bool any_forecast(const MetersData& data) {
 std::vector<OverviewMeter> forecast_overview(const MetersData& data) {
   std::vector<OverviewMeter> meters;
   for (const OutputResult& output : data.common.outputs) {
-    OverviewMeter& meter = meters.emplace_back(OverviewMeter{output.label, "kWh/day", {}});
+    const display::Unit& daily = output.units.daily;
+    OverviewMeter& meter = meters.emplace_back(OverviewMeter{output.label, daily.name, {}});
     for (const OutputMonth& month : output.months) {
       OverviewMonth& shown = meter.months.emplace_back(
           OverviewMonth{month.figure.month,
                         month.number,
                         month.role,
-                        month.figure.usable ? month.figure.daily_average_kWh : NAN,
+                        month.figure.usable ? daily.shown(month.figure.daily_average_kWh) : NAN,
                         {}});
       if (month.forecast) {
-        shown.band = {month.forecast->q05, month.forecast->q50, month.forecast->q95};
+        shown.band = {daily.shown(month.forecast->q05), daily.shown(month.forecast->q50),
+                      daily.shown(month.forecast->q95)};
       }
     }
   }
@@ -71,20 +74,22 @@ std::string year_text(const YearComparison& year) {
 
 void write_glance(Html& html, const MetersData& data) {
   Table table("The meters at a glance");
-  table.columns({"Meter", "Months", "Used, MWh", "Against the year before", "Base load, kW",
-                 "Its share", "Highest peak, kW", "Peak began (local time)"});
+  table.columns({"Meter", "Months", "Used", "Against the year before", "Base load", "Its share",
+                 "Highest peak", "Peak began (local time)"});
   for (std::size_t i = 0; i < data.meters.size(); ++i) {
     const MeterPart& meter = data.meters[i];
+    const display::MeterUnits& units = data.common.outputs[i].units;
     const auto* peak = highest_peak(data.common.peaks[i]);
     table.row(
         {{data.common.outputs[i].label},
          {meter.year ? year_text(*meter.year) : "–", "nowrap"},
-         {meter.year ? number_text(meter.year->energy_kWh / 1000.0) : "–", "number"},
+         {meter.year ? amount_text(meter.year->energy_kWh / 1000.0, units.large_energy) : "–",
+          "number"},
          {meter.year && meter.year->change ? signed_percent_text(*meter.year->change) : "–",
           "number"},
-         {number_text(meter.shape.base_kW), "number"},
+         {amount_text(meter.shape.base_kW, units.power), "number"},
          {percent_text(meter.shape.base_share, 0), "number"},
-         {peak != nullptr ? number_text(peak->peak->kW) : "–", "number"},
+         {peak != nullptr ? amount_text(peak->peak->kW, units.power) : "–", "number"},
          {peak != nullptr ? local_text(peak->peak->start, data.common.calendar) : "", "nowrap"}});
   }
   table.write(html);
@@ -133,23 +138,24 @@ std::string remark_of(const OutputMonth& month) {
 Table month_table(const OutputResult& output, const MeterPart& meter) {
   const bool forecast = is_forecast(output);
   Table table(output.label + " by month");
-  std::vector<std::string> columns{"Month",     "Measured, kWh/day", "Remark",
-                                   "Estimated", "Base load, kW",     "Peak, kW"};
-  if (forecast) columns.insert(columns.end(), {"Forecast, kWh/day", "5 %", "95 %"});
+  const auto& [power, energy, large_energy, daily, per_degree] = output.units;
+  std::vector<std::string> columns{"Month",     "Measured, " + daily.name,  "Remark",
+                                   "Estimated", "Base load, " + power.name, "Peak, " + power.name};
+  if (forecast) columns.insert(columns.end(), {"Forecast, " + daily.name, "5 %", "95 %"});
   table.columns(columns);
   for (std::size_t i = 0; i < output.months.size(); ++i) {
     const OutputMonth& month = output.months[i];
     const auto& peak = month.figure.peak;
     std::vector<Cell> cells{{month_text(month.figure.month)},
-                            {number_text(month.figure.daily_average_kWh), "number"},
+                            {number_text(daily.shown(month.figure.daily_average_kWh)), "number"},
                             {remark_of(month), "nowrap"},
                             {percent_text(month.figure.filled_share), "number"},
-                            {number_text(meter.month_base_kW[i]), "number"},
-                            {peak ? number_text(peak->kW) : "–", "number"}};
+                            {number_text(power.shown(meter.month_base_kW[i])), "number"},
+                            {peak ? number_text(power.shown(peak->kW)) : "–", "number"}};
     if (forecast) {
       const auto& f = month.forecast;
       for (const double value : {f ? f->mean : NAN, f ? f->q05 : NAN, f ? f->q95 : NAN}) {
-        cells.push_back({number_text(value), "number"});
+        cells.push_back({number_text(daily.shown(value)), "number"});
       }
     }
     table.row(std::move(cells));
@@ -192,44 +198,49 @@ void write_months_section(Html& html, const MetersData& data) {
 
 void write_regressions(Html& html, const MetersData& data) {
   Table table("What a day uses, by the outdoor temperature");
-  table.columns({"Days", "Without heating and cooling, kWh/day", "Heating, kWh/day per K",
-                 "Below, °C", "Cooling, kWh/day per K", "Above, °C"});
+  table.columns({"Days", "Without heating and cooling, a day", "Heating, a day per degree", "Below",
+                 "Cooling, a day per degree", "Above"});
+  const display::Unit outdoor = display::unit_of(data.common.units, "degC");
+  const auto balance = [&](double balance_C) {
+    return std::isfinite(balance_C) ? fmt::format("{:.1f}", outdoor.shown(balance_C)) : "–";
+  };
   for (std::size_t i = 0; i < data.meters.size(); ++i) {
     const auto& fit = data.meters[i].temperature;
     if (!fit) continue;
-    table.group(data.common.outputs[i].label);
+    const display::MeterUnits& units = data.common.outputs[i].units;
+    table.group(
+        fmt::format("{}: {}, {}", data.common.outputs[i].label, units.energy.name, outdoor.name));
     for (const TemperatureRow& row : fit->rows) {
-      table.row(
-          {{row.days},
-           {number_text(row.base_kWh), "number"},
-           {number_text(row.heating_slope_kWh_K), "number"},
-           {std::isfinite(row.heating_balance_C) ? fmt::format("{:.1f}", row.heating_balance_C)
-                                                 : "–",
-            "number"},
-           {number_text(row.cooling_slope_kWh_K), "number"},
-           {std::isfinite(row.cooling_balance_C) ? fmt::format("{:.1f}", row.cooling_balance_C)
-                                                 : "–",
-            "number"}});
+      table.row({{row.days},
+                 {number_text(units.daily.shown(row.base_kWh)), "number"},
+                 {number_text(units.daily_per_degree.shown(row.heating_slope_kWh_K)), "number"},
+                 {balance(row.heating_balance_C), "number"},
+                 {number_text(units.daily_per_degree.shown(row.cooling_slope_kWh_K)), "number"},
+                 {balance(row.cooling_balance_C), "number"}});
     }
   }
   table.write(html);
 }
 
-Table days_table(const std::string& label, const TemperatureFit& fit) {
-  Table table(label + ": days and their temperatures");
-  table.columns({"Day", "Kind of day", "Outdoor mean, °C", "Used, kWh", "Fitted"});
+Table days_table(const OutputResult& output, const display::Unit& outdoor,
+                 const TemperatureFit& fit) {
+  const display::Unit& energy = output.units.energy;
+  Table table(output.label + ": days and their temperatures");
+  table.columns(
+      {"Day", "Kind of day", "Outdoor mean, " + outdoor.name, "Used, " + energy.name, "Fitted"});
   for (const TemperatureDay& day : fit.days) {
     table.row({{day_key(day.date)},
                {kKinds[static_cast<std::size_t>(day.kind)], "nowrap"},
-               {fmt::format("{:.1f}", day.dry_bulb_C), "number"},
-               {number_text(day.energy_kWh), "number"},
+               {fmt::format("{:.1f}", outdoor.shown(day.dry_bulb_C)), "number"},
+               {number_text(energy.shown(day.energy_kWh)), "number"},
                {day.unseen ? "no" : "yes"}});
   }
   return table;
 }
 
-void write_temperature_figure(Html& html, const std::string& label, const TemperatureFit& fit,
-                              int index) {
+void write_temperature_figure(Html& html, const OutputResult& output, const display::Unit& outdoor,
+                              const TemperatureFit& fit, int index) {
+  const std::string& label = output.label;
   write_figure(html,
                {.kind = "temperature",
                 .index = index,
@@ -238,7 +249,7 @@ void write_temperature_figure(Html& html, const std::string& label, const Temper
                                            "temperature, with the regression. {}",
                                            fit.days.size(), label, fit.sentence),
                 .caption = fit.sentence + (fit.trust.empty() ? "" : " " + fit.trust)},
-               days_table(label, fit));
+               days_table(output, outdoor, fit));
 }
 
 void write_temperature_section(Html& html, const MetersData& data) {
@@ -263,7 +274,8 @@ void write_temperature_section(Html& html, const MetersData& data) {
   for (std::size_t i = 0; i < data.meters.size(); ++i) {
     const MeterPart& meter = data.meters[i];
     if (!meter.temperature) continue;
-    write_temperature_figure(html, data.common.outputs[i].label, *meter.temperature,
+    write_temperature_figure(html, data.common.outputs[i],
+                             display::unit_of(data.common.units, "degC"), *meter.temperature,
                              static_cast<int>(i));
   }
   html.markup("</div>\n");
@@ -278,25 +290,27 @@ void write_temperature_section(Html& html, const MetersData& data) {
 
 // ---------------------------------------------------------------- days
 
-Table shape_table(const std::string& label, const profile::LoadShape& shape) {
-  Table table(label + ": mean load by hour, kW");
+Table shape_table(const OutputResult& output, const profile::LoadShape& shape) {
+  const display::Unit& power = output.units.power;
+  Table table(fmt::format("{}: mean load by hour, {}", output.label, power.name));
   table.columns({"Hour", kKinds[0], kKinds[1], kKinds[2]});
   for (int hour = 0; hour < 24; ++hour) {
     std::vector<Cell> cells{{fmt::format("{:02}–{:02} h", hour, hour + 1)}};
     for (std::size_t kind = 0; kind < model::kDayTypes; ++kind) {
-      cells.push_back({number_text(shape.mean_kW.at(static_cast<DayType>(kind), hour)), "number"});
+      cells.push_back(
+          {number_text(power.shown(shape.mean_kW.at(static_cast<DayType>(kind), hour))), "number"});
     }
     table.row(std::move(cells));
   }
   return table;
 }
 
-std::string shape_caption(const profile::LoadShape& shape) {
+std::string shape_caption(const profile::LoadShape& shape, const display::Unit& power) {
   std::string caption =
       fmt::format("Mean of {} working days, {} Saturdays and {} Sundays and holidays.",
                   shape.days[0], shape.days[1], shape.days[2]);
   if (std::isfinite(shape.base_kW)) {
-    caption += fmt::format(" Base load {} kW", number_text(shape.base_kW));
+    caption += fmt::format(" Base load {}", amount_text(shape.base_kW, power));
     caption += std::isfinite(shape.base_share)
                    ? fmt::format(", {} of the energy.", percent_text(shape.base_share, 0))
                    : ".";
@@ -324,9 +338,9 @@ void write_days_section(Html& html, const MetersData& data) {
                   .index = static_cast<int>(i),
                   .title = label + " by hour of the day",
                   .description = "Mean load of " + label + " by hour and kind of day.",
-                  .caption = shape_caption(meter.shape),
+                  .caption = shape_caption(meter.shape, data.common.outputs[i].units.power),
                   .size = "small"},
-                 shape_table(label, meter.shape));
+                 shape_table(data.common.outputs[i], meter.shape));
   }
   html.markup("</div>\n</section>\n");
 }
@@ -340,36 +354,47 @@ void write_peaks_section(Html& html, const MetersData& data) {
 
 // ---------------------------------------------------------------- what the script draws
 
-json shape_json(const MeterPart& meter) {
+json shape_json(const MeterPart& meter, const display::Unit& power) {
   json kinds = json::array();
   for (std::size_t kind = 0; kind < model::kDayTypes; ++kind) {
-    HourlyProfile kW{};
-    for (std::size_t hour = 0; hour < kW.size(); ++hour) {
-      kW[hour] = meter.shape.mean_kW.at(static_cast<DayType>(kind), static_cast<int>(hour));
+    HourlyProfile load{};
+    for (std::size_t hour = 0; hour < load.size(); ++hour) {
+      load[hour] =
+          power.shown(meter.shape.mean_kW.at(static_cast<DayType>(kind), static_cast<int>(hour)));
     }
-    kinds.push_back({{"label", kKinds[kind]}, {"kW", json_numbers(kW, 4)}});
+    kinds.push_back({{"label", kKinds[kind]}, {"load", json_numbers(load, 4)}});
   }
-  return {{"kinds", kinds}, {"base", json_number(meter.shape.base_kW, 4)}};
+  return {{"unit", power.name},
+          {"kinds", kinds},
+          {"base", json_number(power.shown(meter.shape.base_kW), 4)}};
 }
 
-json temperature_json(const MeterPart& meter) {
+json temperature_json(const MeterPart& meter, const display::MeterUnits& units,
+                      const display::Unit& outdoor) {
   json days = json::array();
   json lines = json::array();
   if (meter.temperature) {
     for (const TemperatureDay& day : meter.temperature->days) {
       days.push_back({{"date", day_key(day.date)},
                       {"kind", static_cast<int>(day.kind)},
-                      {"C", json_number(day.dry_bulb_C, 4)},
-                      {"kWh", json_number(day.energy_kWh, 4)},
+                      {"outdoor", json_number(outdoor.shown(day.dry_bulb_C), 4)},
+                      {"energy", json_number(units.energy.shown(day.energy_kWh), 4)},
                       {"unseen", day.unseen}});
     }
     for (const TemperatureLine& line : meter.temperature->lines) {
       json points = json::array();
-      for (const auto& point : line.points) points.push_back(json_numbers(point));
+      for (const auto& [dry_bulb_C, energy_kWh] : line.points) {
+        points.push_back(
+            json_numbers(std::array{outdoor.shown(dry_bulb_C), units.energy.shown(energy_kWh)}));
+      }
       lines.push_back({{"kind", static_cast<int>(line.kind)}, {"points", points}});
     }
   }
-  return {{"days", days}, {"lines", lines}};
+  return {{"days", days},
+          {"lines", lines},
+          {"energyUnit", units.energy.name},
+          {"dailyUnit", units.daily.name},
+          {"outdoorUnit", outdoor.name}};
 }
 
 }  // namespace
@@ -381,9 +406,11 @@ std::string meters_figure_json(const MetersData& data) {
       {"calibration", "Fitted"}, {"validation", "Not seen"}, {"unused", "Not used"}};
   root["shapes"] = json::array();
   root["temperatures"] = json::array();
-  for (const MeterPart& meter : data.meters) {
-    root["shapes"].push_back(shape_json(meter));
-    root["temperatures"].push_back(temperature_json(meter));
+  for (std::size_t i = 0; i < data.meters.size(); ++i) {
+    const display::MeterUnits& units = data.common.outputs[i].units;
+    root["shapes"].push_back(shape_json(data.meters[i], units.power));
+    root["temperatures"].push_back(
+        temperature_json(data.meters[i], units, display::unit_of(data.common.units, "degC")));
   }
   return script_safe_text(root);
 }
@@ -405,6 +432,7 @@ std::string render_meters(const MetersData& data) {
   add("meters", "In short", write_short_section);
   add("level-changes", "Changes", write_changes_section);
   add("months", "Months", write_months_section);
+  common("costs", "Cost", write_cost_section);
   add("temperature", "Weather", write_temperature_section);
   add("days", "Days", write_days_section);
   add("peaks", "Peaks", write_peaks_section);

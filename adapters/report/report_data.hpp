@@ -15,10 +15,13 @@
 #include "core/absent.hpp"
 #include "core/assessment/output_assessment.hpp"
 #include "core/calibration/summary.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/metering/data_quality.hpp"
 #include "core/metering/monthly_figure.hpp"
 #include "core/model/prior.hpp"
+#include "core/tariff/tariff.hpp"
 
 namespace recald::report {
 
@@ -50,7 +53,13 @@ enum class Severity { info, warning, failure };
 struct Notice {
   Severity severity;
   std::string sentence;
+  std::string details = {};  ///< Stands behind the sentence; empty: nothing.
+  double share = 0.0;        ///< Of the months or the energy that it is about: the most first.
 };
+
+[[nodiscard]] inline Notice notice_of(Severity severity, const display::Warning& warning) {
+  return {severity, warning.sentence, warning.details, warning.share};
+}
 
 /// A number that a client takes along, with its sign, and what it is of.
 struct KeyNumber {
@@ -93,9 +102,13 @@ struct OutputMonth {
 /// One meter's monthly consumption, or its monthly peak, measured and modelled.
 struct OutputResult {
   std::string label;
-  std::string unit = "kWh/day";  ///< "kW": of the figures the peaks are meant. Empty: not known.
+  bool is_peak = false;  ///< Of the figures the peaks are meant.
+  display::MeterUnits units = {};
   std::vector<OutputMonth> months;
   std::optional<assessment::OutputAssessment> assessment;  ///< Its boxes stand in `months`.
+
+  /// Of its months' figures; without a name where nobody knows it.
+  [[nodiscard]] const display::Unit& unit() const { return is_peak ? units.power : units.daily; }
 };
 
 /// Whether anybody knows which share of the output's months was measured: not of a design, which
@@ -105,15 +118,16 @@ struct OutputResult {
       output.months, [](const OutputMonth& month) { return !std::isnan(month.figure.coverage); });
 }
 
-/// What was measured in a month, in the output's unit; NaN where nothing was.
+/// What was measured in a month, in kWh/day or kW; NaN where nothing was.
 [[nodiscard]] inline double measured_of(const OutputResult& output, const OutputMonth& month) {
   const metering::MonthlyFigure& figure = month.figure;
-  if (output.unit != "kW") return figure.daily_average_kWh;
+  if (!output.is_peak) return figure.daily_average_kWh;
   return figure.peak ? figure.peak->kW : kAbsent;
 }
 
 struct PeakSeries {
   std::string meter;
+  display::MeterUnits units = {};
   std::vector<metering::MonthlyFigure> months;
 };
 
@@ -123,6 +137,7 @@ enum class HourStatus : unsigned char { ok, partly_filled, missing, suspect };
 /// Measured load by local day and hour; entry [24 * day + hour].
 struct LoadGrid {
   std::string meter;
+  display::MeterUnits units = {};
   metering::Day first_day;
   std::vector<float> mean_kW;      ///< NaN where there is nothing to show. @pre a multiple of 24
   std::vector<HourStatus> status;  ///< @pre same size as mean_kW
@@ -149,12 +164,44 @@ struct ElectricityProfile {
   std::string check_sentence;  ///< How well the profile repeats the meter month by month.
 };
 
+/// One month of a meter's bill.
+struct MonthCost {
+  metering::Month month;
+  tariff::MonthBill bill;
+};
+
+/// What a meter's months cost and emitted.
+struct MeterCosts {
+  std::string meter;
+  std::vector<MonthCost> months;
+};
+
+/// A sum with its 90 % band, beside what was measured.
+struct ForecastSum {
+  double mean;
+  double q05;
+  double q95;
+  double measured;
+};
+
+/// What a meter's unseen months cost and emit, demand charges apart.
+struct ForecastCost {
+  std::string meter;
+  metering::Month first;
+  metering::Month last;
+  int months;
+  std::optional<ForecastSum> money;
+  std::optional<ForecastSum> emissions_t;  ///< CO2.
+};
+
 struct ReportData {
   std::string title;
   std::string generated_at;  ///< Given by the caller; the report has no clock.
   SiteLine site;
   std::optional<metering::LocalCalendar> calendar;  ///< Of the site; absent: times are in UTC.
   Provenance provenance;
+  /// Of temperatures and parameters; meters say theirs. Numbers below are in SI whatever it is.
+  display::UnitSystem units = display::UnitSystem::si;
 
   FirstScreen first;
   std::string most_likely;             ///< Of a diagnosis of the same data; empty: there is none.
@@ -168,6 +215,9 @@ struct ReportData {
   std::vector<OutputResult> outputs;
   std::vector<ParameterResult> parameters;
   std::vector<PeakSeries> peaks;
+  std::string currency;                      ///< Of costs; empty: the site has no prices.
+  std::vector<MeterCosts> costs;             ///< Empty: neither prices nor emissions are known.
+  std::vector<ForecastCost> forecast_costs;  ///< Likewise, or nothing is forecast.
   ElectricityProfile profile;
   std::vector<LoadGrid> loads;
 

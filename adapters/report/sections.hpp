@@ -31,6 +31,11 @@ void write_peak_section(Html& html, const ReportData& data);
 void write_profile_section(Html& html, const ReportData& data);
 void write_load_section(Html& html, const ReportData& data);
 
+/// What each meter's years and months cost and emitted.
+void write_cost_section(Html& html, const ReportData& data);
+/// What the forecast months cost and emit, with a band.
+void write_forecast_cost_section(Html& html, const ReportData& data);
+
 void write_not_known_section(Html& html, const ReportData& data);
 
 /// What is needed to repeat the numbers, and the licences of what draws them.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <span>
+#include <utility>
 
 #include "adapters/report/first_screen.hpp"
 #include "adapters/report/most_likely.hpp"
@@ -74,8 +75,14 @@ void write_notice_list(Html& html, std::span<const Notice> notices) {
     const Mark mark = severity_mark(notice.severity);
     html.markup(fmt::format("<li class=\"{}\">", mark.css_class))
         .element("span", mark.word, "badge")
-        .element("span", notice.sentence)
-        .markup("</li>\n");
+        .markup("<div>\n")
+        .element("span", notice.sentence);
+    if (!notice.details.empty()) {
+      html.markup("<details><summary>Details</summary>\n")
+          .element("p", notice.details)
+          .markup("</details>\n");
+    }
+    html.markup("</div>\n</li>\n");
   }
   html.markup("</ul>\n");
 }
@@ -84,9 +91,11 @@ void write_notice_list(Html& html, std::span<const Notice> notices) {
 
 void write_notices(Html& html, const std::vector<Notice>& notices) {
   if (notices.empty()) return;
-  std::vector<Notice> ranked =
-      notices;  // the gravest first; within one severity the caller's order
-  std::ranges::stable_sort(ranked, std::greater{}, &Notice::severity);
+  // The gravest first, then what costs most; what costs the same in the caller's order.
+  std::vector<Notice> ranked = notices;
+  std::ranges::stable_sort(ranked, std::greater{}, [](const Notice& notice) {
+    return std::pair{notice.severity, notice.share};
+  });
   html.element("h3", "What to keep in mind");
   const std::size_t shown = std::min(ranked.size(), kNoticesShown);
   write_notice_list(html, std::span{ranked}.first(shown));

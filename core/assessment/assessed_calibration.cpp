@@ -83,7 +83,7 @@ Result<void> calibrate_into(const MonthlyModel& model,
   result.calibration = std::move(*calibrated);
   for (const calibration::Finding& finding : result.calibration.findings) {
     const bool is_alarm = finding.kind == calibration::FindingKind::prior_edge;
-    (is_alarm ? result.alarms : result.warnings).push_back(finding.sentence);
+    (is_alarm ? result.alarms : result.warnings).push_back(warning_of(finding));
   }
   if (!prior_sensitivity) return {};
   auto sensitivity =
@@ -91,7 +91,7 @@ Result<void> calibrate_into(const MonthlyModel& model,
   if (!sensitivity) return tl::unexpected(sensitivity.error());
   result.sensitivity = std::move(*sensitivity);
   for (const calibration::Finding& finding : result.sensitivity->findings) {
-    result.warnings.push_back(finding.sentence);
+    result.warnings.push_back(warning_of(finding));
   }
   return {};
 }

@@ -11,6 +11,8 @@
 #include "core/assessment/output_assessment.hpp"
 #include "core/calibration/calibration.hpp"
 #include "core/calibration/sensitivity.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
 #include "core/model/model_kind.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter.hpp"
@@ -26,9 +28,10 @@ enum class Following {
 
 /// One modelled output over all months of calibration and validation.
 struct OutputCalibration {
-  std::string name;       ///< As files write it: "steam_daily_kWh".
-  std::string label;      ///< As tables write it: "steam".
-  std::string unit;       ///< "kWh/day"
+  std::string name;      ///< As files write it: "steam_daily_kWh".
+  std::string meter_id;  ///< "steam"; of a design of experiments, the output's name.
+  std::string unit;      ///< "kWh/day"
+  metering::Utility utility = metering::Utility::electricity;
   std::size_t meter = 0;  ///< Of a site: index into the recording.
   double weight = 1.0;
   bool calibrated = true;          ///< False: not fitted …
@@ -51,6 +54,7 @@ struct MetamodelFacts {
 };
 
 struct AssessedCalibration {
+  display::UnitSystem units = display::UnitSystem::si;  ///< Of its words and tables.
   ModelKind model = ModelKind::epc;
   std::vector<std::string> month_names;  ///< "2016-03", or a number for a design without years.
   std::vector<double> month_days;        ///< (months) Empty: all months count alike.
@@ -66,8 +70,8 @@ struct AssessedCalibration {
   std::vector<OutputCalibration> outputs;
   std::optional<calibration::PriorSensitivity> sensitivity;
   /// Parameters that ran to an end of their prior, or to where no building lies: said first.
-  std::vector<std::string> alarms;
-  std::vector<std::string> warnings;  ///< In words, in order of discovery.
+  display::Warnings alarms;
+  display::Warnings warnings;  ///< In order of discovery.
   /// A sentence; not empty: no model was calibrated, and the outputs' forecasts are all there is.
   std::string not_calibrated_because;
 };
@@ -81,6 +85,11 @@ struct AssessedCalibration {
 /// parameters' errors; inputs are to be filled in.
 [[nodiscard]] calibration::CalibrationProblem problem_of(const AssessedCalibration& result,
                                                          std::size_t calibration_months);
+
+/// A finding as a warning.
+[[nodiscard]] inline display::Warning warning_of(const calibration::Finding& finding) {
+  return {finding.sentence, finding.details, finding.share};
+}
 
 /// Takes an output out of the fit. @param because  A sentence.
 void set_aside(std::size_t output, std::string because, Following following,

@@ -67,7 +67,7 @@ void summarise(std::size_t q, const CalibrationOptions& options, const RunContex
   for (const calibration::Finding& finding :
        calibration::gate_findings(judged, options.sampling.gate)) {
     c.converged = false;
-    result.warnings.push_back(finding.sentence);
+    result.warnings.push_back(warning_of(finding));
   }
   c.posterior_mean.resize(static_cast<Eigen::Index>(c.parameters.size()));
   for (std::size_t j = 0; j < c.parameters.size(); ++j) {

@@ -21,8 +21,9 @@ const MonthlyFigure* usable_figure(const MeteredMonths& metered, Month month) {
 
 OutputCalibration daily_output(const MeteredMonths& metered, const std::vector<Month>& months) {
   OutputCalibration output{.name = metered.id + "_daily_kWh",
-                           .label = metered.id,
+                           .meter_id = metered.id,
                            .unit = "kWh/day",
+                           .utility = metered.utility,
                            .meter = metered.meter};
   for (const Month month : months) {
     const MonthlyFigure* figure = usable_figure(metered, month);
@@ -34,8 +35,9 @@ OutputCalibration daily_output(const MeteredMonths& metered, const std::vector<M
 
 OutputCalibration peak_output(const MeteredMonths& metered, const std::vector<Month>& months) {
   OutputCalibration output{.name = metered.id + "_peak_kW",
-                           .label = metered.id + " peak",
+                           .meter_id = metered.id,
                            .unit = "kW",
+                           .utility = metered.utility,
                            .meter = metered.meter};
   for (const Month month : months) {
     const MonthlyFigure* figure = usable_figure(metered, month);

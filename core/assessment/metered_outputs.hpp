@@ -16,6 +16,7 @@ namespace recald::assessment {
 struct MeteredMonths {
   const std::string& id;
   std::size_t meter;  ///< Index into the recording.
+  metering::Utility utility;
   std::span<const metering::MonthlyFigure> figures;
   std::span<const metering::LevelChange> changes;
 };

@@ -26,8 +26,11 @@ enum class FindingKind {
 
 struct Finding {
   FindingKind kind;
-  std::string subject;   ///< The parameter, hyper-parameter or output it is about.
-  std::string sentence;  ///< Plain words, with the figures.
+  std::string subject;       ///< The parameter, hyper-parameter or output it is about.
+  std::string sentence;      ///< Plain words, as short as a line of a terminal.
+  std::string details = {};  ///< Further sentences with the figures; empty: none.
+  /// Of the months, or of the energy, that it is about; 0 where it is about neither.
+  double share = 0.0;
 };
 
 using Findings = std::vector<Finding>;

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/display/id_words.hpp"
 #include "core/text/number_text.hpp"
 
 namespace recald::calibration {
@@ -36,19 +37,39 @@ double pooled_variance(const Eigen::MatrixXd& design_outputs,
   return squares / (count - 1.0);
 }
 
-std::string sentence(const std::vector<OutOfRange>& months, const OutputMeasurements& output,
+/// Beyond the nearer end of the runs, as a share of it.
+double beyond(const OutOfRange& month) {
+  const double end = month.value > month.high ? month.high : month.low;
+  return (month.value - end) / std::abs(end);
+}
+
+/// "July 2021 (+31 %)"
+std::string month_beyond(const OutOfRange& month, std::span<const std::string> month_names) {
+  const std::string text = display::month_words(month_names[static_cast<std::size_t>(month.month)]);
+  // Beyond ten times the runs a percentage says nothing: they have almost nothing there.
+  if (!(std::abs(beyond(month)) < 10.0)) return text;
+  return text + " (" + signed_percent_text(beyond(month)) + ")";
+}
+
+Finding out_of_range(const std::vector<OutOfRange>& months, const OutputMeasurements& output,
                      std::span<const std::string> month_names, FindingKind kind) {
-  std::string text = "Measured " + output.name + " is outside the range of the design runs";
-  text += kind == FindingKind::range_fail ? " in the same month: " : " in any month: ";
-  for (std::size_t i = 0; i < months.size(); ++i) {
-    const OutOfRange& m = months[i];
-    if (i > 0) text += "; ";
-    text += month_names[static_cast<std::size_t>(m.month)] + " measured " + number_text(m.value) +
-            ", runs " + number_text(m.low) + " to " + number_text(m.high);
+  const auto worst = std::ranges::max_element(
+      months, {}, [](const OutOfRange& month) { return std::abs(beyond(month)); });
+  const int measured = output.measured_months();
+  std::string sentence = display::capitalised(display::output_words(output.name)) + ": " +
+                         std::to_string(months.size()) + " of " + std::to_string(measured) +
+                         (months.size() == 1 ? " months is outside " : " months are outside ");
+  sentence +=
+      kind == FindingKind::range_fail ? "the model's runs of that month" : "all runs of the model";
+  sentence += ", the worst " + month_beyond(*worst, month_names) + ".";
+  std::string list;
+  for (const OutOfRange& month : months) {
+    list += (list.empty() ? "" : ", ") + month_beyond(month, month_names);
   }
-  text += " (" + output.unit + "). Widen the priors or correct the fixed inputs: the calibration " +
-          "extrapolates there.";
-  return text;
+  return {kind, output.name, std::move(sentence),
+          "Outside: " + list +
+              ". The calibration extrapolates there; widen the priors or correct the fixed inputs.",
+          static_cast<double>(months.size()) / measured};
 }
 
 }  // namespace
@@ -115,7 +136,7 @@ Findings range_findings(const RangeCheck& check, std::span<const OutputMeasureme
       std::copy_if(all.begin(), all.end(), std::back_inserter(here),
                    [k](const OutOfRange& m) { return m.output == static_cast<int>(k); });
       if (here.empty()) continue;
-      findings.push_back({kind, outputs[k].name, sentence(here, outputs[k], month_names, kind)});
+      findings.push_back(out_of_range(here, outputs[k], month_names, kind));
     }
   };
   add(check.extrapolation, FindingKind::extrapolation);

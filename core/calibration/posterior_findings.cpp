@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/display/id_words.hpp"
 #include "core/text/number_text.hpp"
 
 namespace recald::calibration {
@@ -14,21 +15,13 @@ constexpr double kEdgeWidth = 0.05;  // of the prior's range
 constexpr double kEdgeMass = 0.20;
 constexpr double kEvidenceTolerance = 0.5;  // nats
 
-/// 287.4 -> 290: enough for a standard deviation in a sentence.
-double two_digits(double value) {
-  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  return std::round(value / step) * step;
-}
-
-Finding edge_finding(const Parameter& parameter, double share, double end) {
-  std::string sentence = percent_text(share);
-  sentence += " of the posterior of " + parameter.name;
-  sentence += " is within 5 % of the end of its prior at " + number_text(end);
-  sentence += " " + parameter.unit;
-  sentence +=
-      ". Unless that end is a physical limit, the model or a fixed input is wrong, or the prior is "
-      "too narrow.";
-  return {FindingKind::prior_edge, parameter.name, std::move(sentence)};
+Finding edge_finding(const Parameter& parameter, double share, const char* end) {
+  std::string sentence = display::capitalised(display::parameter_words(parameter.name));
+  sentence += ": " + percent_text(share) + " of the posterior lies at the " + end;
+  sentence += " end of its prior.";
+  return {FindingKind::prior_edge, parameter.name, std::move(sentence),
+          "Unless that end is a physical limit, the model or a fixed input is wrong, or the prior "
+          "is too narrow."};
 }
 
 }  // namespace
@@ -51,10 +44,10 @@ Findings edge_findings(const std::vector<Parameter>& parameters,
       total += static_cast<double>(values.size());
     }
     if (low / total > kEdgeMass) {
-      findings.push_back(edge_finding(parameters[j], low / total, prior.min()));
+      findings.push_back(edge_finding(parameters[j], low / total, "lower"));
     }
     if (high / total > kEdgeMass) {
-      findings.push_back(edge_finding(parameters[j], high / total, prior.max()));
+      findings.push_back(edge_finding(parameters[j], high / total, "upper"));
     }
   }
   return findings;
@@ -66,9 +59,10 @@ Findings conflict_findings(const Summary& precision, const GammaPrior& prior) {
   if (low <= precision.mean && precision.mean <= high) return {};
   const auto sd = [](double value) { return number_text(1.0 / std::sqrt(value), 2); };
   return {{FindingKind::hyperprior_conflict, precision.name,
-           "The data contradict the prior of " + precision.name + ": posterior mean " +
-               number_text(precision.mean) + ", prior 1-99 % range " + number_text(low) + " to " +
-               number_text(high) + ". That means a standard deviation of " + sd(precision.mean) +
+           "The data contradict the prior of the " + display::parameter_words(precision.name) + ".",
+           "Its posterior mean is " + number_text(precision.mean) + ", the prior's 1-99 % range " +
+               number_text(low) + " to " + number_text(high) +
+               ". That means a standard deviation of " + sd(precision.mean) +
                " of the output range, where the prior expects " + sd(high) + " to " + sd(low) +
                "."}};
 }
@@ -79,18 +73,23 @@ Findings trajectory_findings(const std::vector<ChainStatistics>& chains,
   long divergences = 0;
   for (const ChainStatistics& chain : chains) divergences += chain.divergences;
   if (divergences > gate.divergences_max) {
-    findings.push_back({FindingKind::not_converged, "trajectories",
+    findings.push_back({FindingKind::not_converged,
+                        "trajectories",
                         std::to_string(divergences) +
-                            " trajectories of the sampler diverged: it could not reach parts of "
-                            "the posterior, and the results do not include them."});
+                            " trajectories of the sampler diverged: the results miss parts of "
+                            "the posterior.",
+                        {},
+                        1.0});
   }
   for (std::size_t k = 0; k < chains.size(); ++k) {
     if (std::isnan(chains[k].e_bfmi) || chains[k].e_bfmi >= gate.e_bfmi_min) continue;
     findings.push_back(
         {FindingKind::not_converged, "energy",
-         "Chain " + std::to_string(k + 1) + " explores the energy levels too slowly (E-BFMI " +
-             number_text(chains[k].e_bfmi, 2) + ", below " + number_text(gate.e_bfmi_min) +
-             "). It may miss the tails of the posterior."});
+         "Chain " + std::to_string(k + 1) +
+             " may miss the tails of the posterior: it is slow between energy levels.",
+         "E-BFMI is " + number_text(chains[k].e_bfmi, 2) + ", below " +
+             number_text(gate.e_bfmi_min) + ".",
+         1.0});
   }
   return findings;
 }
@@ -100,10 +99,9 @@ Findings evidence_findings(const SamplingReport& report,
   if (!bridge || std::isnan(report.log_evidence)) return {};
   if (std::abs(bridge->log_evidence - report.log_evidence) <= kEvidenceTolerance) return {};
   return {{FindingKind::evidence_disagrees, "evidence",
-           "Two estimates of the model's evidence disagree: log p(y) is " +
-               number_text(report.log_evidence, 5) + " from populations and " +
-               number_text(bridge->log_evidence, 5) +
-               " from bridge sampling. Use neither to compare models."}};
+           "Two estimates of the model's evidence disagree: use neither to compare models.",
+           "log p(y) is " + number_text(report.log_evidence, 5) + " from populations and " +
+               number_text(bridge->log_evidence, 5) + " from bridge sampling."}};
 }
 
 Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
@@ -114,27 +112,34 @@ Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
     sd += chain.discrepancy_precision.array().rsqrt().mean() / static_cast<double>(chains.size());
   }
   std::string list;
+  std::string most_of;
+  double most = 0.0;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     if (outputs[k].measured_months() == 0) continue;
     double sum = 0.0;
     for (const double value : outputs[k].values) sum += std::isnan(value) ? 0.0 : value;
-    const double in_unit = sd * normalisation.scales[k].range();
     const double mean = sum / outputs[k].measured_months();
-    list += (list.empty() ? "" : ", ") + outputs[k].name + " " + number_text(two_digits(in_unit)) +
-            " " + outputs[k].unit + " (" + percent_text(in_unit / std::abs(mean)) + " of its mean)";
+    const double share = sd * normalisation.scales[k].range() / std::abs(mean);
+    const std::string output = display::output_words(outputs[k].name);
+    list += (list.empty() ? "" : "; ") + output + ": " + percent_text(share);
+    if (!(share > most)) continue;
+    most = share;
+    most_of = output;
   }
-  if (list.empty()) return {};
+  if (most_of.empty()) return {};
   return {{FindingKind::discrepancy_size, "discrepancy",
-           "The model's error from month to month has a standard deviation of: " + list +
-               ". The model cannot show differences smaller than that, savings for example."}};
+           "The model's months err by up to " + percent_text(most) + " (" + most_of +
+               "): it cannot show smaller savings.",
+           "One standard deviation of the model's error, as a share of the mean: " + list + ".",
+           most}};
 }
 
 Findings jitter_findings(long count) {
   if (count == 0) return {};
   return {{FindingKind::jitter_used, "covariance",
+           "The assumed measurement error is far too small.",
            "The covariance of the measured points had no Cholesky factor " + std::to_string(count) +
-               " times, so 1e-10 was added to its diagonal. The assumed measurement error is far "
-               "too small."}};
+               " times, so 1e-10 was added to its diagonal."}};
 }
 
 }  // namespace recald::calibration

@@ -33,8 +33,8 @@ namespace recald::calibration {
 [[nodiscard]] Findings evidence_findings(const SamplingReport& report,
                                          const std::optional<BridgeEstimate>& bridge);
 
-/// `discrepancy_size`: the sd of the discrepancy of each measured output in its unit and as a share
-/// of the measured mean, in one sentence. Nothing smaller can be read from the model, and the
+/// `discrepancy_size`: the sd of the discrepancy of each measured output as a share of the measured
+/// mean; the sentence names the largest. Nothing smaller can be read from the model, and the
 /// discrepancy belongs to the months that were measured: it is never carried elsewhere.
 [[nodiscard]] Findings discrepancy_findings(const std::vector<OutputMeasurements>& outputs,
                                             const Normalisation& normalisation,

@@ -254,9 +254,9 @@ class Sampling {
     if (options_.iterations) {
       if (!disagreement_.empty()) {
         result_.converged = false;
-        result_.findings.push_back(
-            {FindingKind::not_converged, std::string(chains.name),
-             "The chains miss part of the posterior: " + disagreement_ + "."});
+        result_.findings.push_back({FindingKind::not_converged, std::string(chains.name),
+                                    "The chains miss part of the posterior.",
+                                    "That is because " + disagreement_ + ".", 1.0});
       }
       return std::move(result_);
     }
@@ -271,7 +271,8 @@ class Sampling {
     }
     result_.report.taken_over = why;
     result_.findings.push_back({FindingKind::sampler_replaced, result_.report.sampler,
-                                "Tempered populations (smc) replaced the chains, because " + why +
+                                "Tempered populations (smc) replaced the chains.",
+                                "That is because " + why +
                                     (apart ? ". The data may allow more than one region of the "
                                              "parameters; the draws weight these regions."
                                            : ".")});

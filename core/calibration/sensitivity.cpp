@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/display/id_words.hpp"
 #include "core/text/number_text.hpp"
 
 namespace recald::calibration {
@@ -24,12 +25,14 @@ Result<Calibration> rerun(const MonthlyModel& prototype, const CalibrationProble
   return calibrate_on_design(prototype, problem, options, base.design, context);
 }
 
-std::string sentence(const Summary& base, const ParameterSensitivity& s, double factor) {
-  return base.name + " is prior-driven: its posterior mean moves from " + number_text(base.mean) +
-         " to " + number_text(s.mean_at_smaller) + " and " + number_text(s.mean_at_larger) + " " +
-         base.unit + " (up to " + number_text(s.largest_move_sd, 2) +
-         " posterior standard deviations) if the prior mean of the discrepancy's precision is " +
-         number_text(factor) + " times larger and smaller. The data do not determine it.";
+Finding prior_driven(const Summary& base, const ParameterSensitivity& s, double factor) {
+  return {
+      FindingKind::prior_driven, base.name,
+      display::capitalised(display::parameter_words(base.name)) +
+          " is prior-driven: the data do not determine it.",
+      "Its posterior mean moves by up to " + number_text(s.largest_move_sd, 2) +
+          " posterior standard deviations if the prior mean of the discrepancy's precision is " +
+          number_text(factor) + " times larger and smaller."};
 }
 
 void keep_unconverged(const Calibration& run, Findings& findings) {
@@ -58,8 +61,7 @@ Result<PriorSensitivity> prior_sensitivity(const MonthlyModel& prototype,
     const double move = std::max(std::abs(a - before.mean), std::abs(b - before.mean)) / before.sd;
     const ParameterSensitivity parameter{a, b, move, move > kMoveMax};
     if (parameter.prior_driven) {
-      result.findings.push_back(
-          {FindingKind::prior_driven, before.name, sentence(before, parameter, factor)});
+      result.findings.push_back(prior_driven(before, parameter, factor));
     }
     result.parameters.push_back(parameter);
   }

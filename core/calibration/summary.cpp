@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/display/id_words.hpp"
 #include "core/statistics/quantile.hpp"
 #include "core/text/number_text.hpp"
 
@@ -57,8 +58,9 @@ Findings gate_findings(const std::vector<Summary>& summaries, const ConvergenceG
     }
     if (faults.empty()) continue;
     findings.push_back({FindingKind::not_converged, s.name,
-                        "The chains have not converged for " + s.name + ": " + faults +
-                            ". Do not rely on its figures; run more iterations."});
+                        "The chains have not converged for the " +
+                            display::parameter_words(s.name) + "; run more iterations.",
+                        "Do not rely on its figures: " + faults + ".", 1.0});
   }
   return findings;
 }

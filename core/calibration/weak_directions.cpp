@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "core/text/number_text.hpp"
+#include "core/display/id_words.hpp"
 
 namespace recald::calibration {
 namespace {
@@ -80,7 +80,7 @@ std::string in_words(const WeakDirection& direction, const std::vector<Parameter
   std::string words;
   for (const Eigen::Index j : order) {
     if (!words.empty()) words += " with ";
-    words += parameters[static_cast<std::size_t>(j)].name;
+    words += display::parameter_words(parameters[static_cast<std::size_t>(j)].name);
     if (order.size() < 2) break;
     const bool same = direction.loadings(j) * direction.loadings(order.front()) > 0.0;
     words += same ? " up" : " down";
@@ -120,8 +120,8 @@ Findings weak_direction_findings(const std::vector<WeakDirection>& directions,
   }
   return {{FindingKind::weak_direction, "parameters",
            "The data say less than the priors about " + std::to_string(directions.size()) + " of " +
-               std::to_string(parameters.size()) + " directions of the parameters: " + list +
-               ". The results there mostly repeat the priors."}};
+               std::to_string(parameters.size()) + " directions of the parameters.",
+           "The results mostly repeat the priors for: " + list + "."}};
 }
 
 }  // namespace recald::calibration

@@ -15,6 +15,7 @@
 #include "core/change_point/curve.hpp"
 #include "core/change_point/day_noise.hpp"
 #include "core/change_point/meter_day.hpp"
+#include "core/display/unit.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/model/schedule.hpp"
 #include "core/result.hpp"
@@ -73,7 +74,11 @@ inline constexpr int kLeastDays = 60;
 [[nodiscard]] Result<Regression> fit_regression(std::span<const MeterDay> days);
 
 /// For people: "3-parameter heating: 210 kWh/day on workdays, 80 on Saturdays and Sundays and
-/// holidays; 14.2 kWh/day more per kelvin below 15.3 °C." A negative slope reads "less".
-[[nodiscard]] std::string describe(const Regression& regression);
+/// holidays; 14.2 kWh/day more per K below 15.3 °C." A negative slope reads "less".
+/// @param units    Of the meter.
+/// @param outdoor  The unit of temperatures.
+[[nodiscard]] std::string describe(const Regression& regression,
+                                   const display::MeterUnits& units = {},
+                                   const display::Unit& outdoor = {"°C"});
 
 }  // namespace recald::change_point

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/diagnosis/monthly_impact.hpp"
+#include "core/display/id_words.hpp"
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"
 
@@ -158,9 +159,9 @@ struct Shown {
 /// Keeps the first `count` additions, as if the search had ended there.
 void keep_first(std::size_t count, const std::vector<Shown>& shown, Diagnosis& result) {
   for (std::size_t i = count; i < result.added.size(); ++i) {
-    result.warnings.push_back("'" + std::string{result.added[i].candidate.effect->title} +
-                              "' was named after the others and withdrawn, because the held-out "
-                              "months do not confirm it.");
+    result.warnings.push_back({"'" + std::string{result.added[i].candidate.effect->title} +
+                               "' was named last and withdrawn: the held-out months do not "
+                               "confirm it."});
   }
   result.added.resize(count);
   result.modelled_kW = result.passes[count].modelled_kW;
@@ -257,8 +258,10 @@ class Search {
     result_.base_fit = gaps_of(site_, first_, judge_of(site_, first_, first_.fit));
     if (!first_.none.converged) {
       result_.warnings.push_back(
-          "The base calibration of the hourly model did not converge, so no effect is named. "
-          "Compare [building] with the drawings and look for a meter in a wrong unit.");
+          {.sentence = "The base calibration of the hourly model did not converge, so no effect is "
+                       "named.",
+           .details = "Compare [building] with the drawings and look for a meter in a wrong unit.",
+           .share = 1.0});
     }
     result_.parameters_before = beliefs_of(site_, first_.none);
     result_.parameters_after = beliefs_of(site_, now().none);
@@ -273,8 +276,9 @@ class Search {
     for (std::size_t g = 0; g < site_.meters.size(); ++g) {
       if (!is_worse(result_.gap->log_score_change[g])) continue;
       result_.warnings.push_back(
-          "Meter '" + site_.meters[g].id + "' is predicted worse than before on the held-out " +
-          "months: the model gets the side effect of the addition on this meter wrong.");
+          {display::meter_label(site_.meters[g].id) +
+               " is predicted worse than before in the held-out months.",
+           "The model gets the side effect of the addition on this meter wrong."});
     }
   }
 

@@ -10,6 +10,7 @@
 #include "core/diagnosis/gap.hpp"
 #include "core/diagnosis/locate.hpp"
 #include "core/diagnosis/naming.hpp"
+#include "core/display/warning.hpp"
 #include "core/result.hpp"
 
 namespace recald::diagnosis {
@@ -67,7 +68,7 @@ struct Diagnosis {
   std::vector<MeterGap> base_fit;  ///< (m) the base model on the fitted months.
   std::vector<ParameterBelief> parameters_before;  ///< (q) of the drawings alone.
   std::vector<ParameterBelief> parameters_after;   ///< (q) with what stands added.
-  std::vector<std::string> warnings;
+  display::Warnings warnings;
   int model_runs = 0;
 };
 

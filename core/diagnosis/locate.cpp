@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/diagnosis/false_discovery.hpp"
+#include "core/display/unit.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -20,10 +21,10 @@ constexpr std::array<const char*, 7> kWeekdays = {"Sundays",   "Mondays", "Tuesd
 constexpr std::array<const char*, model::kDayTypes> kDayWords = {"working days", "Saturdays",
                                                                  "Sundays and holidays"};
 
-std::string number(double value, const char* unit) {
+std::string number(double value, const display::Unit& unit) {
   char text[48];
-  std::snprintf(text, sizeof text, "%.3g%s", value, unit);
-  return text;
+  std::snprintf(text, sizeof text, "%.3g ", unit.shown(value));
+  return text + unit.name;
 }
 
 /// How a family names the bin of a part; equal numbers are one bin, negative is none.
@@ -36,8 +37,7 @@ struct Family {
 struct Driver {
   const char* name;
   const char* phrase;
-  const char* unit;
-  double factor;
+  display::Unit unit;
   double (*value)(const DayPart&);
 };
 
@@ -56,9 +56,7 @@ Family quantile_family(const SiteProblem& site, const Driver& driver, int bins) 
           },
           [limits, driver](int k) {
             const auto i = static_cast<std::size_t>(k);
-            const auto at = [&](double limit) {
-              return number(driver.factor * limit, driver.unit);
-            };
+            const auto at = [&](double limit) { return number(limit, driver.unit); };
             const std::string what{driver.phrase};
             if (i == 0) return what + " below " + at(limits.front());
             if (i == limits.size()) return what + " above " + at(limits.back());
@@ -91,23 +89,27 @@ std::vector<Family> families_of(const SiteProblem& site) {
                         return "the fortnight from " + metering::to_string(metering::Day{
                                                            first + std::chrono::days{14 * k}});
                       }});
-  const Driver temperature{"outdoor temperature", "outdoor temperature", " degC", 1.0,
+  const Driver temperature{"outdoor temperature", "outdoor temperature",
+                           display::unit_of(site.units, "degC"),
                            [](const DayPart& p) { return p.dry_bulb_C; }};
   families.push_back(quantile_family(site, temperature, 12));
   if (site.drivers->has_humidity) {
     families.push_back(quantile_family(site,
-                                       {"humidity", "outdoor air with", " g/kg", 1e3,
+                                       {"humidity",
+                                        "outdoor air with",
+                                        {"g/kg", 1e3},
                                         [](const DayPart& p) { return p.humidity_ratio; }},
                                        8));
   }
   if (site.drivers->has_wind) {
-    families.push_back(quantile_family(
-        site, {"wind", "wind", " m/s", 1.0, [](const DayPart& p) { return p.wind_m_s; }}, 8));
+    families.push_back(quantile_family(site,
+                                       {"wind", "wind", display::unit_of(site.units, "m/s"),
+                                        [](const DayPart& p) { return p.wind_m_s; }},
+                                       8));
   }
   if (site.has_sun) {
     families.push_back(quantile_family(
-        site,
-        {"sun", "sun", " W/m2", 1.0, [](const DayPart& p) { return p.global_horizontal_W_m2; }},
+        site, {"sun", "sun", {"W/m²"}, [](const DayPart& p) { return p.global_horizontal_W_m2; }},
         8));
   }
   // Hours by temperature: a third of the temperatures each.

@@ -10,6 +10,7 @@
 
 #include "core/diagnosis/day_parts.hpp"
 #include "core/diagnosis/effect.hpp"
+#include "core/display/unit.hpp"
 #include "core/model/end_use.hpp"
 #include "core/model/hourly/hourly.hpp"
 #include "core/model/parameter_library.hpp"
@@ -35,7 +36,8 @@ struct SiteProblem {
   bool has_sun = true;            ///< False: it was assumed, and nothing may be concluded from it.
   std::vector<MeterData> meters;  ///< (m)
   std::string currency;           ///< Of their prices.
-  Eigen::ArrayXXd measured_kW;    ///< (hours x m) NaN where not measured.
+  display::UnitSystem units = display::UnitSystem::si;  ///< Of words.
+  Eigen::ArrayXXd measured_kW;                          ///< (hours x m) NaN where not measured.
   DayParts day_parts;
   Eigen::ArrayXXd measured_parts_kW;  ///< (parts x m) NaN where too little was measured.
   std::vector<Role> month_roles;      ///< (months)

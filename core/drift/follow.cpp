@@ -210,6 +210,7 @@ bool has_figures_after(const Ground& ground, int learning) {
 SiteDrift drift_of(const FollowedSite& followed, SeenBeside& beside) {
   const assessment::AssessedCalibration& site = followed.site;
   SiteDrift drift{.model = site.model,
+                  .units = site.units,
                   .months = site.month_names,
                   .learning_months = followed.learning_months,
                   .parameters = site.parameters,
@@ -223,8 +224,9 @@ SiteDrift drift_of(const FollowedSite& followed, SeenBeside& beside) {
                   .warnings = site.warnings};
   for (const assessment::OutputCalibration& output : site.outputs) {
     drift.outputs.push_back({.name = output.name,
-                             .meter = output.label,
+                             .meter = output.meter_id,
                              .unit = output.unit,
+                             .utility = output.utility,
                              .by_level = !output.calibrated,
                              .measured = output.measured,
                              .state = {}});
@@ -264,7 +266,7 @@ Result<SiteDrift> follow(const FollowedSite& followed,
       {std::move(beside.days), drift.months, drift.learning_months,
        2.0 * options.watch.months_between_false_alarms}};
   if (!has_figures_after(ground, drift.learning_months)) {
-    drift.warnings.emplace_back("No month after the learning period has a figure to compare.");
+    drift.warnings.push_back({"No month after the learning period has a figure to compare."});
   }
   if (auto done = follow_all(ground, options, context, drift); !done) {
     return tl::unexpected(done.error());

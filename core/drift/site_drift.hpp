@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
 #include "core/drift/cause.hpp"
 #include "core/drift/daily_watches.hpp"
 #include "core/drift/prequential.hpp"
@@ -13,6 +15,7 @@
 #include "core/drift/watch.hpp"
 #include "core/model/model_kind.hpp"
 #include "core/model/parameter.hpp"
+#include "core/tariff/tariff.hpp"
 
 namespace recald::drift {
 
@@ -21,10 +24,12 @@ struct FollowedOutput {
   std::string name;   ///< "steam_daily_kWh"
   std::string meter;  ///< Its id.
   std::string unit;
+  metering::Utility utility;
   bool by_level;                 ///< No parameter moves it: forecast by its own months alone.
   std::vector<double> measured;  ///< (months) NaN: none.
   WatchState state;              ///< After the last month.
   std::optional<DailyState> daily = {};  ///< Its days', likewise; absent: not watched.
+  tariff::Rates rates = {};              ///< For words; the caller of `follow` may fill them in.
 };
 
 /// What a window believed of a parameter after each month.
@@ -65,6 +70,8 @@ struct MeterChange {
 
 struct SiteDrift {
   ModelKind model;
+  display::UnitSystem units;        ///< Of its words.
+  std::string currency = {};        ///< Of its outputs' rates.
   std::vector<std::string> months;  ///< "2019-03", ascending, the learning ones first.
   int learning_months;
   std::vector<Parameter> parameters;  ///< (q)
@@ -76,7 +83,7 @@ struct SiteDrift {
   std::vector<FollowedWindow> windows;  ///< Expanding first: it makes the record.
   /// (q) From the last year but one to the last; empty before there are two years to compare.
   std::vector<Shift> last_year;
-  std::vector<std::string> warnings;
+  display::Warnings warnings;
 
   [[nodiscard]] const std::string& month_name(int month) const {
     return months[static_cast<std::size_t>(month)];

@@ -11,6 +11,7 @@ namespace recald::metering {
 namespace {
 
 constexpr std::chrono::hours kLongZeroRun{72};
+constexpr int kMonthsNamed = 2;  // a line of a terminal has room for; tables have them all
 
 std::string span_words(const TimeSpan& span) {
   const double length_h = static_cast<double>(span.length().count()) / 3600.0;
@@ -87,16 +88,20 @@ void describe_unusable(std::string_view meter, const std::vector<MonthlyFigure>&
   std::string months;
   const MonthlyFigure* first = nullptr;
   const MonthlyFigure* last = nullptr;
+  int count = 0;
   int slots = 0;
   for (const MonthlyFigure& figure : figures) {
     if (figure.usable) continue;
-    months += (months.empty() ? "" : ", ") + to_string(figure.month) + " (" +
-              figure.unusable_because + ")";
+    if (++count <= kMonthsNamed) {
+      months += (months.empty() ? "" : ", ") + to_string(figure.month) + " (" +
+                figure.unusable_because + ")";
+    }
     if (first == nullptr) first = &figure;
     last = &figure;
     slots += figure.slots;
   }
   if (first == nullptr) return;
+  if (count > kMonthsNamed) months += " and " + std::to_string(count - kMonthsNamed) + " more";
   findings.push_back(
       {std::string{meter},
        "Not used for calibration, too few readings: " + months + ".",

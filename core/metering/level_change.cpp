@@ -141,9 +141,7 @@ class LevelWatch {
     const MonthlyFigure& figure = *month.figure;
     LevelChange change{kind, figure.month, {}, std::exp(month.log_ratio), std::exp(month.step), z,
                        {}};
-    change.words = kind == LevelChangeKind::level
-                       ? level_in_words(change)
-                       : scale_in_words(change, figure.daily_average_kWh);
+    change.words = kind == LevelChangeKind::level ? level_in_words(change) : scale_in_words(change);
     changes_.push_back(std::move(change));
     doubted_.clear();
     open_ = true;
@@ -157,11 +155,9 @@ class LevelWatch {
                 100.0 * (change.ratio - 1.0), std::abs(change.z));
   }
 
-  [[nodiscard]] std::string scale_in_words(const LevelChange& change,
-                                           double daily_average_kWh) const {
+  [[nodiscard]] std::string scale_in_words(const LevelChange& change) const {
     return meter_name_ + " has read about " + factor_in_words(change.factor) +
            " its earlier level since " + to_string(change.since) +
-           text(" (%.4g kWh a day)", daily_average_kWh, 0.0) +
            ": probably a changed unit or multiplier, not the building";
   }
 

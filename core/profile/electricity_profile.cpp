@@ -179,8 +179,8 @@ std::string check_words(const ProfileCheck& check, std::size_t months) {
                   months, percent);
   } else {
     std::snprintf(text.data(), text.size(),
-                  "The load profile is not constant over the year: a single profile misses the "
-                  "months by %.1f %% (CV(RMSE), limit 5 %%), so each calendar month has its own "
+                  "The load profile is not constant over the year: a single one misses the months "
+                  "by %.1f %% (CV(RMSE)). The limit is 5 %%, so each calendar month has its own "
                   "factor. Months that occur once in the record match by construction.",
                   percent);
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace recald {
 namespace {
@@ -25,7 +26,9 @@ std::string percent_text(double share) {
 }
 
 std::string signed_percent_text(double share) {
-  return (share < 0.0 ? "" : "+") + to_text(100.0 * share, std::chars_format::fixed, 0) + " %";
+  const int decimals = std::abs(share) < 0.01 ? 1 : 0;
+  return (share < 0.0 ? "" : "+") + to_text(100.0 * share, std::chars_format::fixed, decimals) +
+         " %";
 }
 
 }  // namespace recald

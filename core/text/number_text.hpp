@@ -11,7 +11,7 @@ namespace recald {
 /// A share of one as per cent with one decimal: "15.3 %".
 [[nodiscard]] std::string percent_text(double share);
 
-/// A share as whole per cent with its sign: "+31 %", "-4 %".
+/// A share as per cent with its sign, whole unless it is less than one: "+31 %", "-0.4 %".
 [[nodiscard]] std::string signed_percent_text(double share);
 
 }  // namespace recald

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "core/display/warning.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
@@ -67,8 +68,7 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
     return calibrate_design(*design, *measured, options, run_context(arguments, guard, line));
   }();
   if (!calibrated) return console.fail(calibrated.error());
-  calibrated->warnings.insert(calibrated->warnings.end(), design_site->notes.begin(),
-                              design_site->notes.end());
+  display::add_notes(design_site->notes, calibrated->warnings);
   RunFacts complete = with_sampling(std::move(*facts), arguments.seed, calibrated->calibration);
   FinishedDesign done{.name = folder_name(arguments.design.folder),
                       .design = std::move(*design),

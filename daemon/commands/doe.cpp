@@ -4,6 +4,7 @@
 
 #include "adapters/doe/folder_engine.hpp"
 #include "adapters/system/parallel_for.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
@@ -16,7 +17,7 @@ namespace recald::daemon {
 namespace {
 
 std::string design_json(const DoeArguments& arguments, const doe::DesignPlan& plan, int before,
-                        const std::vector<std::string>& warnings) {
+                        const display::Warnings& warnings) {
   std::vector<std::string> parameters;
   for (const Parameter& parameter : plan.parameters) parameters.push_back(parameter.name);
   const nlohmann::ordered_json json = {{"folder", arguments.out.string()},
@@ -26,18 +27,17 @@ std::string design_json(const DoeArguments& arguments, const doe::DesignPlan& pl
                                        {"outputs", plan.output_names},
                                        {"months", plan.months.size()},
                                        {"seed", plan.seed},
-                                       {"warnings", warnings}};
+                                       {"warnings", display::texts_of(warnings)}};
   return json.dump(2) + "\n";
 }
 
 std::string design_words(const DoeArguments& arguments, const doe::DesignPlan& plan, int before,
-                         const std::vector<std::string>& warnings) {
+                         const display::Warnings& warnings) {
   std::string text = fmt::format("{}: {} runs of {} parameters, {} outputs in {} months",
                                  arguments.out.string(), plan.theta.rows(), plan.parameters.size(),
                                  plan.output_names.size(), plan.months.size());
   text += before == 0 ? ".\n" : fmt::format("; {} of them already existed.\n", before);
-  for (const std::string& warning : warnings) text += "! " + warning + "\n";
-  return text;
+  return text + display::warning_lines(warnings);
 }
 
 }  // namespace
@@ -75,10 +75,9 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
   if (auto noted = note_site(arguments.out, arguments.site, version->effects); !noted) {
     return console.fail(noted.error());
   }
-  std::vector<std::string> warnings = prepared->so_far.warnings;
+  display::Warnings warnings = prepared->so_far.warnings;
   if (auto design = doe::read_design_folder(arguments.out)) {
-    const auto outliers = set_aside_outliers(*design);
-    warnings.insert(warnings.end(), outliers.begin(), outliers.end());
+    display::add_notes(set_aside_outliers(*design), warnings);
   }
   console.out << (arguments.json ? design_json(arguments, plan, before, warnings)
                                  : design_words(arguments, plan, before, warnings));

@@ -7,6 +7,7 @@
 #include "adapters/models/model_store.hpp"
 #include "adapters/models/version_file.hpp"
 #include "adapters/report/format.hpp"
+#include "core/display/id_words.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -91,7 +92,8 @@ std::string effect_words(const AddedEffect& added) {
                     std::sqrt(p.prior.variance()));
   }
   for (const auto& impact : added.impacts) {
-    text += fmt::format("  {}: {:+.0f} kWh a month\n", impact.meter, impact.monthly_kWh);
+    text += fmt::format("  {}: {:+.0f} kWh a month\n", display::meter_label(impact.meter),
+                        impact.monthly_kWh);
   }
   if (!added.months_used.empty()) {
     text += fmt::format("  learned from {} months, {} to {}\n", added.months_used.size(),

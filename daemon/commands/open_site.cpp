@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/display/id_words.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -73,7 +75,7 @@ void print_data_words(const Recording& recording, const Console& console) {
     for (const metering::DataFinding& finding : record.findings) {
       console.err << fmt::format("{} {}: {}\n",
                                  finding.grade == metering::DataFinding::Grade::warning ? "!" : "-",
-                                 finding.meter, finding.sentence);
+                                 display::id_words(finding.meter), finding.sentence);
     }
   }
 }

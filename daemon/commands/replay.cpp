@@ -5,6 +5,7 @@
 
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/system/write_file.hpp"
+#include "core/display/unit.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/open_site.hpp"
@@ -21,14 +22,16 @@ Result<std::optional<metering::Day>> parse_option(const char* option, const std:
   return std::optional{*day};
 }
 
-std::string figure_line(const metering::Meter& meter, const metering::MonthlyFigure& figure,
-                        metering::Instant now) {
+std::string figure_line(const display::MeterUnits& units, const metering::Meter& meter,
+                        const metering::MonthlyFigure& figure, metering::Instant now) {
   std::string line = fmt::format("{}  {:<16} ", metering::to_string(figure.month), meter.id);
+  const auto& daily = units.daily;
   line += std::isfinite(figure.daily_average_kWh)
-              ? fmt::format("{:>10.1f} kWh/day", figure.daily_average_kWh)
-              : fmt::format("{:>10} kWh/day", "-");
-  line += figure.peak ? fmt::format("  peak {:>8.1f} kW", figure.peak->kW)
-                      : fmt::format("  peak {:>8} kW", "-");
+              ? fmt::format("{:>10.1f} {}", daily.shown(figure.daily_average_kWh), daily.name)
+              : fmt::format("{:>10} {}", "-", daily.name);
+  line += figure.peak ? fmt::format("  peak {:>8.1f} {}", units.power.shown(figure.peak->kW),
+                                    units.power.name)
+                      : fmt::format("  peak {:>8} {}", "-", units.power.name);
   line += fmt::format("  measured {:5.1f} %  closed {}", 100.0 * figure.coverage,
                       metering::to_string(now));
   if (!figure.usable) line += "  unusable: " + figure.unusable_because;
@@ -89,7 +92,9 @@ int run_replay(const ReplayArguments& arguments, const Console& console) {
       record_site(*site, {*from, *to}, clock,
                   [&](const metering::Meter& meter, const metering::MonthlyFigure& figure,
                       metering::Instant now) {
-                    if (!arguments.json) console.out << figure_line(meter, figure, now) << "\n";
+                    if (arguments.json) return;
+                    const auto units = display::meter_units(site->config.units, meter.utility);
+                    console.out << figure_line(units, meter, figure, now) << "\n";
                   });
   if (!recording) return console.fail(recording.error());
   for (std::size_t i = 0; i < recording->meters.size(); ++i) {

@@ -221,10 +221,10 @@ TEST_F(DesignCommands, CalibrationLeavesItsContract) {
       }
     }
   }
-  EXPECT_THAT(
-      warnings_of(json),
-      Contains(HasSubstr("2021-01 to 2021-03 are not in the design, and one regression a "
-                         "month says nothing of them: there the one for all months is used")));
+  EXPECT_THAT(warnings_of(json),
+              Contains(HasSubstr(
+                  "January 2021 to March 2021 are not in the design: the bands there are too "
+                  "narrow. One regression a month says nothing of these months")));
 }
 
 // The page and the months of a site's calibration, as far as the folder knows them.
@@ -233,7 +233,7 @@ TEST_F(DesignCommands, CalibrationHasAPageAndItsMonths) {
   const std::string page = read_text(folder_ / "out/report.html");
   EXPECT_THAT(page, HasSubstr("<h1>Calibration of design</h1>"));
   EXPECT_THAT(page, HasSubstr("<strong>Chw peak</strong>"));  // the verdict of Guideline 14
-  EXPECT_THAT(page, HasSubstr("Chw: daily average consumption by month, kWh/day"));
+  EXPECT_THAT(page, HasSubstr("Chw: daily mean of each month, kWh/day"));
   EXPECT_THAT(page, HasSubstr("class=\"code\">set_point<"));
   EXPECT_THAT(page, ::testing::Not(HasSubstr("recald diagnose")));
   std::istringstream months{read_text(folder_ / "out/months.csv")};
@@ -306,7 +306,7 @@ TEST_F(DesignCommands, CalibrationRepeatsItself) {
                 without_wall_time(read_text(folder_ / "two" / name)))
         << name;
   }
-  EXPECT_THAT(one.out, AllOf(HasSubstr("chw_peak_kw"), HasSubstr("validation months"),
+  EXPECT_THAT(one.out, AllOf(HasSubstr("Chw, monthly peak"), HasSubstr("validation months"),
                              HasSubstr("Meta-model, form monthly: "),
                              HasSubstr("Held at their prior means")));
 }

@@ -151,7 +151,7 @@ TEST_F(DiagnoseCommand, WhatTheDataLackIsSaid) {
   const Outcome outcome = diagnose("out", {"--apply"});
 
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("! 2021-05 is left out: only "));
+  EXPECT_THAT(outcome.out, HasSubstr("! May 2021 is left out: only "));
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no humidity: "));
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no wind: "));
   EXPECT_THAT(outcome.out, HasSubstr("! The weather has no sun: "));
@@ -247,7 +247,8 @@ TEST_F(DepotWithMoreMachines, WhatIsNamedIsInForceUntilItIsReverted) {
   ASSERT_EQ(found.exit_code, kSuccess) << found.err;
   const std::string title = "Equipment added or removed";
   EXPECT_THAT(found.out, HasSubstr("Missing from the model: \"" + title + "\""));
-  EXPECT_THAT(found.out, HasSubstr("Scatter of months in the monthly model: Electricity "));
+  EXPECT_THAT(found.out,
+              HasSubstr("Scatter of months in the monthly model: Electricity, daily mean "));
   const Json json = result("found");
   EXPECT_THAT(json["added"], Contains("equipment_step"));
   EXPECT_LT(json["gap"]["epc"]["change"]["electricity_daily_kWh"]["cvrmse"]["q95"], 0.0);

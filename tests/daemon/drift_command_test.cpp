@@ -17,6 +17,7 @@ namespace {
 using Json = nlohmann::json;
 using recald::testing::read_text;
 using recald::testing::write_text;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::run;
 
@@ -80,6 +81,9 @@ TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
   const std::string year = std::to_string(std::stoi(first) + 2);
   write_text(folder_ / "readings.csv",
              multiplied(readings, "chilled_water", year + "-06-01T04:00:00Z", 1.4));
+  write_text(folder_ / "site.toml",
+             read_text(folder_ / "site.toml") +
+                 "[tariff]\ncurrency = \"EUR\"\n[tariff.chilled_water]\nper_kWh = 0.1\n");
   const auto done = drift("once", "2");
   ASSERT_EQ(done.exit_code, kSuccess) << done.err;
   const Json json = result("once");
@@ -92,7 +96,8 @@ TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
   EXPECT_EQ(alarm["direction"], "more");
   EXPECT_EQ(alarm["since"], year + "-06");
   EXPECT_THAT(alarm["sentence"].get<std::string>(),
-              HasSubstr("chilled_water_daily_kWh has been more"));
+              AllOf(HasSubstr("Chilled water, daily mean has been more"),
+                    HasSubstr("If it goes on, it costs about "), HasSubstr(" EUR a year.")));
   // Its days tell before the month is over.
   ASSERT_FALSE(alarm["days"].is_null());
   EXPECT_EQ(alarm["month"], year + "-06");

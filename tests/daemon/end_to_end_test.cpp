@@ -287,8 +287,8 @@ TEST_F(EndToEnd, MonthWithoutWeatherIsLeftOutAndNamed) {
   const Json json = Json::parse(outcome.out);
   EXPECT_THAT(json["warnings"].get<std::vector<std::string>>(),
               ::testing::Contains(
-                  ::testing::MatchesRegex("2022-06 is left out: only [0-9]+ % of its weather "
-                                          "\\(dry_bulb_C\\) is known\\.")));
+                  ::testing::MatchesRegex("June 2022 is left out: only [0-9]+ % of its outdoor "
+                                          "temperature was measured\\.")));
   EXPECT_EQ(json["months"].size(), 35u);
 }
 

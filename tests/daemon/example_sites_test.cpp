@@ -126,7 +126,7 @@ TEST_F(RealSite, CambridgeB25Calibrates) {
   };
   EXPECT_LT(cvrmse("forecast", "calibration"), 0.5 * cvrmse("prior_mean", "calibration"));
   EXPECT_LT(cvrmse("forecast", "validation"), 0.5 * cvrmse("prior_mean", "validation"));
-  EXPECT_THAT(json["warnings"].dump(), HasSubstr("2015-05 is left out"));
+  EXPECT_THAT(json["warnings"].dump(), HasSubstr("May 2015 is left out"));
   EXPECT_THAT(json["warnings"].dump(), HasSubstr("not constant over the year"));
   EXPECT_FALSE(json["outputs"][0]["calibrated"].get<bool>());  // electricity is its own profile
 }

@@ -295,8 +295,8 @@ TEST_F(Sent, AFileThatGrowsIsTakenUp) {
   EXPECT_EQ(ended_[0].message,
             "weather is incomplete in 2025-11 (33 %); recald calibrates again when more arrives");
   EXPECT_THAT(result_of(ended_[0])["warnings"].get<std::vector<std::string>>(),
-              Contains("2025-11 is left out: only 33 % of its weather (dry_bulb_C) is known. "
-                       "weather.csv ends at 2025-11-10T23:00:00Z."));
+              Contains("November 2025 is left out: only 33 % of its outdoor temperature was "
+                       "measured. weather.csv ends at 2025-11-10T23:00:00Z."));
   cut_file(kNovember + days{14});  // not half of it yet
   loop_.run_for(hours{3});
   EXPECT_THAT(ended_, SizeIs(1));
@@ -327,11 +327,12 @@ TEST_F(Sent, ASilentSensorIsSaidFromWhenToWhen) {
   EXPECT_EQ(last_month(first), "2025-10");
   EXPECT_THAT(
       first["warnings"].get<std::vector<std::string>>(),
-      AllOf(Contains("2025-10: only 77 % of the weather (dry_bulb_C) was measured; the rest is "
-                     "typical of the month. Sensor 'roof' was silent from 2025-10-03T22:00:00Z to "
-                     "2025-10-10T22:00:00Z (dry_bulb_C)."),
-            Contains("2025-11 is left out: only 30 % of its weather (dry_bulb_C) is known. Sensor "
-                     "'roof' was silent from 2025-11-05T23:00:00Z to 2025-11-26T23:00:00Z "
+      AllOf(Contains("October 2025 has gaps in its weather: only 77 % of its outdoor temperature "
+                     "was measured. The rest is typical of the month. Sensor 'roof' was silent "
+                     "from 2025-10-03T22:00:00Z to 2025-10-10T22:00:00Z (dry_bulb_C)."),
+            Contains("November 2025 is left out: only 30 % of its outdoor temperature was "
+                     "measured. Sensor 'roof' was silent from 2025-11-05T23:00:00Z to "
+                     "2025-11-26T23:00:00Z "
                      "(dry_bulb_C).")));
   EXPECT_NEAR(first["weather"][4]["from"]["typical"].get<double>(), 7.0 * 24.0 / 745.0, 1e-9);
   EXPECT_THAT(ended_[0].message, HasSubstr("2025-10 (77 %), 2025-11 (30 %)"));

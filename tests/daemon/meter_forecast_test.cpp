@@ -124,7 +124,7 @@ class UntoldModel : public MeterForecast {
   }
   const std::string why_ =
       "The model is not calibrated: its parameters need at least 4 monthly figures of meters that "
-      "they move, and there are 0. electricity is not fitted. The calibration parameters move it "
+      "they move, and there are 0. Electricity is not fitted. The calibration parameters move it "
       "by ";
 };
 

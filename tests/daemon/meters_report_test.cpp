@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "daemon/site/results/meters_words.hpp"
+#include "tests/adapters/report/page_text.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/depot_year.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -17,6 +19,7 @@ using metering::Month;
 using metering::MonthlyFigure;
 using recald::daemon::testing::Outcome;
 using recald::daemon::testing::run;
+using recald::testing::edited;
 using recald::testing::read_text;
 using recald::testing::write_text;
 using ::testing::AllOf;
@@ -65,6 +68,62 @@ TEST_F(MetersReport, TheWeatherExplainsWhatFollowsIt) {
   EXPECT_THAT(page, HasSubstr("the months that it had not seen"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">All days</th>"));
   EXPECT_THAT(page, HasSubstr("Not seen"));
+}
+
+/// The number before a unit in the row of the page's glance that begins with `meter`.
+double used_of(const std::string& page, const std::string& meter, const std::string& unit) {
+  const std::size_t row = page.find("<th scope=\"row\">" + meter + "</th>");
+  const std::size_t end = page.find("\u00a0" + unit + "</td>", row);
+  if (end == std::string::npos) throw std::runtime_error(meter + " has no " + unit);
+  const std::size_t begin = page.rfind('>', end) + 1;
+  std::string digits = page.substr(begin, end - begin);
+  std::erase(digits, ',');
+  return std::stod(digits);
+}
+
+// The same site twice: its numbers are each other's times the factors of their units, and no SI
+// unit is left where a person reads.
+TEST_F(MetersReport, SpeaksSiOrIpByOneKey) {
+  write(std::string{kWeather}, kTwoYears_h);
+  const std::string si = replayed();
+  const std::string site = read_text(folder_ / "site.toml");
+  write_text(folder_ / "site.toml", edited(site, "[site]\n", "[site]\nunits = \"IP\"\n"));
+  const Outcome outcome =
+      run({"replay", (folder_ / "site.toml").string(), "--out", (folder_ / "ip").string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string ip = report::own_markup(read_text(folder_ / "ip" / "meters.html"));
+  // Four digits of each number are shown.
+  const double mwh = used_of(si, "District heat", "MWh");
+  EXPECT_NEAR(used_of(ip, "District heat", "MMBtu"), 3.412142 * mwh, 1e-3 * 3.412142 * mwh);
+  EXPECT_NEAR(used_of(ip, "District heat", "MBH"), 3.412142 * used_of(si, "District heat", "kW"),
+              1e-3 * used_of(ip, "District heat", "MBH"));
+  EXPECT_NEAR(used_of(ip, "Electricity", "kWh"), 1e3 * used_of(si, "Electricity", "MWh"),
+              1.0 * used_of(si, "Electricity", "MWh"));
+  EXPECT_THAT(si, HasSubstr("°C"));
+  EXPECT_THAT(ip, AllOf(Not(HasSubstr("°C")), HasSubstr("MMBtu/day more per °F below")));
+  EXPECT_THAT(outcome.out, HasSubstr("MMBtu/day  peak"));
+  EXPECT_EQ(read_text(folder_ / "ip" / "months.csv"), read_text(folder_ / "out" / "months.csv"));
+}
+
+TEST_F(MetersReport, SaysWhatTheMetersCostWhereTheSiteHasPrices) {
+  write("");
+  EXPECT_THAT(replayed(), Not(HasSubstr("id=\"costs\"")));
+  write(R"(
+[tariff]
+currency = "EUR"
+[tariff.electricity]
+per_kWh = 0.25
+[emissions]
+heating = 0.2
+)");
+  const std::string page = replayed();
+  EXPECT_THAT(page, HasSubstr("What did it cost?"));
+  const double electricity_eur = 250.0 * used_of(page, "Electricity", "MWh");
+  const std::size_t year = page.find("<th scope=\"row\">2021</th>");
+  const std::size_t begin = page.find("</td><td class=\"number\">", year) + 24;
+  std::string digits = page.substr(begin, page.find('<', begin) - begin);
+  std::erase(digits, ',');
+  EXPECT_NEAR(std::stod(digits), electricity_eur, 1e-3 * electricity_eur);
 }
 
 TEST_F(MetersReport, WeatherThatIsNotThereIsSaidAndLeavesTheRest) {
@@ -158,9 +217,10 @@ MeterStory story(std::string label, double kWh, std::optional<double> change) {
 
 TEST(MetersFirstSentence, SaysWhatMattersMost) {
   std::vector<MeterStory> stories{story("Steam", 2e5, {}), story("Electricity", 3e5, {})};
-  EXPECT_EQ(first_screen_of(stories).sentence,
-            "Electricity: 300.0 MWh in 12 months to Dec 2021; Steam: 200.0 MWh in 12 months to Dec "
-            "2021.");
+  EXPECT_EQ(
+      first_screen_of(stories).sentence,
+      "Electricity: 300.0\u00a0MWh in 12 months to Dec 2021; Steam: 200.0\u00a0MWh in 12 months "
+      "to Dec 2021.");
   stories[0].year->change = -0.02;
   stories[1].year->change = 0.12;
   stories[0].year->compared = stories[1].year->compared = 12;

@@ -4,17 +4,17 @@ import { numberText } from "./format.js";
 import { hourAxis, hours } from "./hour_axis.js";
 import { axisLabel, axisName, meterLook, mutedInk, tooltip, valueAxis } from "./theme.js";
 
-function tooltipText({ kinds, base }, hour) {
-  const lines = kinds.map(({ label, kW }) => `${label} ${numberText(kW[hour])} kW`);
-  if (base !== null) lines.push(`Base load ${numberText(base)} kW`);
+function tooltipText({ kinds, base, unit }, hour) {
+  const lines = kinds.map(({ label, load }) => `${label} ${numberText(load[hour])} ${unit}`);
+  if (base !== null) lines.push(`Base load ${numberText(base)} ${unit}`);
   return [`${hour}:00 to ${hour + 1}:00`, ...lines].join("\n");
 }
 
 export function drawDayProfile(place, data) {
   const shape = data.shapes[place.dataset.index];
-  const series = shape.kinds.map(({ kW }, i) => ({
+  const series = shape.kinds.map(({ load }, i) => ({
     type: "line",
-    data: kW,
+    data: load,
     z: 3,
     ...meterLook(i),
     symbolSize: 6,
@@ -38,7 +38,7 @@ export function drawDayProfile(place, data) {
     },
     xAxis: hourAxis,
     yAxis: valueAxis({
-      name: "kW",
+      name: shape.unit,
       nameGap: 12,
       nameTextStyle: { ...axisName, align: "left", padding: [0, 0, 0, -40] },
       axisLabel: { ...axisLabel, formatter: numberText },

@@ -130,8 +130,10 @@ function hourAxis({ year }, gridIndex) {
   };
 }
 
+const amountText = ({ unit, unitsPerKW }, kW) => `${numberText(kW * unitsPerKW)} ${unit}`;
+
 /** What the colours mean, and the hour under the pointer. */
-function writeScale(place, top) {
+function writeScale(place, load, top) {
   const scale = document.createElement("p");
   scale.className = "key scale";
   const bar = document.createElement("i");
@@ -139,7 +141,7 @@ function writeScale(place, top) {
   const readout = document.createElement("span");
   readout.className = "readout";
   readout.textContent = "Point at an hour to read it.";
-  scale.append("0", bar, `${numberText(top)} kW and more`, readout);
+  scale.append("0", bar, `${amountText(load, top)} and more`, readout);
   place.parentElement.before(scale);
   return readout;
 }
@@ -148,7 +150,7 @@ function readoutText(load, year, day, hour) {
   const i = hourIndex(load, year, day, hour);
   if (i < 0) return "";
   const status = statusWords[load.status[i]];
-  const value = "op".includes(load.status[i]) ? `${numberText(load.kW[i])} kW` : "";
+  const value = "op".includes(load.status[i]) ? amountText(load, load.kW[i]) : "";
   return `${year.labels[day]}, ${hour}:00 to ${hour + 1}:00: ${value}${status}`;
 }
 
@@ -184,5 +186,5 @@ export function drawLoad(place, data) {
       ];
     }),
   });
-  followPointer(chart, load, years, writeScale(place, top));
+  followPointer(chart, load, years, writeScale(place, load, top));
 }

@@ -82,7 +82,7 @@ function showChosenLoad() {
  */
 function preparePrint() {
   for (const choice of document.querySelectorAll("[data-choice]")) choice.hidden = false;
-  for (const more of document.querySelectorAll("details.more")) more.open = true;
+  for (const more of document.querySelectorAll("details.more, .notices details")) more.open = true;
   while (undrawn.length > 0) draw(undrawn.shift());
   for (const svg of document.querySelectorAll(".plot svg")) {
     svg.setAttribute("viewBox", `0 0 ${svg.getAttribute("width")} ${svg.getAttribute("height")}`);

@@ -4,31 +4,31 @@ import { monthText, numberText, plainText } from "./format.js";
 import { monthAxis } from "./month_axis.js";
 import { axisLabel, axisName, ink, modelLine, page, rule, tooltip, valueAxis } from "./theme.js";
 
-function tooltipText(month) {
-  const lines = [`${monthText(month.month)}: ${numberText(month.kW)} kW`];
+function tooltipText(month, unit) {
+  const lines = [`${monthText(month.month)}: ${numberText(month.peak)} ${unit}`];
   if (month.start) lines.push(plainText(month.start));
   if (month.exceedable) lines.push("The true peak may be higher");
   return lines.join("\n");
 }
 
 export function drawPeaks(place, data) {
-  const { months } = data.peaks[place.dataset.index];
+  const { months, unit } = data.peaks[place.dataset.index];
   place.style.minWidth = `${months.length * 11 + 70}px`;
-  const only = (accepts) => months.map((month) => (accepts(month) ? month.kW : null));
+  const only = (accepts) => months.map((month) => (accepts(month) ? month.peak : null));
   mount(place, {
     grid: { left: 52, right: 10, top: 30, bottom: 44 },
     tooltip: {
       ...tooltip,
       trigger: "axis",
       axisPointer: { type: "none" },
-      formatter: (items) => tooltipText(months[items[0].dataIndex]),
+      formatter: (items) => tooltipText(months[items[0].dataIndex], unit),
     },
     xAxis: monthAxis(
       months.map(({ month }) => month),
       { initials: true },
     ),
     yAxis: valueAxis({
-      name: "kW",
+      name: unit,
       nameGap: 12,
       nameTextStyle: { ...axisName, align: "left", padding: [0, 0, 0, -40] },
       axisLabel: { ...axisLabel, formatter: numberText },

@@ -220,7 +220,7 @@ export function drawTemperatureMap(place, data) {
   const words = (panel) => ([bin, part, share]) =>
     [
       `${panel.title ? `${panel.title}: ` : ""}${hoursText(part)}`,
-      `${limits[bin]} to ${limits[bin + 1]} °C`.replaceAll("-", "−"),
+      `${limits[bin]} to ${limits[bin + 1]} ${data.temperatureUnit}`.replaceAll("-", "−"),
       shareText(share),
     ].join("\n");
   const axesOf = (panels) => ({
@@ -231,7 +231,7 @@ export function drawTemperatureMap(place, data) {
           hideOverlap: true,
           formatter: (low) => `${low}…`.replace("-", "−"),
         },
-        name: "outdoor temperature, °C and above",
+        name: `outdoor temperature, ${data.temperatureUnit} and above`,
         nameLocation: "middle",
         nameGap: 27,
       }),

@@ -78,8 +78,8 @@ export function drawSignature(place, data) {
     },
     {
       labels: limits.slice(0, -1),
-      name: "outdoor temperature, °C and above",
-      what: (i) => `${limits[i]} to ${limits[i + 1]} °C`.replaceAll("-", "−"),
+      name: `outdoor temperature, ${data.temperatureUnit} and above`,
+      what: (i) => `${limits[i]} to ${limits[i + 1]} ${data.temperatureUnit}`.replaceAll("-", "−"),
       axisLabel: { hideOverlap: true, formatter: (low) => `${low}…`.replace("-", "−") },
       residual: signature.residual.temperature,
       change: signature.change.temperature,

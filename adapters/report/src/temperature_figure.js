@@ -3,7 +3,7 @@ import { mount } from "./echarts.js";
 import { numberText } from "./format.js";
 import { axisLabel, axisName, ink, meterLook, missingLine, tooltip, valueAxis } from "./theme.js";
 
-const temperatureText = (value) => `${value.toFixed(1)} °C`.replace("-", "−");
+const temperatureText = (value, unit) => `${value.toFixed(1)} ${unit}`.replace("-", "−");
 
 /** Fitted days are full, those that the regression has not seen are hollow. */
 function dayStyle(kind, unseen) {
@@ -18,14 +18,15 @@ function dayStyle(kind, unseen) {
 }
 
 export function drawTemperature(place, data) {
-  const { days, lines } = data.temperatures[place.dataset.index];
+  const { days, lines, energyUnit, dailyUnit, outdoorUnit } =
+    data.temperatures[place.dataset.index];
   const scatter = [false, true].flatMap((unseen) =>
     [0, 1, 2].map((kind) => ({
       type: "scatter",
       z: 2,
       data: days
         .filter((day) => day.kind === kind && day.unseen === unseen)
-        .map(({ C, kWh, date }) => [C, kWh, date]),
+        .map(({ outdoor, energy, date }) => [outdoor, energy, date]),
       ...dayStyle(kind, unseen),
     })),
   );
@@ -34,8 +35,8 @@ export function drawTemperature(place, data) {
     tooltip: {
       ...tooltip,
       trigger: "item",
-      formatter: ({ value: [C, kWh, date] }) =>
-        `${date ?? "Regression"}\n${temperatureText(C)}, ${numberText(kWh)} kWh`,
+      formatter: ({ value: [outdoor, energy, date] }) =>
+        `${date ?? "Regression"}\n${temperatureText(outdoor, outdoorUnit)}, ${numberText(energy)} ${energyUnit}`,
     },
     xAxis: valueAxis({
       scale: true,
@@ -47,14 +48,14 @@ export function drawTemperature(place, data) {
         hideOverlap: true,
         formatter: (value) => `${value}`.replace("-", "−"),
       },
-      name: "mean outdoor temperature of the day, °C",
+      name: `mean outdoor temperature of the day, ${outdoorUnit}`,
       nameLocation: "middle",
       nameGap: 28,
       nameTextStyle: axisName,
     }),
     yAxis: valueAxis({
       axisLine: { show: false, onZero: false },
-      name: "kWh/day",
+      name: dailyUnit,
       nameGap: 14,
       nameTextStyle: { ...axisName, align: "left", padding: [0, 0, 0, -56] },
       axisLabel: { ...axisLabel, formatter: numberText },

@@ -64,10 +64,10 @@ Effect heat_pump_defrost() {
           .needs = {.humidity = true, .heat_pump = true},
           .confusable =
               {{"humidifier",
-                "Compare electricity at 1 C in damp and in dry weather: frost needs damp air, "
+                "Compare electricity at 1 °C in damp and in dry weather: frost needs damp air, "
                 "humidifiers run in dry air."},
                {"stack_infiltration",
-                "Electricity at -10 C: frost costs nothing then, and draught is at its worst."}},
+                "Electricity at -10 °C: frost costs nothing then, and draught is at its worst."}},
           .parameters = parameters,
           .bind = bind};
 }

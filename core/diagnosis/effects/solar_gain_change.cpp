@@ -68,7 +68,7 @@ Effect solar_gain_change() {
                      {"weekend_operation",
                       "Compare sunny with cloudy weekends at the same temperature."},
                      {"economiser_failed",
-                      "The mixed-air temperature at 15 C outdoors on an overcast working day."}},
+                      "The mixed-air temperature at 15 °C outdoors on an overcast working day."}},
       .parameters = parameters,
       .bind = bind};
 }

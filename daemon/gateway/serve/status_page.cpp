@@ -9,6 +9,8 @@
 #include "adapters/report/format.hpp"
 #include "adapters/report/html.hpp"
 #include "core/absent.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/gateway/serve/readiness.hpp"
 #include "daemon/gateway/serve/shapes.hpp"
@@ -43,25 +45,29 @@ Cell state_cell(const MeterStatus* status) {
   return {"✖ down", "bad"};
 }
 
-/// "12.3 degC, 61 %", the last of each that is known.
-std::string weather_text(const std::vector<QuantityStatus>& quantities) {
+/// "12.3 °C, 61 %", the last of each that is known.
+std::string weather_text(const std::vector<QuantityStatus>& quantities,
+                         display::UnitSystem system) {
   std::string text;
   for (const QuantityStatus& one : quantities) {
     const double last = one.last_interval ? one.last_interval->mean_kW : kAbsent;
     const double value = one.now.value_or(last);
     if (!std::isfinite(value)) continue;
     if (!text.empty()) text += ", ";
-    text += number_text(value, kWeatherDigits) + " " + std::string{one.quantity->unit};
+    const display::Unit unit = display::unit_of(system, one.quantity->unit);
+    text += number_text(unit.shown(value), kWeatherDigits) + " " + unit.name;
   }
   return text.empty() ? "–" : text;
 }
 
-std::string value_text(const MeterStatus* status) {
+std::string value_text(const MeterStatus* status, metering::Utility utility,
+                       display::UnitSystem system) {
   if (status == nullptr) return "–";
-  if (!status->weather.empty()) return weather_text(status->weather);
-  if (status->live.power_kW) return report::number_text(*status->live.power_kW) + " kW";
+  if (!status->weather.empty()) return weather_text(status->weather, system);
+  const display::Unit power = display::unit_of(system, "kW", utility);
+  if (status->live.power_kW) return report::amount_text(*status->live.power_kW, power);
   if (!status->last_interval) return "–";
-  return report::number_text(status->last_interval->mean_kW) + " kW";
+  return report::amount_text(status->last_interval->mean_kW, power);
 }
 
 Cell last_interval_cell(const MeterStatus* status, const Served& served) {
@@ -95,7 +101,7 @@ void write_meters(Html& html, const Served& served, const GatewayStatus& status)
       const bool has_answered = meter != nullptr && meter->live.read_at;
       table.row({{config.meter.id},
                  state_cell(meter),
-                 {value_text(meter), "number"},
+                 {value_text(meter, config.meter.utility, served.site.units), "number"},
                  {has_answered ? age_text(served.now() - *meter->live.read_at) + " ago" : "never"},
                  last_interval_cell(meter, served),
                  coverage_cell(meter)});
@@ -164,7 +170,9 @@ void write_alarms(Html& html, const Served& served) {
   Table table{"What has changed"};
   table.with_labels().columns({"Since", "What", "Details"});
   for (const DriftAlarm& alarm : drift->alarms) {
-    table.row({{alarm.since}, {alarm.output}, {alarm.sentence}});
+    table.row({{alarm.since},
+               {display::capitalised(display::output_words(alarm.output))},
+               {alarm.sentence}});
   }
   table.write(html);
 }

@@ -11,6 +11,8 @@
 #include "core/absent.hpp"
 #include "core/assessment/common_errors.hpp"
 #include "core/assessment/given_data.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/warning.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "core/random/streams.hpp"
 #include "core/text/nearest.hpp"
@@ -159,7 +161,7 @@ void take_measurements(const doe::DesignFolder& design, const doe::MonthlyTable&
                                                     : MonthRole::validation);
   }
   for (const std::string& name : design.output_names) {
-    assessment::OutputCalibration output{.name = name, .label = name, .unit = unit_of(name)};
+    assessment::OutputCalibration output{.name = name, .meter_id = name, .unit = unit_of(name)};
     // The design may have been narrowed to some of the measured outputs.
     const auto column = std::ranges::find(measured.names, name) - measured.names.begin();
     for (const doe::DesignMonth month : months) {
@@ -255,32 +257,41 @@ void add_model_variances(const Metamodel& metamodel, std::size_t calibration_mon
 }
 
 void say_how_months_are_modelled(const FittedMetamodel& fitted, const DesignCalibration& result,
-                                 std::size_t calibration_months, std::vector<std::string>& notes) {
+                                 std::size_t calibration_months, display::Warnings& warnings) {
   if (fitted.form == MetamodelForm::seed || result.month_names.size() == calibration_months) return;
   const std::string& first = result.month_names[calibration_months];
   const std::string& last = result.month_names.back();
-  notes.push_back(fmt::format(
-      "{} not in the design, and one regression a month says nothing of them: there the one for "
-      "all "
-      "months is used (form seed), with a left-out R2 of {:.4f} in the design's own months. It has "
-      "not seen these; its bands there are too narrow.",
-      first == last ? first + " is" : first + " to " + last + " are",
-      fitted.quality(MetamodelForm::seed).all.r2_left_out));
+  const std::size_t months = result.month_names.size() - calibration_months;
+  warnings.push_back(
+      {.sentence = fmt::format("{} not in the design: the bands there are too narrow.",
+                               first == last ? display::month_words(first) + " is"
+                                             : display::month_words(first) + " to " +
+                                                   display::month_words(last) + " are"),
+       .details = fmt::format(
+           "One regression a month says nothing of these months, so the one for all months is "
+           "used (form seed), with a left-out R2 of {:.4f} in the design's own months.",
+           fitted.quality(MetamodelForm::seed).all.r2_left_out),
+       .share = static_cast<double>(months) / static_cast<double>(result.month_names.size())});
 }
 
 /// The months to be calibrated and those to validate, in this order.
 std::vector<doe::DesignMonth> all_months(const doe::DesignFolder& design,
                                          const doe::MonthlyTable& measured, bool can_validate,
-                                         std::vector<std::string>& warnings) {
+                                         display::Warnings& warnings) {
   std::vector<doe::DesignMonth> months = design.months;
   const auto later = validation_months(design, measured);
   if (can_validate) {
     months.insert(months.end(), later.begin(), later.end());
   } else if (!later.empty()) {
-    warnings.push_back(fmt::format(
-        "{} to {} are measured but not in the design; they cannot validate, since one regression a "
-        "month says nothing of them and the seed's form cannot be fitted.",
-        later.front().text(), later.back().text()));
+    warnings.push_back(
+        {.sentence = fmt::format("{} to {} are measured but not in the design: they cannot "
+                                 "validate.",
+                                 display::month_words(later.front().text()),
+                                 display::month_words(later.back().text())),
+         .details = "One regression a month says nothing of them, and the seed's form cannot be "
+                    "fitted.",
+         .share = static_cast<double>(later.size()) /
+                  static_cast<double>(months.size() + later.size())});
   }
   return months;
 }
@@ -299,7 +310,7 @@ Result<Metamodel> make_metamodel(const doe::DesignFolder& design, const doe::Mon
   if (!fit) return tl::unexpected(fit.error());
   result.fitted = std::move(*fit);
   const FittedMetamodel& fitted = *result.fitted;
-  result.warnings.insert(result.warnings.end(), fitted.notes.begin(), fitted.notes.end());
+  display::add_notes(fitted.notes, result.warnings);
   const auto months = all_months(design, measured, fitted.seed_form.has_value(), result.warnings);
   take_measurements(design, measured, months, result);
   say_how_months_are_modelled(fitted, result, design.months.size(), result.warnings);
@@ -348,8 +359,8 @@ Result<DesignCalibration> calibrate_design(const doe::DesignFolder& whole_design
                                        ? measured_outputs_of(whole_design, measured.table)
                                        : whole_design;
   DesignCalibration result;
-  result.warnings = design.notes;
-  result.warnings.insert(result.warnings.end(), measured.notes.begin(), measured.notes.end());
+  display::add_notes(design.notes, result.warnings);
+  display::add_notes(measured.notes, result.warnings);
   const auto free = choose_parameters(design, options, result);
   if (!free) return tl::unexpected(free.error());
   fix_the_others(design.parameters, *free, result);

@@ -18,7 +18,7 @@ std::string effects_text(const ModelEffects& effects) {
     titles.push_back(effect.meter.empty() ? fmt::format("'{}'", effect.title)
                                           : fmt::format("'{}' ({})", effect.title, effect.meter));
   }
-  return fmt::format("The model has the effect{} {}, which a diagnosis added. ",
+  return fmt::format("The model has the effect{} {}, which a diagnosis added.",
                      titles.size() == 1 ? "" : "s", fmt::join(titles, " and "));
 }
 
@@ -41,10 +41,10 @@ Result<void> calibrate_with_effects(PreparedSite& prepared, const CalibrateOptio
   const std::vector<bool> teaches = teaching_months(result, prepared.problem.month_names.size());
   const std::string has = effects_text(*result.effects);
   if (std::ranges::all_of(teaches, std::identity{})) {
-    result.warnings.push_back(has +
-                              "All months here are later than those that it was learnt from, so "
-                              "what was learnt is the prior of its parameters, and these months "
-                              "teach them further.");
+    result.warnings.push_back(
+        {has,
+         "All months here are later than those that it was learnt from, so what was learnt is the "
+         "prior of its parameters, and these months teach them further."});
     return calibrate_all(prepared, options, std::move(design), context, result);
   }
   Eigen::MatrixXd eta = assessment::spread_eta(result.effects->draws);
@@ -67,9 +67,9 @@ Result<void> calibrate_with_effects(PreparedSite& prepared, const CalibrateOptio
     }
   }
   result.warnings.push_back(
-      fmt::format("{}{}, so its parameters are not calibrated on them again: the others are drawn "
-                  "given each of {} draws of them.",
-                  has, how, eta.rows()));
+      {has, fmt::format("{}, so its parameters are not calibrated on them again: the others are "
+                        "drawn given each of {} draws of them.",
+                        how, eta.rows())});
   return assessment::calibrate_given_eta(*prepared.model, prepared.problem, eta,
                                          options.calibration, options.prior_sensitivity, context,
                                          result);

@@ -7,6 +7,8 @@
 #include "core/absent.hpp"
 #include "core/assessment/given_data.hpp"
 #include "core/assessment/metered_outputs.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/site/calibrate/yardstick.hpp"
 #include "daemon/site/model/site_parts.hpp"
 
@@ -22,8 +24,9 @@ std::vector<assessment::OutputCalibration> daily_outputs(const SiteConfig& site,
   std::vector<assessment::OutputCalibration> outputs;
   for (std::size_t meter = 0; meter < site.meters.size(); ++meter) {
     const MeterRecord& record = recording.meters[meter];
+    const metering::Meter& described = site.meters[meter].meter;
     outputs.push_back(assessment::daily_output(
-        {site.meters[meter].meter.id, meter, record.figures, record.level_changes}, months));
+        {described.id, meter, described.utility, record.figures, record.level_changes}, months));
     outputs.back().calibrated = false;
   }
   return outputs;
@@ -36,6 +39,7 @@ Result<SiteCalibration> forecast_meters(const SiteConfig& site,
                                         const Recording& recording, const SiteWeather& weather,
                                         std::string because) {
   SiteCalibration result;
+  result.units = site.units;
   result.not_calibrated_because = std::move(because);
   const SiteMonths months = choose_months(*site.period, weather, result.warnings);
   if (months.calibration.empty()) {
@@ -53,9 +57,9 @@ Result<SiteCalibration> forecast_meters(const SiteConfig& site,
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     assessment::OutputCalibration& output = result.outputs[k];
     if (!forecasts[k]) {
-      result.warnings.push_back(fmt::format(
+      result.warnings.push_back({fmt::format(
           "{} has no forecast: too few of its days are usable in the calibration months.",
-          output.label));
+          display::meter_label(output.meter_id))});
       continue;
     }
     assessment::OutputAssessment& assessed = output.assessment;
@@ -73,7 +77,7 @@ Result<SiteCalibration> forecast_meters(const SiteConfig& site,
   }
   result.outputs = std::move(known);
   for (const auto* notes : {&recording.notes, &weather.notes}) {
-    result.warnings.insert(result.warnings.end(), notes->begin(), notes->end());
+    display::add_notes(*notes, result.warnings);
   }
   return result;
 }

@@ -12,6 +12,9 @@
 #include "core/assessment/level_forecast.hpp"
 #include "core/assessment/metered_outputs.hpp"
 #include "core/assessment/model_errors.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
 #include "core/model/epc/prepare.hpp"
 #include "core/model/hourly/prepare.hpp"
 #include "core/model/model_adaptors.hpp"
@@ -60,17 +63,32 @@ weather::MonthlyInputs also_in(const weather::MonthlyInputs& inputs,
   return kept;
 }
 
+/// "Chilled water: 7 of 24 months are unlike the same months before, the worst July 2023 (+31 %)."
 void warn_about_level_changes(const Recording& recording, SiteCalibration& result) {
-  std::string months;
-  for (const Month month : result.months) {
-    if (!is_site_different(recording, month)) continue;
-    months += (months.empty() ? "" : ", ") + metering::to_string(month);
+  for (const MeterRecord& record : recording.meters) {
+    std::string months;
+    int count = 0;
+    for (const Month month : result.months) {
+      if (!metering::is_different(record.level_changes, month)) continue;
+      months += (months.empty() ? "" : ", ") + display::month_words(metering::to_string(month));
+      ++count;
+    }
+    if (count == 0) continue;
+    const metering::LevelChange& worst = *std::ranges::max_element(
+        record.level_changes, {},
+        [](const metering::LevelChange& change) { return std::abs(std::log(change.ratio)); });
+    result.warnings.push_back(
+        {.sentence = fmt::format(
+             "{}: {} of {} months {} unlike the same months before, the worst {} ({}).",
+             display::meter_label(record.meter.id), count, result.months.size(),
+             count == 1 ? "is" : "are", display::month_words(metering::to_string(worst.since)),
+             signed_percent_text(worst.ratio - 1.0)),
+         .details =
+             fmt::format("Another level: {}. These months may not show the building that the "
+                         "others show.",
+                         months),
+         .share = count / static_cast<double>(result.months.size())});
   }
-  if (months.empty()) return;
-  result.warnings.push_back(fmt::format(
-      "In {} a meter reads differently than in the same months before: these months may "
-      "not show the building that the others show.",
-      months));
 }
 
 /// A wide prior lets a parameter go where no building lies, and it goes there when something else
@@ -81,18 +99,23 @@ void warn_about_unusual_parameters(const SiteConfig& site, SiteCalibration& resu
     if (!usual) continue;
     const calibration::Summary& found = result.calibration.parameters[j];
     if (usual->prior.min() <= found.mean && found.mean <= usual->prior.max()) continue;
-    result.alarms.push_back(fmt::format(
-        "{} came out at {:.3g} {}, but in buildings like this one it lies between {:.3g} and "
-        "{:.3g}: the drawings may be wrong, or something that the model lacks is read as this.",
-        found.name, found.mean, found.unit, usual->prior.min(), usual->prior.max()));
+    const display::Unit unit = display::unit_of(site.units, found.unit);
+    result.alarms.push_back(
+        {fmt::format("{} came out at {:.3g}{}{}; in buildings like this it is {:.3g} to {:.3g}.",
+                     result.definitions[j]->label, unit.shown(found.mean),
+                     unit.name.empty() ? "" : " ", unit.name, unit.shown(usual->prior.min()),
+                     unit.shown(usual->prior.max())),
+         "The drawings may be wrong, or something that the model lacks is read as this."});
   }
 }
 
 void add_words(const Recording& recording, const SiteWeather& weather, SiteCalibration& result) {
   warn_about_level_changes(recording, result);
-  result.warnings.insert(result.warnings.end(), recording.notes.begin(), recording.notes.end());
-  if (!result.profile.check.constant) result.warnings.push_back(result.profile.check.words);
-  result.warnings.insert(result.warnings.end(), weather.notes.begin(), weather.notes.end());
+  display::add_notes(recording.notes, result.warnings);
+  if (!result.profile.check.constant) {
+    result.warnings.push_back(display::warning_of(result.profile.check.words));
+  }
+  display::add_notes(weather.notes, result.warnings);
 }
 
 /// Makes the effects ready and counts their parameters among the site's.
@@ -196,7 +219,8 @@ std::vector<assessment::OutputCalibration> collect_outputs(const SiteConfig& sit
       if (weight != site.model->weights.end()) output.weight = weight->second;
       outputs.push_back(std::move(output));
     };
-    const assessment::MeteredMonths metered{id, meter, record.figures, record.level_changes};
+    const assessment::MeteredMonths metered{id, meter, record.meter.utility, record.figures,
+                                            record.level_changes};
     add(assessment::daily_output(metered, months));
     if (is_hourly(site)) add(assessment::peak_output(metered, months));
   }
@@ -221,7 +245,7 @@ Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
                                                  const metering::LocalCalendar& calendar,
                                                  const Recording& recording,
                                                  const SiteWeather& weather) {
-  std::vector<std::string> warnings;
+  display::Warnings warnings;
   const SiteMonths months = choose_months(*site.period, weather, warnings);
   if (auto enough = require_months(months, *site.period, weather); !enough) {
     return tl::unexpected(enough.error());
@@ -249,6 +273,7 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
     return tl::unexpected(enough.error());
   }
   result.model = site.model->kind;
+  result.units = site.units;
   take_months(months, result);
   auto chosen = site_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
@@ -422,7 +447,8 @@ std::optional<std::string> why_too_little(const SiteConfig& site, const Prepared
       needed, points == 1 ? "is" : "are", points);
   for (const assessment::OutputCalibration& output : prepared.so_far.outputs) {
     if (output.unit == "kW" || output.not_fitted_because.empty()) continue;
-    why += fmt::format(" {} is not fitted. {}", output.label, output.not_fitted_because);
+    why += fmt::format(" {} is not fitted. {}", display::meter_label(output.meter_id),
+                       output.not_fitted_because);
   }
   return why;
 }

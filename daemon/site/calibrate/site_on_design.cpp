@@ -7,6 +7,7 @@
 
 #include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/site/calibrate/design_outliers.hpp"
 #include "daemon/site/calibrate/design_site.hpp"
 #include "daemon/site/calibrate/site_design.hpp"
@@ -93,9 +94,8 @@ Result<FinishedDesign> calibrate_on_metamodel(const ModelledSite& modelled,
   auto calibrated = calibrate_design(*design, *measured, options, context);
   if (!calibrated) return tl::unexpected(calibrated.error());
   done.calibration = std::move(*calibrated);
-  std::vector<std::string>& warnings = done.calibration.warnings;
-  warnings.insert(warnings.end(), design_site->notes.begin(), design_site->notes.end());
-  warnings.insert(warnings.end(), measured->notes.begin(), measured->notes.end());
+  display::add_notes(design_site->notes, done.calibration.warnings);
+  display::add_notes(measured->notes, done.calibration.warnings);
   const auto design_facts = facts_of_files(design->files, name_of(ModelKind::metamodel));
   if (!design_facts) return tl::unexpected(design_facts.error());
   system::Sha256 both;

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "core/display/warning.hpp"
 #include "daemon/site/model/active_effects.hpp"
 
 namespace recald::daemon {
@@ -33,14 +34,13 @@ std::vector<diagnosis::ModelGap> ask_monthly_model(const ModelledSite& modelled,
   auto monthly = epc_gap(modelled.site.config, modelled.site.calendar, modelled.recording,
                          modelled.weather, problem, diagnosis.added);
   if (!monthly) {
-    diagnosis.warnings.push_back("The monthly model was not used: " + monthly.error().message +
-                                 ".");
+    diagnosis.warnings.push_back(
+        display::warning_of("The monthly model was not used: " + monthly.error().message + "."));
     return {};
   }
   if (!monthly->has_vote()) {
-    diagnosis.warnings.emplace_back(
-        "The monthly model could not check the result: no meter has a usable monthly figure in the "
-        "held-out months.");
+    diagnosis.warnings.push_back({"The monthly model could not check the result.",
+                                  "No meter has a usable monthly figure in the held-out months."});
   } else if (!diagnosis.not_confirmed && !monthly->agrees()) {
     diagnosis.not_confirmed = true;
     diagnosis.outcome = diagnosis::Outcome::unknown;
@@ -68,8 +68,8 @@ Result<SiteDiagnosis> diagnose_site(const ModelledSite& modelled,
                                     const diagnosis::Observer& observer) {
   auto diagnosis = diagnosis::diagnose(problem, options, observer);
   if (!diagnosis) return tl::unexpected(diagnosis.error());
-  const auto words = data_words(modelled.site.config, modelled.recording, modelled.weather);
-  diagnosis->warnings.insert(diagnosis->warnings.begin(), words.begin(), words.end());
+  const auto data = data_warnings(modelled.site.config, modelled.recording, modelled.weather);
+  diagnosis->warnings.insert(diagnosis->warnings.begin(), data.begin(), data.end());
   auto others = ask_monthly_model(modelled, problem, *diagnosis);
   return SiteDiagnosis{std::move(*diagnosis), std::move(others)};
 }

@@ -8,8 +8,11 @@
 #include <utility>
 
 #include "core/calibration/problem.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/warning.hpp"
 #include "core/metering/lost_readings.hpp"
 #include "daemon/site/drift/watched_days.hpp"
+#include "daemon/site/model/meter_rates.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -34,7 +37,9 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
     for (const metering::LevelChange& change : record.level_changes) {
       if (change.kind != metering::LevelChangeKind::scale) continue;
       const std::string since = metering::to_string(change.since);
-      changes.push_back({MeterChange::Kind::unit, id, since, since, change.factor, change.words});
+      changes.push_back({MeterChange::Kind::unit, id, since, since, change.factor,
+                         // The words begin with the meter's id.
+                         display::meter_label(id) + change.words.substr(id.size())});
     }
     const auto begin = std::ranges::find(record.figures, first, [](const auto& figure) {
       return metering::to_string(figure.month);
@@ -44,7 +49,7 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
     if (!lost) continue;
     changes.push_back({MeterChange::Kind::readings, id, metering::to_string(lost->since),
                        metering::to_string(lost->seen), lost->share_since / lost->share_before,
-                       lost_words(id, *lost)});
+                       lost_words(display::meter_label(id), *lost)});
   }
   return changes;
 }
@@ -57,13 +62,14 @@ std::vector<drift::DailyWatches::Output> days_of_meters(const ModelledSite& mode
   std::vector<int> outputs;
   for (std::size_t k = 0; k < site.outputs.size(); ++k) {
     const assessment::OutputCalibration& output = site.outputs[k];
-    if (output.name != output.label + "_daily_kWh") continue;
-    meters.push_back({output.label, output.measured});
+    if (output.name != output.meter_id + "_daily_kWh") continue;
+    meters.push_back({output.meter_id, output.measured});
     outputs.push_back(static_cast<int>(k));
   }
   auto days = watched_days(modelled, meters, site.month_names, learning_months);
   if (!days) {
-    site.warnings.push_back("The daily watch is off: " + days.error().message + ".");
+    site.warnings.push_back(
+        display::warning_of("The daily watch is off: " + days.error().message + "."));
     return {};
   }
   std::vector<drift::DailyWatches::Output> watched;
@@ -131,12 +137,19 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
           meter_changes_of(modelled.recording, so_far.month_names.front(), learning_months),
       .directions = {{.name = "electricity use", .change = prepared->electricity_use}},
       .days = days_of_meters(modelled, learning_months, so_far)};
-  return drift::follow({so_far,
-                        *prepared->whole_model,
-                        learning_months,
-                        {prepared->inputs.names, prepared->inputs.values},
-                        prepared->common_errors},
-                       prepared->problem, *design, std::move(beside), options, context);
+  auto drift = drift::follow({so_far,
+                              *prepared->whole_model,
+                              learning_months,
+                              {prepared->inputs.names, prepared->inputs.values},
+                              prepared->common_errors},
+                             prepared->problem, *design, std::move(beside), options, context);
+  if (!drift) return drift;
+  drift->currency = modelled.site.config.tariff.currency;
+  for (drift::FollowedOutput& output : drift->outputs) {
+    const auto meter = modelled.site.config.meter_index(output.meter);
+    output.rates = rates_of(modelled.site.config, modelled.recording.meters[*meter]);
+  }
+  return drift;
 }
 
 }  // namespace recald::daemon

@@ -10,7 +10,10 @@
 #include "core/absent.hpp"
 #include "core/assessment/assessed_calibration.hpp"
 #include "core/diagnosis/day_part_parameters.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/warning.hpp"
 #include "core/model/hourly/prepare.hpp"
+#include "daemon/site/model/meter_rates.hpp"
 #include "daemon/site/model/site_parts.hpp"
 
 namespace recald::daemon {
@@ -29,8 +32,8 @@ constexpr std::size_t kSun = 4;
 
 /// Months of the period with weather, ascending.
 std::vector<Month> months_with_weather(const SiteConfig& site, const SiteWeather& weather,
-                                       std::vector<std::string>& words) {
-  return choose_months(*site.period, weather, words).in_order();
+                                       display::Warnings& warnings) {
+  return choose_months(*site.period, weather, warnings).in_order();
 }
 
 bool is_read(const MeterRecord& record, Month month) {
@@ -75,16 +78,12 @@ Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers
 diagnosis::MeterData priced(const SiteConfig& site, std::size_t meter, const MeterRecord& record,
                             const model::MeterMap& end_uses) {
   const metering::Meter& described = site.meters[meter].meter;
-  std::vector<profile::HourlyLoad> hours;
-  for (const auto& [month, loads] : record.hours) {
-    hours.insert(hours.end(), loads.begin(), loads.end());
-  }
+  const tariff::Rates rates = rates_of(site, record);
   return {.id = described.id,
           .utility = described.utility,
           .end_uses = end_uses,
-          .price_per_kWh =
-              tariff::mean_price_per_kWh(site.tariff, described.utility, hours, site.holidays),
-          .emissions_kg_per_kWh = site.tariff.emissions_of(described.utility)};
+          .price_per_kWh = rates.per_kWh,
+          .emissions_kg_per_kWh = rates.emissions_kg_per_kWh};
 }
 
 /// Those of the site file, and what else day parts can inform. A prior that the file gives stands.
@@ -117,16 +116,16 @@ std::string span_words(const std::vector<Month>& months) {
 
 Result<void> require_months(const SiteConfig& site, const Recording& recording,
                             const SiteWeather& weather) {
-  std::vector<std::string> words;
-  const std::vector<Month> months = months_with_weather(site, weather, words);
+  display::Warnings warnings;
+  const std::vector<Month> months = months_with_weather(site, weather, warnings);
   const std::vector<Month> read = months_read(site, recording, months);
   if (read.size() >= kLeastMonths) return {};
   std::string missing = "widen [period]";
-  const auto first = std::ranges::find_if(words, [](const std::string& sentence) {
-    return sentence.find(" is left out: ") != std::string::npos;
+  const auto first = std::ranges::find_if(warnings, [](const display::Warning& warning) {
+    return warning.sentence.find(" left out") != std::string::npos;
   });
-  if (months.size() < kLeastMonths && first != words.end()) {
-    missing = "give more weather: " + first->substr(0, first->size() - 1);
+  if (months.size() < kLeastMonths && first != warnings.end()) {
+    missing = "give more weather: " + first->sentence.substr(0, first->sentence.size() - 1);
   } else if (read.size() < months.size()) {
     missing = fmt::format("give more readings: those of {} cover {} with half of their hours",
                           site.id, read.empty() ? "no month" : span_words(read));
@@ -137,30 +136,32 @@ Result<void> require_months(const SiteConfig& site, const Recording& recording,
                              kLeastMonths, site.id, read.size(), missing));
 }
 
-std::vector<std::string> data_words(const SiteConfig& site, const Recording& recording,
-                                    const SiteWeather& weather) {
-  std::vector<std::string> words = recording.notes;
-  words.insert(words.end(), weather.notes.begin(), weather.notes.end());
-  const std::vector<Month> months = months_with_weather(site, weather, words);
+display::Warnings data_warnings(const SiteConfig& site, const Recording& recording,
+                                const SiteWeather& weather) {
+  display::Warnings warnings;
+  display::add_notes(recording.notes, warnings);
+  display::add_notes(weather.notes, warnings);
+  const std::vector<Month> months = months_with_weather(site, weather, warnings);
   for (const auto& [variable, name] :
        {std::pair{kHumidity, "humidity"}, std::pair{kWind, "wind"}, std::pair{kSun, "sun"}}) {
     if (!is_assumed(weather, variable)) continue;
-    words.push_back(fmt::format(
-        "The weather has no {}: it was assumed, and effects that need it are not identifiable "
-        "here.",
-        name));
+    warnings.push_back({fmt::format(
+        "The weather has no {}: it was assumed, and effects that need it cannot be named here.",
+        name)});
   }
   for (const std::string& id : site.model->outputs) {
     const MeterRecord& record = recording.meters[*site.meter_index(id)];
     const auto read = static_cast<std::size_t>(
         std::ranges::count_if(months, [&](Month month) { return is_read(record, month); }));
     if (read >= kLeastMonths) continue;
-    words.push_back(fmt::format(
-        "Meter '{}' was read in {} of {} months only, and a diagnosis needs {}: what is missing "
-        "there may go unseen; give more readings.",
-        id, read, months.size(), kLeastMonths));
+    warnings.push_back(
+        {.sentence = fmt::format("{}: only {} of {} months were read, and a diagnosis needs {}.",
+                                 display::meter_label(id), read, months.size(), kLeastMonths),
+         .details = "What is missing from the model there may go unseen; give more readings.",
+         .share = static_cast<double>(months.size() - read) /
+                  static_cast<double>(std::max<std::size_t>(months.size(), 1))});
   }
-  return words;
+  return warnings;
 }
 
 Result<SiteProblem> make_site_problem(const SiteConfig& site,
@@ -169,7 +170,7 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                       std::optional<Month> last_taught) {
   SiteProblem problem;
   problem.nominal = *site.building;
-  std::vector<std::string> said_elsewhere;
+  display::Warnings said_elsewhere;
   const std::vector<Month> months = months_with_weather(site, weather, said_elsewhere);
   if (months.size() < kLeastMonths) {
     return failure(ErrorCode::not_enough_data,
@@ -217,6 +218,7 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
         hours_of(recording.meters[meter], *problem.drivers);
   }
   problem.currency = site.tariff.currency;
+  problem.units = site.units;
   auto chosen = choose_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
   problem.definitions = std::move(chosen->definitions);

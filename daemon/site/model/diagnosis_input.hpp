@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/diagnosis/site_problem.hpp"
+#include "core/display/warning.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "daemon/site/replay/recording.hpp"
@@ -20,9 +21,8 @@ namespace recald::daemon {
                                           const SiteWeather& weather);
 
 /// What of its data a diagnosis leaves out, assumes or has little of, in words.
-[[nodiscard]] std::vector<std::string> data_words(const SiteConfig& site,
-                                                  const Recording& recording,
-                                                  const SiteWeather& weather);
+[[nodiscard]] display::Warnings data_warnings(const SiteConfig& site, const Recording& recording,
+                                              const SiteWeather& weather);
 
 /// The site over all months of its calibration and validation that have weather. Humidity or wind
 /// that the whole record lacks is assumed; months without readings are neither held nor shown.

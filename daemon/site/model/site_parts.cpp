@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "core/display/id_words.hpp"
+#include "core/display/warning.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -10,10 +14,42 @@ namespace {
 using assessment::MonthRole;
 using metering::Month;
 
+/// A month whose weather is not known as a whole.
+struct PoorMonth {
+  Month month;
+  double coverage;
+};
+
 /// " Sensor 'roof' was silent from …"; empty where there is nothing to say.
 std::string silence_in(const SiteWeather& weather, Month month) {
   const auto silence = weather.silence.find(month);
   return silence == weather.silence.end() ? "" : " " + silence->second;
+}
+
+/// One warning of all such months. @param of  Months of all periods.
+display::Warning poor_weather(const SiteWeather& weather, const std::vector<PoorMonth>& poor,
+                              std::size_t of, const char* one, const char* many,
+                              std::string details) {
+  const auto words = [&](const PoorMonth& one_month) {
+    return std::pair{
+        display::month_words(metering::to_string(one_month.month)),
+        fmt::format("{:.0f} % of its {}", 100.0 * one_month.coverage,
+                    display::input_words(least_known_variable(weather, one_month.month)))};
+  };
+  const auto worst = std::ranges::min_element(poor, {}, &PoorMonth::coverage);
+  const auto [month, known] = words(*worst);
+  for (const PoorMonth& one_month : poor) {
+    const auto [name, share] = words(one_month);
+    if (poor.size() > 1) details += fmt::format(" {}: {}.", name, share);
+    details += silence_in(weather, one_month.month);
+  }
+  if (details.starts_with(' ')) details.erase(0, 1);
+  return {.sentence = poor.size() == 1
+                          ? fmt::format("{} {}: only {} was measured.", month, one, known)
+                          : fmt::format("{} of {} months {}, the worst {}: only {} was measured.",
+                                        poor.size(), of, many, month, known),
+          .details = std::move(details),
+          .share = static_cast<double>(poor.size()) / static_cast<double>(of)};
 }
 
 }  // namespace
@@ -27,26 +63,21 @@ std::vector<Month> SiteMonths::in_order() const {
 }
 
 SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
-                         std::vector<std::string>& warnings) {
+                         display::Warnings& warnings) {
   SiteMonths months;
+  std::vector<PoorMonth> left_out;
+  std::vector<PoorMonth> patchy;
+  std::size_t count = 0;
   const auto take = [&](const metering::MonthRange& range, MonthRole role) {
     for (Month month = range.first; month <= range.last; month = metering::next_month(month)) {
+      ++count;
       const double coverage = weather_coverage(weather, month);
       const weather::WeatherGrade grade = weather::grade_of(coverage);
       if (grade == weather::WeatherGrade::unknown) {
-        warnings.push_back(
-            fmt::format("{} is left out: only {:.0f} % of its weather ({}) is known.{}",
-                        metering::to_string(month), 100.0 * coverage,
-                        least_known_variable(weather, month), silence_in(weather, month)));
+        left_out.push_back({month, coverage});
         continue;
       }
-      if (grade == weather::WeatherGrade::patchy) {
-        warnings.push_back(fmt::format(
-            "{}: only {:.0f} % of the weather ({}) was measured; the rest is typical of the "
-            "month.{}",
-            metering::to_string(month), 100.0 * coverage, least_known_variable(weather, month),
-            silence_in(weather, month)));
-      }
+      if (grade == weather::WeatherGrade::patchy) patchy.push_back({month, coverage});
       months.all.push_back(month);
       months.roles.push_back(role);
       if (role == MonthRole::calibration) months.calibration.push_back(month);
@@ -54,6 +85,14 @@ SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
   };
   take(period.calibration, MonthRole::calibration);
   if (period.validation) take(*period.validation, MonthRole::validation);
+  if (!left_out.empty()) {
+    warnings.push_back(poor_weather(weather, left_out, count, "is left out", "are left out", ""));
+  }
+  if (!patchy.empty()) {
+    warnings.push_back(poor_weather(weather, patchy, count, "has gaps in its weather",
+                                    "have gaps in their weather",
+                                    "The rest is typical of the month."));
+  }
   return months;
 }
 

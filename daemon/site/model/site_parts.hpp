@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/assessment/output_assessment.hpp"
+#include "core/display/warning.hpp"
 #include "core/model/end_use.hpp"
 #include "core/model/parameter_library.hpp"
 #include "core/profile/electricity_profile.hpp"
@@ -28,7 +29,7 @@ struct SiteMonths {
 
 /// A month whose weather is mostly invented is left out; that, and weather with holes, in words.
 [[nodiscard]] SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
-                                       std::vector<std::string>& warnings);
+                                       display::Warnings& warnings);
 
 /// The meter that tells lights and plugs: the first one of electricity that is modelled and counts
 /// them, or else the first one that counts them, or else the first one. An index of the site's

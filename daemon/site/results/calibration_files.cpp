@@ -9,6 +9,7 @@
 
 #include "adapters/results/job_result_json.hpp"
 #include "core/absent.hpp"
+#include "core/display/warning.hpp"
 #include "core/regression/fit_quality.hpp"
 #include "daemon/site/results/provenance_json.hpp"
 
@@ -89,8 +90,10 @@ Json fixed_parameters_json(const assessment::AssessedCalibration& result) {
 
 /// What matters most comes first.
 Json warnings_json(const assessment::AssessedCalibration& result) {
-  Json list = result.alarms;
-  for (const std::string& warning : result.warnings) list.push_back(warning);
+  Json list = display::texts_of(result.alarms);
+  for (std::string& warning : display::texts_of(result.warnings)) {
+    list.push_back(std::move(warning));
+  }
   return list;
 }
 
@@ -267,7 +270,7 @@ Json outputs_json(const assessment::AssessedCalibration& result) {
     }
     list.push_back(
         {{"name", output.name},
-         {"meter", output.label},
+         {"meter", output.meter_id},
          {"unit", output.unit},
          {"weight", output.weight},
          {"calibrated", output.calibrated},

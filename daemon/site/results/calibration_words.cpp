@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <functional>
 
 #include "adapters/report/format.hpp"
 #include "core/absent.hpp"
 #include "core/assessment/fit_metrics.hpp"
+#include "core/display/id_words.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -22,18 +22,6 @@ constexpr double kNoticeableBias = 0.01;
 /// A bias that keeps so much of its size was not mended.
 constexpr double kMended = 0.5;
 
-/// "chilled water": inside a sentence. An abbreviation stays as it is.
-std::string inside(const std::string& label) {
-  std::string text = label;
-  const auto is_upper = [&](std::size_t i) {
-    return std::isupper(static_cast<unsigned char>(text[i])) != 0;
-  };
-  if (text.size() > 1 && is_upper(0) && !is_upper(1)) {
-    text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
-  }
-  return text;
-}
-
 std::string whole_percent(double share) {
   return fmt::format("{:.0f}\u00a0%", 100.0 * std::abs(share));
 }
@@ -41,7 +29,7 @@ std::string whole_percent(double share) {
 /// "22 % too little chilled water"
 std::string too_much_words(const FittedMeter& meter) {
   return fmt::format("{} too {} {}", whole_percent(meter.after),
-                     meter.after < 0.0 ? "little" : "much", inside(meter.label));
+                     meter.after < 0.0 ? "little" : "much", display::uncapitalised(meter.label));
 }
 
 bool has_become_worse(const FittedMeter& meter) {
@@ -81,7 +69,7 @@ void say_off(const FittedMeter& meter, report::FirstScreen& first) {
 void say_scatter(const FittedMeter& meter, report::FirstScreen& first) {
   first.sentence =
       fmt::format("The model uses the right amount of {} over the year, but its months are {} off.",
-                  inside(meter.label), whole_percent(meter.scatter));
+                  display::uncapitalised(meter.label), whole_percent(meter.scatter));
   first.more = "Something that changes with the season may be missing in it.";
 }
 

@@ -9,6 +9,7 @@
 
 #include "adapters/results/job_result_json.hpp"
 #include "core/diagnosis/effect_posterior.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
 
 namespace recald::daemon {
@@ -264,7 +265,7 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"held_fit", gaps_json(site, d.passes.front().gaps)},
                {"gap", gap_json(site, d, others)},
                {"not_identifiable_here", not_identifiable_json(site, d)},
-               {"warnings", d.warnings},
+               {"warnings", display::texts_of(d.warnings)},
                {"model_runs", d.model_runs},
                {"seed", facts.seed},
                {"recald_version", facts.recald_version},

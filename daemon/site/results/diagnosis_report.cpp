@@ -8,6 +8,9 @@
 #include "adapters/report/format.hpp"
 #include "core/absent.hpp"
 #include "core/diagnosis/effect_posterior.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
 
 namespace recald::daemon {
@@ -38,8 +41,8 @@ std::vector<report::EffectParameterRow> rows_of(const SiteProblem& site,
   for (const ParameterPosterior& p : posterior) {
     const auto text = [&](double value) {
       if (p.is_day()) return day_words(day_after(site, value));
-      const bool has_unit = !p.unit.empty() && p.unit != "-";
-      return report::number_text(value) + (has_unit ? " " + p.unit : "");
+      const display::Unit unit = display::unit_of(site.units, p.unit);
+      return report::number_text(unit.shown(value)) + (unit.name.empty() ? "" : " " + unit.name);
     };
     std::string name = p.name;
     std::ranges::replace(name, '_', ' ');
@@ -58,7 +61,10 @@ report::AddedEffectCard card_of(const SiteProblem& site, const Addition& additio
                                .impacts = {},
                                .parameters = rows_of(site, posterior_of(addition))};
   for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
-    card.impacts.push_back({meter_label(site.meters[g].id), addition.monthly_kWh[g]});
+    card.impacts.push_back(
+        {display::meter_label(site.meters[g].id),
+         report::signed_amount_text(addition.monthly_kWh[g],
+                                    display::unit_of(site.units, "kWh", site.meters[g].utility))});
   }
   return card;
 }
@@ -126,8 +132,10 @@ std::vector<report::MeterMaps> maps_of(const SiteProblem& site, const Diagnosis&
   std::vector<report::MeterMaps> maps;
   for (std::size_t g = 0; g < site.meters.size(); ++g) {
     const auto column = static_cast<Eigen::Index>(g);
-    maps.push_back({.meter = meter_label(site.meters[g].id),
-                    .mean_kW = measured_mean_kW(site, column),
+    maps.push_back({.meter = display::meter_label(site.meters[g].id),
+                    .mean_load = report::amount_text(
+                        measured_mean_kW(site, column),
+                        display::unit_of(site.units, "kW", site.meters[g].utility)),
                     .before = residual_map(site.day_parts, before.col(column), months, limits_C),
                     .after = {}});
     if (!d.added.empty()) {
@@ -155,7 +163,7 @@ std::vector<report::EffectSignature> signatures_of(const SiteProblem& site, cons
       };
       signatures.push_back(
           {.effect = effect_label(site, addition.candidate.effect->id, addition.candidate.meter),
-           .meter = meter_label(site.meters[g].id),
+           .meter = display::meter_label(site.meters[g].id),
            .residual = signature(residual),
            .change = signature(change),
            .effect_alone = signature(alone)});
@@ -179,16 +187,21 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
                              .not_confirmed = d.not_confirmed,
                              .headline = std::move(words.headline),
                              .explanations = std::move(words.sentences)};
-  for (const std::string& warning : d.warnings) {
-    data.notices.push_back({report::Severity::warning, warning});
+  for (const display::Warning& warning : d.warnings) {
+    data.notices.push_back(notice_of(report::Severity::warning, warning));
   }
   for (const Addition& addition : d.added) data.added.push_back(card_of(site, addition));
-  for (const diagnosis::MeterData& meter : site.meters)
-    data.meters.push_back(meter_label(meter.id));
+  for (const diagnosis::MeterData& meter : site.meters) {
+    data.meters.push_back(display::meter_label(meter.id));
+    data.units.push_back(display::meter_units(site.units, meter.utility));
+  }
   data.months = site.drivers->months;
   data.uses = site.month_roles;
-  data.temperature_limits_C = diagnosis::temperature_limits_C(site.day_parts);
-  data.maps = maps_of(site, d, data.temperature_limits_C);
+  const std::vector<double> limits_C = diagnosis::temperature_limits_C(site.day_parts);
+  const display::Unit outdoor = display::unit_of(site.units, "degC");
+  data.temperature_unit = outdoor.name;
+  for (const double limit_C : limits_C) data.temperature_limits.push_back(outdoor.shown(limit_C));
+  data.maps = maps_of(site, d, limits_C);
   data.located = d.passes.front().located;
   if (!d.added.empty() && d.passes.size() > 1) {
     data.located_after = d.passes.back().located;
@@ -199,9 +212,12 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
   data.separations = separations_of(d, site);
   data.steps = steps_of(site, d);
   data.other_gaps = others;
-  for (ModelGap& gap : data.other_gaps)
-    std::ranges::transform(gap.outputs, gap.outputs.begin(), meter_label);
-  data.signatures = signatures_of(site, d, data.temperature_limits_C);
+  for (ModelGap& gap : data.other_gaps) {
+    for (std::string& output : gap.outputs) {
+      output = display::capitalised(display::output_words(output));
+    }
+  }
+  data.signatures = signatures_of(site, d, limits_C);
   data.base_fit = d.base_fit;
   for (const NotSeen& n : not_seen_here(d)) {
     data.not_identifiable.push_back({effect_label(site, n.effect, n.meter), n.why});

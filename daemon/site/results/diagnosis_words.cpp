@@ -14,6 +14,11 @@
 #include "adapters/report/format.hpp"
 #include "core/absent.hpp"
 #include "core/diagnosis/effect_posterior.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/prose.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
+#include "daemon/site/results/cost_words.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -61,7 +66,7 @@ std::string sentence_of(std::string words) {
   return words + ".";
 }
 
-/// "about 4,200 kWh a month more at Steam and 120 kWh less at Chilled water"
+/// "about 4,200 kWh a month more at Steam and 120 kWh a month less at Chilled water"
 std::string impact_words(const SiteProblem& site, const Addition& addition) {
   double most = 0.0;
   for (const double kWh : addition.monthly_kWh) most = std::max(most, std::abs(kWh));
@@ -69,14 +74,18 @@ std::string impact_words(const SiteProblem& site, const Addition& addition) {
   for (std::size_t g = 0; g < addition.monthly_kWh.size(); ++g) {
     const double kWh = addition.monthly_kWh[g];
     if (!(std::abs(kWh) > std::max(kImpactWorthAWord * most, kLeastImpact_kWh))) continue;
-    items.push_back(fmt::format("{} kWh a month {} at {}", report::count_text(std::abs(kWh)),
-                                kWh > 0.0 ? "more" : "less", meter_label(site.meters[g].id)));
+    const display::Unit unit = display::unit_of(site.units, "kWh", site.meters[g].utility);
+    const double shown = unit.shown(std::abs(kWh));
+    items.push_back(fmt::format(
+        "{} {} a month {} at {}",
+        shown < 10.0 ? report::number_text(shown) : report::count_text(shown), unit.name,
+        kWh > 0.0 ? "more" : "less", display::meter_label(site.meters[g].id)));
   }
   return items.empty() ? "no change in any meter's months" : "about " + listed(items, "and");
 }
 
 /// "It costs about 1,240 USD and 2.1 t of CO2 a year."; empty where no price is known.
-std::string cost_words(const SiteProblem& site, std::span<const double> monthly_kWh) {
+std::string addition_cost(const SiteProblem& site, std::span<const double> monthly_kWh) {
   std::optional<double> money;
   std::optional<double> emissions_kg;
   for (std::size_t g = 0; g < monthly_kWh.size(); ++g) {
@@ -86,24 +95,7 @@ std::string cost_words(const SiteProblem& site, std::span<const double> monthly_
       emissions_kg = emissions_kg.value_or(0.0) + *meter.emissions_kg_per_kWh * monthly_kWh[g];
     }
   }
-  std::vector<std::string> costs;
-  std::vector<std::string> savings;
-  const auto add = [&](double a_year, const std::string& words) {
-    (a_year > 0.0 ? costs : savings).push_back(words);
-  };
-  if (money && std::abs(*money) >= 1.0) {
-    add(12.0 * *money,
-        fmt::format("{} {}", report::count_text(std::abs(12.0 * *money)), site.currency));
-  }
-  if (emissions_kg && std::abs(*emissions_kg) >= 1.0) {
-    add(12.0 * *emissions_kg, fmt::format("{:.1f} t of CO2", std::abs(12e-3 * *emissions_kg)));
-  }
-  std::string text;
-  if (!costs.empty()) text = "It costs about " + listed(costs, "and") + " a year.";
-  if (!savings.empty()) {
-    text += (text.empty() ? "" : " ") + ("It saves about " + listed(savings, "and") + " a year.");
-  }
-  return text;
+  return cost_words(money, emissions_kg, site.currency);
 }
 
 std::string addition_words(const SiteProblem& site, const Addition& addition) {
@@ -111,7 +103,7 @@ std::string addition_words(const SiteProblem& site, const Addition& addition) {
                                  addition.candidate.effect->meaning,
                                  report::probability_text(addition.probability),
                                  when_words(site, addition), impact_words(site, addition));
-  const std::string cost = cost_words(site, addition.monthly_kWh);
+  const std::string cost = addition_cost(site, addition.monthly_kWh);
   return cost.empty() ? text : text + " " + cost;
 }
 
@@ -124,19 +116,12 @@ std::string confirmation_words(const Diagnosis& d, const SiteProblem& site) {
   std::vector<std::string> items;
   for (std::size_t g = 0; g < d.gap->before.size(); ++g) {
     items.push_back(
-        fmt::format("{} {:.1f} % before, {:.1f} % after", meter_label(site.meters[g].id),
+        fmt::format("{} {:.1f} % before, {:.1f} % after", display::meter_label(site.meters[g].id),
                     100.0 * d.gap->before[g].cvrmse_daily, 100.0 * d.gap->after[g].cvrmse_daily));
   }
   const auto kept = std::ranges::count(site.month_roles, diagnosis::Role::show);
   return fmt::format("Scatter of days (CV(RMSE)) in the {} held-out months: {}.", kept,
                      listed(items, "and"));
-}
-
-/// "electricity_daily_kWh" -> "Electricity"
-std::string output_label(std::string_view output) {
-  constexpr std::string_view kSuffix = "_daily_kWh";
-  if (output.ends_with(kSuffix)) output.remove_suffix(kSuffix.size());
-  return meter_label(std::string{output});
 }
 
 /// Empty where the model has nothing to judge by.
@@ -147,8 +132,8 @@ std::string other_model_words(const ModelGap& gap) {
     if (!std::isfinite(gap.before[i].cvrmse) || !std::isfinite(change.low)) continue;
     items.push_back(fmt::format(
         "{} {:.1f} % before, {:.1f} % after (90 % interval of the change: {:+.1f} to {:+.1f})",
-        output_label(gap.outputs[i]), 100.0 * gap.before[i].cvrmse, 100.0 * gap.after[i].cvrmse,
-        100.0 * change.low, 100.0 * change.high));
+        display::capitalised(display::output_words(gap.outputs[i])), 100.0 * gap.before[i].cvrmse,
+        100.0 * gap.after[i].cvrmse, 100.0 * change.low, 100.0 * change.high));
   }
   if (items.empty()) return {};
   return fmt::format("Scatter of months in the {} model: {}.",
@@ -264,8 +249,10 @@ std::string located_words(const Diagnosis& d, const SiteProblem& site) {
         std::abs(f.share) > kSharePeopleRead
             ? "the simulation has almost nothing there"
             : fmt::format("{:+.0f} % +- {:.0f}", 100.0 * f.share, 100.0 * f.share_se);
-    text += fmt::format("  {}, {}: {}, {:+.0f} kWh a month\n", meter_label(site.meters[f.meter].id),
-                        f.words, share, f.kWh_month);
+    text += fmt::format(
+        "  {}, {}: {}, {} a month\n", display::meter_label(site.meters[f.meter].id), f.words, share,
+        report::signed_amount_text(
+            f.kWh_month, display::unit_of(site.units, "kWh", site.meters[f.meter].utility)));
   }
   return text;
 }
@@ -283,13 +270,6 @@ std::string probability_words(const Diagnosis& d, const SiteProblem& site) {
 
 }  // namespace
 
-std::string meter_label(const std::string& id) {
-  std::string label = id;
-  std::ranges::replace(label, '_', ' ');
-  if (!label.empty() && label.front() >= 'a' && label.front() <= 'z') label.front() -= 'a' - 'A';
-  return label;
-}
-
 std::string effect_label(const SiteProblem& site, std::string_view effect, int meter) {
   if (effect == "none") return "No effect";
   if (effect == "unknown") return "Something else";
@@ -297,7 +277,7 @@ std::string effect_label(const SiteProblem& site, std::string_view effect, int m
   const std::string title{entry == nullptr ? effect : entry->title};
   if (meter < 0) return title;
   return fmt::format("{} ({})", title,
-                     meter_label(site.meters[static_cast<std::size_t>(meter)].id));
+                     display::meter_label(site.meters[static_cast<std::size_t>(meter)].id));
 }
 
 std::string day_words(metering::Day day) {
@@ -332,7 +312,8 @@ std::vector<report::Separation> separations_of(const Diagnosis& d, const SitePro
       list.push_back({.effect = effect_label(site, id, meter),
                       .rival = effect_label(site, rival.effect, -1),
                       .rival_probability = probability_of(naming, rival.effect),
-                      .measurement = std::string{rival.separated_by}});
+                      .measurement = display::with_temperatures_in(
+                          site.units, std::string{rival.separated_by})});
     }
   }
   return list;
@@ -387,10 +368,10 @@ std::string most_likely_words(const Diagnosis& d, const SiteProblem& site) {
   if (d.not_confirmed || d.added.empty()) return headline_of(d, site);
   const diagnosis::Candidate& candidate = d.added.front().candidate;
   std::string meaning{candidate.effect->meaning};
-  if (!meaning.empty()) meaning[0] = static_cast<char>(std::tolower(meaning[0]));
+  meaning = display::uncapitalised(std::move(meaning));
   if (candidate.meter < 0) return "Most likely: " + meaning;
   const std::string& meter = site.meters[static_cast<std::size_t>(candidate.meter)].id;
-  return fmt::format("Most likely ({}): {}", meter_label(meter), meaning);
+  return fmt::format("Most likely ({}): {}", display::meter_label(meter), meaning);
 }
 
 std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site,
@@ -403,8 +384,7 @@ std::string diagnosis_words(const Diagnosis& d, const SiteProblem& site,
                         addition_words(site, addition));
   }
   for (const std::string& sentence : words.sentences) text += sentence + "\n";
-  for (const std::string& warning : d.warnings) text += "! " + warning + "\n";
-  return text;
+  return text + display::warning_lines(d.warnings);
 }
 
 }  // namespace recald::daemon

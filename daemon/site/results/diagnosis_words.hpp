@@ -31,9 +31,6 @@ struct OutcomeWords {
                                           const diagnosis::SiteProblem& site,
                                           const std::vector<diagnosis::ModelGap>& others = {});
 
-/// "Chilled water" of "chilled_water".
-[[nodiscard]] std::string meter_label(const std::string& id);
-
 /// "Meter's scale is wrong (Steam)": an effect's title, with the meter of an effect of one meter.
 /// `none` and `unknown` are "No effect" and "Something else".
 /// @param meter  -1: none.

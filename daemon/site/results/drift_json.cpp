@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/results/job_result_json.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/site/results/drift_summary.hpp"
 #include "daemon/site/results/provenance_json.hpp"
 
@@ -125,7 +126,7 @@ std::string drift_json(const SiteDrift& drift, const RunFacts& facts) {
                {"outputs", outputs_json(drift)},
                {"windows", windows_json(drift)},
                {"last_year", shifts_json(drift)},
-               {"warnings", drift.warnings},
+               {"warnings", display::texts_of(drift.warnings)},
                {"seed", facts.seed}};
   add_provenance(facts, json);
   return json.dump(2) + "\n";

@@ -9,6 +9,9 @@
 
 #include "adapters/report/format.hpp"
 #include "adapters/system/write_file.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
 #include "daemon/site/results/drift_words.hpp"
 
@@ -27,8 +30,7 @@ const FollowedOutput& output_of(const SiteDrift& drift, const drift::Alarm& alar
 }
 
 std::string label_of(const FollowedOutput& output) {
-  const bool is_peak = output.name.ends_with("_peak_kW");
-  return fmt::format("{}, {}", meter_label(output.meter), is_peak ? "peak" : "daily average");
+  return display::capitalised(display::output_words(output.name));
 }
 
 std::string consequence_of(const SiteDrift& drift, const ExplainedAlarm& alarm) {
@@ -52,6 +54,7 @@ report::AlarmCard card_of(const SiteDrift& drift, const ExplainedAlarm& explaine
                            alarm.direction > 0 ? "more" : "less",
                            report::month_text(month_of(drift, alarm.since))),
       .sentence = alarm_sentence(drift, alarm),
+      .cost = alarm_cost_words(drift, alarm),
       .causes = {},
       .consequence = consequence_of(drift, explained),
       .advice = explained.causes.empty() ? "The record before the change is too short to say why."
@@ -65,8 +68,9 @@ report::AlarmCard card_of(const SiteDrift& drift, const ExplainedAlarm& explaine
 
 report::ForecastSeries series_of(const SiteDrift& drift, std::size_t k) {
   const FollowedOutput& output = drift.outputs[k];
+  const display::Unit unit = display::unit_of(drift.units, output.unit, output.utility);
   report::ForecastSeries series{.label = label_of(output),
-                                .unit = output.unit,
+                                .unit = unit.name,
                                 .trust = trust_words(drift, k),
                                 .months = {},
                                 .alarms = {}};
@@ -77,15 +81,15 @@ report::ForecastSeries series_of(const SiteDrift& drift, std::size_t k) {
          .q05 = {},
          .q50 = {},
          .q95 = {},
-         .measured = std::isnan(measured) ? std::nullopt : std::optional{measured}});
+         .measured = std::isnan(measured) ? std::nullopt : std::optional{unit.shown(measured)}});
   }
   for (const drift::PrequentialMonth& month : drift.record) {
     const auto& record = month.outputs[k];
     if (!record) continue;
     report::ForecastMonth& shown = series.months[static_cast<std::size_t>(month.month)];
-    shown.q05 = record->q05;
-    shown.q50 = record->q50;
-    shown.q95 = record->q95;
+    shown.q05 = unit.shown(record->q05);
+    shown.q50 = unit.shown(record->q50);
+    shown.q95 = unit.shown(record->q95);
   }
   for (const ExplainedAlarm& explained : drift.alarms) {
     if (explained.alarm.output != static_cast<int>(k)) continue;
@@ -98,16 +102,19 @@ report::ForecastSeries series_of(const SiteDrift& drift, std::size_t k) {
 report::BelievedParameter believed_of(const SiteDrift& drift, std::size_t j) {
   const ParameterPath& all = drift.windows.front().paths[j];
   const auto last_year = std::ranges::find(drift.windows, kLastYearWindow, &FollowedWindow::name);
-  report::BelievedParameter shown{.label = meter_label(drift.parameters[j].name),
-                                  .unit = drift.parameters[j].unit,
-                                  .months = {},
-                                  .last_year_mean = last_year->paths[j].mean};
+  const display::Unit unit = display::unit_of(drift.units, drift.parameters[j].unit);
+  report::BelievedParameter shown{
+      .label = display::capitalised(display::parameter_words(drift.parameters[j].name)),
+      .unit = unit.name,
+      .months = {},
+      .last_year_mean = last_year->paths[j].mean};
+  for (double& mean : shown.last_year_mean) mean = unit.shown(mean);
   for (std::size_t i = 0; i < all.mean.size(); ++i) {
     shown.months.push_back(
         {.month = month_of(drift, drift.learning_months - 1 + static_cast<int>(i)),
-         .mean = all.mean[i],
-         .q05 = all.q05[i],
-         .q95 = all.q95[i]});
+         .mean = unit.shown(all.mean[i]),
+         .q05 = unit.shown(all.q05[i]),
+         .q95 = unit.shown(all.q95[i])});
   }
   return shown;
 }
@@ -158,8 +165,8 @@ report::DriftData drift_report_of(const SiteConfig& config, const SiteDrift& dri
   for (const MeterChange& change : drift.meter_changes) {
     data.meter_changes.push_back(meter_change_words(change));
   }
-  for (const std::string& warning : drift.warnings) {
-    data.notices.push_back({report::Severity::info, warning});
+  for (const display::Warning& warning : drift.warnings) {
+    data.notices.push_back(notice_of(report::Severity::info, warning));
   }
   for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
     data.outputs.push_back(series_of(drift, k));

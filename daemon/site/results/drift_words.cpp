@@ -4,20 +4,40 @@
 
 #include <cmath>
 
+#include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
+#include "daemon/site/results/cost_words.hpp"
+
 namespace recald::daemon {
 namespace {
 
-/// Mean of (measured - forecast) / forecast from the change to the alarm.
-double relative_excess(const SiteDrift& drift, const drift::Alarm& alarm) {
+constexpr double kDaysAMonth = 365.25 / 12.0;
+
+/// Means of an output from the change to the alarm, in its unit.
+struct SinceChange {
   double measured = 0.0;
   double expected = 0.0;
+  int months = 0;
+};
+
+SinceChange since_change(const SiteDrift& drift, const drift::Alarm& alarm) {
+  SinceChange since;
   for (const drift::PrequentialMonth& month : drift.record) {
     const auto& output = month.outputs[static_cast<std::size_t>(alarm.output)];
     if (!output || month.month < alarm.since || month.month > alarm.month) continue;
-    measured += output->measured;
-    expected += output->q50;
+    since.measured += output->measured;
+    since.expected += output->q50;
+    ++since.months;
   }
-  return measured / expected - 1.0;
+  return since;
+}
+
+/// Mean of (measured - forecast) / forecast from the change to the alarm.
+double relative_excess(const SiteDrift& drift, const drift::Alarm& alarm) {
+  if (alarm.days) return alarm.days->excess;
+  const SinceChange since = since_change(drift, alarm);
+  return since.measured / since.expected - 1.0;
 }
 
 /// Months of an output inside the 90 % interval of their forecasts, and how many there are.
@@ -50,8 +70,9 @@ std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm) {
   const FollowedOutput& output = drift.outputs[static_cast<std::size_t>(alarm.output)];
   std::string sentence = fmt::format(
       "{} has been {} than forecast since {}, by {:+.0f} %; alarm raised {}, evidence {:.3g} to 1.",
-      output.name, alarm.direction > 0 ? "more" : "less", since_words(drift, alarm),
-      100.0 * (alarm.days ? alarm.days->excess : relative_excess(drift, alarm)),
+      display::capitalised(display::output_words(output.name)),
+      alarm.direction > 0 ? "more" : "less", since_words(drift, alarm),
+      100.0 * relative_excess(drift, alarm),
       alarm.days ? "by the daily watch on " + metering::to_string(alarm.days->raised)
                  : "after " + drift.month_name(alarm.month),
       alarm.evidence);
@@ -63,6 +84,23 @@ std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm) {
   return sentence;
 }
 
+std::string alarm_cost_words(const SiteDrift& drift, const drift::Alarm& alarm) {
+  const FollowedOutput& output = drift.outputs[static_cast<std::size_t>(alarm.output)];
+  const SinceChange since = since_change(drift, alarm);
+  if (since.months == 0) return "";
+  const double excess = relative_excess(drift, alarm) * since.expected / since.months;
+  const bool is_peak = output.name.ends_with("_peak_kW");
+  const double a_month = is_peak ? excess : excess * kDaysAMonth;
+  const auto times = [&](const std::optional<double>& rate) {
+    return rate ? std::optional{*rate * a_month} : std::nullopt;
+  };
+  const std::string words =
+      is_peak ? cost_words(times(output.rates.per_kW_month), {}, drift.currency)
+              : cost_words(times(output.rates.per_kWh), times(output.rates.emissions_kg_per_kWh),
+                           drift.currency);
+  return words.empty() ? "" : "If it goes on, " + display::uncapitalised(words);
+}
+
 std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
   const auto at = static_cast<std::size_t>(cause.index);
   switch (cause.kind) {
@@ -71,18 +109,22 @@ std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
     case drift::CauseKind::unknown:
       if (cause.index < 0) return "something missing from the model";
       return fmt::format("something missing from the model that only {} shows",
-                         drift.outputs[at].meter);
-    case drift::CauseKind::parameter:
-      return fmt::format("{} has been {:.3g} {} since then (90 %: {:.3g} to {:.3g})",
-                         drift.parameters[at].name, cause.mean, drift.parameters[at].unit,
-                         cause.q05, cause.q95);
+                         display::id_words(drift.outputs[at].meter));
+    case drift::CauseKind::parameter: {
+      const display::Unit unit = display::unit_of(drift.units, drift.parameters[at].unit);
+      return fmt::format("{} has been {:.3g}{}{} since then (90 %: {:.3g} to {:.3g})",
+                         display::parameter_words(drift.parameters[at].name),
+                         unit.shown(cause.mean), unit.name.empty() ? "" : " ", unit.name,
+                         unit.shown(cause.q05), unit.shown(cause.q95));
+    }
     case drift::CauseKind::direction:
       return fmt::format("{} has changed by {:+.0f} % since then (90 %: {:+.0f} to {:+.0f} %)",
                          drift.directions[at].name, 100.0 * (cause.mean - 1.0),
                          100.0 * (cause.q05 - 1.0), 100.0 * (cause.q95 - 1.0));
     case drift::CauseKind::meter:
-      return fmt::format("meter {} shows {:.3g} times what it should (90 %: {:.3g} to {:.3g})",
-                         drift.outputs[at].meter, cause.mean, cause.q05, cause.q95);
+      return fmt::format("the {} meter shows {:.3g} times what it should (90 %: {:.3g} to {:.3g})",
+                         display::id_words(drift.outputs[at].meter), cause.mean, cause.q05,
+                         cause.q95);
   }
   return "";
 }
@@ -119,6 +161,9 @@ std::string meter_change_words(const MeterChange& change) {
 
 std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& alarm) {
   std::string sentence = alarm_sentence(drift, alarm.alarm);
+  if (const std::string cost = alarm_cost_words(drift, alarm.alarm); !cost.empty()) {
+    sentence += " " + cost;
+  }
   if (alarm.causes.empty())
     return sentence + " The record before the change is too short to say why.";
   const drift::Cause& first = alarm.causes.front();
@@ -137,7 +182,9 @@ std::string drift_words(const SiteDrift& drift) {
       fmt::format("{} months from {} to {}; the first {} are for learning.\n", drift.months.size(),
                   drift.months.front(), drift.months.back(), drift.learning_months);
   for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
-    words += fmt::format("{:<28} {}\n", drift.outputs[k].name, trust_words(drift, k));
+    words += fmt::format("{:<36} {}\n",
+                         display::capitalised(display::output_words(drift.outputs[k].name)),
+                         trust_words(drift, k));
   }
   for (const ExplainedAlarm& alarm : drift.alarms) {
     words += explained_sentence(drift, alarm) + "\n";
@@ -149,12 +196,14 @@ std::string drift_words(const SiteDrift& drift) {
   for (std::size_t j = 0; j < drift.last_year.size(); ++j) {
     const drift::Shift& shift = drift.last_year[j];
     const ParameterPath& path = drift.windows.front().paths[j];
+    const display::Unit unit = display::unit_of(drift.units, drift.parameters[j].unit);
     words += fmt::format(
-        "{:<28} {:.4g} {}; change from the year before last to last year {:+.2f} sd (p {:.2f})\n",
-        drift.parameters[j].name, path.mean.back(), drift.parameters[j].unit, shift.standardised,
+        "{:<36} {:.4g}{}{}; change from the year before last to last year {:+.2f} sd (p {:.2f})\n",
+        display::capitalised(display::parameter_words(drift.parameters[j].name)),
+        unit.shown(path.mean.back()), unit.name.empty() ? "" : " ", unit.name, shift.standardised,
         shift.pvalue);
   }
-  return words;
+  return words + display::warning_lines(drift.warnings);
 }
 
 }  // namespace recald::daemon

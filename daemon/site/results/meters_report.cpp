@@ -10,6 +10,11 @@
 
 #include "core/absent.hpp"
 #include "core/change_point/regression.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/prose.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
+#include "core/tariff/tariff.hpp"
 #include "daemon/site/calibrate/meter_days.hpp"
 #include "daemon/site/calibrate/meter_forecast.hpp"
 #include "daemon/site/replay/stored_readings.hpp"
@@ -147,14 +152,20 @@ tl::expected<report::TemperatureFit, std::string> temperature_of(const Weather& 
                       energies);
   };
   const std::vector<change_point::MeterDay> fitted = days(MonthRole::calibration);
-  const std::string label = meter_label(record.meter.id);
+  const std::string label = display::meter_label(record.meter.id);
   const auto regression = change_point::fit_regression(fitted);
   if (!regression) return tl::unexpected(label + ": " + regression.error().message + ".");
   if (!regression->no_temperature_because.empty()) {
-    return tl::unexpected(label + ": " + regression->no_temperature_because + ".");
+    return tl::unexpected(
+        label + ": " +
+        display::with_temperatures_in(weather.site.units, regression->no_temperature_because) +
+        ".");
   }
-  report::TemperatureFit fit{.sentence = change_point::describe(*regression),
-                             .trust = trust_words(output.assessment.forecast)};
+  report::TemperatureFit fit{
+      .sentence = change_point::describe(
+          *regression, display::meter_units(weather.site.units, record.meter.utility),
+          display::unit_of(weather.site.units, "degC")),
+      .trust = trust_words(output.assessment.forecast)};
   add_rows(*regression, fit);
   const auto add_days = [&](const std::vector<change_point::MeterDay>& all, bool unseen) {
     for (const change_point::MeterDay& day : all) {
@@ -176,7 +187,7 @@ void add_meter(const SiteConfig& site, const MeterRecord& record, std::size_t me
                          .shape = shape_of(record, site.holidays),
                          .temperature = {},
                          .no_temperature_because = forecasts.lacking};
-  const std::string label = meter_label(record.meter.id);
+  const std::string label = display::meter_label(record.meter.id);
   if (weather && output != nullptr) {
     auto fit = temperature_of(*weather, record, *output);
     if (fit) {
@@ -188,17 +199,49 @@ void add_meter(const SiteConfig& site, const MeterRecord& record, std::size_t me
     part.no_temperature_because =
         label + ": too few of its days are usable to be regressed on the temperature.";
   }
+  const display::MeterUnits units = display::meter_units(site.units, record.meter.utility);
   data.meters.push_back(std::move(part));
-  data.common.outputs.push_back(
-      {.label = label, .months = months_of(record, forecasts.forecast, output), .assessment = {}});
-  data.common.peaks.push_back({label, record.figures});
-  data.common.loads.push_back(load_of(record));
+  data.common.outputs.push_back({.label = label,
+                                 .units = units,
+                                 .months = months_of(record, forecasts.forecast, output),
+                                 .assessment = {}});
+  data.common.peaks.push_back({.meter = label, .units = units, .months = record.figures});
+  data.common.loads.push_back(load_of(record, site.units));
   for (metering::DataFinding finding : record.findings) {
     finding.meter = label;
     data.common.findings.push_back(std::move(finding));
   }
   for (const metering::LevelChange& change : record.level_changes) {
     data.changes.push_back(change_words(label, change));
+  }
+}
+
+/// Every month of a meter that has a figure.
+report::MeterCosts costs_of(const SiteConfig& site, const MeterRecord& record) {
+  report::MeterCosts costs{display::meter_label(record.meter.id), {}};
+  const std::vector<profile::HourlyLoad> none;
+  for (const metering::MonthlyFigure& figure : record.figures) {
+    if (!figure.usable) continue;
+    const auto hours = record.hours.find(figure.month);
+    costs.months.push_back(
+        {figure.month,
+         tariff::bill_of(site.tariff, record.meter.utility, figure,
+                         hours == record.hours.end() ? none : hours->second, site.holidays)});
+  }
+  return costs;
+}
+
+/// Meters whose utility the site file prices or whose emissions it gives.
+void add_costs(const SiteConfig& site, const Recording& recording, std::size_t shown,
+               report::ReportData& data) {
+  data.currency = site.tariff.currency;
+  for (std::size_t meter = 0; meter < shown; ++meter) {
+    const MeterRecord& record = recording.meters[meter];
+    if (!site.tariff.prices_of(record.meter.utility) &&
+        !site.tariff.emissions_of(record.meter.utility)) {
+      continue;
+    }
+    data.costs.push_back(costs_of(site, record));
   }
 }
 
@@ -220,6 +263,7 @@ report::FirstScreen first_of(const Recording& recording, const SiteCalibration* 
     const OutputCalibration* output = output_of(forecast, i);
     stories.push_back(
         {.label = data.common.outputs[i].label,
+         .units = data.common.outputs[i].units,
          .year = data.meters[i].year,
          .changes = recording.meters[i].level_changes,
          .unseen = output == nullptr ? std::nullopt : output->assessment.forecast.unseen_mean,
@@ -233,12 +277,12 @@ void add_notices(const Recording& recording, const SiteCalibration* forecast,
   using report::Severity;
   if (forecast == nullptr) {
     for (const std::string& note : recording.notes) {
-      data.common.notices.push_back({Severity::warning, note});
+      data.common.notices.push_back(notice_of(Severity::warning, display::warning_of(note)));
     }
     return;
   }
-  for (const std::string& warning : forecast->warnings) {
-    data.common.notices.push_back({Severity::warning, warning});
+  for (const display::Warning& warning : forecast->warnings) {
+    data.common.notices.push_back(notice_of(Severity::warning, warning));
   }
   if (!forecast->not_calibrated_because.empty()) {
     data.common.notices.push_back({Severity::info, forecast->not_calibrated_because});
@@ -287,7 +331,8 @@ report::MetersData meters_report_of(const SiteConfig& site, const metering::Loca
                  .generated_at = std::move(generated_at),
                  .site = {site.id, site.name, site.timezone},
                  .calendar = calendar,
-                 .provenance = provenance_of_meters(facts)};
+                 .provenance = provenance_of_meters(facts),
+                 .units = site.units};
   std::optional<Weather> weather;
   if (forecasts.forecast != nullptr) {
     weather.emplace(
@@ -298,6 +343,7 @@ report::MetersData meters_report_of(const SiteConfig& site, const metering::Loca
   for (std::size_t meter = 0; meter < shown; ++meter) {
     add_meter(site, recording.meters[meter], meter, forecasts, weather, data);
   }
+  add_costs(site, recording, shown, data.common);
   if (const std::size_t more = recording.meters.size() - shown; more > 0) {
     data.left_out = fmt::format("The site has {} more meter{}; months.csv has the figures of all.",
                                 more, more == 1 ? "" : "s");

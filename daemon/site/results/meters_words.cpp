@@ -18,7 +18,6 @@ using metering::Month;
 using metering::MonthlyFigure;
 using report::KeyNumber;
 using report::month_text;
-using report::number_text;
 using report::signed_percent_text;
 
 constexpr int kLeastCompared = 6;
@@ -32,6 +31,11 @@ double month_kWh(const MonthlyFigure& figure) {
 const MonthlyFigure* usable_month(const std::vector<MonthlyFigure>& figures, Month month) {
   const auto found = std::ranges::find(figures, month, &MonthlyFigure::month);
   return found != figures.end() && found->usable ? &*found : nullptr;
+}
+
+/// "812 MWh" @pre story.year
+std::string used_text(const MeterStory& story) {
+  return report::amount_text(story.year->energy_kWh / 1000.0, story.units.large_energy);
 }
 
 /// "12 % more", "3 % less"
@@ -117,9 +121,9 @@ std::string use_sentence(const std::vector<MeterStory>& stories) {
   std::vector<std::string> uses;
   for (const MeterStory& story : stories) {
     if (!story.year || uses.size() == kMeterNumbers) continue;
-    uses.push_back(fmt::format("{}: {} MWh in {} month{} to {}", story.label,
-                               number_text(story.year->energy_kWh / 1000.0), story.year->months,
-                               story.year->months == 1 ? "" : "s", month_text(story.year->last)));
+    uses.push_back(fmt::format("{}: {} in {} month{} to {}", story.label, used_text(story),
+                               story.year->months, story.year->months == 1 ? "" : "s",
+                               month_text(story.year->last)));
   }
   if (uses.empty()) return "No meter has a month that can be used.";
   return fmt::format("{}.", fmt::join(uses, "; "));
@@ -162,7 +166,7 @@ std::vector<KeyNumber> meter_numbers(const std::vector<MeterStory>& stories) {
   }
   for (const MeterStory& story : stories) {
     if (!story.year) continue;
-    add_number(numbers, number_text(story.year->energy_kWh / 1000.0) + "\u00a0MWh",
+    add_number(numbers, used_text(story),
                fmt::format("{}, {} month{} to {}", story.label, story.year->months,
                            story.year->months == 1 ? "" : "s", month_text(story.year->last)));
   }

@@ -14,6 +14,7 @@ namespace recald::daemon {
 /// A meter as the first sentence weighs it.
 struct MeterStory {
   std::string label;
+  display::MeterUnits units = {};
   std::optional<report::YearComparison> year;
   std::vector<metering::LevelChange> changes;
   std::optional<assessment::UnseenMean> unseen;

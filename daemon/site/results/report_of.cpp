@@ -7,7 +7,10 @@
 #include <utility>
 
 #include "core/absent.hpp"
+#include "core/display/id_words.hpp"
+#include "core/display/warning.hpp"
 #include "core/regression/fit_quality.hpp"
+#include "daemon/site/model/meter_rates.hpp"
 #include "daemon/site/results/calibration_words.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
 #include "daemon/site/results/report_parts.hpp"
@@ -162,6 +165,39 @@ void add_answer(const AssessedCalibration& result, const std::vector<ShownOutput
   data.asks_for_diagnosis = asks_for_diagnosis(meters);
 }
 
+/// Of the months that no model has seen: their mean, as sums of money and CO2.
+void add_forecast_cost(const SiteConfig& site, const MeterRecord& record,
+                       const SiteCalibration& result, const assessment::OutputCalibration& output,
+                       report::ReportData& data) {
+  const auto& unseen = output.assessment.forecast.unseen_mean;
+  if (!unseen) return;
+  report::ForecastCost cost{.meter = display::meter_label(record.meter.id),
+                            .first = {},
+                            .last = {},
+                            .months = 0,
+                            .money = {},
+                            .emissions_t = {}};
+  double days = 0.0;
+  for (std::size_t i = 0; i < result.months.size(); ++i) {
+    if (result.roles[i] != assessment::MonthRole::validation || std::isnan(output.measured[i])) {
+      continue;
+    }
+    if (cost.months++ == 0) cost.first = result.months[i];
+    cost.last = result.months[i];
+    days += result.month_days[i];
+  }
+  const auto sum = [&](double rate) {
+    const assessment::MonthForecast& f = unseen->forecast;
+    const double factor = rate * days;
+    return report::ForecastSum{factor * f.mean, factor * f.q05, factor * f.q95,
+                               factor * unseen->measured};
+  };
+  const tariff::Rates rates = rates_of(site, record);
+  if (rates.per_kWh) cost.money = sum(*rates.per_kWh);
+  if (rates.emissions_kg_per_kWh) cost.emissions_t = sum(1e-3 * *rates.emissions_kg_per_kWh);
+  if (cost.money || cost.emissions_t) data.forecast_costs.push_back(std::move(cost));
+}
+
 void add_not_known(const AssessedCalibration& result, const std::vector<ShownOutput>& shown,
                    report::ReportData& data) {
   for (const auto& [index, label] : shown) {
@@ -195,9 +231,9 @@ void add_calibration(const AssessedCalibration& result, const std::vector<ShownO
                             "The sampler has not converged to the limits set for it (R-hat, "
                             "effective sample size): treat intervals as rough."});
   }
-  for (const auto* sentences : {&result.alarms, &result.warnings}) {
-    for (const std::string& sentence : *sentences) {
-      data.notices.push_back({report::Severity::warning, sentence});
+  for (const auto* warnings : {&result.alarms, &result.warnings}) {
+    for (const display::Warning& warning : *warnings) {
+      data.notices.push_back(notice_of(report::Severity::warning, warning));
     }
   }
   add_not_known(result, shown, data);
@@ -215,11 +251,11 @@ std::vector<ShownOutput> shown_of(const DesignCalibration& result) {
       const auto k = static_cast<std::size_t>(meter.consumption);
       if (meter.meter.empty()) shown[k].label = "Consumption";
       if (!meter.meter.empty() && meter.meter != names[k])
-        shown[k].label = meter_label(meter.meter);
+        shown[k].label = display::meter_label(meter.meter);
     }
     if (meter.peak >= 0) {
       shown[static_cast<std::size_t>(meter.peak)].label =
-          meter.meter.empty() ? "Peak demand" : meter_label(meter.meter) + " peak";
+          meter.meter.empty() ? "Peak demand" : display::meter_label(meter.meter) + " peak";
     }
   }
   return shown;
@@ -255,7 +291,9 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                           .generated_at = std::move(generated_at),
                           .site = {site.id, site.name, site.timezone},
                           .calendar = calendar,
-                          .provenance = provenance_of(facts)};
+                          .provenance = provenance_of(facts),
+                          .units = site.units,
+                          .currency = site.tariff.currency};
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     data.parameters.push_back(parameter_of(result, j, std::string{result.definitions[j]->label}));
   }
@@ -263,24 +301,27 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     const assessment::OutputCalibration& output = result.outputs[k];
     if (is_peak(output)) continue;  // the page shows peaks as measured, beside each other
-    shown.push_back({k, meter_label(recording.meters[output.meter].meter.id)});
+    shown.push_back({k, display::meter_label(recording.meters[output.meter].meter.id)});
     data.outputs.push_back({.label = shown.back().label,
-                            .unit = output.unit,
+                            .units = display::meter_units(site.units, output.utility),
                             .months = months_of(recording, result, output),
                             .assessment = output.assessment});
+    add_forecast_cost(site, recording.meters[output.meter], result, output, data);
   }
   add_calibration(result, shown, data);
   data.not_known.emplace_back(
       facts_of(result.model).has_peaks
-          ? "Peak demand is shown as measured; how the model tells it stands in calibration.json."
+          ? "Peak demand is shown as measured; the model's own peaks are in calibration.json."
           : "Peak demand is measured only. The monthly model has no peaks.");
   for (const MeterRecord& record : recording.meters) {
     for (metering::DataFinding finding : record.findings) {
-      finding.meter = meter_label(finding.meter);
+      finding.meter = display::meter_label(finding.meter);
       data.findings.push_back(std::move(finding));
     }
-    data.peaks.push_back({meter_label(record.meter.id), record.figures});
-    data.loads.push_back(load_of(record));
+    data.peaks.push_back({.meter = display::meter_label(record.meter.id),
+                          .units = display::meter_units(site.units, record.meter.utility),
+                          .months = record.figures});
+    data.loads.push_back(load_of(record, site.units));
   }
   using enum model::DayType;
   data.profile = {
@@ -304,8 +345,12 @@ report::ReportData report_of(const FinishedDesign& done, std::string generated_a
   const std::vector<std::size_t> in_order = in_order_of_time(result.months);
   for (const auto& [index, label] : shown) {
     const assessment::OutputCalibration& output = result.outputs[index];
-    report::OutputResult& page = data.outputs.emplace_back(report::OutputResult{
-        .label = label, .unit = output.unit, .months = {}, .assessment = output.assessment});
+    report::OutputResult& page =
+        data.outputs.emplace_back(report::OutputResult{.label = label,
+                                                       .is_peak = is_peak(output),
+                                                       .months = {},
+                                                       .assessment = output.assessment});
+    if (!page.is_peak) page.units.daily = display::Unit{output.unit};
     for (const std::size_t i : in_order) page.months.push_back(month_of(result, output, i));
   }
   add_calibration(result, shown, data);

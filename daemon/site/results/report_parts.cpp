@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
 
 namespace recald::daemon {
@@ -30,8 +32,9 @@ report::Provenance provenance_of(const RunFacts& facts) {
           .chains = facts.chains};
 }
 
-report::LoadGrid load_of(const MeterRecord& record) {
-  report::LoadGrid grid{.meter = meter_label(record.meter.id)};
+report::LoadGrid load_of(const MeterRecord& record, display::UnitSystem system) {
+  report::LoadGrid grid{.meter = display::meter_label(record.meter.id),
+                        .units = display::meter_units(system, record.meter.utility)};
   if (record.hours.empty()) return grid;
   grid.first_day = record.hours.begin()->first / 1;
   const metering::Month last = record.hours.rbegin()->first;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "adapters/report/report_data.hpp"
+#include "core/display/unit.hpp"
 #include "daemon/site/model/run_facts.hpp"
 #include "daemon/site/replay/recording.hpp"
 
@@ -11,6 +12,6 @@ namespace recald::daemon {
 [[nodiscard]] report::Provenance provenance_of(const RunFacts& facts);
 
 /// A meter's hours as a calendar of whole months.
-[[nodiscard]] report::LoadGrid load_of(const MeterRecord& record);
+[[nodiscard]] report::LoadGrid load_of(const MeterRecord& record, display::UnitSystem system);
 
 }  // namespace recald::daemon

@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
+
+#include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
+#include "core/display/warning.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -13,11 +18,16 @@ std::string cells(const std::optional<assessment::FitMetrics>& metrics) {
                      metrics->cvrmse);
 }
 
+/// "Chilled water, daily mean"
+std::string label_of(const assessment::OutputCalibration& output) {
+  return display::capitalised(display::output_words(output.name));
+}
+
 /// Width of the first column: the longest label and two blanks.
 std::size_t label_width(const assessment::AssessedCalibration& result) {
   std::size_t width = 16;
   for (const assessment::OutputCalibration& output : result.outputs) {
-    width = std::max(width, output.label.size() + 2);
+    width = std::max(width, display::output_words(output.name).size() + 2);
   }
   return width;
 }
@@ -45,7 +55,7 @@ std::string fit_lines(const assessment::AssessedCalibration& result) {
       return line(label, stage, cells(forecast.calibration.metrics),
                   cells(forecast.validation.metrics));
     };
-    text += forecast_line(output.label, "forecast", a.forecast);
+    text += forecast_line(label_of(output), "forecast", a.forecast);
     if (result.parameters.empty()) continue;
     if (a.yardstick) text += forecast_line("", "yardstick", *a.yardstick);
     text += stage_line("", "prior mode", a.before);
@@ -64,12 +74,13 @@ std::string band_lines(const assessment::AssessedCalibration& result) {
     const auto& scores = unseen ? forecast.validation.scores : forecast.blocks.scores;
     if (!scores) continue;
     text +=
-        fmt::format("{}: {} of {} {} inside the 90 % bands", output.label, scores->inside_90,
+        fmt::format("{}: {} of {} {} inside the 90 % bands", label_of(output), scores->inside_90,
                     scores->months, unseen ? "unseen months" : "months, three left out at a time,");
     if (forecast.unseen_mean) {
       const auto& [measured, mean] = *forecast.unseen_mean;
-      text += fmt::format("; their mean {:.4g} to {:.4g} {}, measured {:.4g}", mean.q05, mean.q95,
-                          output.unit, measured);
+      const display::Unit unit = display::unit_of(result.units, output.unit, output.utility);
+      text += fmt::format("; their mean {:.4g} to {:.4g} {}, measured {:.4g}", unit.shown(mean.q05),
+                          unit.shown(mean.q95), unit.name, unit.shown(measured));
     }
     text += ".\n";
   }
@@ -81,13 +92,14 @@ std::string unsettled_lines(const assessment::AssessedCalibration& result) {
   std::string text;
   for (const assessment::OutputCalibration& output : result.outputs) {
     if (output.not_fitted_because.empty()) continue;
-    text += fmt::format("{} is not fitted. {}\n", output.label, output.not_fitted_because);
+    text += fmt::format("{} is not fitted. {}\n", label_of(output), output.not_fitted_because);
   }
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     if (assessment::is_identified(result, j)) continue;
     const calibration::Summary& s = result.calibration.parameters[j];
     text += fmt::format("{} is not identified: contraction {:.2f}, at most {:.2f} was possible.\n",
-                        s.name, s.contraction, assessment::contraction_max(result, j));
+                        display::capitalised(display::parameter_words(s.name)), s.contraction,
+                        assessment::contraction_max(result, j));
   }
   return text;
 }
@@ -98,32 +110,40 @@ std::string metamodel_lines(const assessment::AssessedCalibration& result) {
       fmt::format("Meta-model, form {}: {}\n", result.metamodel->form, result.metamodel->why);
   if (result.fixed_parameters.empty()) return text;
   text += "Held at their prior means, their spread counted as error of the model:";
-  for (const Parameter& parameter : result.fixed_parameters) text += " " + parameter.name;
-  return text + "\n";
+  const char* separator = " ";
+  for (const Parameter& parameter : result.fixed_parameters) {
+    text += separator + display::parameter_words(parameter.name);
+    separator = ", ";
+  }
+  return text + ".\n";
 }
 
 std::string parameter_lines(const assessment::AssessedCalibration& result) {
-  std::string text =
-      fmt::format("{:<20}{:<12}{:>10}{:>10}{:>10}{:>10}{:>13}{:>8}{:>10}\n", "parameter", "unit",
-                  "prior", "mean", "5 %", "95 %", "contraction", "R-hat", "ESS bulk");
+  struct Row {
+    const calibration::Summary& s;
+    double prior;
+  };
+  std::vector<Row> rows;
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
-    const calibration::Summary& s = result.calibration.parameters[j];
-    text +=
-        fmt::format("{:<20}{:<12}{:>10.4g}{:>10.4g}{:>10.4g}{:>10.4g}{:>13.2f}{:>8.3f}{:>10.0f}\n",
-                    s.name, s.unit, result.parameters[j].prior.mode(), s.mean, s.q05, s.q95,
-                    s.contraction, s.rhat, s.ess_bulk);
+    rows.push_back({result.calibration.parameters[j], result.parameters[j].prior.mode()});
   }
   for (const calibration::Summary& s : result.calibration.hyperparameters) {
-    text += fmt::format(
-        "{:<20}{:<12}{:>10.4g}{:>10.4g}{:>10.4g}{:>10.4g}{:>13.2f}{:>8.3f}{:>10.0f}\n", s.name, "",
-        s.prior_mean, s.mean, s.q05, s.q95, s.contraction, s.rhat, s.ess_bulk);
+    rows.push_back({s, s.prior_mean});
   }
-  return text;
-}
-
-std::string warning_lines(const assessment::AssessedCalibration& result) {
-  std::string text;
-  for (const std::string& warning : result.warnings) text += "! " + warning + "\n";
+  std::size_t width = 0;
+  for (const Row& row : rows) {
+    width = std::max(width, display::parameter_words(row.s.name).size() + 2);
+  }
+  std::string text =
+      fmt::format("{:<{}}{:<19}{:>10}{:>10}{:>10}{:>10}{:>13}{:>8}{:>10}\n", "parameter", width,
+                  "unit", "prior", "mean", "5 %", "95 %", "contraction", "R-hat", "ESS bulk");
+  for (const auto& [s, prior] : rows) {
+    const display::Unit unit = display::unit_of(result.units, s.unit);
+    text += fmt::format(
+        "{:<{}}{:<19}{:>10.4g}{:>10.4g}{:>10.4g}{:>10.4g}{:>13.2f}{:>8.3f}{:>10.0f}\n",
+        display::parameter_words(s.name), width, unit.name, unit.shown(prior), unit.shown(s.mean),
+        unit.shown(s.q05), unit.shown(s.q95), s.contraction, s.rhat, s.ess_bulk);
+  }
   return text;
 }
 
@@ -131,16 +151,14 @@ std::string forecasts_alone_table(const assessment::AssessedCalibration& result)
   return result.not_calibrated_because + "\n\n" + fit_lines(result) +
          "forecast: a regression of the meter's days on temperature; a calibration month from the "
          "others.\n\n" +
-         band_lines(result) + warning_lines(result);
+         band_lines(result) + display::warning_lines(result.warnings);
 }
 
 }  // namespace
 
 std::string result_table(const assessment::AssessedCalibration& result) {
   if (!result.not_calibrated_because.empty()) return forecasts_alone_table(result);
-  std::string text;
-  for (const std::string& alarm : result.alarms) text += "! " + alarm + "\n";
-  text += fit_lines(result);
+  std::string text = display::warning_lines(result.alarms) + fit_lines(result);
   text +=
       "forecast: the model and what the calibration months say of its error; a calibration month "
       "from "
@@ -151,10 +169,10 @@ std::string result_table(const assessment::AssessedCalibration& result) {
     const auto& after = output.assessment.after.calibration;
     if (!after || !output.calibrated) continue;
     const auto verdict = assessment::guideline14_verdict(*after);
-    text += fmt::format("Guideline 14, {}: {}. {}\n", output.label, verdict.pass ? "pass" : "fail",
-                        verdict.why);
+    text += fmt::format("Guideline 14, {}: {}. {}\n", display::output_words(output.name),
+                        verdict.pass ? "pass" : "fail", verdict.why);
   }
-  return text + metamodel_lines(result) + warning_lines(result);
+  return text + metamodel_lines(result) + display::warning_lines(result.warnings);
 }
 
 }  // namespace recald::daemon

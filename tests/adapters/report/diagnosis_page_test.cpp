@@ -87,7 +87,7 @@ TEST(DiagnosisPage, SaysTimesWhereAPercentageWouldSayNothing) {
 
 // One odd cell must not bleach the rest, and both sides must be read by the same eye.
 TEST(ColourScale, HoldsNearlyAllCellsOfBothMaps) {
-  MeterMaps maps{"Steam", 100.0, {}, {}};
+  MeterMaps maps{"Steam", "100 kW", {}, {}};
   maps.before.by_month = Eigen::ArrayXXd::Constant(42, 10, 0.12);
   maps.before.by_month(0, 0) = -5.0;
   EXPECT_EQ(colour_scale(maps), 0.15);

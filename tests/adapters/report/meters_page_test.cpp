@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/display/unit.hpp"
 #include "tests/adapters/report/page_text.hpp"
 #include "tests/adapters/report/sample_meters.hpp"
 
@@ -46,14 +47,15 @@ TEST(MetersPage, ShowsBaseLoadYearAndPeakOfEachMeter) {
   const std::string page = own_markup(render_meters(sample_meters()));
   EXPECT_THAT(page,
               HasSubstr("<th scope=\"row\">Electricity</th><td class=\"nowrap\">Jan 2021 to Dec "
-                        "2021</td><td class=\"number\">4,307</td><td class=\"number\">−3.4"
-                        "\u00a0%</td><td class=\"number\">172.4</td><td class=\"number\">41"
+                        "2021</td><td class=\"number\">4,307\u00a0MWh</td><td class=\"number\">−3.4"
+                        "\u00a0%</td><td class=\"number\">172.4\u00a0kW</td><td class=\"number\">41"
                         "\u00a0%</td>"));
 }
 
 TEST(MetersPage, ShowsTheRegressionWithItsUnits) {
   const std::string page = own_markup(render_meters(sample_meters()));
-  EXPECT_THAT(page, HasSubstr("Heating, kWh/day per K"));
+  EXPECT_THAT(page, HasSubstr("Heating, a day per degree"));
+  EXPECT_THAT(page, HasSubstr(">Chilled water: kWh, °C</th>"));
   EXPECT_THAT(
       page, HasSubstr("<th scope=\"row\">Saturdays, Sundays and holidays</th><td class=\"number\">"
                       "80.00</td><td class=\"number\">12.00</td><td class=\"number\">15.0</td>"
@@ -120,7 +122,63 @@ TEST(MetersFigures, HaveTheDaysAndTheLineOfTheRegression) {
   EXPECT_EQ(root["temperatures"][0]["lines"][1]["points"][1], json({15.0, 80.0}));
   EXPECT_TRUE(root["temperatures"][2]["days"].empty());
   EXPECT_EQ(root["shapes"][0]["base"], 172.4);
-  EXPECT_EQ(root["shapes"][0]["kinds"][1]["kW"][12], 245.0);
+  EXPECT_EQ(root["shapes"][0]["kinds"][1]["load"][12], 245.0);
+}
+
+TEST(MetersPage, SaysWhatEachYearAndMonthCost) {
+  MetersData data = sample_meters();
+  data.common.currency = "EUR";
+  const metering::Month december{std::chrono::year{2020} / 12};
+  data.common.costs = {
+      {"Electricity",
+       {{december, {.energy = 10'000.4, .demand = 900.0, .emissions_kg = 20'000.0}},
+        {december + std::chrono::months{1}, {.energy = 500.0, .demand = {}, .emissions_kg = {}}},
+        {december + std::chrono::months{2},
+         {.energy = 700.0, .demand = 40.0, .emissions_kg = {}}}}}};
+  const std::string page = own_markup(render_meters(data));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">2020</th><td class=\"number\">1</td><td "
+                              "class=\"number\">10,000</td><td class=\"number\">900</td><td "
+                              "class=\"number\">20.00</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">2021</th><td class=\"number\">2</td><td "
+                              "class=\"number\">1,200</td><td class=\"number\">40</td><td "
+                              "class=\"number\">–</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Jan 2021</th><td class=\"number\">500</td>"));
+  EXPECT_THAT(own_markup(render_meters(sample_meters())), Not(HasSubstr("id=\"costs\"")));
+}
+
+// The same meters in SI and IP: each number is the other's times the factor of its unit.
+TEST(MetersPage, SpeaksIpWhereAsked) {
+  MetersData data = sample_meters();
+  const json si = json::parse(meters_figure_json(data));
+  data.common.units = display::UnitSystem::ip;
+  const auto as = display::meter_units(display::UnitSystem::ip, metering::Utility::chilled_water);
+  for (OutputResult& output : data.common.outputs) output.units = as;
+  for (PeakSeries& series : data.common.peaks) series.units = as;
+  for (LoadGrid& load : data.common.loads) load.units = as;
+  for (MeterPart& meter : data.meters) {
+    // Finished where they are written.
+    meter.no_temperature_because.clear();
+    if (meter.temperature) meter.temperature->sentence.clear();
+  }
+  const json ip = json::parse(meters_figure_json(data));
+  constexpr double kTon_kW = 3.516853;
+  const auto ratio = [&](const json::json_pointer& at) {
+    return ip.at(at).get<double>() / si.at(at).get<double>();
+  };
+  for (const char* at :
+       {"/outputs/0/months/3/measured", "/overview/0/months/35/band/1", "/peaks/0/months/3/peak",
+        "/shapes/0/base", "/temperatures/0/days/400/energy"}) {
+    EXPECT_NEAR(ratio(json::json_pointer{at}), 1.0 / kTon_kW, 1e-3) << at;
+  }
+  EXPECT_EQ(ip["outputs"][0]["unit"], "ton-hours/day");
+  EXPECT_EQ(ip["loads"][0]["kW"], si["loads"][0]["kW"]);  // a file of the hours stays in kW
+  EXPECT_NEAR(ip["loads"][0]["unitsPerKW"].get<double>(), 1.0 / kTon_kW, 1e-6);
+  EXPECT_EQ(ip["temperatures"][0]["lines"][1]["points"][1][0], 59.0);  // 15 °C
+  const std::string page = own_markup(render_meters(data));
+  EXPECT_THAT(page, Not(HasSubstr("°C")));
+  EXPECT_THAT(page, Not(HasSubstr("kWh")));
+  EXPECT_THAT(page, HasSubstr(">Chilled water: ton-hours, °F</th>"));
+  EXPECT_THAT(page, HasSubstr("1,224,675\u00a0ton-hours"));  // 4,307 MWh
 }
 
 TEST(MetersFigures, TheOverviewHasNoValueOfAnUnusableMonth) {

@@ -9,6 +9,7 @@
 #include "adapters/report/assets.hpp"
 #include "adapters/report/figure_data.hpp"
 #include "adapters/report/most_likely.hpp"
+#include "core/display/unit.hpp"
 #include "tests/adapters/report/page_text.hpp"
 #include "tests/adapters/report/sample_report.hpp"
 
@@ -64,7 +65,7 @@ TEST(Report, OfADesignLeavesOutWhatItsFolderDoesNotKnow) {
   EXPECT_THAT(page, Not(HasSubstr("share of its intervals that are estimated")));
   EXPECT_THAT(page, HasSubstr("Month 36"));
   EXPECT_THAT(page, Not(HasSubstr("Dec 2")));
-  EXPECT_THAT(page, HasSubstr("Steam peak: peak demand by month, kW"));
+  EXPECT_THAT(page, HasSubstr("Steam peak: peak demand of each month, kW"));
   const json data = report_json(design_report());
   EXPECT_EQ(data["outputs"][1]["unit"], "kW");
   EXPECT_EQ(data["outputs"][1]["months"][35]["month"], "36");
@@ -106,6 +107,59 @@ TEST(Report, ShowsFiveWarningsBeforeMore) {
   EXPECT_EQ(occurrences(page.substr(0, more), "A note."), 4u);
   data.notices.resize(5);
   EXPECT_THAT(own_markup(render_report(data)), Not(HasSubstr(" more</summary>")));
+}
+
+TEST(Report, RanksWarningsByWhatTheyCost) {
+  ReportData data = sample_report();
+  data.notices = {{Severity::warning, "A note."},
+                  {.severity = Severity::warning,
+                   .sentence = "A few months.",
+                   .details = "Which they are.",
+                   .share = 0.1},
+                  {.severity = Severity::warning, .sentence = "Most months.", .share = 0.8},
+                  {Severity::failure, "The gravest."}};
+  const std::string page = own_markup(render_report(data));
+  EXPECT_LT(page.find("The gravest."), page.find("Most months."));
+  EXPECT_LT(page.find("Most months."), page.find("A few months."));
+  EXPECT_LT(page.find("A few months."), page.find("A note."));
+  EXPECT_THAT(page, HasSubstr("<span>A few months.</span>\n<details><summary>Details</summary>\n"
+                              "<p>Which they are.</p>\n</details>"));
+}
+
+TEST(Report, SaysWhatTheForecastMonthsCost) {
+  ReportData data = sample_report();
+  EXPECT_THAT(own_markup(render_report(data)), Not(HasSubstr("id=\"costs\"")));
+  data.currency = "USD";
+  const metering::Month january{std::chrono::year{2022} / 1};
+  data.forecast_costs = {{.meter = "Steam",
+                          .first = january,
+                          .last = january + std::chrono::months{11},
+                          .months = 12,
+                          .money = ForecastSum{45'210.4, 43'900.0, 46'500.0, 45'980.0},
+                          .emissions_t = ForecastSum{120.5, 117.0, 124.0, 122.5}}};
+  const std::string page = own_markup(render_report(data));
+  EXPECT_THAT(page, HasSubstr("Steam, 12 months, Jan 2022 to Dec 2022"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Cost, USD</th><td class=\"number\">45,210</td><td "
+                              "class=\"number\">43,900</td><td class=\"number\">46,500</td><td "
+                              "class=\"number\">45,980</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">CO2, t</th><td class=\"number\">120.5</td>"));
+}
+
+// A set-point of 24 °C is one of 75.2 °F, and its spread has no offset.
+TEST(Report, ParametersAreSaidInIpWhereAsked) {
+  ReportData data = sample_report();
+  calibration::Summary& summary = data.parameters[0].summary;
+  summary.unit = "degC";
+  summary.mean = 24.0;
+  summary.sd = 1.0;
+  EXPECT_THAT(own_markup(render_report(data)), HasSubstr("(°C)"));
+  data.units = display::UnitSystem::ip;
+  const json ip = json::parse(figure_json(data));
+  EXPECT_EQ(ip["parameters"][0]["unit"], "°F");
+  EXPECT_NEAR(ip["parameters"][0]["mean"].get<double>(), 75.2, 1e-9);
+  const std::string page = own_markup(render_report(data));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number\">75.20</td><td class=\"number\">1.800</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("°C")));
 }
 
 TEST(Report, SaysTheVerdictInWordsAndSigns) {
@@ -268,9 +322,11 @@ TEST(FigureJson, WritesAbsentAndNonFiniteNumbersAsNull) {
 
 TEST(FigureJson, RoundsToWhatAFigureCanShow) {
   ReportData data;
-  data.loads = {
-      {"Steam", metering::Day{std::chrono::year{2020}, std::chrono::month{1}, std::chrono::day{1}},
-       std::vector<float>(24, 123.456F), std::vector<HourStatus>(24, HourStatus::suspect)}};
+  data.loads = {{.meter = "Steam",
+                 .first_day = metering::Day{std::chrono::year{2020}, std::chrono::month{1},
+                                            std::chrono::day{1}},
+                 .mean_kW = std::vector<float>(24, 123.456F),
+                 .status = std::vector<HourStatus>(24, HourStatus::suspect)}};
   const json root = json::parse(figure_json(data));
   EXPECT_EQ(root["loads"][0]["kW"][23].dump(), "123.5");
   EXPECT_EQ(root["loads"][0]["status"], std::string(24, 's'));

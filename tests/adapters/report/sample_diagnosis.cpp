@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "adapters/report/format.hpp"
 #include "core/random/rng.hpp"
 
 namespace recald::report {
@@ -84,7 +85,9 @@ void add_words(DiagnosisData& data) {
                  .physics = "unoccupied set-points = occupied ones, share s of the difference",
                  .when = "Since about 12 Mar 2021 (90 %: 1 Mar 2021 to 20 Mar 2021).",
                  .probability = 0.93,
-                 .impacts = {{"Chilled water", -310.0}, {"Steam", 4'230.0}, {"Electricity", 85.0}},
+                 .impacts = {{"Chilled water", "−310 kWh"},
+                             {"Steam", "+4,230 kWh"},
+                             {"Electricity", "+85 kWh"}},
                  .parameters = {{"missing share", "0.82", "0.61", "0.97"},
                                 {"first day", "12 Mar 2021", "1 Mar 2021", "20 Mar 2021"}}}};
   data.located = {finding(1, "working days 00-04 h", 0.142, 0.03, 2'100.0),
@@ -133,10 +136,11 @@ DiagnosisData sample_diagnosis() {
                         : i % 5 == 2                 ? Role::select
                                                      : Role::fit);
   }
-  data.temperature_limits_C = kLimits_C;
+  data.units.resize(data.meters.size());
+  data.temperature_limits = kLimits_C;
   const std::vector<double> surplus{-0.05, 0.28, 0.02};
   for (std::size_t g = 0; g < data.meters.size(); ++g) {
-    data.maps.push_back({data.meters[g], 120.0 + 40.0 * static_cast<double>(g),
+    data.maps.push_back({data.meters[g], amount_text(120.0 + 40.0 * static_cast<double>(g), {"kW"}),
                          invented_map(surplus[g], rng), invented_map(0.1 * surplus[g], rng)});
     data.signatures.push_back({"Night set-back missing", data.meters[g],
                                invented_signature(surplus[g]), invented_signature(0.9 * surplus[g]),
@@ -191,7 +195,7 @@ DiagnosisData empty_handed_diagnosis() {
   }
   data.maps[1].before.by_month.setConstant(kNothing);
   data.maps[1].before.by_temperature.setConstant(kNothing);
-  data.maps[1].mean_kW = kNothing;
+  data.maps[1].mean_load = "–";
   return data;
 }
 

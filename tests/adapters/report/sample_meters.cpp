@@ -15,7 +15,7 @@ TemperatureFit temperature_fit(Rng& rng) {
   TemperatureFit fit;
   fit.sentence =
       "3-parameter heating: 200 kWh/day on workdays, 80 on Saturdays and Sundays and holidays; "
-      "12.0 kWh/day more per kelvin below 15 °C.";
+      "12.0 kWh/day more per K below 15 °C.";
   fit.trust =
       "Forecasting the months that it had not seen, it was off by 5.1\u00a0% on average "
       "(CV(RMSE)), "

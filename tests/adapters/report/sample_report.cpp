@@ -377,7 +377,7 @@ ReportData design_report() {
   data.peaks.clear();
   data.loads.clear();
   data.outputs[1].label += " peak";
-  data.outputs[1].unit = "kW";
+  data.outputs[1].is_peak = true;
   data.outputs[2].unit.clear();
   for (OutputResult& output : data.outputs) {
     int number = 0;

@@ -28,8 +28,8 @@ TEST(CommonErrors, AreOfTheHeatShareAndOfEachMetersPeaks) {
   };
   auto model = model_of(0.8);
   const std::vector<OutputCalibration> outputs{
-      {.name = "gas_daily_kWh", .label = "gas", .unit = "kWh/day"},
-      {.name = "gas_peak_kW", .label = "gas peak", .unit = "kW"}};
+      {.name = "gas_daily_kWh", .meter_id = "gas", .unit = "kWh/day"},
+      {.name = "gas_peak_kW", .meter_id = "gas", .unit = "kW"}};
 
   const auto errors = common_errors(building, make, outputs, model, std::vector<double>{100.0});
 

@@ -34,12 +34,12 @@ AssessedCalibration two_meters(int draws) {
   }
   result.parameters = {{"share", "-", {0.0, 0.5, 1.0}}};
   result.outputs.push_back({.name = "cold_daily_kWh",
-                            .label = "cold",
+                            .meter_id = "cold",
                             .unit = "kWh/day",
                             .measured = {110.0, 130.0, 170.0, 150.0, 140.0, 125.0},
                             .extra_variances = {0.0, 4.0, 0.0, 0.0, 0.0, 9.0}});
   result.outputs.push_back({.name = "heat_daily_kWh",
-                            .label = "heat",
+                            .meter_id = "heat",
                             .unit = "kWh/day",
                             .measured = {60.0, kAbsent, 20.0, 30.0, 45.0, 50.0}});
   calibration::Calibration& c = result.calibration;

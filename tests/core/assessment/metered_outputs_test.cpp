@@ -38,8 +38,8 @@ TEST(MeteredOutputs, HaveOnlyWhatMayBeCalibratedAgainst) {
                                                     .z = 60.0,
                                                     .words = {}}};
 
-  const auto daily = daily_output({id, 3, figures, changes}, months);
-  const auto peak = peak_output({id, 3, figures, changes}, months);
+  const auto daily = daily_output({id, 3, metering::Utility::steam, figures, changes}, months);
+  const auto peak = peak_output({id, 3, metering::Utility::steam, figures, changes}, months);
 
   EXPECT_EQ(daily.name, "gas_daily_kWh");
   EXPECT_EQ(peak.name, "gas_peak_kW");
@@ -69,7 +69,9 @@ TEST(MeteredOutputs, KeepAMonthOfAnotherLevel) {
                                                     .factor = 1.3,
                                                     .z = 5.0,
                                                     .words = {}}};
-  EXPECT_EQ(daily_output({id, 0, figures, changes}, {month}).measured.front(), 100.0);
+  EXPECT_EQ(
+      daily_output({id, 0, metering::Utility::steam, figures, changes}, {month}).measured.front(),
+      100.0);
 }
 
 }  // namespace

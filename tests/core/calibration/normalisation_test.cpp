@@ -79,7 +79,13 @@ TEST(RangeCheck, AJanuaryFailureIsSeenThoughJulyReachesThatFar) {
   ASSERT_EQ(findings.size(), 3u);
   EXPECT_EQ(findings[0].kind, FindingKind::extrapolation);
   EXPECT_EQ(findings[1].kind, FindingKind::range_fail);
-  EXPECT_THAT(findings[1].sentence, HasSubstr("2015-01 measured 25, runs 10 to 14 (kWh/day)"));
+  EXPECT_EQ(findings[0].sentence,
+            "Power: 1 of 1 months is outside all runs of the model, the worst July 2015 (+6 %).");
+  EXPECT_EQ(findings[1].sentence,
+            "Heat: 1 of 2 months is outside the model's runs of that month, the worst January 2015 "
+            "(+79 %).");
+  EXPECT_THAT(findings[1].details, HasSubstr("Outside: January 2015 (+79 %). "));
+  EXPECT_EQ(findings[1].share, 0.5);
 }
 
 TEST(RangeCheck, TooLowIsOutOfRangeToo) {

@@ -210,8 +210,8 @@ TEST(WeakDirections, NamesTheCombinationThatNoMeterSees) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].kind, FindingKind::weak_direction);
   EXPECT_THAT(findings[0].sentence, HasSubstr("1 of 2 directions"));
-  EXPECT_THAT(findings[0].sentence, HasSubstr(" up with "));
-  EXPECT_THAT(findings[0].sentence, HasSubstr(" down"));
+  EXPECT_THAT(findings[0].details, HasSubstr(" up with "));
+  EXPECT_THAT(findings[0].details, HasSubstr(" down"));
   EXPECT_TRUE(weak_direction_findings({}, problem.parameters).empty());
 }
 

@@ -54,7 +54,8 @@ TEST(ConvergenceGate, SaysWhatFailed) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].kind, FindingKind::not_converged);
   EXPECT_EQ(findings[0].subject, "b");
-  EXPECT_THAT(findings[0].sentence, HasSubstr("R-hat 1.02 above 1.01, tail ESS 120 below 400"));
+  EXPECT_EQ(findings[0].sentence, "The chains have not converged for the b; run more iterations.");
+  EXPECT_THAT(findings[0].details, HasSubstr("R-hat 1.02 above 1.01, tail ESS 120 below 400"));
 
   for (double Summary::*field :
        {&Summary::rhat, &Summary::ess_bulk, &Summary::ess_tail, &Summary::mcse}) {
@@ -96,12 +97,12 @@ TEST(PriorEdge, FlagsMassPiledAtAnEnd) {
   const Findings findings = edge_findings(parameters, {chain_of(theta)});
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].kind, FindingKind::prior_edge);
-  EXPECT_THAT(
-      findings[0].sentence,
-      HasSubstr("21.0 % of the posterior of flow is within 5 % of the end of its prior at 0"));
+  EXPECT_EQ(findings[0].sentence,
+            "Flow: 21.0 % of the posterior lies at the lower end of its prior.");
 
   theta.setConstant(9.8);
-  EXPECT_THAT(edge_findings(parameters, {chain_of(theta)}).at(0).sentence, HasSubstr("at 10 m3/s"));
+  EXPECT_THAT(edge_findings(parameters, {chain_of(theta)}).at(0).sentence,
+              HasSubstr("the upper end"));
 }
 
 TEST(HyperpriorConflict, FlagsAMeanOutsideThePrior) {
@@ -114,12 +115,14 @@ TEST(HyperpriorConflict, FlagsAMeanOutsideThePrior) {
   const Findings findings = conflict_findings(s, prior);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].kind, FindingKind::hyperprior_conflict);
-  EXPECT_THAT(findings[0].sentence, HasSubstr("standard deviation of 0.071"));
+  EXPECT_EQ(findings[0].sentence,
+            "The data contradict the prior of the precision of the model's discrepancy.");
+  EXPECT_THAT(findings[0].details, HasSubstr("standard deviation of 0.071"));
 }
 
 TEST(Jitter, IsMentionedOnlyWhenUsed) {
   EXPECT_TRUE(jitter_findings(0).empty());
-  EXPECT_THAT(jitter_findings(7).at(0).sentence, HasSubstr("7 times"));
+  EXPECT_THAT(jitter_findings(7).at(0).details, HasSubstr("7 times"));
 }
 
 TEST(Findings, HaveMachineNames) {

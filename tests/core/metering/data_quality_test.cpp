@@ -187,6 +187,15 @@ TEST(DescribeData, UnusableMonthsAreListedWithTheirReasons) {
   EXPECT_EQ(findings[0].slots, 2 * 31 * 24);
 }
 
+TEST(DescribeData, ManyUnusableMonthsFitALine) {
+  std::vector<MonthlyFigure> figures;
+  for (int i = 1; i <= 7; ++i) figures.push_back(figure(month(2021, i), "coverage 40 %"));
+  EXPECT_EQ(
+      describe({}, {}, figures).at(0).sentence,
+      "Not used for calibration, too few readings: 2021-01 (coverage 40 %), 2021-02 (coverage "
+      "40 %) and 5 more.");
+}
+
 TEST(DescribeData, LongRunsOfZerosAreQuestioned) {
   const TimeSpan long_run{utc(2021, 6, 1), utc(2021, 6, 4)};
   const TimeSpan short_run{utc(2021, 7, 1), utc(2021, 7, 3, 23)};

@@ -22,6 +22,7 @@ TEST(NumberText, ShortAndReadable) {
   EXPECT_EQ(percent_text(0.153), "15.3 %");
   EXPECT_EQ(signed_percent_text(0.314), "+31 %");
   EXPECT_EQ(signed_percent_text(-0.04), "-4 %");
+  EXPECT_EQ(signed_percent_text(-0.004), "-0.4 %");
   EXPECT_EQ(percent_text(1e300).size(), 305u + 2u);  // no buffer is overrun
 }
 

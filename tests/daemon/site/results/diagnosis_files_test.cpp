@@ -133,12 +133,15 @@ TEST_F(DiagnosisFiles, GivesOtherModelsAnEntryOfTheirOwn) {
   EXPECT_EQ(change["log_score"]["se"], 1.5);
   EXPECT_EQ(change["nmbe_size"]["q95"], 0.01);
   EXPECT_EQ(change["cvrmse"]["q05"], -0.09);
-  EXPECT_THAT(diagnosis_words(recald::testing::one_named(site_), site_, {epc}),
-              HasSubstr("Scatter of months in the monthly model: Steam 12.0 % before, 7.0 % after "
-                        "(90 % interval of the change: -9.0 to -0.4)."));
+  EXPECT_THAT(
+      diagnosis_words(recald::testing::one_named(site_), site_, {epc}),
+      HasSubstr(
+          "Scatter of months in the monthly model: Steam, daily mean 12.0 % before, 7.0 % after "
+          "(90 % interval of the change: -9.0 to -0.4)."));
   EXPECT_TRUE(json_of(recald::testing::nothing_named(site_))["gap"].is_null());
-  EXPECT_THAT(report::render_diagnosis(page_data(recald::testing::one_named(site_), {epc})),
-              HasSubstr("epc: Steam daily kWh</th><td class=\"number\">12.0\u00a0%</td>"));
+  EXPECT_THAT(
+      report::render_diagnosis(page_data(recald::testing::one_named(site_), {epc})),
+      HasSubstr("Monthly model: Steam, daily mean</th><td class=\"number\">12.0\u00a0%</td>"));
 }
 
 TEST_F(DiagnosisFiles, TheNextVersionCarriesTheSamePosterior) {
@@ -217,9 +220,9 @@ TEST_F(DiagnosisFiles, NoPercentageOfNextToNothing) {
   Diagnosis d = recald::testing::nothing_named(site_);
   d.passes[0].located[0].share = 2.5e12;
   d.passes[0].located[0].share_se = 4e11;
-  EXPECT_THAT(
-      diagnosis_words(d, site_),
-      HasSubstr("Steam, working days 00-04 h: the simulation has almost nothing there, +2100 kWh"));
+  EXPECT_THAT(diagnosis_words(d, site_),
+              HasSubstr("Steam, working days 00-04 h: the simulation has almost nothing there, "
+                        "+2,100\u00a0kWh a month"));
 }
 
 TEST_F(DiagnosisFiles, MonthsWithoutReadingsTaughtNothing) {
