@@ -345,11 +345,8 @@ report::ReportData report_of(const FinishedDesign& done, std::string generated_a
   const std::vector<std::size_t> in_order = in_order_of_time(result.months);
   for (const auto& [index, label] : shown) {
     const assessment::OutputCalibration& output = result.outputs[index];
-    report::OutputResult& page =
-        data.outputs.emplace_back(report::OutputResult{.label = label,
-                                                       .is_peak = is_peak(output),
-                                                       .months = {},
-                                                       .assessment = output.assessment});
+    report::OutputResult& page = data.outputs.emplace_back(report::OutputResult{
+        .label = label, .is_peak = is_peak(output), .months = {}, .assessment = output.assessment});
     if (!page.is_peak) page.units.daily = display::Unit{output.unit};
     for (const std::size_t i : in_order) page.months.push_back(month_of(result, output, i));
   }

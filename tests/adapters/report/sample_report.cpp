@@ -378,18 +378,18 @@ ReportData design_report() {
   data.loads.clear();
   data.outputs[1].label += " peak";
   data.outputs[1].is_peak = true;
-  data.outputs[2].unit.clear();
+  data.outputs[2].units.daily.name.clear();
   for (OutputResult& output : data.outputs) {
     int number = 0;
     for (OutputMonth& month : output.months) {
       const double measured = month.figure.daily_average_kWh;
       month.number = std::to_string(++number);
       month.flagged_different = false;
-      month.figure = {.daily_average_kWh = output.unit == "kW" ? NAN : measured,
+      month.figure = {.daily_average_kWh = output.is_peak ? NAN : measured,
                       .coverage = NAN,
                       .filled_share = NAN,
                       .usable = std::isfinite(measured)};
-      if (output.unit == "kW") month.figure.peak = metering::PeakDemand{.kW = measured};
+      if (output.is_peak) month.figure.peak = metering::PeakDemand{.kW = measured};
     }
   }
   return data;
