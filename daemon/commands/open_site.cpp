@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/display/id_words.hpp"
-
 namespace recald::daemon {
 namespace {
 
@@ -75,7 +73,7 @@ void print_data_words(const Recording& recording, const Console& console) {
     for (const metering::DataFinding& finding : record.findings) {
       console.err << fmt::format("{} {}: {}\n",
                                  finding.grade == metering::DataFinding::Grade::warning ? "!" : "-",
-                                 display::id_words(finding.meter), finding.sentence);
+                                 finding.meter, finding.sentence);
     }
   }
 }

@@ -613,7 +613,7 @@ TEST_F(Cli, ARegisterWithoutCounterIsDoubted) {
   for (const char* command : {"check", "replay"}) {
     const Outcome outcome = run({command, site()});
     EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("! district heat: " + doubt));
+    EXPECT_THAT(outcome.err, HasSubstr("! district_heat: " + doubt));
     EXPECT_THAT(outcome.err, HasSubstr("counter = { unit = \"kWh\" } to its [[meter]]."));
     EXPECT_THAT(outcome.err, Not(HasSubstr("! electricity: " + doubt)));
   }

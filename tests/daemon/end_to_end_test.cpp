@@ -201,7 +201,7 @@ TEST_F(EndToEnd, CalibrationLeavesEverythingAndRepeatsItself) {
   // --json says what the file says.
   EXPECT_EQ(one.out, read_text(folder_ / "one/calibration.json"));
   expect_contract(Json::parse(one.out));
-  EXPECT_THAT(two.out, HasSubstr("Guideline 14, chilled_water: "));
+  EXPECT_THAT(two.out, HasSubstr("Guideline 14, chilled water, daily mean: "));
 
   const auto draws = lines_of(read_text(folder_ / "one/draws_2.csv"));
   const auto header =

@@ -110,7 +110,7 @@ TEST_F(ModelCommand, ShowSaysWhatAnEffectWasAcceptedOn) {
           "theta_set,occ - (1 - f) dT  [K]\n  probability 93.0\u00a0%, evidence gain 14.3 nats\n  "
           "rival: damper_stuck_open 5 %\n  rival: none 2 %\n  share [-]: 0.8 ± 0.1, 90 % 0.65 to "
           "0.95; prior uniform 0.5 ± 0.29\n  slope [K/h]: 2.1 ± 0.4, 90 % 1.5 to 2.9; prior "
-          "log_normal 2.266 ± 1.2\n  electricity: +310 kWh a month\n  district_heat: +5200 kWh a "
+          "log_normal 2.266 ± 1.2\n  Electricity: +310 kWh a month\n  District heat: +5200 kWh a "
           "month\n  learned from 3 months, 2020-11 to 2021-01\n");
   const Outcome active = run({"model", "show", site()});
   EXPECT_THAT(active.out, HasSubstr("Meter's factor wrong (meter_scale), meter district_heat from "

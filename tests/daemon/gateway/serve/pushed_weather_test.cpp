@@ -124,7 +124,7 @@ TEST_F(PushedWeather, SilenceIsSeenEverywhere) {
   EXPECT_EQ(ready["look_at"][0],
             "weather sensor 'roof' has sent no dry_bulb_C since 2024-03-30T10:15:00Z");
   EXPECT_THAT(get("/").body, AllOf(HasSubstr("has sent no dry_bulb_C since"), HasSubstr("roof"),
-                                   HasSubstr("7.5 degC")));
+                                   HasSubstr("7.5 °C")));
   EXPECT_EQ(get_json("/api/v1/meters/roof")["weather"]["dry_bulb_C"]["silent_since"],
             "2024-03-30T10:15:00Z");
   EXPECT_EQ(get_json("/api/v1/events")["events"][0]["kind"], "weather_silent");
@@ -195,7 +195,7 @@ TEST_F(PolledWeather, IsServedLikeAMeter) {
   EXPECT_NEAR(roof["weather"]["dry_bulb_C"]["now"].get<double>(),
               testing::usual_weather(2.0).dry_bulb_C, 0.1);
   EXPECT_THAT(get_json("/api/v1/intervals", {{"meter", "roof.ghi_W_m2"}})["intervals"], SizeIs(8));
-  EXPECT_THAT(get("/").body, HasSubstr("degC, "));
+  EXPECT_THAT(get("/").body, HasSubstr("°C, "));
   // A channel that its map does not give is none, and asking makes none.
   EXPECT_EQ(refused("/api/v1/intervals", {{"meter", "roof.dni_W_m2"}}), "404 not_found meter");
   const http::Response response =
