@@ -5,9 +5,9 @@
 #include <string>
 
 #include "adapters/report/format.hpp"
-#include "core/display/id_words.hpp"
 #include "adapters/report/histogram.hpp"
 #include "adapters/report/sections.hpp"
+#include "core/display/id_words.hpp"
 #include "core/display/unit.hpp"
 
 namespace recald::report {
