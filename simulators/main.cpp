@@ -1,4 +1,4 @@
-/// recald-sim: makes buildings, weather, feeds and meters for recald to be judged by.
+/// recald-sim: simulates buildings, weather, feeds and meters to test recald with.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>

@@ -37,7 +37,7 @@ void AsioLoop::after(milliseconds wait, Call call) {
 
 void AsioLoop::call_after(milliseconds wait, const std::shared_ptr<Call>& call) {
   const std::chrono::nanoseconds real_wait = trial_ ? trial_->real_wait(wait) : wait;
-  // The timer lives in its own handler, until it has fired or the context ends.
+  // The handler owns the timer until it fires or the context ends.
   auto timer = std::make_shared<boost::asio::steady_timer>(context_, real_wait);
   timer->async_wait([this, timer, call](const boost::system::error_code& error) {
     if (error) return;

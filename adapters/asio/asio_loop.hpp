@@ -1,4 +1,4 @@
-/// The loop on Boost.Asio: system clocks, timers, one thread. What a call throws leaves the
+/// The loop on Boost.Asio: system clocks, timers, one thread. An exception of a call leaves the
 /// context's run(), which can be called again.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace recald::asio {
 class AsioLoop final : public Loop {
  public:
   /// @param context  Run by one thread; outlives this.
-  /// @param trial    Time as it passes in a trial; absent: the world's.
+  /// @param trial    The clock of a trial; absent: real time.
   explicit AsioLoop(boost::asio::io_context& context,
                     std::optional<metering::TrialClock> trial = {});
 
@@ -29,8 +29,8 @@ class AsioLoop final : public Loop {
 
   boost::asio::io_context& context_;
   std::optional<metering::TrialClock> trial_;
-  /// In a trial both clocks are one: an adjustment of the system's by a millisecond would otherwise
-  /// look like a clock that was set.
+  /// In a trial both clocks are derived from one. Otherwise an adjustment of the system clock by a
+  /// millisecond would look as if the clock had been set.
   std::chrono::steady_clock::time_point began_;
   metering::TrialClock::Microseconds real_at_begin_;
 };

@@ -16,7 +16,7 @@ using std::chrono::seconds;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// `count` digits at `at` as a number, or -1.
+/// The number in `count` digits from `at` on, or -1.
 int digits(std::string_view text, std::size_t at, std::size_t count) {
   if (at + count > text.size()) return -1;
   int value = 0;
@@ -35,7 +35,7 @@ Error bad_stamp(std::string_view text, std::string_view what) {
   return {ErrorCode::malformed, "timestamp " + in_quotes(text) + " " + std::string{what}};
 }
 
-/// "Z", "+01:00", "-0800", "+05": local minus UTC; none if it is neither.
+/// "Z", "+01:00", "-0800", "+05" as local time minus UTC; nothing if the text is neither.
 std::optional<seconds> parse_offset(std::string_view text) {
   if (text == "Z" || text == "z") return seconds{0};
   if (text.empty() || (text[0] != '+' && text[0] != '-')) return {};
@@ -104,7 +104,7 @@ std::size_t FieldSplitter::split_quoted(std::string_view line) {
 
 namespace {
 
-constexpr std::size_t kPlainMax = 16;  // so at most 15 digits are taken
+constexpr std::size_t kPlainMax = 16;  // so at most 15 digits are read
 constexpr std::array<double, 16> kPowersOfTen{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                               1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 

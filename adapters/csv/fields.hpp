@@ -1,4 +1,4 @@
-/// The pieces of a CSV line: fields, numbers, time stamps. None depends on the process locale.
+/// The parts of a CSV line: fields, numbers, time stamps. None depends on the process locale.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ class FieldSplitter {
   std::string unquoted_;  ///< Contents of quoted fields, reused from line to line.
 };
 
-/// Without blanks and tabs at its ends.
+/// The text without surrounding spaces and tabs.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t'; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
@@ -36,28 +36,27 @@ class FieldSplitter {
   return text;
 }
 
-/// 'text', as messages show what they found; control characters are written out.
+/// 'text' for a message; control characters are escaped.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
-/// A finite decimal number that is the whole text, with a dot; none otherwise.
+/// The finite decimal number, with a dot, that fills the whole text; nothing otherwise.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
 /// Reads a plain decimal such as -123.456, without exponent, from the front of `text`. Up to 15
-/// digits are an exact integer in a double and so is 10^15, hence their quotient is the correctly
-/// rounded value, the same that from_chars gives, in a third of the time.
-/// @return how many characters it took; 0 when it is better left to `parse_number`.
+/// digits are an exact integer in a double, and so is 10^15, so their quotient is the correctly
+/// rounded value: the same as from_chars gives, in a third of the time.
+/// @return the number of characters read; 0 when `parse_number` should read it instead.
 /// @see Clinger (1990), How to read floating point numbers accurately, PLDI.
 std::size_t parse_plain_decimal(std::string_view text, double& value);
 
-/// What is wrong with a text that `parse_number` refuses, for a person: "value '12,5' has a decimal
-/// comma; write 12.5".
+/// Says why `parse_number` refused a text: "value '12,5' has a decimal comma; write 12.5".
 [[nodiscard]] std::string number_problem(std::string_view name, std::string_view text);
 
-/// Digits only, as the halves of a number that a decimal comma has cut.
+/// Whether the text is digits only, like each half of a number split at a decimal comma.
 [[nodiscard]] bool is_digits(std::string_view text);
 
-/// ISO 8601 with Z or an offset: 2016-03-13T02:15:00-06:00; seconds may be absent, a space may
-/// stand for the T, 24:00 is the end of the day. @return malformed or out_of_range (outside
+/// ISO 8601 with Z or an offset: 2016-03-13T02:15:00-06:00. Seconds may be absent, a space may
+/// replace the T, 24:00 is the end of the day. @return malformed or out_of_range (outside
 /// 1971…2037).
 [[nodiscard]] Result<metering::Instant> parse_timestamp(std::string_view text);
 

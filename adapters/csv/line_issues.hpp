@@ -1,4 +1,4 @@
-/// Bad lines of a file: the first hundred in words, the rest counted.
+/// The bad lines of a file: the first hundred are described, the rest counted.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +17,13 @@ inline constexpr std::size_t kExcerptMax = 80;  ///< Bytes of a bad line that ar
 struct LineIssue {
   std::uint64_t line;  ///< From 1; the header is line 1 unless comments precede it.
   std::string reason;
-  std::string text = {};  ///< The line's beginning; empty where it is no longer known.
+  std::string text = {};  ///< The start of the line; empty if it is no longer known.
 };
 
-/// The beginning of a line, fit to be shown.
+/// The start of a line, made safe to print.
 [[nodiscard]] inline std::string excerpt(std::string_view line) {
   if (line.size() <= kExcerptMax) return printable(line);
-  std::size_t end = kExcerptMax;  // not within a letter of several bytes
+  std::size_t end = kExcerptMax;  // do not cut within a multi-byte character
   while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0u) == 0x80u) --end;
   return printable(line.substr(0, end)) + "…";
 }
@@ -36,7 +36,7 @@ struct LineIssues {
   /// @param text  The line itself.
   void add(std::uint64_t line, std::string_view reason, std::string_view text = {}) {
     ++total;
-    // Reasons quote what stands in the file, whatever that is.
+    // Reasons quote the file, which may contain anything.
     if (listed.size() < listed_max) listed.push_back({line, printable(reason), excerpt(text)});
   }
 
@@ -48,7 +48,7 @@ struct LineIssues {
   }
 };
 
-/// What a file's time stamps name.
+/// What a file's time stamps mark.
 enum class Stamps : std::uint8_t { start, end };
 
 }  // namespace recald::csv

@@ -96,7 +96,7 @@ Result<ByteSource> open_file(const std::filesystem::path& file, std::string_view
   if (!handle) {
     return failure(ErrorCode::io_failed, named + " cannot be opened: " + std::strerror(errno));
   }
-  std::setvbuf(handle.get(), nullptr, _IONBF, 0);  // the line reader has the buffer
+  std::setvbuf(handle.get(), nullptr, _IONBF, 0);  // the line reader has its own buffer
   return ByteSource{[handle, named](char* buffer, std::size_t size) -> Result<std::size_t> {
     const std::size_t got = std::fread(buffer, 1, size, handle.get());
     if (got == 0 && std::ferror(handle.get()) != 0) {

@@ -1,4 +1,4 @@
-/// Lines of a text of any length, through one buffer of fixed size.
+/// Reads the lines of a text of any length through one buffer of fixed size.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ struct Line {
   std::string_view text;  ///< Without its line end; valid until the next call.
   std::uint64_t number;   ///< From 1.
   bool terminated;        ///< False for a last line without a line end.
-  bool too_long;          ///< `text` is empty then.
+  bool too_long;          ///< Then `text` is empty.
 };
 
-/// LF and CRLF; a UTF-8 byte order mark before the first line is dropped.
+/// Accepts LF and CRLF; drops a UTF-8 byte order mark before the first line.
 class LineReader {
  public:
   explicit LineReader(ByteSource source);
 
-  /// @return false at the end, and when the source fails: then `error` says so.
+  /// @return false at the end, and when the source fails; then `error` says why.
   bool next(Line& line);
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
 
@@ -47,11 +47,11 @@ class LineReader {
   std::optional<Error> error_;
 };
 
-/// @return a source of the file's bytes, or not_found / io_failed naming the file as `what`.
+/// @return a source of the file's bytes; or not_found or io_failed, naming the file as `what`.
 [[nodiscard]] Result<ByteSource> open_file(const std::filesystem::path& file,
                                            std::string_view what);
 
-/// Bytes of a text that outlives the source.
+/// A source of the bytes of `text`, which must outlive it.
 [[nodiscard]] ByteSource bytes_of(std::string_view text);
 
 }  // namespace recald::csv

@@ -1,4 +1,4 @@
-/// Meters that a file has and nobody asked for: named with their lines, in one sentence.
+/// Meters in a file that are not configured: their names and line counts, in one sentence.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@ namespace recald::csv {
 
 class OtherMeters {
  public:
-  /// One more line of a meter.
+  /// Counts one more line of a meter.
   void add(std::string_view name);
 
   [[nodiscard]] bool empty() const { return lines_ == 0; }
   [[nodiscard]] std::uint64_t lines() const { return lines_; }
 
-  /// "2 meters are not configured, and their lines were left out: water (24), heat (4)"; empty
-  /// where there are none.
+  /// "2 meters are not configured, and their lines were left out: water (24), heat (4)"; empty if
+  /// there are none.
   [[nodiscard]] std::string words() const;
 
  private:
@@ -26,8 +26,8 @@ class OtherMeters {
     std::uint64_t lines;
   };
   std::vector<Other> named_;      ///< The first ones, in order of appearance.
-  std::uint64_t lines_ = 0;       ///< Of all.
-  std::uint64_t more_lines_ = 0;  ///< Of those that are not named.
+  std::uint64_t lines_ = 0;       ///< Of all meters.
+  std::uint64_t more_lines_ = 0;  ///< Of those beyond the named ones.
 };
 
 }  // namespace recald::csv

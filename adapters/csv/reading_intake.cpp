@@ -14,11 +14,11 @@ using metering::Instant;
 using metering::Reading;
 using std::chrono::seconds;
 
-constexpr std::size_t kHeadRows = 64;  // what an interval is inferred from
+constexpr std::size_t kHeadRows = 64;  // an interval is inferred from these
 constexpr std::size_t kRefusedShown = 3;
 constexpr seconds kIntervalMin{60};
 constexpr seconds kIntervalMax{3600};
-constexpr seconds kOffsetGrid{900};  // all zones' offsets since 1971 are multiples of it
+constexpr seconds kOffsetGrid{900};  // the offsets of all zones since 1971 are multiples of it
 
 std::string in_words(seconds span) {
   return span.count() % 60 == 0 ? std::to_string(span.count() / 60) + " minutes"
@@ -33,7 +33,8 @@ Key commonest(const std::map<Key, int>& counts) {
   return most->first;
 }
 
-/// Commonest step between neighbouring stamps; the smaller of equals. None below two stamps.
+/// The commonest step between neighbouring stamps, the smaller of equals. Nothing for fewer than
+/// two stamps.
 std::optional<seconds> commonest_step(std::vector<Instant> stamps) {
   std::sort(stamps.begin(), stamps.end());
   std::map<seconds, int> counts;
@@ -97,7 +98,7 @@ void ReadingIntake::take_first(IntakeMeter& meter, const Row& row) {
   if (meter.head.size() == kHeadRows) begin_meter(meter);
 }
 
-/// The head shows the interval; from here on rows go straight to the sink.
+/// The first rows show the interval; from here on rows go straight to the sink.
 void ReadingIntake::begin_meter(IntakeMeter& meter) {
   if (!find_grid(meter)) {
     meter.refused = true;
@@ -138,7 +139,7 @@ bool ReadingIntake::find_grid(IntakeMeter& meter) {
   std::map<seconds, int> phases;
   for (const auto& head : meter.head) ++phases[head.row.stamp.time_since_epoch() % *interval];
   shown.phase = commonest(phases);
-  // Another phase than a zone's offset can make is a clock that is wrong, row by row.
+  // A phase that no zone offset explains means a wrong clock; the rows are then refused one by one.
   if (shown.phase % kOffsetGrid != seconds{0}) shown.phase = seconds{0};
   return true;
 }
@@ -147,7 +148,7 @@ void ReadingIntake::set_scale(IntakeMeter& meter) {
   meter.kW_per_unit = meter.conversion.mean_kW(meter.rows.multiplier, meter.report.shown.interval);
 }
 
-/// What is not simply the next interval. False: kept out.
+/// Handles a row that is not simply the next interval. False: refused.
 bool ReadingIntake::check_order(IntakeMeter& meter, const Row& row, Instant start) {
   const MeterInFile& shown = meter.report.shown;
   if (start < Instant{} + std::chrono::days{366} ||

@@ -1,4 +1,4 @@
-/// From rows of meters to readings on their intervals, whatever kind of file the rows stand in.
+/// Turns rows of meters into readings on their intervals, whatever kind of file they come from.
 #pragma once
 
 #include <cmath>
@@ -12,13 +12,13 @@
 
 namespace recald::csv {
 
-inline constexpr double kValueMax = 1e18;  ///< So that no unit and no multiplier makes it infinite.
+inline constexpr double kValueMax = 1e18;  ///< Keeps values finite after any unit and multiplier.
 
-/// One row, its interval not yet applied.
+/// One row, before its interval is applied.
 struct Row {
   std::uint64_t line;
   metering::Instant stamp;
-  double value;  ///< In the row's unit, NaN: blank.
+  double value;  ///< In the row's unit; NaN: blank.
   metering::UnitConversion conversion;
   metering::Validity validity = metering::Validity::ok;
   metering::Reason reasons = metering::Reason::none;
@@ -30,34 +30,34 @@ struct Row {
 struct IntakeMeter {
   struct HeadRow {
     Row row;
-    std::string text;  ///< Of the row, whose line is gone by the time it is handed on.
+    std::string text;  ///< The row's line, which is gone by the time the row is passed on.
   };
 
   MeterRows rows;
   MeterReport report;
-  std::string unit;  ///< Text of the row before, and what it means.
+  std::string unit;  ///< Text of the previous row, and its meaning.
   metering::UnitConversion conversion{};
   bool grid_known = false;
   bool refused = false;  ///< No usable interval.
   double kW_per_unit = 0.0;
   std::vector<HeadRow> head;
   std::vector<metering::RegisterSample> samples;
-  std::optional<metering::Instant> last;    ///< Start of the row before.
+  std::optional<metering::Instant> last;    ///< Start of the previous row.
   std::optional<metering::Instant> newest;  ///< Latest start so far.
   std::optional<metering::Instant> earliest;
-  std::uint64_t readings_before = 0;  ///< Of earlier files.
-  std::uint64_t follows = 0;          ///< In this file: readings right after the one before.
+  std::uint64_t readings_before = 0;  ///< In earlier files.
+  std::uint64_t follows = 0;          ///< In this file: readings directly after the previous one.
 };
 
-/// What one file had besides readings.
+/// What to report about one file besides its readings.
 struct FileReport {
   LineIssues issues;
-  OtherMeters others;  ///< Whose lines were left out.
+  OtherMeters others;  ///< Their lines were left out.
 };
 
-/// Finds each meter's interval in its first rows, shifts end stamps, converts units, differences
-/// counters, and reports what is out of order. Memory does not grow with the file, but for
-/// counters' samples.
+/// Finds each meter's interval in its first rows, shifts end stamps, converts units, takes
+/// differences of counters, and reports what is out of order. Memory does not grow with the file,
+/// except for the samples of counters.
 class ReadingIntake {
  public:
   /// @param options, sink  Outlive this.
@@ -67,7 +67,7 @@ class ReadingIntake {
   [[nodiscard]] std::size_t size() const { return meters_.size(); }
   [[nodiscard]] IntakeMeter& meter(std::size_t index) { return meters_[index]; }
 
-  /// What the unit of a meter's rows means from here on. @return or what is wrong with it
+  /// Sets the unit of a meter's rows from here on. @return or what is wrong with the unit
   [[nodiscard]] Result<void> set_unit(IntakeMeter& meter, std::string_view unit);
 
   /// @pre the row's conversion is set
@@ -79,18 +79,18 @@ class ReadingIntake {
     }
   }
 
-  /// A line that is no row of any meter that is known, or is one of `meter`'s but useless.
+  /// Refuses a line that belongs to no known meter, or to `meter` but is unusable.
   void refuse(std::uint64_t line, std::string_view reason, std::string_view text,
               IntakeMeter* meter = nullptr);
 
   void count_line() { ++report_.lines; }
   void count_other(std::string_view meter) { report_.others.add(meter); }
 
-  /// Between the files of the same meters, in order of time: what this one had to say.
-  /// @return or malformed: a meter's interval is another one than in the files before.
+  /// Ends one file of several with the same meters, in order of time, and reports on it.
+  /// @return or malformed: a meter's interval differs from that in the earlier files.
   [[nodiscard]] Result<FileReport> end_file(std::string_view name);
 
-  /// Hands on what waits, and sums up. The intake is of no use afterwards.
+  /// Passes on the waiting rows and sums up. Do not use the intake afterwards.
   [[nodiscard]] ReadingsReport finish();
 
  private:

@@ -24,7 +24,7 @@ struct StringHash {
   }
 };
 
-/// Equality by eight bytes at a time: a call of memcmp costs more than these short texts.
+/// Compares eight bytes at a time: for such short texts a call of memcmp costs more.
 bool same(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   std::size_t i = 0;
@@ -41,7 +41,7 @@ bool same(std::string_view a, std::string_view b) {
   return true;
 }
 
-/// Where the optional columns stand; 0: absent.
+/// Positions of the optional columns; 0: absent.
 struct Columns {
   std::size_t count = kRequiredColumns;
   std::size_t validity = 0;
@@ -133,9 +133,8 @@ class ReadingsReader {
     intake_.take(*meter_, row);
   }
 
-  /// Most rows repeat what the rows before had: a stamp as long, the meter whose turn it is, its
-  /// unit. They are recognised by comparing, in half the time of splitting. False: look more
-  /// closely.
+  /// Most rows look like the rows before: a stamp of the same length, the expected meter, its unit.
+  /// Comparing recognises them in half the time of splitting. False: split the line.
   bool read_expected_line(const Line& line) {
     std::string_view rest = line.text;
     const std::size_t stamp_length = last_stamp_text_.size();
@@ -165,7 +164,7 @@ class ReadingsReader {
     return true;
   }
 
-  /// The meter that `rest` begins with, if it is one of the likely ones and was seen before.
+  /// The meter at the start of `rest`, if it is a likely one and was seen before.
   IntakeMeter* expected_meter(std::string_view rest) {
     for (const std::size_t guess : {last_meter_ + 1, last_meter_, std::size_t{0}}) {
       if (guess >= intake_.size()) continue;
@@ -210,9 +209,9 @@ class ReadingsReader {
     return true;
   }
 
-  /// False: a meter that nobody asked for, or none at all.
+  /// False: the meter is not configured, or there is none.
   bool find_meter() {
-    // Most files either repeat one meter or go round all of them.
+    // Most files repeat one meter or cycle through all of them.
     const std::string_view name = fields_[1];
     for (const std::size_t guess : {last_meter_ + 1, last_meter_, std::size_t{0}}) {
       if (guess < intake_.size() && intake_.meter(guess).rows.name == name) {
@@ -254,8 +253,8 @@ class ReadingsReader {
     return true;
   }
 
-  /// A last line without its end is believed when its last field is the one seen before: kWh cut to
-  /// kW would be another reading.
+  /// A last line without a line end is accepted only if its last field was seen before: kWh cut to
+  /// kW would be a different reading.
   [[nodiscard]] bool surely_whole() const {
     return columns_.count == kRequiredColumns && !meter_->unit.empty() &&
            fields_[3] == meter_->unit;
@@ -305,7 +304,7 @@ class ReadingsReader {
   ReadingIntake& intake_;
   FieldSplitter fields_;
   Columns columns_;
-  IntakeMeter* meter_ = nullptr;  ///< Of the line that is being read.
+  IntakeMeter* meter_ = nullptr;  ///< Of the current line.
   std::unordered_map<std::string, std::uint32_t, StringHash, std::equal_to<>> by_name_;
   std::size_t last_meter_ = 0;
   std::string last_stamp_text_;

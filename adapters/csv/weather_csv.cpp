@@ -19,12 +19,12 @@ using weather::WeatherRecord;
 
 constexpr std::string_view kWeatherHeader =
     "timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2";
-constexpr std::size_t kDryBulb = 0;  // in kWeatherVariables
+constexpr std::size_t kDryBulb = 0;  // index in kWeatherVariables
 constexpr std::string_view kDryBulbF = "dry_bulb_F";
 constexpr seconds kStepToInfer{1800};
 
-/// What can have been measured on the ground, in order of kWeatherVariables. Slight excess that
-/// sensors show (105 % humidity, −4 W/m2 at night) is cut off, more is kept out.
+/// Values that can occur on the ground, in order of kWeatherVariables. Slightly excessive values,
+/// as sensors report (105 % humidity, −4 W/m2 at night), are clipped; larger ones are dropped.
 struct Range {
   double low;
   double high;
@@ -41,7 +41,7 @@ constexpr std::array<Range, kWeatherVariables.size()> kRanges{{
     {50e3, 110e3, 0.0},
 }};
 
-/// Column of the file for each variable; none where the file lacks it.
+/// The file's column for each variable; absent if the file lacks it.
 using WeatherColumns = std::array<std::optional<std::size_t>, kWeatherVariables.size()>;
 
 class WeatherReader {
@@ -134,7 +134,7 @@ class WeatherReader {
     records_.push_back(record);
   }
 
-  /// False: the whole line is not to be trusted. An impossible value alone becomes a blank.
+  /// False: do not trust the whole line. A single impossible value becomes a blank instead.
   bool read_value(std::uint64_t line, std::size_t variable, std::string_view text,
                   WeatherHour& values) {
     if (text.empty()) return true;
@@ -190,7 +190,7 @@ class WeatherReader {
     using weather::KnownBy;
     using weather::RecordedValues;
     if (options_.values) return {*options_.values, KnownBy::declared};
-    // Half of a shorter step is nothing to a building, and too little to be seen.
+    // Half of a shorter step does not matter to a building, and is too little to detect.
     if (csv_.step < kStepToInfer) return {RecordedValues::mean, KnownBy::usage};
     if (const auto shown = weather::values_by_the_sun(records_, csv_.step, instant)) {
       return {*shown, KnownBy::inferred};

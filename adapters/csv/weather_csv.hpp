@@ -16,9 +16,9 @@ namespace recald::csv {
 
 struct WeatherCsvOptions {
   Stamps stamps = Stamps::start;
-  /// Of temperature, humidity, wind and pressure. Absent: as the record shows against the sun;
-  /// where it cannot tell, instants from a step of an hour on, as weather services report, and
-  /// means below, as loggers store.
+  /// Instants or means, for temperature, humidity, wind and pressure. Absent: inferred from the
+  /// record and the sun; if that fails, instants for steps of an hour or more, as weather services
+  /// report, and means for shorter steps, as loggers store.
   std::optional<weather::RecordedValues> values;
   std::size_t issues_listed_max = 100;
 };
@@ -29,13 +29,13 @@ struct WeatherCsv {
   weather::ValuesTaken values;
   std::vector<std::string> ignored_columns;
   std::uint64_t rows = 0;
-  LineIssues issues;  ///< Bad lines, impossible values (kept out as blanks), repeated stamps.
+  LineIssues issues;  ///< Bad lines, impossible values (made blank), repeated stamps.
 };
 
-/// `timestamp` and `dry_bulb_C`, or `dry_bulb_F`, are required, the other known columns (also
-/// dni_W_m2, dhi_W_m2, pressure_Pa) optional, in any order; unknown ones are ignored and named.
+/// `timestamp` and `dry_bulb_C`, or `dry_bulb_F`, are required; the other known columns (also
+/// dni_W_m2, dhi_W_m2, pressure_Pa) are optional, in any order. Unknown ones are ignored and named.
 /// Blanks are absent values. Same text rules as `read_readings`.
-/// @return not_found, io_failed, malformed (header), not_enough_data (no usable row).
+/// @return the weather; or not_found, io_failed, malformed (header), not_enough_data (no good row).
 [[nodiscard]] Result<WeatherCsv> read_weather(const std::filesystem::path& file,
                                               const WeatherCsvOptions& options);
 [[nodiscard]] Result<WeatherCsv> read_weather_text(std::string_view text, std::string_view name,

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files round their numbers, so a value may pass the end of its prior by as much.
+// Files round their numbers, so a value may lie this far outside its prior.
 constexpr double kRounding = 1e-4;
 
 /// Calls `read(table)` for each row. Success, or the first error of the table or of `read`.
@@ -62,7 +62,7 @@ struct ValueColumns {
   std::vector<std::string> names;
 };
 
-/// All columns but those in `keys`, each of which has to be there.
+/// All columns except those in `keys`, which must all be there.
 Result<ValueColumns> columns_beside(const TableReader& table,
                                     std::span<const std::string_view> keys) {
   for (const std::string_view key : keys) {
@@ -80,7 +80,7 @@ Result<ValueColumns> columns_beside(const TableReader& table,
                              table.file().string(), fmt::join(keys, ", ")));
 }
 
-/// Rows of one month each, in any order.
+/// One row per month, in any order.
 using RowsByMonth = std::map<DesignMonth, std::vector<double>>;
 
 MonthlyTable make_table(const RowsByMonth& rows, std::vector<std::string> names) {
@@ -98,7 +98,7 @@ MonthlyTable make_table(const RowsByMonth& rows, std::vector<std::string> names)
   return table;
 }
 
-/// doe_inputs.csv: the runs and where in the prior box they are.
+/// Reads doe_inputs.csv: the runs and their places in the prior box.
 class RunReader {
  public:
   RunReader(TableReader& table, DesignFolder& design) : table_{table}, design_{design} {}
@@ -197,7 +197,7 @@ class RunReader {
   std::set<int> seen_;
 };
 
-/// doe_outputs.csv: every run in every month.
+/// Reads doe_outputs.csv: every run in every month.
 class OutputReader {
  public:
   OutputReader(TableReader& table, DesignFolder& design) : table_{table}, design_{design} {
@@ -307,7 +307,7 @@ class OutputReader {
   std::set<DesignMonth> months_;
 };
 
-/// A file with one row a month. Blanks are NaN where they may be.
+/// Reads a file with one row per month. Blanks become NaN if they are allowed.
 Result<MonthlyTable> read_months(TableReader& table, const ValueColumns& columns, bool blanks) {
   const auto month_column = table.require("month");
   if (!month_column) return tl::unexpected(month_column.error());
@@ -352,7 +352,7 @@ Result<void> check_inputs(const fs::path& file, const DesignFolder& design) {
   return {};
 }
 
-/// A meta-model's terms are named after inputs and parameters, so no name may mean two things.
+/// A meta-model names its terms after inputs and parameters, so every name must be unique.
 Result<void> check_names(const DesignFolder& design) {
   std::set<std::string> names;
   for (const Parameter& parameter : design.parameters) names.insert(parameter.name);
@@ -403,7 +403,7 @@ Result<void> read_inputs(const fs::path& file, DesignFolder& design) {
   return check_inputs(file, design);
 }
 
-/// Columns of the measured outputs, in the design's order; those that are absent in words.
+/// Finds the columns of the measured outputs, in the design's order; notes those that are absent.
 ValueColumns measured_columns(const TableReader& table, const DesignFolder& design,
                               std::vector<std::string>& notes) {
   ValueColumns columns;
@@ -423,7 +423,7 @@ ValueColumns measured_columns(const TableReader& table, const DesignFolder& desi
   return columns;
 }
 
-/// The measured columns in their places among all outputs; the others NaN.
+/// Puts the measured columns in their places among all outputs; the others are NaN.
 Eigen::MatrixXd among_all(const MonthlyTable& measured, const std::vector<std::string>& outputs) {
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(
       measured.values.rows(), static_cast<Eigen::Index>(outputs.size()), kAbsent);
@@ -434,7 +434,7 @@ Eigen::MatrixXd among_all(const MonthlyTable& measured, const std::vector<std::s
   return all;
 }
 
-/// Without the months that have no model inputs.
+/// Drops the months that have no model inputs.
 MonthlyTable with_inputs(MonthlyTable measured, const MonthlyTable& inputs,
                          std::vector<std::string>& notes) {
   std::vector<DesignMonth> unknown;

@@ -9,7 +9,7 @@
 
 namespace recald::doe {
 
-/// In order of time. A folder uses one of the two kinds throughout.
+/// Ordered by time. A folder uses only one of the two kinds.
 class DesignMonth {
  public:
   /// "2016-03", or a whole number such as "3". @return malformed for anything else.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kStateFile = "design.json";
 
-/// Shortest text that reads back as the same bits; blank for what is not there.
+/// The shortest text that reads back as the same bits; blank for a value that is not finite.
 std::string field(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string runs_csv(const DesignPlan& plan) {
@@ -73,7 +73,7 @@ std::string state_json(const DesignPlan& plan) {
   return state.dump(2) + "\n";
 }
 
-/// What cannot be looked at is found out when it is read.
+/// Errors are ignored here; reading the file will report them.
 bool is_there(const fs::path& file) {
   std::error_code ignored;
   return fs::exists(file, ignored);
@@ -87,8 +87,8 @@ std::optional<std::string> text_of(const fs::path& file) {
   return text.str();
 }
 
-/// Why the folder's design is not the one that is planned; empty where it is, and where there is
-/// none yet.
+/// Why the folder's design differs from the plan; empty if it does not, or if the folder has no
+/// design yet.
 std::string difference(const fs::path& folder, const DesignPlan& plan) {
   const auto state = text_of(folder / kStateFile);
   if (!state) {
@@ -108,7 +108,7 @@ Result<void> write_plan(const fs::path& folder, const DesignPlan& plan) {
   const auto write = [&](const char* name, const std::string& text) {
     return system::write_file(folder / name, text);
   };
-  // First: whoever finds any other file can ask whose it is.
+  // Written first, so that any other file in the folder can be traced to its plan.
   if (auto w = write(kStateFile, state_json(plan)); !w) return w;
   if (auto w = write("priors.csv", priors_csv(plan.parameters)); !w) return w;
   if (auto w = write("doe_inputs.csv", runs_csv(plan)); !w) return w;
@@ -142,7 +142,7 @@ Result<void> read_runs(const fs::path& file, const DesignPlan& plan, DesignRunsS
       runs.outputs(*run - 1, static_cast<Eigen::Index>(k) * months + i) = *value;
     }
   }
-  // A file that somebody has cut may end within a run: that run is not done.
+  // A truncated file may end within a run; that run is not done.
   for (std::size_t r = 0; r < runs.done.size(); ++r) {
     runs.done[r] = runs.outputs.row(static_cast<Eigen::Index>(r)).allFinite();
   }

@@ -1,4 +1,4 @@
-/// Writing a design of experiments, and taking up one that was interrupted.
+/// Writes a design of experiments, and resumes one that was interrupted.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,19 +13,19 @@
 
 namespace recald::doe {
 
-/// All of a design that is known before its first run.
+/// Everything about a design that is known before its first run.
 struct DesignPlan {
   std::vector<Parameter> parameters;
   Eigen::MatrixXd theta;  ///< (runs x q); run i of the files is row i - 1.
   std::vector<std::string> output_names;
   std::vector<DesignMonth> months;
-  MonthlyTable inputs;        ///< Months of the design and those that validate.
+  MonthlyTable inputs;        ///< The design's months and the validation months.
   MonthlyTable measurements;  ///< NaN: not measured, written as a blank.
   std::uint64_t seed = 1;
-  std::string fingerprint;  ///< Of all that a run depends on besides its parameters.
+  std::string fingerprint;  ///< Of everything that a run depends on besides its parameters.
 };
 
-/// The runs as far as they have come.
+/// The runs done so far.
 struct DesignRunsSoFar {
   Eigen::MatrixXd outputs;  ///< (runs x outputs * months), output-major; NaN in rows not yet run.
   std::vector<bool> done;   ///< (runs)
@@ -33,14 +33,14 @@ struct DesignRunsSoFar {
   [[nodiscard]] int done_count() const;
 };
 
-/// Writes everything but the outputs into a new folder; in a folder that holds this very design,
-/// reads the runs that are there already.
-/// @return invalid_value when the folder holds another design, saying in what it differs;
-///         malformed when its outputs are not as this program left them; io_failed.
+/// Writes everything but the outputs into a new folder. If the folder already holds this design,
+/// reads its finished runs instead.
+/// @return invalid_value when the folder holds another design, saying how it differs;
+///         malformed when this program did not write its outputs; io_failed.
 [[nodiscard]] Result<DesignRunsSoFar> open_design(const std::filesystem::path& folder,
                                                   const DesignPlan& plan);
 
-/// Writes doe_outputs.csv with the runs that are done: whole, or as it was before.
+/// Writes the finished runs to doe_outputs.csv. After a crash the file is either new or unchanged.
 [[nodiscard]] Result<void> write_outputs(const std::filesystem::path& folder,
                                          const DesignPlan& plan, const DesignRunsSoFar& runs);
 

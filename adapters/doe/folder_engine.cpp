@@ -8,7 +8,7 @@
 namespace recald::doe {
 namespace {
 
-/// Runs between two writes: what an interruption may cost.
+/// Runs between two writes: the most that an interruption loses.
 constexpr std::ptrdiff_t kRunsPerWrite = 20;
 
 }  // namespace
@@ -27,7 +27,8 @@ Result<FolderEngine> FolderEngine::open(std::filesystem::path folder, DesignPlan
 Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& theta) const {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < theta.rows(); ++i) {
-    // As a rule it is in the plan's own place; to look for each from the first on takes a square.
+    // A row is usually in the plan's own place; searching from the start each time would be
+    // quadratic.
     const bool is_in_place = i < plan_.theta.rows() && plan_.theta.row(i) == theta.row(i);
     Eigen::Index row = is_in_place ? i : 0;
     while (row < plan_.theta.rows() && plan_.theta.row(row) != theta.row(i)) ++row;

@@ -1,5 +1,5 @@
-/// A design folder as an engine: runs that it has are read, the others are run by the engine behind
-/// it and written down.
+/// A design folder as an engine: it reads the runs that the folder has, lets the engine behind it
+/// compute the others, and stores them.
 #pragma once
 
 #include <filesystem>
@@ -12,26 +12,26 @@ namespace recald::doe {
 class FolderEngine final : public Engine {
  public:
   /// Opens the folder, or makes it.
-  /// @param behind  Outlives this; null: the folder's runs are all there is.
-  /// @return or as `open_design`.
+  /// @param behind  Outlives this; null: only the folder's runs are available.
+  /// @return the engine, or as `open_design`.
   [[nodiscard]] static Result<FolderEngine> open(std::filesystem::path folder, DesignPlan plan,
                                                  Engine* behind);
 
-  /// How many runs the folder has.
+  /// Number of runs in the folder.
   [[nodiscard]] int done_count() const { return runs_.done_count(); }
 
-  /// Writes after every few runs, so that an interruption costs little.
+  /// Writes after every few runs, so that an interruption loses little.
   /// @param theta  Rows of the plan.
-  /// @return or not_found where a run is missing and nothing stands behind; invalid_value for a row
-  ///         that the plan does not have; what the engine behind finds; cancelled, io_failed: what
-  ///         was run is kept.
+  /// @return the outputs; or not_found if a run is missing and there is no engine behind;
+  ///         invalid_value for a row that is not in the plan; an error of the engine behind;
+  ///         cancelled, io_failed. Finished runs are kept.
   Result<Eigen::MatrixXd> run(const Eigen::MatrixXd& theta, const ForEachIndex& executor,
                               const Observer& observer) override;
 
  private:
   FolderEngine(std::filesystem::path folder, DesignPlan plan, Engine* behind, DesignRunsSoFar runs);
 
-  /// @return the plan's row of each row of theta, or invalid_value.
+  /// @return the plan's row for each row of theta, or invalid_value.
   [[nodiscard]] Result<std::vector<Eigen::Index>> rows_of(const Eigen::MatrixXd& theta) const;
   Result<void> run_rows(const std::vector<Eigen::Index>& rows, const ForEachIndex& executor);
 

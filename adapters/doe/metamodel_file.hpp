@@ -1,4 +1,4 @@
-/// A regression that somebody else has fitted: `term,coef`, as R writes its coefficients.
+/// A regression fitted elsewhere: `term,coef`, as R writes its coefficients.
 ///
 /// Terms are `(Intercept)`, the name of an input or parameter, `a:b` for a product, `a^2` for a
 /// square.
@@ -13,7 +13,7 @@
 namespace recald::doe {
 
 /// @return the terms in the file's order, or malformed, not_enough_data (no term), not_found,
-///         io_failed. Whether the terms' factors exist is for `model_of` to say.
+///         io_failed. `model_of` checks whether the terms' factors exist.
 [[nodiscard]] Result<std::vector<model::metamodel::NamedCoefficient>> read_metamodel(
     const std::filesystem::path& file);
 

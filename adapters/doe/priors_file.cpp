@@ -36,7 +36,7 @@ Result<Columns> find_columns(const TableReader& table) {
                  table.find("sd")};
 }
 
-/// A column that the file may lack.
+/// The number in a column that the file may lack.
 Result<std::optional<double>> number_if_any(const TableReader& table,
                                             const std::optional<std::size_t>& column) {
   if (!column) return std::optional<double>{};
@@ -76,12 +76,12 @@ Result<Parameter> read_parameter(const TableReader& table, const Columns& column
   return Parameter{std::move(name), std::string{table.text(columns.unit)}, std::move(*prior)};
 }
 
-/// Shortest text that reads back as the same bits; blank for what is not there.
+/// The shortest text that reads back as the same bits; blank for no value.
 std::string field(std::optional<double> value) {
   return value && std::isfinite(*value) ? fmt::format("{}", *value) : "";
 }
 
-/// A text that would otherwise break the line.
+/// Quotes a text that would otherwise break the line.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"") == std::string::npos) return text;
   std::string inside;

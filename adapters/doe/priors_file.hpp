@@ -23,11 +23,11 @@
 namespace recald::doe {
 
 /// @return the parameters in the file's order, or the first fault: not_found, io_failed, malformed
-///         (columns, numbers, names that come twice), invalid_value (a prior nobody can sample),
+///         (columns, numbers, repeated names), invalid_value (a prior that cannot be sampled),
 ///         not_enough_data (no parameter).
 [[nodiscard]] Result<std::vector<Parameter>> read_priors(const std::filesystem::path& file);
 
-/// The file's text; reading it gives the same parameters to the last bit.
+/// The text of the file. Reading it back gives the same parameters, bit for bit.
 [[nodiscard]] std::string priors_csv(std::span<const Parameter> parameters);
 
 }  // namespace recald::doe

@@ -1,4 +1,4 @@
-/// A small CSV table with a header, row by row, and the sentences for what is wrong in it.
+/// Reads a small CSV table with a header row by row, and words the errors in it.
 #pragma once
 
 #include <cstdint>
@@ -15,40 +15,41 @@
 
 namespace recald::doe {
 
-/// Empty lines and lines that start with # are skipped. A table of a design is small and every
-/// number of it counts, so unlike readings a single bad line is an error.
+/// Empty lines and lines that start with # are skipped. A design's tables are small and every
+/// number counts, so unlike in readings a single bad line is an error.
 class TableReader {
  public:
   /// Opens the file and reads its header. Column names are trimmed.
-  /// @return not_found, io_failed; malformed for an empty file, semicolons, a column without name
-  ///         or one that comes twice; unsupported for more columns than a table may have.
+  /// @return not_found, io_failed; malformed for an empty file, semicolons, a column without a name
+  ///         or a repeated name; unsupported for more columns than a table may have.
   [[nodiscard]] static Result<TableReader> open(const std::filesystem::path& file);
 
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
-  /// Index of a column; none where the file lacks it.
+  /// Index of a column, or nothing if the file lacks it.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const;
-  /// Index of a column that has to be there; malformed names the file, the nearest column and all.
+  /// Index of a required column; the malformed error names the file, the nearest column and all
+  /// columns.
   [[nodiscard]] Result<std::size_t> require(std::string_view column) const;
 
-  /// Goes to the next row. @return false at the end; malformed for a row that is none; io_failed.
+  /// Moves to the next row. @return false at the end; malformed for a broken row; io_failed.
   [[nodiscard]] Result<bool> next();
 
-  /// Of the row, trimmed. Valid until the next row.
+  /// The trimmed text of a cell in this row. Valid until the next row.
   [[nodiscard]] std::string_view text(std::size_t column) const {
     return csv::trimmed(fields_[column]);
   }
-  /// @return malformed for a blank or anything else that is no finite number.
+  /// @return malformed for a blank cell or anything else that is not a finite number.
   [[nodiscard]] Result<double> number(std::size_t column) const;
-  /// The same, but none for a blank.
+  /// As above, but returns nothing for a blank cell.
   [[nodiscard]] Result<std::optional<double>> number_or_blank(std::size_t column) const;
   /// A whole number from 0 to 999 999 999.
   [[nodiscard]] Result<int> whole_number(std::size_t column) const;
 
-  /// "'FILE':LINE: sentence", about the row.
+  /// The error "'FILE':LINE: sentence" about this row.
   [[nodiscard]] tl::unexpected<Error> wrong(const std::string& sentence) const;
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// The last line had no line end, as in a file that was cut.
+  /// Whether the last line has no line end, as in a truncated file.
   [[nodiscard]] bool ends_open() const { return ends_open_; }
 
  private:
@@ -67,7 +68,7 @@ class TableReader {
   bool ends_open_ = false;
 };
 
-/// "a, b and c"; from the ninth on only how many more: "a, b, c, d, e, f, g, h and 12 more".
+/// "a, b and c"; with more than nine, the rest is counted: "a, b, c, d, e, f, g, h and 12 more".
 [[nodiscard]] std::string listed(std::span<const std::string> names);
 
 }  // namespace recald::doe

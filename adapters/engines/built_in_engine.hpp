@@ -12,10 +12,10 @@ namespace recald::engines {
 
 class BuiltInEngine final : public Engine {
  public:
-  /// @param parameters  Of the model; they name the values in an error.
+  /// @param parameters  Of the model; used to name the values in an error.
   BuiltInEngine(std::unique_ptr<MonthlyModel> model, std::vector<Parameter> parameters);
 
-  /// @return or the errors of `design::run_model`.
+  /// @return the outputs, or the errors of `design::run_model`.
   Result<Eigen::MatrixXd> run(const Eigen::MatrixXd& theta, const ForEachIndex& executor,
                               const Observer& observer) override;
 

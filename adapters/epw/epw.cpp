@@ -31,7 +31,7 @@ constexpr std::size_t kFieldsNeeded = 22;  // up to wind speed; the rest is not 
 constexpr int kLeapYear = 2000;
 constexpr int kPlainYear = 2001;
 
-/// A field of a row: place, missing code, and where it goes. From the code on it means "missing".
+/// A field of a row: its place, where its value goes, and the code from which on it is missing.
 struct Field {
   std::size_t place;
   double missing_from;
@@ -52,7 +52,7 @@ std::string at_line(std::string_view name, std::uint64_t line) {
   return in_quotes(name) + " line " + std::to_string(line) + ": ";
 }
 
-/// The hour that a row of the year must be; the sequence is the check that none is lost.
+/// The hour that the next row must be; this check shows whether rows are missing.
 struct YearHour {
   int month;
   int day;
@@ -159,7 +159,7 @@ class EpwReader {
     while (lines_.next(line_)) {
       if (csv::trimmed(line_.text).empty() && !line_.too_long) continue;
       const std::size_t count = fields_.split(line_.text);
-      // A row that the end of the file cuts off is not there; what is missing is told below.
+      // A row cut off by the end of the file does not count; missing rows are reported below.
       if (!line_.terminated && count <= kFieldsNeeded) return true;
       if (count < kFieldsNeeded || count > FieldSplitter::kFieldsMax) {
         return failure(ErrorCode::malformed, at_line(name_, line_.number) +

@@ -1,4 +1,4 @@
-/// EnergyPlus weather files as they are.
+/// EnergyPlus weather files.
 #pragma once
 
 #include <chrono>
@@ -18,15 +18,15 @@ struct EpwLocation {
   std::string country;
   double latitude_deg;   ///< North positive.
   double longitude_deg;  ///< East positive.
-  double utc_offset_h;   ///< Of local standard time, the file's clock all year.
+  double utc_offset_h;   ///< Of local standard time, which the file uses all year.
   double elevation_m;
 };
 
 struct EpwWeather {
   EpwLocation location;
   weather::WeatherSeries series;  ///< On the UTC hour, missing codes absent.
-  int year;                       ///< The calendar year that the series stands for.
-  bool typical;          ///< Months are stitched from different years: not the weather of `year`.
+  int year;                       ///< The calendar year of the series.
+  bool typical;          ///< Months are from different years: this is not the weather of `year`.
   bool leap_day;         ///< The file has a 29 February.
   int humidity_clipped;  ///< Hours above 100 %, set to 100.
   std::vector<std::string> notes;  ///< One sentence each: leap day repeated or dropped, …
@@ -36,16 +36,15 @@ struct EpwWeather {
 ///
 /// Hours run 1…24 and name the END of the hour in local standard time without summer time, so row
 /// "1,1,1" is the first hour of the year there. Irradiance is the hour's; temperature, humidity,
-/// wind and pressure are values at its end, and become means of the hour. Missing codes become
-/// absent. The weekday of the header is not used: it comes from the calendar of `year`.
-/// @param year  the calendar year to lay the rows on. Absent: the file's own year, or, where
-///              a typical file stitches several, the year of its first row. In a leap year a file
-///              without 29 February repeats the 28th; otherwise a 29 February is dropped. Both
-///              noted.
+/// wind and pressure are values at its end, and are converted to means of the hour. Missing codes
+/// become absent values. The header's weekday is ignored; it follows from the calendar of `year`.
+/// @param year  The calendar year to place the rows in. Absent: the file's own year, or for a
+///              typical year made of several, that of its first row. In a leap year a file without
+///              29 February repeats the 28th; otherwise a 29 February is dropped. A note says so.
 /// @param values  What temperature, humidity, wind and pressure are in a file that differs.
-/// @return the weather, or not_found, io_failed, malformed (a header line, a field, rows out of
-///         order), not_enough_data (a file that ends early: the message names the first hour
-///         that is missing).
+/// @return the weather, or not_found, io_failed, malformed (a header line, a field, rows
+///         out of order), not_enough_data (a file that ends early: the message names the
+///         first missing hour).
 /// @see EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary".
 [[nodiscard]] Result<EpwWeather> read_epw(
     const std::filesystem::path& file, std::optional<int> year = {},

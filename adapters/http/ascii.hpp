@@ -1,4 +1,4 @@
-/// Letters as protocols compare them: no locale has a say.
+/// ASCII letters as protocols compare them, whatever the locale.
 #pragma once
 
 #include <algorithm>
@@ -22,14 +22,14 @@ namespace recald::http {
       a, b, {}, [](char c) { return to_lower(c); }, [](char c) { return to_lower(c); });
 }
 
-/// Without the spaces and tabs around it.
+/// The text without surrounding spaces and tabs.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// Takes the next element off a list "a, b, c"; elements come trimmed, quoted commas split too.
+/// Takes the next element off a list "a, b, c". Elements are trimmed; quoted commas split too.
 [[nodiscard]] inline std::string_view take_element(std::string_view& list, char separator = ',') {
   const std::size_t end = list.find(separator);
   const std::string_view element = trimmed(list.substr(0, end));

@@ -86,7 +86,7 @@ awaitable<Result<Response>> exchange_over_tls(beast::tcp_stream& connected, cons
   ErrorText error;
   co_await stream.async_handshake(boost::asio::ssl::stream_base::client, into(error));
   if (error) co_return broken(url, error);
-  // What is left unsaid at the end is no matter: the answer told its length.
+  // How the connection ends does not matter: the response stated its length.
   co_return co_await exchange(stream, url, options);
 }
 

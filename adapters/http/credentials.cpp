@@ -25,14 +25,14 @@ std::string digest(std::string_view text) {
   return running.hex();
 }
 
-/// Digests have one length, so that not even the token's length can be measured.
+/// Digests all have the same length, so timing does not even reveal the token's length.
 bool is_same(std::string_view a, std::string_view b) {
   const std::string left = digest(a);
   const std::string right = digest(b);
   return CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;
 }
 
-/// What follows the first colon of "name:password" in base 64; empty where there is none.
+/// The password in a base64-encoded "name:password"; empty if there is no colon.
 std::string password_of(std::string_view encoded) {
   if (encoded.empty() || encoded.size() % 4 != 0 || encoded.size() > 1024) return {};
   std::string decoded(encoded.size() / 4 * 3, '\0');

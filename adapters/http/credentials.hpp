@@ -1,4 +1,4 @@
-/// Who may ask: one token for all, as a Bearer token or as a password.
+/// Access control: one token for all clients, sent as a Bearer token or as a password.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,15 @@
 namespace recald::http {
 
 /// Whether an Authorization header carries the token: "Bearer TOKEN" from programs, or "Basic …"
-/// with any name and the token as password, which is what browsers can send. How long it takes does
-/// not depend on how much of the token was right.
+/// with any name and the token as password, which browsers can send. The time taken does not depend
+/// on how much of the token was right.
 /// @pre token is not empty
 [[nodiscard]] bool carries_token(std::string_view authorization, std::string_view token);
 
-/// The token in a file, without the white space around it.
-/// @return or not_found, io_failed; invalid_value where it is shorter than 16 characters or has
-///         others than letters, digits and -._~+/=, or where people other than the owner may read
-///         the file.
+/// Reads the token from a file, without surrounding white space.
+/// @return the token; or not_found, io_failed; invalid_value if it is shorter than 16 characters,
+///         has characters other than letters, digits and -._~+/=, or if anyone but the owner may
+///         read the file.
 [[nodiscard]] Result<std::string> read_token_file(const std::filesystem::path& file);
 
 }  // namespace recald::http

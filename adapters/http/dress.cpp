@@ -33,7 +33,7 @@ std::string etag_of(std::string_view body) {
 
 bool matches_etag(std::string_view if_none_match, std::string_view etag) {
   while (!if_none_match.empty()) {
-    // Our own tags have no comma, so what a comma splits wrongly is not ours.
+    // Our own tags have no comma, so a tag that a comma splits is not ours.
     const std::string_view tag = take_element(if_none_match);
     if (tag == "*" || without_weakness(tag) == without_weakness(etag)) return true;
   }

@@ -1,5 +1,4 @@
-/// What every answer gets, whoever made it: the client's cached copy confirmed, gzip, and the
-/// headers that keep browsers from doing harm.
+/// What every response gets: the check of the client's cached copy, gzip, and protective headers.
 #pragma once
 
 #include <string>
@@ -9,14 +8,14 @@
 
 namespace recald::http {
 
-/// W/"…" of the body's digest. Weak, because the same body may go out packed or not.
+/// W/"…" with the body's digest. Weak, because the same body may be sent compressed or not.
 [[nodiscard]] std::string etag_of(std::string_view body);
 
-/// Whether an If-None-Match header names the tag, by weak comparison, or any ("*").
+/// Whether an If-None-Match header names the tag, by weak comparison, or is "*".
 [[nodiscard]] bool matches_etag(std::string_view if_none_match, std::string_view etag);
 
-/// - 200 on GET or HEAD: an ETag; 304 without a body where the client has that body already.
-/// - Bodies of 1 KiB and more are packed for those who accept gzip.
+/// - 200 on GET or HEAD: an ETag; 304 without a body if the client already has that body.
+/// - Bodies of 1 KiB and more are compressed for clients that accept gzip.
 /// - Content-Security-Policy, no sniffing of types, no framing, no shared caches.
 [[nodiscard]] Response dressed(const Request& request, Response response);
 

@@ -30,7 +30,7 @@ Method method_of(beast_http::verb verb) {
   }
 }
 
-/// Refusals come from here and not from the handler, so they are dressed here.
+/// The handler does not see refusals, so their headers are added here.
 Response refused(int status, std::string_view code, std::string_view message) {
   return dressed({}, error_response(status, code, message));
 }
@@ -63,7 +63,7 @@ Result<Request> request_head(const beast_http::request<beast_http::string_body>&
     const auto name = field.name_string();
     const auto value = field.value();
     std::string& known = request.headers[to_lower(std::string_view{name.data(), name.size()})];
-    if (!known.empty()) known += ", ";  // RFC 9110, 5.3: a header given twice is a list
+    if (!known.empty()) known += ", ";  // RFC 9110, 5.3: a repeated header is a list
     known.append(value.data(), value.size());
   }
   return request;

@@ -1,6 +1,6 @@
-/// Between Beast's messages and ours: what a session needs that has nothing to do with streams.
+/// Translates between Beast's messages and ours: the parts of a session that need no stream.
 ///
-/// Internal to this folder: Beast shows here.
+/// Internal to this folder, because it exposes Beast.
 #pragma once
 
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it
@@ -21,9 +21,9 @@
 
 namespace recald::http {
 
-/// What a server asks of every session.
+/// The settings that all sessions of a server share.
 struct SessionRules {
-  std::string token;                 ///< Empty: none is asked for.
+  std::string token;                 ///< Empty: no token is required.
   std::set<std::string> open_paths;  ///< Answered without the token.
   std::size_t body_max = 1024 * 1024;
   std::size_t header_max = 16 * 1024;
@@ -35,22 +35,22 @@ struct SessionRules {
 [[nodiscard]] Result<Request> request_head(
     const boost::beast::http::request<boost::beast::http::string_body>& message);
 
-/// What is refused before the body is read: no token, or a POST that a web page of any origin could
-/// make a browser send (a body that does not call itself JSON).
+/// What is refused before the body is read: a missing token, or a POST that any web page could make
+/// a browser send (its body is not declared as JSON).
 [[nodiscard]] std::optional<Response> refusal_of_head(const Request& request,
                                                       const SessionRules& rules);
 
-/// What a failed read says to the client; nothing where it went away or was too slow.
+/// The response to a failed read; nothing if the client went away or was too slow.
 [[nodiscard]] std::optional<Response> refusal_of(const boost::system::error_code& error);
 
 [[nodiscard]] Response bad_request(const Error& error);
 
-/// The handler's answer; a 500 without details if it throws.
+/// The handler's response; a 500 without details if it throws.
 [[nodiscard]] Response called(const Handler& handler, const Request& request);
 
 [[nodiscard]] boost::beast::http::response<boost::beast::http::string_body> wire_message(
     const Response& response, bool keep_alive);
-/// The answer to HEAD: the length that the body would have, and no body.
+/// The response to HEAD: the length that the body would have, and no body.
 [[nodiscard]] boost::beast::http::response<boost::beast::http::empty_body> wire_head(
     const Response& response, bool keep_alive);
 

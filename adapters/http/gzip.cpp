@@ -10,7 +10,7 @@
 namespace recald::http {
 namespace {
 
-/// "gzip;q=0.5": only a weight of zero says no, whatever its digits.
+/// "gzip;q=0.5": only a weight of zero, with any number of digits, refuses it.
 bool is_wanted(std::string_view parameters) {
   while (!parameters.empty()) {
     const std::string_view parameter = take_element(parameters, ';');
@@ -38,14 +38,14 @@ bool accepts_gzip(std::string_view accept_encoding) {
 }
 
 std::string gzip(std::string_view text) {
-  constexpr int kGzipWindow = 15 + 16;  // zlib's way to ask for gzip's frame
+  constexpr int kGzipWindow = 15 + 16;  // zlib's code for a gzip frame
   constexpr int kMemory = 8;
   z_stream stream{};
   [[maybe_unused]] const int begun =
       deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzipWindow, kMemory, Z_DEFAULT_STRATEGY);
   assert(begun == Z_OK);
   std::string packed(deflateBound(&stream, text.size()), '\0');
-  // zlib reads through a pointer that is not const, and writes nothing there.
+  // zlib reads through a pointer to non-const, but does not write there.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
   stream.avail_in = static_cast<uInt>(text.size());
   stream.next_out = reinterpret_cast<Bytef*>(packed.data());

@@ -1,4 +1,4 @@
-/// Bodies made small for clients that say they can read them.
+/// Compressed bodies for clients that accept them.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace recald::http {
 
-/// Whether an Accept-Encoding header lets gzip through: "gzip", "x-gzip" or "*" with a weight that
-/// is not zero; what is named beats "*".
+/// Whether an Accept-Encoding header allows gzip: "gzip", "x-gzip" or "*" with a weight that is not
+/// zero. A named encoding takes precedence over "*".
 [[nodiscard]] bool accepts_gzip(std::string_view accept_encoding);
 
-/// RFC 1952, at zlib's fastest level: the event loop waits for it.
+/// RFC 1952, at zlib's fastest level because the event loop waits for it.
 [[nodiscard]] std::string gzip(std::string_view text);
 
 }  // namespace recald::http

@@ -1,4 +1,4 @@
-/// A request and its answer as values: whoever answers needs no socket, and a test neither.
+/// A request and its response as values, so neither handlers nor tests need a socket.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Request {
   std::map<std::string, std::string> headers;  ///< Names in lower case.
   std::string body;
 
-  /// Empty where it was not sent.
+  /// Empty if it was not sent.
   [[nodiscard]] std::string_view header(const std::string& lower_case_name) const;
 };
 
@@ -28,9 +28,9 @@ struct Response {
   int status = 200;
   std::string content_type;
   std::string body;
-  std::vector<std::pair<std::string, std::string>> headers;  ///< Beside type and length.
+  std::vector<std::pair<std::string, std::string>> headers;  ///< Besides type and length.
 
-  /// Empty where there is none. Any case.
+  /// Empty if absent. The name may be in any case.
   [[nodiscard]] std::string_view header(std::string_view name) const;
 };
 
@@ -42,7 +42,7 @@ inline constexpr std::string_view kJsonType = "application/json; charset=utf-8";
 
 /// {"error":{"code","message","field"}} in JSON.
 /// @param code   A stable word for programs: "not_found".
-/// @param field  The parameter or key that is wrong, or empty.
+/// @param field  The parameter or key at fault, or empty.
 [[nodiscard]] Response error_response(int status, std::string_view code, std::string_view message,
                                       std::string_view field = "");
 

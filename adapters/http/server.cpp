@@ -31,7 +31,7 @@ using TlsStream = boost::beast::ssl_stream<tcp_stream>;
 
 constexpr std::chrono::milliseconds kAfterAcceptFailed{100};
 
-/// What belongs to the wish to be served, and cannot.
+/// For a client above the limit of connections.
 Response too_many() {
   Response response = dressed({}, error_response(503, "too_many_connections",
                                                  "too many connections; try again in a moment"));
@@ -69,14 +69,14 @@ struct Server::Shared {
   SessionRules rules;
   int connections_max = 0;
   tcp::acceptor acceptor;
-  Tls tls;  ///< Of the next connection.
+  Tls tls;  ///< For the next connection.
   Handler handler;
-  std::map<tcp_stream*, const WaitingSince*> open;  ///< Of the sessions that run.
+  std::map<tcp_stream*, const WaitingSince*> open;  ///< Streams of the running sessions.
 };
 
 namespace {
 
-/// A stream that the server knows of, as long as its session lasts.
+/// A stream that the server knows for the lifetime of its session.
 template <class Shared>
 class Known {
  public:
@@ -126,8 +126,8 @@ awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bo
   }
 }
 
-/// Closes the connection that has waited longest for a request: idle clients must not keep others
-/// out, least of all a supervisor's probe. Whoever lost it connects anew.
+/// Closes the connection that has waited longest for a request, so idle clients cannot shut out
+/// others, above all a supervisor's probe. A client that lost its connection reconnects.
 /// @return false when all are being answered.
 template <class Shared>
 bool close_longest_idle(Shared& shared) {
@@ -142,8 +142,7 @@ bool close_longest_idle(Shared& shared) {
   return true;
 }
 
-/// As many again as are served are told that they are too many; more than that just find the door
-/// shut.
+/// Sends a 503 to as many more clients as are being served; closes connections beyond those.
 template <class Shared>
 void receive(const std::shared_ptr<Shared>& shared, tcp::socket socket) {
   const auto limit = static_cast<std::size_t>(shared->connections_max);
@@ -167,12 +166,12 @@ awaitable<void> accept_all(std::shared_ptr<Shared> shared) {
     tcp::socket socket =
         co_await shared->acceptor.async_accept(redirect_error(use_awaitable, error));
     if (!error) {
-      // Posted: whatever comes of one client, the next is heard.
+      // Posted, so that a failure with one client does not stop the next from being accepted.
       boost::asio::post(
           shared->acceptor.get_executor(),
           [shared, socket = std::move(socket)]() mutable { receive(shared, std::move(socket)); });
     } else if (shared->acceptor.is_open()) {
-      // Out of descriptors, mostly: the waiting client stays, so asking at once would spin.
+      // Usually out of descriptors. The client keeps waiting, so retrying at once would spin.
       pause.expires_after(kAfterAcceptFailed);
       co_await pause.async_wait(redirect_error(use_awaitable, error));
     }
@@ -181,7 +180,7 @@ awaitable<void> accept_all(std::shared_ptr<Shared> shared) {
 
 }  // namespace
 
-/// TLS 1.2 and 1.3, nothing older.
+/// TLS 1.2 and 1.3 only.
 Result<Tls> read_tls(const TlsFiles& files) {
   using boost::asio::ssl::context;
   auto tls = std::make_shared<context>(context::tls_server);
@@ -194,7 +193,7 @@ Result<Tls> read_tls(const TlsFiles& files) {
     return failure(ErrorCode::io_failed, "certificate '" + files.certificate.string() +
                                              "' cannot be used: " + error.message());
   }
-  // Checks as well that the key belongs to the certificate.
+  // This also checks that the key belongs to the certificate.
   tls->use_private_key_file(files.key.string(), context::pem, error);
   if (error) {
     return failure(ErrorCode::io_failed,

@@ -1,5 +1,5 @@
-/// An HTTP/1.1 server on the daemon's loop: limits, deadlines, token and TLS; what is answered is
-/// the handler's business.
+/// An HTTP/1.1 server on the daemon's loop: limits, deadlines, token and TLS. The handler decides
+/// the responses.
 #pragma once
 
 #include <chrono>
@@ -27,36 +27,36 @@ struct TlsFiles {
   std::filesystem::path key;          ///< PEM.
 };
 
-/// A certificate with its key, read and found to belong together; empty: none.
+/// A certificate with its matching key; empty: none.
 using Tls = std::shared_ptr<boost::asio::ssl::context>;
-/// @return or io_failed: one of them cannot be read, or they do not belong together.
+/// @return io_failed: one of them cannot be read, or they do not belong together.
 [[nodiscard]] Result<Tls> read_tls(const TlsFiles& files);
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric, IPv4 or IPv6.
-  std::uint16_t port = 8080;          ///< 0: any that is free.
-  std::string token;                  ///< Empty: none is asked for.
+  std::uint16_t port = 8080;          ///< 0: any free port.
+  std::string token;                  ///< Empty: no token is required.
   std::set<std::string> open_paths;   ///< Answered without the token.
   std::optional<TlsFiles> tls;
   std::size_t body_max = 1024 * 1024;
-  std::size_t header_max = 16 * 1024;  ///< Request line included.
-  int connections_max = 64;  ///< Whoever comes then takes an idle one's place, or gets a 503.
-  /// For a whole request to arrive, for an answer to leave, and between two requests.
+  std::size_t header_max = 16 * 1024;  ///< Includes the request line.
+  int connections_max = 64;            ///< A further one replaces an idle one, or gets a 503.
+  /// For a whole request to arrive, for a response to leave, and between two requests.
   std::chrono::milliseconds slow_client{10'000};
 };
 
 class Server {
  public:
-  /// Listens from now on; connections are served while the context runs.
+  /// Starts listening; connections are served while the context runs.
   ///
-  /// What clients do wrong is answered here: 400 malformed, 401 without the token (before the body
-  /// is read), 413 and 431 too large, 503 too many connections. Who is slow is cut off, and
-  /// of too many connections the one that has waited longest for a request.
+  /// The server itself answers clients' mistakes: 400 malformed, 401 without the token (before the
+  /// body is read), 413 and 431 too large, 503 too many connections. It disconnects slow clients,
+  /// and if there are too many connections, the one that has waited longest for a request.
   /// @param context  Run by one thread; outlives this.
-  /// @param handler  Called on that thread, with whole requests only. What it throws is a 500.
-  /// @return or invalid_value: not a numeric address, or one that others can reach without both a
-  ///         token and TLS; io_failed: the address is in use or not ours, or the certificate or key
-  ///         cannot be read or do not belong together.
+  /// @param handler  Called on that thread, with whole requests only. If it throws, we send a 500.
+  /// @return the server; or invalid_value: not a numeric address, or one that others can reach
+  ///         without both a token and TLS; io_failed: the address is in use or not ours, or the
+  ///         certificate or key cannot be read or do not belong together.
   [[nodiscard]] static Result<std::unique_ptr<Server>> listen(boost::asio::io_context& context,
                                                               const ServerOptions& options,
                                                               Handler handler);
@@ -66,21 +66,21 @@ class Server {
 
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Another token from now on, so that it can be changed without a restart.
+  /// Replaces the token without a restart.
   void set_token(std::string token);
 
-  /// Another certificate for connections to come; those that are open keep theirs.
-  /// @pre it was listened to with TLS; `tls` is not empty
+  /// Replaces the certificate for new connections; open ones keep theirs.
+  /// @pre the server listens with TLS; `tls` is not empty
   void set_tls(Tls tls);
 
-  /// No new connections, and the present ones are closed. The handler is not called any more.
+  /// Accepts no new connections and closes the present ones. The handler is not called any more.
   void stop();
 
  private:
   struct Shared;
   explicit Server(std::shared_ptr<Shared> shared);
 
-  std::shared_ptr<Shared> shared_;  ///< With the sessions, which end after it.
+  std::shared_ptr<Shared> shared_;  ///< Shared with the sessions, which end after it.
 };
 
 }  // namespace recald::http

@@ -1,7 +1,6 @@
-/// One client's connection: its requests, one after the other, each with its deadline.
+/// One client's connection: handles its requests one after the other, each with a deadline.
 ///
-/// Internal to this folder: Beast shows here, so that tests can serve a stream that fails where
-/// they want it to.
+/// Internal to this folder. A template, so that tests can use a stream that fails on purpose.
 #pragma once
 
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it
@@ -23,8 +22,8 @@
 
 namespace recald::http {
 
-/// The stream's reads and writes from here on have so long, all together. Streams without deadlines
-/// (a test's) go without.
+/// From now on, all reads and writes on the stream share this much time. Streams without deadlines
+/// (in tests) have no limit.
 template <class Stream>
 void set_deadline(Stream& stream, std::chrono::milliseconds length) {
   if constexpr (requires { boost::beast::get_lowest_layer(stream).expires_after(length); }) {
@@ -35,23 +34,23 @@ void set_deadline(Stream& stream, std::chrono::milliseconds length) {
 template <class Stream>
 class Session {
  public:
-  /// @param rules, handler  Outlive it; may change between two requests.
+  /// @param rules, handler  Outlive the session; may change between two requests.
   Session(Stream& stream, const SessionRules& rules, const Handler& handler)
       : stream_(stream), rules_(rules), handler_(handler) {}
 
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Since when nothing is under way: a request, or the rest of its head, has yet to come. Absent
-  /// while one is answered.
+  /// Since when the session has waited for a request or the rest of its head. Absent while a
+  /// request is being answered.
   [[nodiscard]] const std::optional<Time>& waiting_since() const { return waiting_since_; }
 
-  /// Until the client goes, is too slow, asks for the end, or sent what cannot be read on after.
+  /// Runs until the client leaves, is too slow, asks to close, or sends something unreadable.
   boost::asio::awaitable<void> run() {
     bool goes_on = true;
     while (goes_on) goes_on = co_await answer_one();
   }
 
-  /// Sends one answer to whatever comes, unread.
+  /// Sends one response without reading the request.
   boost::asio::awaitable<void> turn_away(const Response& response) {
     co_await refuse(Method::get, response);
   }
@@ -89,7 +88,7 @@ class Session {
       if (error) refusal = refusal_of(error);
     }
     if (refusal) co_await refuse(method, *refusal);
-    if (error || refusal || rules_.is_stopping) co_return false;  // whoever answers may be gone
+    if (error || refusal || rules_.is_stopping) co_return false;  // the handler's owner may be gone
 
     request->body = std::move(parser.get().body());
     const bool keep_alive = parser.get().keep_alive();
@@ -107,10 +106,10 @@ class Session {
     if (!error) co_await boost::beast::http::async_read(stream_, buffer_, parser, into(error));
   }
 
-  /// Answers and parts: what follows on the stream is not known to be a request.
+  /// Responds and closes, because the bytes that follow may not be a request.
   boost::asio::awaitable<void> refuse(Method method, const Response& refusal) {
     set_deadline(stream_, rules_.slow_client);
-    // Not `if (co_await …) co_await …;`, which GCC 12 runs without the caller's frame, and crashes.
+    // Not `if (co_await …) co_await …;`: GCC 12 loses the caller's frame there, and it crashes.
     const bool sent = co_await send(method, refusal, false);
     if (sent) co_await part(false);
   }
@@ -133,9 +132,9 @@ class Session {
     co_await boost::beast::http::async_write(stream_, go_on, into(error));
   }
 
-  /// Ends the connection so that the client gets our last answer: to close on bytes that were sent
-  /// and not read would reset it. TCP can end one direction and read on; TLS 1.2 cannot, so there
-  /// the client is heard out first.
+  /// Closes the connection so that the client gets our last response: closing with unread bytes
+  /// would reset it. TCP can close one direction and keep reading. TLS 1.2 cannot, so there we read
+  /// to the end first.
   boost::asio::awaitable<void> part(bool has_read_all) {
     Error error;
     if constexpr (requires { stream_.async_shutdown(into(error)); }) {
@@ -149,7 +148,7 @@ class Session {
     }
   }
 
-  /// Until the client ends, its time is up, or it has sent more than a request may have.
+  /// Reads until the client closes, time is up, or more has arrived than a request may have.
   boost::asio::awaitable<void> read_the_rest() {
     Error error;
     char rest[4096];

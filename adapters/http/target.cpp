@@ -18,7 +18,7 @@ std::optional<int> hex_digit(char c) {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
-/// Bytes of the UTF-8 sequence that begins with `lead`; 0 where none does.
+/// Length in bytes of the UTF-8 sequence that starts with `lead`; 0 if none does.
 std::size_t sequence_length(unsigned char lead) {
   if (lead < 0x80) return 1;
   if (lead >= 0xC2 && lead < 0xE0) return 2;
@@ -27,7 +27,7 @@ std::size_t sequence_length(unsigned char lead) {
   return 0;
 }
 
-/// As Unicode has it: no overlong forms, no surrogates, nothing above U+10FFFF.
+/// UTF-8 as in Unicode: no overlong forms, no surrogates, nothing above U+10FFFF.
 bool is_utf8(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   for (std::size_t i = 0; i < text.size();) {
@@ -93,7 +93,7 @@ Result<std::map<std::string, std::string>> parse_query(std::string_view text) {
   return query;
 }
 
-/// "http://host/path" without its first part; a proxy may ask so.
+/// "http://host/path" without scheme and host; a proxy may send this form.
 std::string_view without_authority(std::string_view text) {
   const std::size_t scheme = text.find("://");
   if (text.starts_with('/') || scheme == std::string_view::npos) return text;

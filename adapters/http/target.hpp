@@ -1,4 +1,4 @@
-/// What a request line asks for: path and query, decoded and checked.
+/// The target of a request: path and query, decoded and checked.
 #pragma once
 
 #include <map>
@@ -16,10 +16,10 @@ struct Target {
 
 /// Origin form ("/path?a=1&b=2") and absolute form ("http://host/path"); '+' in a query is a space.
 ///
-/// Takes anything: nothing that a client sends is believed. A name given twice is an error and not
-/// a choice, since two programs in a row could choose differently.
-/// @return or malformed: no path, a wrong escape, a control character, no UTF-8, a name twice, more
-///         than 32 names, longer than 8 KiB.
+/// Accepts any bytes; nothing from a client is trusted. A repeated name is an error, since two
+/// programs in a row could pick different values.
+/// @return the target; or malformed: no path, a wrong escape, a control character, not UTF-8, a
+///         repeated name, more than 32 names, longer than 8 KiB.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
 }  // namespace recald::http

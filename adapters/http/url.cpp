@@ -20,7 +20,7 @@ std::optional<std::uint16_t> port_of(std::string_view text) {
   return static_cast<std::uint16_t>(port);
 }
 
-/// Nothing that could end the host and begin something else in a request's header.
+/// True if nothing in the text could end the host and start something else in a request's header.
 bool is_plain(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return c > ' ' && c < 0x7F && c != '@'; });
 }

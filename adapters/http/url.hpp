@@ -1,4 +1,4 @@
-/// Where a server is.
+/// The address of a server.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@ struct Url {
   bool is_tls = false;
   std::string host = "127.0.0.1";  ///< Name or address; IPv6 without brackets.
   std::uint16_t port = 80;
-  std::string path = "/";  ///< As it goes over the wire, query included.
+  std::string path = "/";  ///< As sent, query included.
 
   /// "http://host:port/path".
   [[nodiscard]] std::string text() const;
-  /// Host and port as a Host header has them.
+  /// Host and port as in a Host header.
   [[nodiscard]] std::string authority() const;
 };
 
 /// "http://host[:port][/path]" or https; the port is 80 or 443 unless given.
-/// @return or malformed.
+/// @return the address, or malformed.
 [[nodiscard]] Result<Url> parse_url(std::string_view text);
 
 }  // namespace recald::http

@@ -16,7 +16,7 @@ class BusThread final : public Bus {
  public:
   /// @param loop  Outlives this.
   BusThread(Endpoint endpoint, Loop& loop);
-  /// Waits for the read under way, at most its time-out; its outcome is not told.
+  /// Waits for the read in progress, at most its time-out; its outcome is not reported.
   ~BusThread() override;
 
   void read(const ReadRequest& request, milliseconds timeout, Done done) override;

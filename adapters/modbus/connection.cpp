@@ -18,8 +18,8 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::steady_clock;
 
-/// libmodbus selects on its sockets, and FD_SET beyond 1024 is undefined; the rest of the process
-/// needs descriptors too.
+/// libmodbus calls select on its sockets, and FD_SET beyond 1024 is undefined. The rest of the
+/// process needs descriptors too.
 constexpr int kDescriptorMax = 900;
 constexpr milliseconds kSilenceAfterTimeout{50};
 
@@ -43,11 +43,11 @@ void set_timeout(modbus_t* context, milliseconds timeout) {
                               static_cast<std::uint32_t>(rest.count()));
 }
 
-/// The PDU of a reply of any function, once it is whole; empty: more bytes are to come.
+/// The PDU of a reply to any function, or empty while bytes are missing.
 tl::expected<std::vector<std::uint8_t>, ReadFailure> whole_pdu(
     const std::vector<std::uint8_t>& frame, std::uint8_t unit, bool is_serial) {
   constexpr std::size_t kHeader = 7;
-  // A serial frame does not say how long it is: it is whole when its check sum fits.
+  // A serial frame does not state its length: it is complete when its checksum fits.
   const std::size_t head = is_serial ? 1 : kHeader;
   const std::size_t tail = is_serial ? 2 : 0;
   if (frame.size() < head + 2 + tail) return {};
@@ -130,11 +130,11 @@ std::optional<ReadFailure> Connection::connect() {
   }
   if (modbus_connect(context->modbus) != 0) {
     const int error = errno;
-    modbus_free(std::exchange(context->modbus, nullptr));  // nothing is open that could be closed
+    modbus_free(std::exchange(context->modbus, nullptr));  // nothing is open yet
     return ReadFailure{ReadFault::refused, 0,
                        fmt::format("{}: no connection ({})", where, words_of(error))};
   }
-  // Then the response timeout is a deadline for the whole reply.
+  // This makes the response timeout a deadline for the whole reply.
   modbus_set_byte_timeout(context->modbus, 0, 0);
   context_ = std::move(context);
   if (const auto* tcp = std::get_if<TcpEndpoint>(&endpoint_)) {
@@ -143,20 +143,20 @@ std::optional<ReadFailure> Connection::connect() {
   return {};
 }
 
-/// Between two frames on a serial line there are 3.5 silent characters.
+/// Frames on a serial line are at least 3.5 characters apart.
 void Connection::wait_for_silence() {
   if (!is_serial()) return;
   std::this_thread::sleep_until(line_free_);
-  // What stands in the buffer answers nobody.
+  // Bytes already in the buffer do not belong to this request.
   modbus_flush(context_->modbus);
 }
 
-/// Discards what still arrives until the line has been silent for a while.
+/// Discards incoming bytes until the line has been silent for a while.
 void Connection::drain() {
   const auto& port = std::get<SerialPort>(endpoint_);
   const microseconds silence =
       std::max<microseconds>(line_time(port, 4), microseconds{kSilenceAfterTimeout});
-  // A line that never falls silent is noise: the next request will say so.
+  // A line that never falls silent is noise; the next request will report it.
   for (int rounds = 0; rounds < 20; ++rounds) {
     std::this_thread::sleep_for(silence);
     if (unread_bytes(modbus_get_socket(context_->modbus)) == 0) break;
@@ -180,7 +180,7 @@ ReadResult Connection::receive(const ReadRequest& request) {
         return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
     }
   }
-  // libmodbus says 0 for a frame of another unit on a serial line.
+  // On a serial line libmodbus returns 0 for a frame of another unit.
   if (received == 0) return failed(ReadFault::mismatch, "another unit answered");
   if (unread_bytes(modbus_get_socket(context_->modbus)) != 0) {
     return failed(ReadFault::mismatch, "more bytes than one reply came");
@@ -216,19 +216,19 @@ void Connection::recover_from(const ReadFailure& failure, const ReadRequest& req
 }
 
 ReadResult Connection::read(const ReadRequest& request, milliseconds timeout) {
-  // What came unasked would pass for the reply.
+  // Unsolicited bytes would be taken for the reply.
   if (is_open() && !is_serial() && unread_bytes(modbus_get_socket(context_->modbus)) != 0) close();
   const bool was_open = is_open();
   if (!was_open) {
     if (auto refusal = connect()) return tl::unexpected(std::move(*refusal));
   }
   ReadResult result = ask(request, timeout);
-  // Many devices close a connection that was idle for a while, which shows only when it is used.
+  // Many devices close an idle connection, which shows only when it is used again.
   const bool was_stale = !result && was_open && result.error().fault == ReadFault::closed;
   return was_stale ? read(request, timeout) : result;
 }
 
-/// libmodbus does not know how long such a reply is, so its bytes are taken from the descriptor.
+/// libmodbus does not know the length of such a reply, so we read its bytes from the descriptor.
 tl::expected<std::vector<std::uint8_t>, ReadFailure> Connection::receive_pdu(std::uint8_t unit,
                                                                              milliseconds timeout) {
   const int descriptor = modbus_get_socket(context_->modbus);
@@ -274,14 +274,14 @@ tl::expected<IdentityPart, ReadFailure> Connection::identify_from(std::uint8_t u
 }
 
 IdentityResult Connection::identify(std::uint8_t unit, milliseconds timeout) {
-  constexpr int kPartsMax = 4;  // three objects; a device that always says "more" is not believed
+  constexpr int kPartsMax = 4;  // three objects; do not follow a device that always says "more"
   std::map<std::uint8_t, std::string> objects;
   std::uint8_t next = 0;
   for (int parts = 0; parts < kPartsMax; ++parts) {
     const auto part = identify_from(unit, next, timeout);
     if (!part) {
       if (is_open()) recover_from(part.error(), {});
-      timed_out_.reset();  // a late reply to this is no reply to a read
+      timed_out_.reset();  // a late reply to this is not the reply to a read
       return tl::unexpected(part.error());
     }
     objects.insert(part->objects.begin(), part->objects.end());
@@ -292,8 +292,8 @@ IdentityResult Connection::identify(std::uint8_t unit, milliseconds timeout) {
 }
 
 ReadResult Connection::ask(const ReadRequest& request, milliseconds timeout) {
-  // A serial frame names neither the address nor the request that it answers: a late reply of the
-  // same length to another request would pass for this one. One register more tells them apart.
+  // A serial frame names neither the address nor its request, so a late reply to another request of
+  // the same length would be accepted. Asking for one more register tells them apart.
   const std::optional<ReadRequest> before = std::exchange(timed_out_, std::nullopt);
   const bool could_be_swapped = before && before->unit == request.unit &&
                                 before->count == request.count && *before != request;
@@ -308,7 +308,7 @@ ReadResult Connection::ask(const ReadRequest& request, milliseconds timeout) {
       return result;
     }
     recover_from(result.error(), longer);
-    // An exception came in time for this request: the unit has no such register, the line is clear.
+    // An exception came in time for this request: no such register, but the line is clear.
     if (result.error().fault != ReadFault::exception) return result;
   }
   ReadResult result = exchange(request, timeout);

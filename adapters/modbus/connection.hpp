@@ -1,10 +1,10 @@
-/// One Modbus endpoint, TCP or serial, spoken to by one thread through libmodbus.
+/// One Modbus endpoint, TCP or serial, used by one thread through libmodbus.
 ///
-/// libmodbus 3.1.6 carries the bytes and nothing else: its own checks pass replies of other units
-/// and lengths, after a timeout it hands out each reply to the request before it, and its byte
-/// timeout starts anew with every byte. So requests go out raw, replies are checked by us
-/// (frame.hpp), every doubt ends a TCP connection and silences a serial line before it is used
-/// again, and the timeout is a deadline for the whole reply.
+/// libmodbus 3.1.6 only transports the bytes. Its own checks accept replies of other units and
+/// lengths, after a timeout it matches each reply to the previous request, and its byte timeout
+/// restarts with every byte. So we send raw requests and check the replies ourselves (frame.hpp).
+/// Any doubt closes a TCP connection, or waits for silence on a serial line before it is used
+/// again. The timeout is a deadline for the whole reply.
 #pragma once
 
 #include <chrono>
@@ -25,7 +25,7 @@ struct TcpEndpoint {
   std::string host;  ///< Name or address, IPv4 or IPv6.
   std::uint16_t port = 502;
   milliseconds connect_timeout{3000};
-  milliseconds connect_delay{0};  ///< Some gateways drop what comes right after a connect.
+  milliseconds connect_delay{0};  ///< Some gateways drop what arrives right after a connect.
 
   bool operator==(const TcpEndpoint&) const = default;
 };
@@ -47,7 +47,7 @@ using Endpoint = std::variant<TcpEndpoint, SerialPort>;
 /// "10.20.0.15:502", "/dev/ttyUSB0".
 [[nodiscard]] std::string to_string(const Endpoint& endpoint);
 
-/// Time that a number of characters takes on the line; one has 11 bits with start, parity and stop.
+/// Time on the line for a number of characters, each of 11 bits with start, parity and stop.
 [[nodiscard]] std::chrono::microseconds line_time(const SerialPort& port, int characters);
 
 class Connection {
@@ -57,18 +57,18 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Connects if need be, asks, waits, checks. Blocks up to the connect timeout and `timeout`.
+  /// Connects if needed, sends the request, waits for the reply and checks it. Blocks up to the
+  /// connect timeout plus `timeout`.
   ///
-  /// @return refused    no connection, or so many open files that libmodbus could not select on
-  /// one;
-  ///         timeout    no complete reply in time, however its bytes drip;
-  ///         closed     the other end went away;
+  /// @return refused    no connection, or too many open files for libmodbus to select on one more;
+  ///         timeout    no complete reply in time, even if bytes keep trickling in;
+  ///         closed     the other end closed the connection;
   ///         otherwise  as check_tcp_reply and check_rtu_reply. Only an exception keeps a TCP
   ///                    connection open.
   [[nodiscard]] ReadResult read(const ReadRequest& request, milliseconds timeout);
 
-  /// Asks what the device is; failures as with `read`. Few devices answer, and some are confused by
-  /// the question, so that only `recald scan` asks it.
+  /// Asks the device for its identity; fails as `read` does. Few devices answer and the question
+  /// confuses some, so only `recald scan` asks it.
   [[nodiscard]] IdentityResult identify(std::uint8_t unit, milliseconds timeout);
 
   void close();
@@ -94,7 +94,7 @@ class Connection {
   Endpoint endpoint_;
   std::unique_ptr<Context> context_;
   std::chrono::steady_clock::time_point line_free_{};  ///< Serial: silence ends here.
-  std::optional<ReadRequest> timed_out_;               ///< Serial: its reply may still come.
+  std::optional<ReadRequest> timed_out_;               ///< Serial: its reply may still arrive.
 };
 
 }  // namespace recald::modbus

@@ -1,6 +1,6 @@
-/// What a device says of itself: function 0x2B with MEI type 0x0E, read device identification.
+/// How a device identifies itself: function 0x2B with MEI type 0x0E, read device identification.
 ///
-/// Plain functions on bytes, as in frame.hpp. It only ever reads.
+/// Plain functions on bytes, as in frame.hpp. They only read.
 ///
 /// @see Modbus Application Protocol V1.1b3, section 6.21.
 #pragma once
@@ -28,15 +28,15 @@ using IdentityResult = tl::expected<DeviceIdentity, ReadFailure>;
 /// Part of an identification: a device sends as many objects as fit into a frame.
 struct IdentityPart {
   std::map<std::uint8_t, std::string> objects;  ///< 0 vendor, 1 product, 2 revision; as sent.
-  std::uint8_t next_object = 0;                 ///< Where to go on; 0: this was the last part.
+  std::uint8_t next_object = 0;                 ///< Where to continue; 0: this was the last part.
 };
 
-/// Unit and PDU of a request for the basic objects from one of them on.
+/// Unit and PDU of a request for the basic objects, starting with `first_object`.
 [[nodiscard]] std::array<std::uint8_t, 5> encode_identity_request(std::uint8_t unit,
                                                                   std::uint8_t first_object);
 
-/// A reply's PDU.
-/// @return mismatch where it contradicts itself, exception where the unit refuses.
+/// Parses the PDU of a reply.
+/// @return the part; mismatch if the reply contradicts itself, exception if the unit refuses.
 [[nodiscard]] tl::expected<IdentityPart, ReadFailure> parse_identity_reply(
     std::span<const std::uint8_t> pdu);
 

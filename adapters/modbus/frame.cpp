@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 7;  // transaction, protocol, length, unit
 
-/// A reply without its transport's bytes: function, then byte count and data, or the exception
-/// code.
+/// A reply without transport bytes: the function, then byte count and data, or exception code.
 ReadResult check_pdu(Bytes pdu, const ReadRequest& request) {
   if (pdu.empty()) return mismatch("the reply ends before its function code");
   const auto asked = static_cast<std::uint8_t>(request.function);
@@ -71,7 +70,7 @@ ReadResult check_tcp_reply(Bytes frame, const ReadRequest& request, std::uint16_
   if (word_at(frame, 2) != 0) {
     return mismatch(fmt::format("protocol {} in the header; Modbus is 0", word_at(frame, 2)));
   }
-  // The length counts what follows it: the unit and the PDU.
+  // The length field counts the bytes after it: the unit and the PDU.
   if (word_at(frame, 4) != frame.size() - (kHeaderBytes - 1)) {
     return mismatch(fmt::format("the header says {} bytes follow; {} do", word_at(frame, 4),
                                 frame.size() - (kHeaderBytes - 1)));

@@ -1,8 +1,8 @@
-/// Modbus read requests and the check of every reply against its request.
+/// Modbus read requests, and the check of every reply against its request.
 ///
-/// Plain functions on bytes, without sockets and without coroutines, so that they can be fuzzed.
-/// libmodbus carries the bytes; it believes replies of other units, protocols and lengths, hence
-/// every field is compared here. There is no code that could encode a write.
+/// Plain functions on bytes, without sockets and coroutines, so that they can be fuzzed. libmodbus
+/// accepts replies of other units, protocols and lengths, so we compare every field here. No code
+/// here can encode a write.
 ///
 /// @see Modbus Application Protocol V1.1b3, section 6; Modbus over Serial Line V1.02, 2.5.1.
 #pragma once
@@ -16,40 +16,40 @@
 
 namespace recald::modbus {
 
-/// The reply is none to what was asked.
+/// The reply does not answer the request.
 [[nodiscard]] tl::unexpected<ReadFailure> mismatch(std::string what);
 
-/// Unit, function, address and count: what both transports put their own bytes around.
+/// Unit, function, address and count, to which both transports add their own bytes.
 /// @pre 1 <= count <= 125 and the last address is on the map.
 [[nodiscard]] std::array<std::uint8_t, 6> encode_request(const ReadRequest& request);
 
 /// The registers in a whole TCP frame (header of 7 bytes and PDU), if it answers `request`.
 ///
-/// @param transaction  What the request carried.
-/// @return mismatch   another transaction, protocol, unit, function or byte count; a length that
-///                    is not that of the frame; a frame cut short or with bytes after its end;
+/// @param transaction  The one in the request.
+/// @return mismatch   another transaction, protocol, unit, function or byte count; a length field
+///         that does not fit the frame; a frame that is cut short or too long;
 ///         exception  two bytes, function | 0x80 and the code.
 [[nodiscard]] ReadResult check_tcp_reply(std::span<const std::uint8_t> frame,
                                          const ReadRequest& request, std::uint16_t transaction);
 
-/// The registers in a whole RTU frame (unit, PDU, check sum), if it answers `request`.
-/// @return as `check_tcp_reply`, and crc where the check sum is wrong.
+/// The registers in a whole RTU frame (unit, PDU, checksum), if it answers `request`.
+/// @return as `check_tcp_reply`, and crc if the checksum is wrong.
 [[nodiscard]] ReadResult check_rtu_reply(std::span<const std::uint8_t> frame,
                                          const ReadRequest& request);
 
 /// CRC-16 with polynomial 0xA001 (0x8005 reflected) and start value 0xFFFF; low byte goes first.
 [[nodiscard]] std::uint16_t crc16(std::span<const std::uint8_t> bytes);
 
-/// What exception codes mean, for people: "2 (illegal data address)".
+/// An exception code in words: "2 (illegal data address)".
 [[nodiscard]] std::string describe_exception(std::uint8_t code);
 
-/// Exceptions 5 and 6: the unit has no time now; the same request may do a moment later.
+/// Exceptions 5 and 6: the unit is busy; the same request may work a moment later.
 [[nodiscard]] bool is_busy(std::uint8_t exception);
 
-/// Exceptions 10 and 11: the unit has said nothing, a gateway speaks for it.
+/// Exceptions 10 and 11: a gateway answered because the unit did not.
 [[nodiscard]] bool is_from_gateway(std::uint8_t exception);
 
-/// Whether the unit itself said that it does not serve this request.
+/// Whether the unit itself refused to serve this request.
 [[nodiscard]] bool is_refusal(const ReadFailure& failure);
 
 }  // namespace recald::modbus

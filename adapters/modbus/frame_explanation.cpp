@@ -34,7 +34,7 @@ bool looks_like_tcp(Bytes frame) {
          (word_at(frame, 4) == frame.size() - 6 || is_function_of_a_read(frame[kTcpHeader]));
 }
 
-/// Without a good check sum: a function code, and a byte count or an exception that fits it.
+/// Ignores the checksum: checks the function code, and a byte count or exception that fits it.
 bool looks_like_damaged_rtu(Bytes frame) {
   if (frame.size() < kRtuShortest || !is_function_of_a_read(frame[1])) return false;
   return (frame[1] & kExceptionBit) != 0 ? frame.size() == kRtuShortest
@@ -47,7 +47,7 @@ Framing framing_of(Bytes frame) {
   return looks_like_damaged_rtu(frame) ? Framing::rtu : Framing::registers;
 }
 
-/// Reads a frame from left to right, writing down what it finds.
+/// Reads a frame from left to right and writes down what it finds.
 class Reader {
  public:
   Reader(Bytes frame, Framing framing) : frame_(frame) { found_.framing = framing; }
@@ -232,7 +232,7 @@ Result<Framing> parse_framing(std::string_view text) {
 
 Result<std::vector<std::uint8_t>> parse_hex_bytes(std::string_view text) {
   std::vector<std::uint8_t> bytes;
-  int high = -1;  // the first digit of a byte, once it is there
+  int high = -1;  // the first digit of a byte; -1: none yet
   const auto digit_of = [](char c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;

@@ -1,7 +1,7 @@
-/// A Modbus frame that somebody has in a log or a terminal, taken apart byte by byte.
+/// Explains byte by byte a Modbus frame from a log or a terminal.
 ///
-/// Other than the checks of frame.hpp this does not know what was asked: it says what it finds,
-/// and names everything that is wrong with it. Plain functions on bytes.
+/// Unlike the checks of frame.hpp, this does not know the request: it describes the frame and names
+/// every fault. Plain functions on bytes.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ namespace recald::modbus {
 
 enum class Framing : std::uint8_t {
   tcp,        ///< Header of 7 bytes, then the PDU.
-  rtu,        ///< Unit, PDU, check sum.
+  rtu,        ///< Unit, PDU, checksum.
   registers,  ///< Register contents alone.
 };
 
 [[nodiscard]] std::string_view to_string(Framing framing);
 [[nodiscard]] Result<Framing> parse_framing(std::string_view text);
 
-/// A few bytes of a frame that mean one thing.
+/// A few bytes of a frame with one meaning.
 struct FramePart {
   std::size_t begin;  ///< Offset of the first byte.
   std::size_t size;
@@ -34,10 +34,10 @@ struct FramePart {
 
 struct FrameExplanation {
   Framing framing = Framing::registers;
-  std::vector<FramePart> parts;  ///< In order; together they are all bytes but those of registers.
+  std::vector<FramePart> parts;  ///< In order; they cover all bytes except those of registers.
   std::optional<std::uint16_t> transaction;
   std::optional<std::uint8_t> unit;
-  std::optional<std::uint8_t> function;        ///< As asked, without the bit of an exception.
+  std::optional<std::uint8_t> function;        ///< As requested, without the exception bit.
   std::optional<std::uint8_t> exception_code;  ///< The unit refused.
   std::size_t registers_begin = 0;             ///< Offset of the first register's high byte.
   Words registers;
@@ -45,14 +45,14 @@ struct FrameExplanation {
 };
 
 /// Bytes from text as people copy it: "01 03 04", "0x01,0x03", "010304", "01:03:04".
-/// @return invalid_value  a character that is no hexadecimal digit, half a byte, nothing at all.
+/// @return invalid_value  a character that is not a hexadecimal digit, half a byte, nothing at all.
 [[nodiscard]] Result<std::vector<std::uint8_t>> parse_hex_bytes(std::string_view text);
 
-/// A reply, as far as it can be understood.
+/// Explains a reply as far as it can be understood.
 ///
-/// TCP is told by protocol 0 and a length that fits, RTU by its check sum; a damaged frame by the
-/// function code where each has it; anything else is taken for bare registers.
-/// @param as  What it is, where somebody knows; then nothing is guessed.
+/// TCP is recognised by protocol 0 and a fitting length, RTU by its checksum, a damaged frame by
+/// the function code in the place where either has it. Anything else is treated as bare registers.
+/// @param as  The kind of frame, if known; then nothing is guessed.
 [[nodiscard]] FrameExplanation explain_reply(std::span<const std::uint8_t> frame,
                                              std::optional<Framing> as = {});
 

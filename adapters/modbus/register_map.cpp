@@ -22,7 +22,7 @@ void take_in(Group& group, const Group& other) {
   group.end = std::max(group.end, other.end);
 }
 
-/// A field and its scale factor have one key: the factor's name.
+/// The key of a field is its scale factor's name, so both land in one group.
 std::vector<Group> group_by_scale_factor(const std::vector<RegisterField>& fields) {
   std::vector<Group> groups;
   std::vector<std::string> keys;  // of each group
@@ -41,7 +41,7 @@ std::vector<Group> group_by_scale_factor(const std::vector<RegisterField>& field
   return groups;
 }
 
-/// The words of one field out of a read that covers it.
+/// The words of one field in a read that covers it.
 std::span<const std::uint16_t> field_words(const RegisterField& field, const PlannedRead& read,
                                            std::span<const std::uint16_t> words) {
   assert(field.address >= read.address && field.end() <= read.address + read.count);

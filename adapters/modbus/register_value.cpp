@@ -34,7 +34,7 @@ bool has_swapped_bytes(WordOrder order) {
   return order == WordOrder::BADC || order == WordOrder::DCBA;
 }
 
-/// A signed type's value; shifting up and down again spreads the sign bit.
+/// The value of a signed type; shifting up and down again extends the sign bit.
 double as_signed(std::uint64_t bits, int width) {
   const int unused = 64 - width;
   return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
@@ -51,7 +51,7 @@ std::optional<double> as_bcd(std::uint64_t bits) {
   return value;
 }
 
-/// To the next value away from zero; of the largest one to the next below.
+/// Distance to the next value away from zero; for the largest value, to the next one below.
 template <class Float>
 double step_of(Float value) {
   const Float size = std::abs(value);
@@ -144,7 +144,7 @@ tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> wor
                                               const ValueFormat& format) {
   assert(words.size() == static_cast<std::size_t>(word_count(format.type)));
   std::uint64_t bits = raw_bits(words, format.order);
-  // The sentinel is what the device sends, so it is compared before anything is masked away.
+  // The sentinel is what the device sends, so it is compared before the mask is applied.
   if (format.absent == bits) return tl::unexpected(ValueFault::absent);
   if (format.mask) bits &= *format.mask;
   const auto raw = interpret(bits, format.type);

@@ -1,7 +1,7 @@
 /// From register words to a value: type, word order, absent values, scale.
 ///
-/// libmodbus has decoders of its own, which differ between its releases in what "abcd" means; these
-/// are tested byte by byte. Plain functions, as in frame.hpp.
+/// libmodbus has its own decoders, but its releases differ in what "abcd" means. These are tested
+/// byte by byte. Plain functions, as in frame.hpp.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +25,10 @@ enum class RegisterType : std::uint8_t {
   f32,
   f64,
   bcd16,  ///< Four decimal digits, one in each half byte.
-  bcd32,  ///< Eight.
+  bcd32,  ///< Eight digits.
 };
 
-/// Where the bytes of a value lie, A the highest. For 64 bits the pattern goes on: ABCD is
+/// The order of a value's bytes, A the highest. For 64 bits the pattern continues: ABCD is
 /// ABCDEFGH, CDAB is GHEFCDAB (lowest word first), BADC is BADCFEHG (bytes swapped within words),
 /// DCBA is HGFEDCBA.
 enum class WordOrder : std::uint8_t { ABCD, CDAB, BADC, DCBA };
@@ -38,7 +38,7 @@ enum class WordOrder : std::uint8_t { ABCD, CDAB, BADC, DCBA };
 [[nodiscard]] std::string_view to_string(RegisterType type);
 [[nodiscard]] std::string_view to_string(WordOrder order);
 
-/// Registers that a value of this type takes: 1, 2 or 4.
+/// Number of registers that a value of this type takes: 1, 2 or 4.
 [[nodiscard]] int word_count(RegisterType type);
 
 struct ValueFormat {
@@ -47,13 +47,13 @@ struct ValueFormat {
   double scale = 1.0;  ///< Value = raw · scale + offset, in the field's unit.
   double offset = 0.0;
   std::optional<std::uint64_t> mask;  ///< Unsigned types: bits that belong to the value.
-  /// Raw bits that mean "no value", as wide as the type: 0x8000 of an i16.
+  /// Raw bits that mean "no value", as wide as the type: 0x8000 for an i16.
   std::optional<std::uint64_t> absent;
 
   bool operator==(const ValueFormat&) const = default;
 };
 
-/// Why words are no value.
+/// Why the words hold no value.
 enum class ValueFault : std::uint8_t {
   absent,      ///< The register's sentinel: the device has no value.
   not_finite,  ///< A NaN or an infinity.
@@ -62,8 +62,8 @@ enum class ValueFault : std::uint8_t {
 
 struct DecodedValue {
   double value;  ///< In the field's unit.
-  /// The step from this raw value to the next one that the type can hold, scaled: 0.01 kWh of an
-  /// integer in 0.01 kWh, 0.0625 kWh of a float32 at a million.
+  /// The step from this raw value to the next one that the type can hold, scaled: 0.01 kWh for an
+  /// integer in units of 0.01 kWh, 0.0625 kWh for a float32 near a million.
   double resolution;
 };
 
@@ -71,7 +71,7 @@ struct DecodedValue {
 [[nodiscard]] tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> words,
                                                             const ValueFormat& format);
 
-/// The 16, 32 or 64 bits of a value, lowest last, as `absent` and `mask` see them.
+/// The 16, 32 or 64 bits of a value, lowest word last, as compared with `absent` and `mask`.
 [[nodiscard]] std::uint64_t raw_bits(std::span<const std::uint16_t> words, WordOrder order);
 
 }  // namespace recald::modbus

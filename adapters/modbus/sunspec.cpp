@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::uint16_t, 3> kBases{40'000, 50'000, 0};
 constexpr std::array<std::uint16_t, 2> kMark{0x5375, 0x6E53};  // "SunS"
 constexpr std::uint16_t kEndOfChain = 0xFFFF;
-/// A chain that is longer is none: headers of length 0 would go on for ever.
+/// A longer chain is not real: headers of length 0 would go on forever.
 constexpr std::size_t kModelsMax = 100;
 constexpr int kRegisters = 0x10000;
 

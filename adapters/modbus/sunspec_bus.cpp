@@ -60,7 +60,7 @@ void SunSpecBus::ask(const OrderPtr& order) {
   const SunSpecModel model = places_.at(order->request.unit);
   ReadRequest placed = order->request;
   if (const int end = placed.address + placed.count; end > SunSpecWalk::kHeader + model.length) {
-    // Beyond it the next model's registers would pass for this one's.
+    // Registers beyond it belong to the next model and would be taken for this one's.
     order->done(
         tl::unexpected(ReadFailure{
             ReadFault::mismatch, 0,
@@ -75,8 +75,8 @@ void SunSpecBus::ask(const OrderPtr& order) {
 
 void SunSpecBus::take_answer(const OrderPtr& order, ReadResult result, milliseconds duration) {
   if (!result) places_.erase(order->request.unit);
-  // The chain may have moved under a connection that lasts: look once more before it is believed
-  // that the device has no such register.
+  // The chain may have moved while the connection stayed open: walk once more before concluding
+  // that the device lacks the register.
   const bool may_have_moved =
       !result && result.error().fault == ReadFault::exception && result.error().exception_code == 2;
   if (may_have_moved && !order->has_walked) {

@@ -1,8 +1,8 @@
-/// A bus on which the registers of SunSpec devices are asked for by their place in a model.
+/// A bus that reads registers of SunSpec devices by their place in a model.
 ///
-/// Where a model begins differs from device to device and with its firmware. So the chain is walked
-/// before the first read of such a unit, and again after a read that failed: whoever plans reads
-/// and schedules them knows nothing of it.
+/// Where a model begins depends on the device and its firmware. So the chain is walked before the
+/// first read of such a unit, and again after a failed read. The code that plans and schedules
+/// reads is not involved.
 #pragma once
 
 #include <map>
@@ -16,14 +16,14 @@ namespace recald::modbus {
 
 class SunSpecBus final : public Bus {
  public:
-  /// @param wanted  Units with SunSpec maps and the models that these are for; reads of other units
-  ///                pass as they are.
+  /// @param wanted  Units with SunSpec maps, and the models that each map describes; reads of other
+  ///                units pass through unchanged.
   SunSpecBus(std::unique_ptr<Bus> bus, std::map<std::uint8_t, std::vector<std::uint16_t>> wanted);
 
-  /// Addresses of SunSpec units count from the model's id register. While its place is not known
-  /// the walk comes first, each of its reads with the same timeout; `duration` is that of the last
-  /// read alone, from which time-outs are learned. A device without the model is told as mismatch,
-  /// so that it is looked for again as a silent unit is.
+  /// Addresses of SunSpec units count from the model's id register. While its place is unknown, the
+  /// chain is walked first, each read with the same timeout. `duration` is that of the last read
+  /// alone, since time-outs are learned from it. A device without the model is reported as
+  /// mismatch, so it is looked for again like a silent unit.
   void read(const ReadRequest& request, std::chrono::milliseconds timeout, Done done) override;
 
  private:
@@ -42,14 +42,14 @@ class SunSpecBus final : public Bus {
   void take_step(const OrderPtr& order, ReadResult result, std::chrono::milliseconds duration);
   void ask(const OrderPtr& order);
   void take_answer(const OrderPtr& order, ReadResult result, std::chrono::milliseconds duration);
-  /// One read of the bus below, whose outcome goes to `take` if this still is.
+  /// One read on the bus below. `take` receives its outcome, if this object still exists.
   void read_below(const ReadRequest& request, const OrderPtr& order,
                   void (SunSpecBus::*take)(const OrderPtr&, ReadResult, std::chrono::milliseconds));
 
   std::unique_ptr<Bus> bus_;
   std::map<std::uint8_t, std::vector<std::uint16_t>> wanted_;
   std::map<std::uint8_t, SunSpecModel> places_;  ///< By unit, as far as known.
-  std::shared_ptr<SunSpecBus*> self_;            ///< Outcomes that come later find out by it.
+  std::shared_ptr<SunSpecBus*> self_;            ///< Tells late outcomes whether this still exists.
 };
 
 }  // namespace recald::modbus

@@ -33,7 +33,7 @@ Error in_force_already(const std::string& version) {
           fmt::format("version {} is in force already", short_version(version))};
 }
 
-/// Whether one may go back to `next` from what is in force.
+/// Checks that the model may go back to `next` from the version in force.
 Result<void> check_revert(const ModelVersion& next, const std::string& from) {
   if (next.version == from) return tl::unexpected(in_force_already(from));
   if (next.status != VersionStatus::proposed) return {};
@@ -43,7 +43,7 @@ Result<void> check_revert(const ModelVersion& next, const std::string& from) {
                              short_version(next.version)));
 }
 
-/// Empty where the file is absent.
+/// Returns an empty text if the file is absent.
 Result<std::string> text_of(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error) && !error) return std::string{};
@@ -166,15 +166,15 @@ Result<ModelVersion> ModelStore::save(ModelVersion version) const {
   return named;
 }
 
-/// Status is the one thing of a version that changes; the drawings have none to be written.
+/// Only the status of a version ever changes; the drawings have no file to store it in.
 Result<void> ModelStore::mark(ModelVersion version, VersionStatus status) const {
   if (version.version == kBaseVersion || version.status == status) return {};
   version.status = status;
   return system::write_file(file_of(version.version), version_json(version));
 }
 
-/// Marks a version and those it was built on, up to the common ground with `until`. A damaged file
-/// has no status to be marked and ends the walk: it must not stop anybody from leaving it.
+/// Marks a version and its ancestors, up to the first one that `until` shares. A damaged parent has
+/// no status to mark and ends the walk; it must not prevent leaving the version.
 Result<void> ModelStore::mark_reverted(ModelVersion version, const ModelVersion& until) const {
   std::vector<std::string> kept{std::string{kBaseVersion}};
   for (Result<ModelVersion> kin = until; kin && kin->version != kBaseVersion;) {
@@ -222,7 +222,7 @@ Result<ModelVersion> ModelStore::activate(std::string_view version, const std::s
 }
 
 Result<ModelVersion> ModelStore::revert(std::string_view target, const std::string& at) const {
-  // With a target, damage to what is in force is no obstacle: this is the way out of it.
+  // With a target, a damaged version in force is no obstacle: this is the way out of it.
   const auto from = active();
   if (!from && target.empty()) return from;
   const std::string from_name = active_name().value_or("unknown");

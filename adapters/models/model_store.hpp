@@ -2,10 +2,10 @@
 ///
 ///     SITE.models/<version>.json   see version_file.hpp; written whole, never removed
 ///     SITE.models/active           the version in force; absent: the drawings
-///     SITE.models/history.jsonl    one line an activation or a revert, oldest first
+///     SITE.models/history.jsonl    one line per activation or revert, oldest first
 ///
-/// `active` is written last, so that a crash leaves the model as it was: the history may then speak
-/// of a change that did not happen, and the same command makes it happen.
+/// `active` is written last, so a crash leaves the model unchanged. The history may then mention a
+/// change that did not happen; running the same command again makes it.
 #pragma once
 
 #include <filesystem>
@@ -21,12 +21,12 @@ namespace recald::models {
 struct VersionList {
   std::vector<diagnosis::ModelVersion> versions;  ///< Drawings first, then by time of creation.
   std::string active;
-  std::vector<std::string> damaged;  ///< A sentence a file that cannot be read.
+  std::vector<std::string> damaged;  ///< One sentence for each file that cannot be read.
 };
 
 class ModelStore {
  public:
-  /// Touches nothing yet: a site whose model was never changed has no folder.
+  /// Creates nothing: the folder appears with the first version.
   ModelStore(const std::filesystem::path& site_file, std::string site_id);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
@@ -42,23 +42,23 @@ class ModelStore {
   /// The version in force. @return as `load`
   [[nodiscard]] Result<diagnosis::ModelVersion> active() const;
 
-  /// Writes a version under the name its content gives it. One that is there already stays as it
-  /// is, status included.
-  /// @return the version as it stands, or what `named_by_content` refuses; not_found when its
-  ///         parent is unknown; io_failed.
+  /// Writes a version under the name that its content gives it. A version that is already there
+  /// stays unchanged, with its status.
+  /// @return the stored version, or what `named_by_content` refuses; not_found when its parent is
+  ///         unknown; io_failed.
   [[nodiscard]] Result<diagnosis::ModelVersion> save(diagnosis::ModelVersion version) const;
 
   /// Puts a version in force and marks it accepted.
   /// @param at  Time for the history, ISO 8601.
-  /// @return the version, or as `load`; invalid_value when it is in force already.
+  /// @return the version, or as `load`; invalid_value when it is already in force.
   [[nodiscard]] Result<diagnosis::ModelVersion> activate(std::string_view version,
                                                          const std::string& at) const;
 
-  /// Goes back to the parent of the version in force, or to `target` where one is given. All that
-  /// is left on the way there is marked reverted. With a `target` this is also the way out of
-  /// damage.
-  /// @return the version now in force, or as `load`; invalid_value when nothing was ever added,
-  ///         `target` is in force already, or was proposed and never accepted.
+  /// Goes back to the parent of the version in force, or to `target` if given. All versions left on
+  /// the way are marked reverted. With a `target`, this also works when the version in force is
+  /// damaged.
+  /// @return the version now in force, or as `load`; invalid_value when nothing was ever added, or
+  ///         `target` is already in force or was proposed and never accepted.
   [[nodiscard]] Result<diagnosis::ModelVersion> revert(std::string_view target,
                                                        const std::string& at) const;
 

@@ -37,7 +37,7 @@ struct NumbersOf {
 Json prior_json(const Prior& prior) {
   const PriorNumbers numbers = std::visit(NumbersOf{}, prior.distribution());
   Json json = {{"distribution", prior.name()}};
-  // JSON knows no infinity: an end that is absent is no end, as in `Prior::named`.
+  // JSON has no infinity: an absent bound means no bound, as in `Prior::named`.
   const auto put = [&](const char* key, const std::optional<double>& value) {
     if (value && std::isfinite(*value)) json[key] = *value;
   };
@@ -105,8 +105,8 @@ std::string content_hash(Json json) {
   return digest.hex();
 }
 
-// Readers throw what `read_version_file` turns into a sentence: nlohmann's exceptions for a field
-// that is absent or of another type, `Senseless` for a value that makes no sense.
+// The readers below throw, and `read_version_file` turns it into a sentence: nlohmann's exceptions
+// for a field that is absent or of another type, `Senseless` for a value that makes no sense.
 struct Senseless : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,4 +1,4 @@
-/// A bus of meters: one read at a time, answered later.
+/// A bus of meters: takes one read at a time and answers later.
 #pragma once
 
 #include <chrono>
@@ -15,8 +15,8 @@ class Bus {
 
   virtual ~Bus() = default;
 
-  /// Begins a read and calls `done` once, on the loop's thread, when it has ended.
-  /// @pre no read is under way.
+  /// Begins a read, and calls `done` once on the loop's thread when it has ended.
+  /// @pre no other read is in progress.
   virtual void read(const modbus::ReadRequest& request, std::chrono::milliseconds timeout,
                     Done done) = 0;
 };

@@ -1,4 +1,4 @@
-/// Where "now" comes from: a port, so that the whole daemon can run on a clock of a test's making.
+/// The source of "now": a port, so that the whole daemon can run on a test's clock.
 #pragma once
 
 #include <chrono>
@@ -7,13 +7,13 @@
 
 namespace recald {
 
-/// One instant on both clocks. Stamps and schedules go by the wall clock, which may jump; waiting,
-/// time-outs and back-off go by the monotonic one, which never does.
+/// One instant on both clocks. Stamps and schedules use the wall clock, which may jump; waits,
+/// time-outs and back-off use the monotonic one, which never does.
 struct Moment {
   std::chrono::sys_time<std::chrono::milliseconds> wall;
-  std::chrono::milliseconds monotonic;  ///< Since some instant in this process's past.
+  std::chrono::milliseconds monotonic;  ///< Since some instant before this process started.
 
-  /// The wall clock's whole second, as readings are stamped.
+  /// The wall clock in whole seconds, as used to stamp readings.
   [[nodiscard]] metering::Instant instant() const {
     return std::chrono::floor<std::chrono::seconds>(wall);
   }
@@ -25,7 +25,7 @@ class Clock {
   [[nodiscard]] virtual metering::Instant now() const = 0;
 };
 
-/// Stands still until told; never goes back.
+/// Stands still until set; never goes back.
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(metering::Instant start) : now_(start) {}

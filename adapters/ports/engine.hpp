@@ -1,5 +1,4 @@
-/// A simulation that can be asked for months: a model of our own, a folder of runs, or a program
-/// outside.
+/// A simulation that computes months: one of our models, a folder of runs, or an external program.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,19 +9,20 @@
 
 namespace recald {
 
-/// A port. An engine is made for one building, its outputs and its months; what differs between two
-/// runs is the vector of parameters.
+/// A port. An engine is made for one building, its outputs and its months; runs differ only in
+/// their vector of parameters.
 class Engine {
  public:
-  /// Told how many runs are done; returns false to stop. May be called from the executor's threads.
+  /// Receives the number of finished runs; returns false to stop. The executor's
+  /// threads may call it.
   using Observer = std::function<bool(int done, int total)>;
 
   virtual ~Engine() = default;
 
   /// @param theta     (runs x parameters) in the parameters' own units.
-  /// @param executor  Runs rows side by side; what comes out does not depend on it.
-  /// @return (runs x outputs * months), each row output-major as `MonthlyModel` writes it; or why
-  ///         not, as not_finite or cancelled: what was run until then may be lost.
+  /// @param executor  Runs rows in parallel; the result does not depend on it.
+  /// @return (runs x outputs * months), each row output-major as `MonthlyModel` writes it; or an
+  ///         error such as not_finite or cancelled, after which finished runs may be lost.
   virtual Result<Eigen::MatrixXd> run(const Eigen::MatrixXd& theta, const ForEachIndex& executor,
                                       const Observer& observer) = 0;
 };

@@ -1,5 +1,4 @@
-/// What came of a job: what the daemon itself goes by, and the document that people and machines
-/// read.
+/// The result of a job: what the daemon itself uses, and the document for people and machines.
 #pragma once
 
 #include <map>
@@ -11,7 +10,7 @@
 
 namespace recald {
 
-/// How near the watch of an output's days is to an alarm.
+/// How close the daily monitoring of an output is to an alarm.
 struct DailyEvidence {
   double log_evidence = kAbsent;
   double log_threshold = kAbsent;  ///< Raises an alarm.
@@ -19,10 +18,10 @@ struct DailyEvidence {
   double month_factor = kAbsent;
 };
 
-/// The newest month of one output against what was forecast of it.
+/// The newest month of one output compared with its forecast.
 struct OutputDrift {
   std::string output;  ///< "steam_daily_kWh"
-  std::string month;   ///< Empty: none was forecast.
+  std::string month;   ///< Empty: there was no forecast.
   double pvalue = kAbsent;
   double log_evidence = kAbsent;
   double log_threshold = kAbsent;
@@ -30,13 +29,13 @@ struct OutputDrift {
   std::optional<DailyEvidence> daily = {};
 };
 
-/// The days that an alarm speaks of, where days raised it.
+/// The days behind an alarm that was raised by days.
 struct AlarmedDays {
   std::string raised, since, since_earliest, since_latest;
   double excess = kAbsent;
 };
 
-/// What an alarm may come from.
+/// A possible cause of an alarm.
 struct AlarmCause {
   std::string kind;
   std::optional<std::string> subject;  ///< A parameter, use or output.
@@ -46,7 +45,7 @@ struct AlarmCause {
   std::string words;
 };
 
-/// Something has changed, since when and why. Months as "2024-03".
+/// What has changed, since when and why. Months as "2024-03".
 struct DriftAlarm {
   std::string month, output, direction;
   double evidence = kAbsent;
@@ -57,32 +56,32 @@ struct DriftAlarm {
   std::string explained_until, consequence, sentence;
 };
 
-/// A change that a meter's readings show without any model.
+/// A change that a meter's readings show without a model.
 struct ChangedMeter {
   std::string meter, kind, since, seen;
   double factor = kAbsent;
   std::string sentence;
 };
 
-/// What the months after a calibration have said of it.
+/// What the months after a calibration show about it.
 struct DriftSummary {
   std::vector<OutputDrift> outputs;
   std::vector<DriftAlarm> alarms;
   std::vector<ChangedMeter> changed_meters;
 };
 
-/// The weather of a month that a calibration was asked for.
+/// The weather of a month that a calibration used.
 struct MonthWeather {
   std::string month;   ///< "2024-03"
-  double known = 0.0;  ///< Share measured or interpolated, 0…1, of what the model knows least.
-  /// Shares by where they are from: a sensor, a file, "interpolated", "typical", "assumed".
+  double known = 0.0;  ///< Share measured or interpolated, 0…1, of the least known one.
+  /// Shares by source: a sensor, a file, "interpolated", "typical", "assumed".
   std::map<std::string, double> from = {};
 };
 
 struct JobResult {
   std::string document;                    ///< calibration.json or diagnosis.json; empty: not done.
   double rhat_max = kAbsent;               ///< Of a calibration's parameters and hyper-parameters.
-  std::optional<DriftSummary> drift;       ///< Of a calibration whose site could be followed.
+  std::optional<DriftSummary> drift;       ///< Of a calibration whose site could be monitored.
   std::vector<MonthWeather> weather = {};  ///< Of a calibration, by month.
 };
 

@@ -1,7 +1,7 @@
-/// The one thread that all bookkeeping happens on: what time it is, and calls at a later one.
+/// The one thread that does all bookkeeping: tells the time and makes delayed calls.
 ///
-/// A port. The daemon's runs on Boost.Asio; a test's runs on a clock of its own making, where years
-/// pass in seconds and two runs with the same seed do the same.
+/// A port. The daemon's runs on Boost.Asio. A test's runs on its own clock, where years pass in
+/// seconds and two runs with the same seed do the same.
 #pragma once
 
 #include <chrono>
@@ -19,12 +19,12 @@ class Loop {
 
   [[nodiscard]] virtual Moment now() const = 0;
 
-  /// Calls once, `wait` from now by the monotonic clock, on the loop's thread. Calls of one time
-  /// are made in the order in which they were asked for. One that throws is made again a minute
-  /// later, so that what goes on by asking for the next call goes on.
+  /// Makes the call once, `wait` from now by the monotonic clock, on the loop's thread. Calls for
+  /// the same time are made in the order of their requests. A call that throws is repeated a minute
+  /// later, so that a chain of calls that schedules itself does not break.
   virtual void after(std::chrono::milliseconds wait, Call call) = 0;
 
-  /// Calls soon, on the loop's thread. The only member that other threads may use.
+  /// Makes the call soon, on the loop's thread. The only member that other threads may use.
   virtual void post(Call call) = 0;
 };
 

@@ -1,4 +1,4 @@
-/// Somewhere beside the loop where long work is done, one piece at a time.
+/// Runs long work outside the loop, one piece at a time.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@ class Worker {
  public:
   virtual ~Worker() = default;
 
-  /// Does `work` elsewhere and then calls `done` once, on the loop's thread. `work` must not throw.
-  /// @pre nothing is under way.
+  /// Runs `work` elsewhere, then calls `done` once on the loop's thread. `work` must not throw.
+  /// @pre no other work is in progress.
   virtual void run(std::function<void()> work, Loop::Call done) = 0;
 };
 

@@ -7,12 +7,12 @@
 namespace recald::report {
 
 struct Assets {
-  std::string_view script;       ///< Stands inline between <script> tags.
-  std::string_view style;        ///< Stands inline between <style> tags.
+  std::string_view script;       ///< Embedded between <script> tags.
+  std::string_view style;        ///< Embedded between <style> tags.
   std::string_view licences;     ///< Of the libraries in the script; plain text.
   std::string_view script_hash;  ///< For the Content-Security-Policy, "sha256-…".
   std::string_view style_hash;
-  std::size_t gzip_bytes;  ///< Script and style together, compressed, as measured in the build.
+  std::size_t gzip_bytes;  ///< Script and style together, compressed, as measured by the build.
 };
 
 [[nodiscard]] const Assets& assets();

@@ -10,7 +10,7 @@ namespace recald::report {
 namespace {
 
 Cell coverage_cell(const OutputMonth& month) {
-  // Rounded towards the doubt: 99.9 % measured is not 100 %.
+  // Rounded down: 99.9 % measured is not 100 %.
   const int percent = static_cast<int>(month.figure.coverage * 100.0);
   if (!month.figure.usable) return {fmt::format("✕\u00a0{}\u00a0%", percent), "bad"};
   return {fmt::format("{}\u00a0%", percent), month.figure.filled_share > 0.0 ? "partly" : "whole"};

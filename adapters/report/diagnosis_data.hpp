@@ -1,7 +1,7 @@
-/// All that a diagnosis page shows, as plain values and finished sentences.
+/// Everything that a diagnosis page shows, as plain values and finished sentences.
 ///
-/// Whatever is absent (an empty vector, a NaN) is left out or shown as a dash, so a diagnosis that
-/// added nothing, kept no month back or lost a meter gets a page too.
+/// Absent values (an empty vector, a NaN) are left out or shown as a dash, so the page also works
+/// for a diagnosis that added nothing, kept no month back or lost a meter.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ namespace recald::report {
 /// A parameter of an effect with its posterior; a date is text, everything else a number.
 struct EffectParameterRow {
   std::string name;
-  std::string mode;  ///< As it shall be read, with its unit.
+  std::string mode;  ///< As shown to readers, with its unit.
   std::string low;   ///< 5 %
   std::string high;  ///< 95 %
 };
@@ -50,19 +50,19 @@ struct CandidateBar {
   std::string meaning;
   CandidateKind kind;
   double probability;
-  double evidence_gain;  ///< Log evidence above no effect, nats; NaN where it does not apply.
+  double evidence_gain;  ///< Log evidence compared with no effect, nats; NaN if not applicable.
   std::vector<EffectParameterRow> parameters;
 };
 
-/// Two effects that look alike on these meters, and the measurement that would part them.
+/// Two effects that look alike on these meters, and the measurement that would tell them apart.
 struct Separation {
   std::string effect;
   std::string rival;
-  double rival_probability;  ///< NaN where the rival was not among those that were fitted.
+  double rival_probability;  ///< NaN if the rival was not among the fitted effects.
   std::string measurement;
 };
 
-/// One meter's residuals before, and after what was added.
+/// One meter's residuals before and after the additions.
 struct MeterMaps {
   std::string meter;
   std::string mean_load;  ///< Measured, "41.2 kW"; what the shares are shares of.
@@ -70,10 +70,10 @@ struct MeterMaps {
   std::optional<diagnosis::ResidualMap> after;
 };
 
-/// One version of the model on the months kept back, every meter.
+/// One version of the model on the months kept back, for every meter.
 struct GapStep {
   std::string label;                      ///< "The model as drawn", "with night set-back missing".
-  std::vector<diagnosis::MeterGap> gaps;  ///< (m) NaN where the meter has nothing to be judged by.
+  std::vector<diagnosis::MeterGap> gaps;  ///< (m) NaN for a meter without data to judge by.
 };
 
 /// What one addition explains at one meter.
@@ -81,7 +81,7 @@ struct EffectSignature {
   std::string effect;
   std::string meter;
   diagnosis::Signature residual;  ///< Measured minus modelled, before the addition.
-  diagnosis::Signature change;    ///< What the model changed, its other parameters refitted.
+  diagnosis::Signature change;    ///< What the model changed, with its other parameters refitted.
   diagnosis::Signature effect_alone;
 };
 
@@ -92,7 +92,7 @@ struct NotIdentifiableRow {
 
 struct DiagnosisData {
   std::string title;
-  std::string generated_at;  ///< Given by the caller; the page has no clock.
+  std::string generated_at;  ///< Set by the caller; the page has no clock.
   SiteLine site;
   Provenance provenance;
 
@@ -112,11 +112,12 @@ struct DiagnosisData {
   std::vector<MeterMaps> maps;  ///< (m)
 
   std::vector<diagnosis::Misfit> located;
-  std::vector<diagnosis::Misfit> located_after;  ///< With what was added.
+  std::vector<diagnosis::Misfit> located_after;  ///< With the additions.
   std::vector<CandidateBar> candidates;          ///< Descending in probability.
   std::vector<Separation> separations;
   std::vector<GapStep> steps;  ///< Empty: no month was kept back.
-  /// Of other models than the hourly one, given the same effects; outputs as people say them.
+  /// Of models other than the hourly one, given the same effects; outputs under
+  /// their readable names.
   std::vector<diagnosis::ModelGap> other_gaps;
   std::vector<EffectSignature> signatures;
   std::vector<diagnosis::MeterGap> base_fit;  ///< (m) on the fitted months.

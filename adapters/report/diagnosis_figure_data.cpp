@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDigits = 3;  // a colour or a point on the screen shows no more
+constexpr int kDigits = 3;  // more would not be visible in a colour or a point
 constexpr std::array<double, 9> kScales = {0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.75, 1.0};
 constexpr double kShareWithinScale = 0.98;
 

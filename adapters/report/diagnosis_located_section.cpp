@@ -10,8 +10,8 @@ namespace recald::report {
 namespace {
 
 constexpr std::size_t kRowsShown = 15;
-// Beyond three times the model's value a percentage says nothing: the model has next to nothing
-// there.
+// Above three times the model's value a percentage is meaningless: the model has
+// almost nothing there.
 constexpr double kSharePeopleRead = 2.0;
 
 /// "14.0 % more than the model (± 3.0 %)"

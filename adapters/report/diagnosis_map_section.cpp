@@ -28,7 +28,7 @@ std::string use_words(diagnosis::Role use) {
   return "fitted";
 }
 
-/// One row a part of the week, Monday first as in the figure.
+/// One row per part of the week, Monday first as in the figure.
 void add_month_rows(Table& table, const char* label, const Eigen::ArrayXXd& cells) {
   table.group(label);
   for (int i = 0; i < kPartsOfWeek; ++i) {

@@ -9,7 +9,7 @@
 namespace recald::report {
 namespace {
 
-/// Word, sign and class together: the meaning never rests on colour.
+/// A word, a sign and a class, so that the meaning never depends on colour alone.
 struct Mark {
   std::string_view word;
   std::string_view css_class;

@@ -7,11 +7,11 @@
 
 namespace recald::report {
 
-/// Renders the page, by the rules of `render_report`: self-contained, every text escaped, the same
-/// data give the same bytes.
+/// Renders the page under the rules of `render_report`: self-contained, every text escaped, the
+/// same data give the same bytes.
 ///
-/// @pre  Maps have a row a part and a column a month or temperature bin; `uses` is as long as
-///       `months`; a step has a gap a meter.
+/// @pre  Maps have a row per part and a column per month or temperature bin; `uses` is as long as
+///       `months`; a step has a gap per meter.
 [[nodiscard]] std::string render_diagnosis(const DiagnosisData& data);
 
 /// The numbers that the page's script draws.

@@ -1,5 +1,5 @@
-/// The parts of a diagnosis page, in the order of the reader's questions, and what its tables and
-/// figures share. Each part leaves itself out where its data are absent.
+/// The parts of a diagnosis page, in the order of the reader's questions, and helpers for its
+/// tables and figures. A part without data is left out.
 #pragma once
 
 #include <span>
@@ -12,11 +12,11 @@ namespace recald::report {
 
 /// The answer: what is missing, how sure, since when, how much.
 void write_outcome_section(Html& html, const DiagnosisData& data);
-/// Where do meters and model disagree? In words.
+/// Where do meters and model disagree, in words?
 void write_located_section(Html& html, const DiagnosisData& data);
-/// The same as maps, before and after.
+/// As above, as maps before and after.
 void write_map_section(Html& html, const DiagnosisData& data);
-/// Which explanations were weighed, and what would tell them apart.
+/// Which explanations were considered, and what would tell them apart?
 void write_candidate_section(Html& html, const DiagnosisData& data);
 /// Did the gap shrink on the months kept back?
 void write_gap_section(Html& html, const DiagnosisData& data);
@@ -27,17 +27,17 @@ void write_not_identifiable_section(Html& html, const DiagnosisData& data);
 /// What the diagnosis started from.
 void write_base_section(Html& html, const DiagnosisData& data);
 
-/// Share at which the colours of a meter's maps are full, the same before and after: 98 % of the
-/// cells lie within it, rounded up; at most 1.
+/// The share at which the colours of a meter's maps saturate, the same before and after: 98 % of
+/// the cells lie within it, rounded up; at most 1.
 [[nodiscard]] double colour_scale(const MeterMaps& maps);
 
-/// One way of measuring the gap.
+/// A measure of the gap.
 struct GapMeasure {
   std::string_view label;
   bool is_share;  ///< Shown in percent.
   double (*value)(const diagnosis::MeterGap& first_step, const diagnosis::MeterGap& step);
 };
-/// Those that are drawn step by step.
+/// The measures that are drawn step by step.
 [[nodiscard]] std::span<const GapMeasure> gap_measures();
 
 }  // namespace recald::report

@@ -1,4 +1,4 @@
-/// The page of a followed site: what was forecast, what came, what has changed.
+/// The page of a monitored site: forecasts, measurements, and what has changed.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@ namespace recald::report {
 /// One month of one output, in its unit.
 struct ForecastMonth {
   metering::Month month;
-  std::optional<double> q05;  ///< Absent: nothing was forecast, as of the months learnt from.
+  std::optional<double> q05;  ///< Absent: there was no forecast, as for the training months.
   std::optional<double> q50;
   std::optional<double> q95;
   std::optional<double> measured;
 };
 
-/// A stretch of months that an alarm is about: since its earliest month until it was raised.
+/// The months that an alarm covers: from its earliest month until it was raised.
 struct AlarmSpan {
   metering::Month first;
   metering::Month last;
@@ -27,7 +27,7 @@ struct AlarmSpan {
 struct ForecastSeries {
   std::string label;  ///< "Chilled water, daily average"
   std::string unit;
-  std::string trust;  ///< How true its forecasts were, as a sentence.
+  std::string trust;  ///< How well its forecasts have done, as a sentence.
   std::vector<ForecastMonth> months;
   std::vector<AlarmSpan> alarms;
 };
@@ -46,7 +46,7 @@ struct AlarmCard {
   std::string advice;
 };
 
-/// What one window believed of a parameter after each month.
+/// A window's estimate of a parameter after each month.
 struct BelievedMonth {
   metering::Month month;
   double mean, q05, q95;  ///< NaN before there is a posterior.
@@ -55,8 +55,8 @@ struct BelievedMonth {
 struct BelievedParameter {
   std::string label;
   std::string unit;
-  std::vector<BelievedMonth> months;   ///< Of all months so far.
-  std::vector<double> last_year_mean;  ///< (months) Of the window of twelve months.
+  std::vector<BelievedMonth> months;   ///< All months so far.
+  std::vector<double> last_year_mean;  ///< (months) From the window of twelve months.
 };
 
 struct WindowRow {
@@ -65,7 +65,7 @@ struct WindowRow {
   int sampled_anew;
 };
 
-/// A version of what is believed: from when on, and why there is another one.
+/// A version of the estimates: from when it applies, and why it replaced the last.
 struct HistoryRow {
   metering::Month since;
   std::string what;
@@ -86,8 +86,8 @@ struct DriftData {
   Provenance provenance;
 };
 
-/// Renders the page, by the rules of `render_report`: self-contained, every text escaped, the same
-/// data give the same bytes.
+/// Renders the page under the rules of `render_report`: self-contained, every text escaped, the
+/// same data give the same bytes.
 [[nodiscard]] std::string render_drift(const DriftData& data);
 
 /// The numbers that the page's script draws.

@@ -146,7 +146,7 @@ json day_type_json(const DayTypeProfile& day_type) {
           {"measured", json_numbers(day_type.measured_mean_kW)}};
 }
 
-/// One letter an hour: o(k), p(artly filled), m(issing), s(uspect).
+/// One letter per hour: o(k), p(artly filled), m(issing), s(uspect).
 char status_letter(HourStatus status) {
   switch (status) {
     case HourStatus::ok:

@@ -10,7 +10,7 @@ namespace recald::report {
 
 [[nodiscard]] nlohmann::json report_json(const ReportData& data);
 
-/// The same as compact JSON, safe inside a script tag. Numbers carry six significant digits, loads
+/// The data as compact JSON, safe inside a script tag. Numbers carry six significant digits, loads
 /// four; absent ones are null.
 [[nodiscard]] std::string figure_json(const ReportData& data);
 

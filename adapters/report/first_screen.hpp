@@ -1,4 +1,4 @@
-/// What a client sees first: one sentence, one picture, three numbers.
+/// The first screen of a page: one sentence, one picture, three numbers.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,8 @@ struct OverviewMonth {
   metering::Month month;
   std::string number;  ///< As `OutputMonth::number`.
   assessment::MonthRole role;
-  double measured;                            ///< NaN: none that may be used.
-  std::optional<std::array<double, 3>> band;  ///< 5 %, middle and 95 % of what was expected.
+  double measured;                            ///< NaN: no usable value.
+  std::optional<std::array<double, 3>> band;  ///< 5 %, middle and 95 % of the expected values.
 };
 
 struct OverviewMeter {
@@ -26,22 +26,22 @@ struct OverviewMeter {
   std::vector<OverviewMonth> months;
 };
 
-/// Panels beyond these make no picture that anybody takes in.
+/// More panels would make the picture unreadable.
 inline constexpr std::size_t kOverviewMeters = 8;
 
-/// The sentence and what follows from it.
+/// The sentence and its consequence.
 void write_first_words(Html& html, const FirstScreen& first);
 void write_key_numbers(Html& html, const FirstScreen& first);
 
 /// The band of a picture.
 struct Expected {
   std::string_view what;     ///< "forecast from the outdoor temperature"
-  std::string_view reading;  ///< What inside and outside mean, as a sentence.
+  std::string_view reading;  ///< What inside and outside the band mean, as a sentence.
 };
 
 void write_overview(Html& html, const std::vector<OverviewMeter>& meters, const Expected& expected);
 
-/// The calibrated model alone as the band: months that belong to the calibration.
+/// The overview of a calibrated model alone; the band covers the months of the calibration.
 [[nodiscard]] std::vector<OverviewMeter> model_overview(const ReportData& data);
 
 [[nodiscard]] nlohmann::json overview_json(const std::vector<OverviewMeter>& meters);

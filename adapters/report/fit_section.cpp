@@ -45,8 +45,8 @@ void add_stage(Table& table, const char* stage, const std::optional<FitMetrics>&
   table.row(std::move(cells));
 }
 
-/// Tables 3 and 4 of the seed in one, led by the forecasts, with the prior mean as a second
-/// "before".
+/// Combines tables 3 and 4 of the seed: the forecasts first, with the prior mean as a
+/// second "before".
 void write_metrics(Html& html, const std::vector<OutputResult>& outputs) {
   Table table(
       "Bias and scatter of the monthly figures. ✓ within and ✕ outside the limits of "
@@ -257,7 +257,7 @@ void write_cvrmse_figure(Html& html, const OutputResult& output, int index) {
                table);
 }
 
-/// The signs of the measured months; follows the model's own sign where there is a model.
+/// The signs of the measured months; follows the model's own sign if there is a model.
 constexpr std::string_view kMonthsKey =
     "<span><i class=\"sign\">★</i>measured</span>"
     "<span><i class=\"sign hollow\">☆</i>measured, not usable</span>"

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kDash = "–";
 
-/// Decimals that leave four significant digits, none for 1000 and more.
+/// Decimals that leave four significant digits; none for 1000 and more.
 int decimals_for(double magnitude) {
   if (magnitude == 0.0 || magnitude >= 1000.0) return 0;
   const int exponent = static_cast<int>(std::floor(std::log10(magnitude)));
@@ -27,7 +27,7 @@ std::string with_thousands(std::string digits) {
   return digits;
 }
 
-/// True minus sign: a hyphen is easily overlooked and breaks lines.
+/// A true minus sign, because a hyphen is easily overlooked and allows a line break.
 std::string_view sign_text(double value) { return value < 0.0 ? "−" : ""; }
 
 }  // namespace

@@ -46,15 +46,15 @@ namespace recald::report {
 [[nodiscard]] std::string day_key(metering::Day day);  ///< "2021-03-09"
 [[nodiscard]] std::string month_name(unsigned month);  ///< 1 → "Jan"
 
-/// "2021-03-09 15:45" on the clock of the place, or in UTC without one.
+/// "2021-03-09 15:45" in the calendar's local time, or in UTC without one.
 [[nodiscard]] std::string local_text(metering::Instant t,
                                      const std::optional<metering::LocalCalendar>& calendar);
 
-/// Four hours of the week, 0 being Sunday 00–04 h: 8 → "Mon 08–12 h". @pre 0 <= part < 42
+/// A four-hour part of the week, 0 being Sunday 00–04 h: 8 → "Mon 08–12 h". @pre 0 <= part < 42
 [[nodiscard]] std::string part_of_week_text(int part);
 [[nodiscard]] std::string part_of_day_text(int part);  ///< 2 → "08–12 h". @pre 0 <= part < 6
 
-/// What the contraction of a parameter means, as a sentence.
+/// The meaning of a parameter's contraction, as a sentence.
 [[nodiscard]] std::string contraction_sentence(double contraction);
 
 }  // namespace recald::report

@@ -22,8 +22,8 @@ struct Histogram {
   [[nodiscard]] std::vector<double> density() const;
 };
 
-/// Histogram over the range of the finite values; non-finite ones are left out.
-/// Values that are all equal get one bin's width of a thousandth of their size (or 1e-9 at zero).
+/// Histogram over the range of the finite values; others are left out. If all values are equal, the
+/// bin width is a thousandth of their size (or 1e-9 at zero).
 /// @pre bins >= 1
 [[nodiscard]] Histogram make_histogram(std::span<const double> values, int bins);
 

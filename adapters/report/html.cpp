@@ -28,7 +28,7 @@ std::string escape(std::string_view text) {
         break;
       case '\0':
         safe += "\xEF\xBF\xBD";
-        break;  // U+FFFD, as a browser would show it.
+        break;  // U+FFFD, as a browser would show it
       default:
         safe += c;
     }

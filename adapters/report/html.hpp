@@ -1,4 +1,4 @@
-/// Small pieces of HTML. Whatever is not a literal in our own source goes through `escape`.
+/// Builds pieces of HTML. Everything that is not a literal in our own source goes through `escape`.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace recald::report {
 
-/// Text made safe for element content and for quoted attribute values.
+/// Escapes text for element content and quoted attribute values.
 [[nodiscard]] std::string escape(std::string_view text);
 
 /// A page under construction.
 class Html {
  public:
-  /// Appends markup as it is. @pre written by us; never a name or sentence from outside.
+  /// Appends markup unchanged. @pre written by us; never a name or sentence from outside.
   Html& markup(std::string_view trusted);
 
   /// Appends text, escaped.
   Html& text(std::string_view untrusted);
 
-  /// <tag class="css_class">text</tag>, the text escaped. No class attribute where it is empty.
+  /// <tag class="css_class">text</tag>, with the text escaped. No class attribute if it is empty.
   Html& element(std::string_view tag, std::string_view text, std::string_view css_class = "");
 
   [[nodiscard]] const std::string& str() const { return out_; }
@@ -40,17 +40,17 @@ class Table {
  public:
   explicit Table(std::string caption) : caption_(std::move(caption)) {}
 
-  /// A line above the column names: each label spans so many columns.
+  /// Adds a row above the column names, in which each label spans a number of columns.
   Table& column_groups(std::vector<std::pair<std::string, int>> groups);
   Table& columns(std::vector<std::string> names);
-  /// A heading inside the body that spans the table.
+  /// Adds a heading inside the body that spans the table.
   Table& group(std::string label);
   Table& row(std::vector<Cell> cells);
-  /// Each cell carries its column's name, so that a narrow window can show rows as lists.
+  /// Gives each cell its column's name, so that a narrow window can show rows as lists.
   Table& with_labels();
 
-  /// Writes the caption, then the table inside a box that scrolls sideways where the window is too
-  /// narrow.
+  /// Writes the caption, then the table inside a box that scrolls sideways if the
+  /// window is too narrow.
   void write(Html& html) const;
 
  private:
@@ -62,7 +62,7 @@ class Table {
   void write_head(Html& html) const;
   void write_body(Html& html) const;
   [[nodiscard]] std::string attributes_of(const Row& row, std::size_t column) const;
-  /// Heads stand above their numbers, on the right.
+  /// Headings of numbers are right-aligned, like the numbers.
   [[nodiscard]] bool holds_numbers(std::size_t column) const;
 
   std::string caption_;
@@ -72,17 +72,17 @@ class Table {
   bool is_labelled_ = false;
 };
 
-/// Where the script draws a figure, and what stands around it.
+/// The place where the script draws a figure, with the text around it.
 struct Figure {
-  std::string_view kind;  ///< Which drawing: "months", "cvrmse", "parameter", "peaks", …
-  int index = 0;          ///< Which of the kind, in the order of the report's data.
+  std::string_view kind;  ///< Type of drawing: "months", "cvrmse", "parameter", "peaks", …
+  int index = 0;          ///< Index within its type, in the order of the report's data.
   std::string title;
-  std::string description;     ///< What the figure shows, for those who do not see it.
+  std::string description;     ///< What the figure shows, for readers who cannot see it.
   std::string caption;         ///< How to read it.
   std::string_view size = "";  ///< "", "small", "tall", "map", "overview" or "small pair".
 };
 
-/// The figure with its data as a table below it; the table is there without JavaScript too.
+/// The figure, followed by its data as a table, which also works without JavaScript.
 void write_figure(Html& html, const Figure& figure, const Table& data);
 
 /// Opens a <section> with an id and a heading; the caller closes it with "</section>".

@@ -64,7 +64,7 @@ Table profile_table(const DayTypeProfile& day_type) {
   return table;
 }
 
-/// One day of a load grid, summed up.
+/// Summary of one day of a load grid.
 struct DaySummary {
   std::array<int, 4> hours_by_status{};  ///< Indexed by HourStatus.
   double sum_kW = 0.0;
@@ -86,8 +86,8 @@ DaySummary summarise_day(const LoadGrid& load, std::size_t day) {
   return summary;
 }
 
-/// Days as rows: hours would be a table of tens of thousands of cells, which no one reads and
-/// every browser feels. The hours are in the CSV file that the page's script offers.
+/// One row per day: hours would make a table of tens of thousands of cells, which no one reads and
+/// every browser struggles with. The hours are in the CSV file that the page's script offers.
 Table load_table(const LoadGrid& load) {
   const display::Unit& unit = load.units.power;
   Table table(load.meter + ": measured load by day");
@@ -140,7 +140,7 @@ void write_load_figure(Html& html, const LoadGrid& load, int index) {
   html.markup("</div>\n");
 }
 
-/// Without the script every meter is shown; with it, the one that is chosen.
+/// Without the script every meter is shown; with it, only the chosen one.
 void write_meter_choice(Html& html, const std::vector<LoadGrid>& loads) {
   if (loads.size() < 2) return;
   html.markup("<p class=\"needs-script\"><label>Meter <select id=\"load-choice\">\n");

@@ -282,7 +282,7 @@ void write_temperature_section(Html& html, const MetersData& data) {
   std::string said;
   for (const MeterPart& meter : data.meters) {
     if (meter.no_temperature_because.empty() || meter.no_temperature_because == said) continue;
-    said = meter.no_temperature_because;  // what all meters lack is said once
+    said = meter.no_temperature_because;  // a reason that all meters share is written once
     html.element("p", said);
   }
   html.markup("</section>\n");

@@ -1,5 +1,5 @@
-/// The line of a calibration's page that says what the model lacks most likely. The diagnosis is
-/// made after the page, so it finds the line again and fills it.
+/// The line of a calibration's page that says what the model most likely lacks. The diagnosis runs
+/// after the page is written, so it finds this line again and fills it in.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@ namespace recald::report {
 
 inline constexpr std::string_view kMostLikelyOpen = "<p class=\"lead\" id=\"most-likely\">";
 
-/// What stands in the line. @param sentence  Of a diagnosis; empty: there is none yet.
+/// The content of the line. @param sentence  From a diagnosis; empty: there is none yet.
 [[nodiscard]] std::string most_likely_markup(std::string_view sentence);
 
-/// The page with the sentence of a diagnosis in that line.
-/// @return nothing where the page has no such line, or is of other data.
+/// Puts the sentence of a diagnosis into that line of a page.
+/// @return the page, or nothing if it has no such line or shows other data.
 [[nodiscard]] std::optional<std::string> with_most_likely(std::string page,
                                                           std::string_view data_revision,
                                                           std::string_view sentence);

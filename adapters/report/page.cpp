@@ -8,8 +8,8 @@
 namespace recald::report {
 namespace {
 
-/// Nothing may be fetched: only this script, this style and pictures made on the page. Style
-/// attributes are needed by the drawing library, which sets them on the elements it makes.
+/// Nothing may be loaded: only this script, this style and pictures made on the page are allowed.
+/// Style attributes are allowed because the drawing library sets them on its elements.
 std::string content_security_policy() {
   return fmt::format(
       "default-src 'none'; script-src '{}'; style-src '{}'; style-src-attr 'unsafe-inline'; "

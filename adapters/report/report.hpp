@@ -1,4 +1,4 @@
-/// The report: one self-contained HTML page that asks nothing of the network.
+/// The report: one self-contained HTML page that loads nothing from the network.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@ namespace recald::report {
 /// Renders the page: words and tables as HTML, figures drawn by the embedded script.
 ///
 /// Every text of `data` is escaped; numbers that are NaN or absent appear as a dash. The same data
-/// give the same bytes. Writing the file is the caller's business.
+/// give the same bytes. The caller writes the file.
 ///
 /// @pre each load grid holds whole days and as many statuses as values.
-/// @note Size: about 0.7 MB of script and style, plus 30 bytes an hour and meter of load.
+/// @note Size: about 0.7 MB of script and style, plus 30 bytes per hour and meter of load.
 [[nodiscard]] std::string render_report(const ReportData& data);
 
 }  // namespace recald::report

@@ -1,7 +1,7 @@
-/// All that a report shows, as plain values. The caller computes; the report only says it.
+/// Everything that a report shows, as plain values. The caller computes; the report only shows.
 ///
-/// Whatever is absent (an empty vector, an empty optional, a NaN) is left out or shown as a dash,
-/// so a site that has readings but no calibration yet gets a report too.
+/// Absent values (an empty vector, an empty optional, a NaN) are left out or shown as a dash, so a
+/// site with readings but no calibration yet also gets a report.
 #pragma once
 
 #include <algorithm>
@@ -31,18 +31,18 @@ struct SiteLine {
   std::string time_zone;  ///< IANA name; every local time in the report is in this zone.
 };
 
-/// What a number needs to be believed and repeated.
+/// What a reader needs to trust and reproduce the numbers.
 struct Provenance {
   std::string recald_version;
-  std::string data_revision;  ///< Hash of the readings that were used.
+  std::string data_revision;  ///< Hash of the readings used.
   std::string model_version;
   std::string time_zone_data;  ///< Release of the zone rules, e.g. "2025b".
-  std::string weather_values;  ///< What temperatures were taken for: "instant (inferred)".
-  std::string catalogue;       ///< Which effects were tried, in words.
+  std::string weather_values;  ///< How temperatures were interpreted: "instant (inferred)".
+  std::string catalogue;       ///< The effects that were tried, in words.
   std::string sampler;
   std::string hyper_prior_profile;
   std::optional<std::uint64_t> seed;
-  std::optional<int> iterations;  ///< A chain, the dropped ones included.
+  std::optional<int> iterations;  ///< Per chain, including the dropped ones.
   std::optional<int> burn_in;
   std::optional<int> chains;
   std::optional<double> wall_s;
@@ -67,25 +67,25 @@ struct KeyNumber {
   std::string what;
 };
 
-/// What a client sees first: one sentence, and three numbers beside one picture.
+/// The first screen: one sentence, and three numbers beside one picture.
 struct FirstScreen {
   std::string sentence;
-  std::string more;  ///< What follows from it; empty: nothing.
+  std::string more;  ///< The consequence; empty: none.
   std::vector<KeyNumber> numbers;
 };
 
-/// ASHRAE Guideline 14 on one output.
+/// ASHRAE Guideline 14 for one output.
 struct OutputVerdict {
   std::string output;
   assessment::GuidelineVerdict verdict;
 };
 
-/// A calibration parameter, prior against posterior.
+/// A calibration parameter, prior and posterior.
 struct ParameterResult {
-  std::string label;  ///< As people say it: "Outdoor airflow rate".
+  std::string label;  ///< Readable name: "Outdoor airflow rate".
   Prior prior;
   calibration::Summary summary;
-  std::vector<double> draws;  ///< Posterior; 30 bins are made of them.
+  std::vector<double> draws;  ///< Posterior; shown in 30 bins.
 };
 
 /// One month of one output, in the output's unit; energies are daily averages in kWh/day.
@@ -96,7 +96,7 @@ struct OutputMonth {
   assessment::MonthRole role = assessment::MonthRole::unused;
   std::optional<assessment::BoxPlot> box;             ///< Of the posterior draws.
   std::optional<assessment::MonthForecast> forecast;  ///< What the meter was expected to show.
-  bool flagged_different = false;  ///< Measured apart from what the model expects.
+  bool flagged_different = false;  ///< The measurement differs from what the model expects.
 };
 
 /// One meter's monthly consumption, or its monthly peak, measured and modelled.
@@ -139,7 +139,7 @@ struct LoadGrid {
   std::string meter;
   display::MeterUnits units = {};
   metering::Day first_day;
-  std::vector<float> mean_kW;      ///< NaN where there is nothing to show. @pre a multiple of 24
+  std::vector<float> mean_kW;      ///< NaN if there is nothing to show. @pre a multiple of 24
   std::vector<HourStatus> status;  ///< @pre same size as mean_kW
 };
 
@@ -154,14 +154,14 @@ struct ProfilePart {
 struct DayTypeProfile {
   std::string label;  ///< "Working day", "Saturday", "Sunday and holiday".
   std::vector<ProfilePart>
-      parts;  ///< Stacked in this order from the bottom; the same in each day type.
+      parts;  ///< Stacked in this order from the bottom; the same for each day type.
   HourlyProfile measured_mean_kW;
 };
 
-/// How the electricity meter was split into schedules that are then fixed inputs.
+/// How the electricity meter was split into schedules, which are then fixed inputs.
 struct ElectricityProfile {
   std::vector<DayTypeProfile> day_types;
-  std::string check_sentence;  ///< How well the profile repeats the meter month by month.
+  std::string check_sentence;  ///< How well the profile reproduces the meter month by month.
 };
 
 /// One month of a meter's bill.
@@ -196,7 +196,7 @@ struct ForecastCost {
 
 struct ReportData {
   std::string title;
-  std::string generated_at;  ///< Given by the caller; the report has no clock.
+  std::string generated_at;  ///< Set by the caller; the report has no clock.
   SiteLine site;
   std::optional<metering::LocalCalendar> calendar;  ///< Of the site; absent: times are in UTC.
   Provenance provenance;
@@ -204,12 +204,12 @@ struct ReportData {
   display::UnitSystem units = display::UnitSystem::si;
 
   FirstScreen first;
-  std::string most_likely;             ///< Of a diagnosis of the same data; empty: there is none.
-  bool asks_for_diagnosis = false;     ///< Something is missing: whether it is known, or not yet.
-  std::vector<std::string> headlines;  ///< What stands behind the first sentence.
+  std::string most_likely;             ///< From a diagnosis of the same data; empty: there is none.
+  bool asks_for_diagnosis = false;     ///< Something is missing, whether or not it is known yet.
+  std::vector<std::string> headlines;  ///< The details behind the first sentence.
   std::vector<OutputVerdict> verdicts;
   std::vector<Notice> notices;
-  /// Their `meter` as people say it.
+  /// `meter` holds the readable name.
   std::vector<metering::DataFinding> findings;
 
   std::vector<OutputResult> outputs;
@@ -221,7 +221,7 @@ struct ReportData {
   ElectricityProfile profile;
   std::vector<LoadGrid> loads;
 
-  std::vector<std::string> not_known;  ///< What this report cannot say.
+  std::vector<std::string> not_known;  ///< What this report cannot show.
 };
 
 }  // namespace recald::report

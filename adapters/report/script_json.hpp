@@ -6,11 +6,11 @@
 
 namespace recald::report {
 
-/// The number with so many significant digits, or null where it is not finite. Keeps the page
-/// small: the shortest text of a rounded double is short.
+/// The number rounded to that many significant digits, or null if it is not finite. Rounding
+/// shortens the text and keeps the page small.
 [[nodiscard]] nlohmann::json json_number(double value, int significant_digits = 6);
 
-/// Every element of a range by `json_number`.
+/// Applies `json_number` to each element of a range.
 template <class Range>
 [[nodiscard]] nlohmann::json json_numbers(const Range& values, int significant_digits = 6) {
   nlohmann::json array = nlohmann::json::array();
@@ -18,8 +18,8 @@ template <class Range>
   return array;
 }
 
-/// Compact JSON in which no "<" occurs, so that no text can close the surrounding script tag. Bytes
-/// that are not UTF-8 (a name from an old file) become U+FFFD.
+/// Compact JSON without any "<", so that no text can close the surrounding script tag. Bytes that
+/// are not UTF-8 (a name from an old file) become U+FFFD.
 [[nodiscard]] std::string script_safe_text(const nlohmann::json& json);
 
 }  // namespace recald::report

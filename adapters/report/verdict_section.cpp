@@ -12,7 +12,7 @@
 namespace recald::report {
 namespace {
 
-/// Word, sign and class together: the meaning never rests on colour.
+/// A word, a sign and a class, so that the meaning never depends on colour alone.
 struct Mark {
   std::string_view word;
   std::string_view css_class;
@@ -30,7 +30,7 @@ Mark severity_mark(Severity severity) {
   return {"Note", "note"};
 }
 
-/// Without a first screen the first headline is the answer.
+/// Without a first screen, the first headline is the answer.
 void write_headlines(Html& html, const ReportData& data) {
   const bool is_answered = !data.first.sentence.empty();
   for (std::size_t i = 0; i < data.headlines.size(); ++i) {
@@ -38,7 +38,8 @@ void write_headlines(Html& html, const ReportData& data) {
   }
 }
 
-/// Where the diagnosis of the same data is, or what makes one. `put_diagnosis` finds it again.
+/// Where the diagnosis of the same data is, or how to run one. `with_most_likely` finds
+/// this line again.
 void write_most_likely(Html& html, const ReportData& data) {
   if (!data.asks_for_diagnosis) return;
   html.markup(kMostLikelyOpen).markup(most_likely_markup(data.most_likely)).markup("</p>\n");

@@ -41,7 +41,7 @@ Json causes_json(const std::vector<AlarmCause>& causes) {
   return list;
 }
 
-/// Members of an object, absent where they are missing or of another type.
+/// The members of an object; absent if they are missing or of another type.
 class Reader {
  public:
   explicit Reader(const Json& json) : json_(json) {}
@@ -68,7 +68,7 @@ class Reader {
     return value != nullptr && value->is_array() ? value : nullptr;
   }
 
-  /// What `read` makes of each object of an array.
+  /// Applies `read` to each object of an array.
   template <class Read>
   [[nodiscard]] auto list(const char* key, Read read) const {
     std::vector<decltype(read(*this))> all;

@@ -1,4 +1,4 @@
-/// Job results as JSON: the one place that writes and reads what a document says of drift.
+/// Job results as JSON. Only this file writes and reads the drift part of a document.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,18 +8,18 @@
 
 namespace recald::results {
 
-/// JSON has no NaN: what nobody knows is null.
+/// JSON has no NaN, so an unknown value is null.
 [[nodiscard]] nlohmann::ordered_json number(double value);
 
-/// An array each, keys in the order that people read them.
+/// One array each, with keys in the order in which people read them.
 [[nodiscard]] nlohmann::ordered_json outputs_json(const DriftSummary& drift);
 [[nodiscard]] nlohmann::ordered_json alarms_json(const DriftSummary& drift);
 [[nodiscard]] nlohmann::ordered_json changed_meters_json(const DriftSummary& drift);
 
 [[nodiscard]] nlohmann::ordered_json weather_json(const std::vector<MonthWeather>& months);
 
-/// A result from its document, as a store keeps it. What the document does not say, or says in
-/// another type, is absent.
+/// Reads a result from its document, as a store keeps it. Values that are missing or of another
+/// type are absent.
 [[nodiscard]] JobResult read_job_result(std::string document);
 
 }  // namespace recald::results

@@ -1,4 +1,4 @@
-/// A consistent copy of a database while it goes on being written, a portion at a time.
+/// Makes a consistent copy of a database in portions, while the database is still being written.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace recald::sqlite {
 
-/// Grows beside its target as "….part"; given up before it is kept, it leaves nothing. What the
-/// connection writes meanwhile goes into the copy too, so nothing waits for it.
+/// The copy grows beside its target as "….part"; abandoned before it is kept, it leaves nothing.
+/// What the connection writes meanwhile also goes into the copy, so writers never wait.
 class Backup final : public StoreBackup {
  public:
   /// @param database  Must outlive the copying.
-  /// @return io_failed when the file cannot be made.
+  /// @return io_failed when the file cannot be created.
   [[nodiscard]] static Result<Backup> begin(Database& database, const std::filesystem::path& file);
 
   ~Backup() override;

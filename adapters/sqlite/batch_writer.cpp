@@ -65,7 +65,7 @@ Result<CommitCounts> BatchWriter::write(const StoreBatch& batch) {
   if (auto put = put_registers(batch); !put) return tl::unexpected(put.error());
   if (auto put = put_samples(batch); !put) return tl::unexpected(put.error());
   if (auto put = put_events(batch); !put) return tl::unexpected(put.error());
-  // What was known already changes no month.
+  // Intervals that were already known change no month.
   const bool changes = counts.taken > 0 || batch.intervals.empty();
   if (auto put = changes ? reopen_months(batch) : Result<void>{}; !put) {
     return tl::unexpected(put.error());
@@ -155,7 +155,7 @@ Result<void> BatchWriter::put_samples(const StoreBatch& batch) {
   return {};
 }
 
-/// @return whether it happened within the last day as well.
+/// @return whether the event also happened within the last day.
 Result<bool> BatchWriter::count_event(const StoreEvent& event) {
   Statement& count = statements_->count_event;
   const auto row = count.bind(0, seconds_of(event.time))

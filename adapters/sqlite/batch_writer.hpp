@@ -1,4 +1,4 @@
-/// What the daemon writes all day: batches of intervals with the states that explain them.
+/// Writes the daemon's regular batches: intervals with the states that explain them.
 #pragma once
 
 #include <memory>
@@ -8,18 +8,18 @@
 
 namespace recald::sqlite {
 
-/// Its statements are prepared once.
+/// Prepares its statements once.
 class BatchWriter {
  public:
-  /// @param database  Outlives the writer, at another address if need be: statements know it
-  ///                  themselves.
+  /// @param database  Outlives the writer. It may move: the statements do not
+  ///                  depend on its address.
   [[nodiscard]] static Result<BatchWriter> prepare(Database& database);
 
   ~BatchWriter();
   BatchWriter(BatchWriter&&) noexcept;
   BatchWriter& operator=(BatchWriter&&) noexcept;
 
-  /// @pre within a transaction: half of a batch is worse than none.
+  /// @pre runs within a transaction: half a batch is worse than none.
   [[nodiscard]] Result<CommitCounts> write(const StoreBatch& batch);
 
  private:

@@ -8,8 +8,8 @@
 namespace recald::sqlite {
 namespace {
 
-/// Whether a file's header says that it has a log, as that of every database opened to write by
-/// `Database` does. With another number there SQLite reads it, and never writes to it again.
+/// Whether a file's header says that it has a log, as every database that `Database` opened to
+/// write does. With another number there, SQLite reads the file but never writes to it again.
 /// @see SQLite, "Database File Format", 1.3.3
 bool says_that_it_has_a_log(const std::filesystem::path& file) {
   constexpr std::streamoff kVersions = 18;  // of writing and of reading
@@ -31,13 +31,13 @@ Result<std::string> damage_of(const std::filesystem::path& file, const OnProgres
   }
   database->on_progress(on_progress);
   const std::stop_callback stopping{stop, [&] { database->interrupt(); }};
-  // A header that is another program's is a header that can be read.
+  // A header of another program is still readable.
   if (auto version = schema_version(*database); !version) {
     if (version.error().code == ErrorCode::malformed) return version.error().message;
     return tl::unexpected(version.error());
   }
   if (!says_that_it_has_a_log(file)) return "its header has the number of another file format";
-  // An interruption of what does not run yet is forgotten.
+  // An interrupt before the check starts is forgotten, so ask again here.
   if (stop.stop_requested()) return failure(ErrorCode::cancelled, "the check was stopped");
   auto damage = database->quick_check();
   if (damage && damage->empty()) damage = wrong_sums(*database);

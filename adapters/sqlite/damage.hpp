@@ -1,4 +1,4 @@
-/// What is wrong with a store's file: its header, its tables, its structure, its rows.
+/// Finds damage in a store's file: in its header, tables, structure and rows.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace recald::sqlite {
 
-/// Reads all of a file: whether header and tables fit each other, then `quick_check`, then the
-/// rows' check sums.
-/// @param stop  Ends it from another thread.
+/// Reads the whole file: checks that header and tables match, then runs `quick_check`, then
+/// compares the rows' checksums.
+/// @param stop  Stops the check from another thread.
 /// @return what is damaged; empty: nothing, or there is no file. Another program's database and a
-///         newer version are errors (unsupported), not damage; io_failed when it cannot be read;
-///         cancelled when it was stopped.
+///         newer version are errors (unsupported), not damage; io_failed when the file cannot be
+///         read; cancelled when the check was stopped.
 [[nodiscard]] Result<std::string> damage_of(const std::filesystem::path& file,
                                             const OnProgress& on_progress = {},
                                             const std::stop_token& stop = {});

@@ -130,26 +130,28 @@ Result<Database> Database::open(const std::filesystem::path& file, const Options
   const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
                     (writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
   const bool is_on_disk = options.vfs.empty() && file != ":memory:";
-  if (writes && is_on_disk) system::make_private_file(file);  // log and index follow suit
+  if (writes && is_on_disk) system::make_private_file(file);  // log and index get the same rights
   sqlite3* raw = nullptr;
   const int result = sqlite3_open_v2(file.c_str(), &raw, flags,
                                      options.vfs.empty() ? nullptr : options.vfs.c_str());
   Database database{std::make_unique<Impl>(Impl{DatabaseHandle{raw}, file.string()})};
   if (result != SQLITE_OK) return failed(result, raw, file.string());
-  // SQLite makes do with a file that it may only read; what wants to write would wait for ever.
+  // SQLite opens a read-only file without complaint; a caller that wants to write
+  // would wait forever.
   if (writes && sqlite3_db_readonly(raw, "main") == 1) {
     return failure(ErrorCode::io_failed,
                    "store '" + file.string() + "' cannot be opened for writing");
   }
   sqlite3_busy_timeout(raw, kBusyTimeout_ms);
   add_row_sum(raw);
-  // Reading the first page, so that a file that is no database is told here.
+  // These read the first page, so a file that is not a database is reported here.
   const std::string pragmas =
       writes ? "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;"
              : "PRAGMA wal_autocheckpoint=0; PRAGMA query_only=ON; SELECT count(*) FROM "
                "sqlite_schema;";
   if (auto set = database.execute(pragmas); !set) {
-    // Our words are right: what SQLite cannot make sense of is the file, as by a flipped bit.
+    // Our SQL is right, so if SQLite cannot parse something, the file is damaged, perhaps
+    // by a flipped bit.
     const bool is_of_the_file = (sqlite3_errcode(raw) & 0xFF) == SQLITE_ERROR;
     return failure(is_of_the_file ? ErrorCode::malformed : set.error().code, set.error().message);
   }
@@ -174,7 +176,7 @@ Result<Statement> Database::prepare(std::string_view sql) {
 }
 
 void Database::on_progress(OnProgress call) {
-  constexpr int kSteps = 200'000;  // of SQLite's machine: some milliseconds
+  constexpr int kSteps = 200'000;  // steps of SQLite's virtual machine: some milliseconds
   impl_->on_progress = std::move(call);
   sqlite3_progress_handler(
       impl_->handle.get(), impl_->on_progress ? kSteps : 0,
@@ -198,7 +200,7 @@ Result<bool> Database::begin() {
 Result<void> Database::finish(bool is_part) { return execute(is_part ? "RELEASE part" : "COMMIT"); }
 
 void Database::roll_back(bool is_part) {
-  // Some failures (a full disk) have rolled back already; then there is nothing left to do.
+  // Some failures (a full disk) have already rolled back, so there is nothing left to do.
   if (sqlite3_get_autocommit(impl_->handle.get()) != 0) return;
   (void)execute(is_part ? "ROLLBACK TO part; RELEASE part" : "ROLLBACK");
 }
@@ -209,7 +211,7 @@ Result<std::string> Database::quick_check() {
   std::string damage;
   for (;;) {
     const auto row = statement->step();
-    // Some damage ends the check itself.
+    // Some damage aborts the check itself.
     if (!row && row.error().code == ErrorCode::malformed) {
       return damage.empty() ? row.error().message : damage;
     }

@@ -1,8 +1,8 @@
 /// SQLite as values: a database, its statements, its transactions. Every failure is a `Result`.
 ///
-/// One connection writes and alone checkpoints; readers open their own, read only. That is not
-/// taste: before 3.51.3 two connections that write or checkpoint together could lose a write-ahead
-/// log. Durability is `synchronous=FULL`: what is committed survives a power cut.
+/// One connection writes, and only it runs checkpoints; readers open their own, read only. This is
+/// required: before SQLite 3.51.3, two connections that write or run checkpoints at once could lose
+/// a write-ahead log. Durability is `synchronous=FULL`: committed data survive a power cut.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace recald::sqlite {
 
-/// Told now and then that long work goes on.
+/// Called from time to time during long work.
 using OnProgress = std::function<void()>;
 
 /// A prepared statement. Parameters and columns count from 0.
@@ -31,15 +31,15 @@ class Statement {
   Statement& bind(int parameter, double value);  ///< NaN becomes NULL.
   Statement& bind(int parameter, std::string_view text);
   Statement& bind_null(int parameter);
-  /// Whatever stands in another statement's row.
+  /// Binds a column of another statement's row, of any type.
   Statement& bind_column(int parameter, const Statement& row, int column);
 
-  /// The next row. @return whether there is one, or as Database::execute. At the end, or after a
-  /// failure, the statement can be bound and run again.
+  /// Moves to the next row. @return whether there is one, or as Database::execute. At the end, or
+  /// after a failure, the statement can be bound and run again.
   [[nodiscard]] Result<bool> step();
-  /// Runs a statement that gives no rows.
+  /// Runs a statement that returns no rows.
   [[nodiscard]] Result<void> run();
-  /// Gives up the rows that are left. A row that is not read to its end holds the database open.
+  /// Drops the remaining rows. A statement with rows left holds the database open.
   void reset();
 
   [[nodiscard]] std::int64_t integer(int column) const;
@@ -63,9 +63,9 @@ class Database {
     std::string vfs;  ///< Name of a registered file system; empty: SQLite's own.
   };
 
-  /// Opens, or with `read_write` creates. ":memory:" lives as long as the value.
+  /// Opens a database, or with `read_write` creates it. ":memory:" lives as long as the object.
   /// @return io_failed  cannot be opened, disk full, in use by another writer for 5 s;
-  ///         malformed  no database, or a damaged one.
+  ///         malformed  not a database, or a damaged one.
   [[nodiscard]] static Result<Database> open(const std::filesystem::path& file,
                                              const Options& options);
 
@@ -73,15 +73,15 @@ class Database {
   Database(Database&&) noexcept;
   Database& operator=(Database&&) noexcept;
 
-  /// One or several statements without rows.
+  /// Runs one or several statements without rows.
   /// @return io_failed (the operating system, a full disk, a lock), malformed (damage), or
   ///         invalid_value (a constraint was violated).
   [[nodiscard]] Result<void> execute(const std::string& sql);
-  /// @pre the text is right; a wrong one is our bug and asserted.
+  /// @pre the SQL is right; a mistake is our bug and is asserted.
   [[nodiscard]] Result<Statement> prepare(std::string_view sql);
 
-  /// Everything that `work` does happens, or nothing of it. `work` returns a Result. Within another
-  /// transaction it is a part of that one: what fails here is undone here.
+  /// Does everything in `work`, or nothing. `work` returns a Result. Within another transaction it
+  /// becomes part of that one, and only its own changes are undone on failure.
   template <class Work>
   [[nodiscard]] auto transaction(Work&& work) -> decltype(work()) {
     const auto is_part = begin();
@@ -98,13 +98,14 @@ class Database {
     return result;
   }
 
-  /// Called now and then while a statement runs for long; may be empty.
+  /// Called from time to time during a long statement; may be empty.
   void on_progress(OnProgress call);
 
-  /// Ends what runs in another thread, which then fails. @pre the database lives meanwhile
+  /// Interrupts the running statement from another thread; it then fails. @pre the
+  /// database stays alive
   void interrupt();
 
-  /// What is damaged, in SQLite's words; empty when nothing is.
+  /// The damage in SQLite's words; empty if there is none.
   [[nodiscard]] Result<std::string> quick_check();
 
  private:

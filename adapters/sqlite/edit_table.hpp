@@ -1,5 +1,5 @@
-/// What people changed by hand: who, when, why, out of which file. The rows of `interval` that an
-/// edit put there name it.
+/// Manual changes: who, when, why, and from which file. Rows of `interval` from an
+/// edit refer to it.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace recald::sqlite {
 
-/// The edit's number is given by the table and returned. @return invalid_value without a reason.
+/// Inserts an edit. @return its number, set by the table, or invalid_value without a reason.
 [[nodiscard]] Result<std::int64_t> insert_edit(Database& database, const StoreEdit& edit);
 
 [[nodiscard]] Result<void> delete_edit(Database& database, std::int64_t number);

@@ -9,7 +9,7 @@
 namespace recald::sqlite {
 namespace {
 
-/// A forecast that stands already, by the same model of the same figure, is not written again.
+/// Skips a forecast that the same model already made of the same figure.
 constexpr auto kInsert = R"sql(
 INSERT INTO forecast
 SELECT NULL, ?1, ?2, revision, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15,
@@ -19,7 +19,7 @@ WHERE NOT EXISTS (SELECT 1 FROM forecast WHERE output = ?1 AND month = ?2 AND mo
                   AND measured = ?11)
 )sql";
 
-/// A NaN would be a NULL, which the table refuses.
+/// A NaN would become a NULL, which the table refuses.
 bool is_storable(const StoredForecast& one) {
   const std::array figures{one.mean,     one.sd,  one.q05,          one.q50,       one.q95,
                            one.measured, one.pit, one.standardised, one.log_score, one.crps};
@@ -44,7 +44,8 @@ void bind_forecast(Statement& insert, const StoredForecast& one) {
       .bind(14, one.crps);
 }
 
-/// Columns in the order of the struct. @return malformed when the month's name is none.
+/// Reads the columns in the order of the struct. @return malformed when the month's
+/// name is invalid.
 Result<StoredForecast> read_forecast(const Statement& row) {
   const auto month = metering::parse_month(row.text(1));
   if (!month) return tl::unexpected(month.error());

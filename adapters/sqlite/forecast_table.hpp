@@ -1,4 +1,4 @@
-/// What was forecast of each month and how it did, in the store's `forecast` table.
+/// Forecasts of each month and how they compared, in the store's `forecast` table.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace recald::sqlite {
 
-/// As Store::add_forecasts, within a transaction of the caller.
+/// As Store::add_forecasts, within the caller's transaction.
 [[nodiscard]] Result<void> insert_forecasts(Database& database,
                                             std::span<const StoredForecast> forecasts);
 [[nodiscard]] Result<std::vector<StoredForecast>> stored_forecasts(Database& database);

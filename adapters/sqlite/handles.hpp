@@ -1,5 +1,5 @@
-/// SQLite's own types, for the files of this folder that speak to the library; no other includes
-/// it.
+/// SQLite's own types, for the files of this folder that call the library; no other
+/// file includes it.
 #pragma once
 
 #include <sqlite3.h>
@@ -22,13 +22,13 @@ struct FinalizeStatement {
 using DatabaseHandle = std::unique_ptr<sqlite3, CloseDatabase>;
 using StatementHandle = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
 
-/// What kind of failure a result code of SQLite is.
+/// The kind of failure behind a result code of SQLite.
 [[nodiscard]] ErrorCode code_of(int result);
 
-/// @param database  Whose last failure it was, with its words; null: only the code is known.
+/// @param database  The one that failed, for its error message; null: only the code is known.
 [[nodiscard]] tl::unexpected<Error> failed(int result, sqlite3* database, std::string_view file);
 
-/// Gives a connection the function row_sum(table, value, …) of tables.hpp.
+/// Adds the function row_sum(table, value, …) of tables.hpp to a connection.
 void add_row_sum(sqlite3* database);
 
 struct Database::Impl {

@@ -1,4 +1,4 @@
-/// A row of the `interval` table.
+/// Reads a row of the `interval` table.
 #pragma once
 
 #include "adapters/ports/store.hpp"
@@ -13,7 +13,7 @@ inline metering::Instant instant_of(std::int64_t seconds) {
 
 inline constexpr auto kIntervalColumns = "t_start, revision, mean_kW, validity, late, reasons";
 
-/// Columns as in `kIntervalColumns`.
+/// @pre columns as in `kIntervalColumns`
 inline StoredInterval read_interval(const Statement& row, std::uint32_t meter) {
   return {{.meter = meter,
            .start = instant_of(row.integer(0)),

@@ -28,7 +28,7 @@ std::optional<Instant> instant_at(const Statement& row, int column) {
   return Instant{std::chrono::seconds{row.integer(column)}};
 }
 
-/// Parameters 0 to 10: all that a job has but its number.
+/// Binds parameters 0 to 10: all of a job except its number.
 void bind_job(Statement& statement, const StoredJob& job) {
   statement.bind(0, static_cast<std::int64_t>(job.kind))
       .bind(1, static_cast<std::int64_t>(job.state))
@@ -43,7 +43,7 @@ void bind_job(Statement& statement, const StoredJob& job) {
       .bind(10, std::int64_t{job.tries});
 }
 
-/// Columns as in `kColumns`.
+/// Reads columns as in `kColumns`.
 StoredJob read_job(const Statement& row) {
   StoredJob job{.number = row.integer(0),
                 .kind = static_cast<JobKind>(row.integer(1)),
@@ -69,7 +69,7 @@ Result<std::vector<StoredJob>> read_jobs(Statement& query) {
   }
 }
 
-/// Of a query for `kColumns` and the result.
+/// Reads the row of a query for `kColumns` and the result.
 Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
   const auto row = query.step();
   if (!row) return tl::unexpected(row.error());

@@ -1,4 +1,4 @@
-/// Calibrations and diagnoses that were asked for, in the store's `job` table.
+/// Requested calibrations and diagnoses, in the store's `job` table.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace recald::sqlite {
 
-/// The job's number is given by the table and returned; errors are the database's.
+/// Inserts a job. @return its number, set by the table, or the database's errors.
 [[nodiscard]] Result<std::int64_t> insert_job(Database& database, const StoredJob& job);
 /// @return not_found when no job has this number.
 [[nodiscard]] Result<void> update_job(Database& database, const StoredJob& job);

@@ -43,7 +43,7 @@ void bind_month(Statement& insert, std::uint32_t meter, const StoredMonth& month
   insert.bind(20, static_cast<std::int64_t>(figure.reasons));
 }
 
-/// Columns as in `kMonthColumns`. @return malformed when the month's name is none.
+/// Reads columns as in `kMonthColumns`. @return malformed when the month's name is invalid.
 Result<StoredMonth> read_month(const Statement& row) {
   const auto month = metering::parse_month(row.text(0));
   if (!month) return tl::unexpected(month.error());

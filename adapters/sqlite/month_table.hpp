@@ -1,4 +1,4 @@
-/// Closed months in the store's `month` table; those that wait to be closed again in `reopened`.
+/// Closed months, in the store's `month` table; months to be closed again, in `reopened`.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace recald::sqlite {
 
-/// As revision 0 or one more than the last; what was reopened is settled. @return the revision.
+/// Inserts a month as revision 0 or the next, and removes it from `reopened`. @return the revision.
 [[nodiscard]] Result<int> insert_month(Database& database, std::uint32_t meter,
                                        const StoredMonth& month);
 
-/// The latest revision of each month, ascending. @return malformed when a month's name is none.
+/// The latest revision of each month, ascending. @return malformed when a month's name is invalid.
 [[nodiscard]] Result<std::vector<StoredMonth>> stored_months(Database& database,
                                                              std::uint32_t meter);
 
 [[nodiscard]] Result<std::vector<MeterMonth>> reopened_months(Database& database);
 
-/// Store::closing_rules and Store::put_closing_rules.
+/// As Store::closing_rules and Store::put_closing_rules.
 [[nodiscard]] Result<std::string> closing_rules_of(Database& database, std::uint32_t meter);
 [[nodiscard]] Result<int> replace_closing_rules(Database& database, std::uint32_t meter,
                                                 const std::string& rules);

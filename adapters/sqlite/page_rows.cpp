@@ -13,11 +13,11 @@
 namespace recald::sqlite {
 namespace {
 
-/// Of every file that recald has made.
+/// The page size of every file that recald has created.
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kLogHeader = 32;
 constexpr std::size_t kFrameHeader = 24;
-/// A result of a job is the longest text there is.
+/// The longest stored text is a job's result.
 constexpr std::size_t kPayloadMax = 64 * 1024 * 1024;
 constexpr std::size_t kColumnsMax = 64;
 
@@ -27,7 +27,7 @@ std::uint32_t big_endian(Bytes bytes, std::size_t at, std::size_t size) {
   return value;
 }
 
-/// Reads what follows what was read before; beyond the end it fails for good.
+/// Reads bytes in sequence; after an attempt to read past the end, it fails for good.
 class Reader {
  public:
   explicit Reader(Bytes bytes) : rest_(bytes) {}
@@ -44,7 +44,7 @@ class Reader {
     return value;
   }
 
-  /// Empty where there are not so many, and where none are asked for.
+  /// Empty if too few bytes are left, or if none are requested.
   Bytes take(std::size_t size) {
     if (size > rest_.size()) {
       has_failed_ = true;
@@ -74,7 +74,7 @@ std::optional<Value> integer_of(std::int64_t value) {
   return Value{.kind = Value::Kind::integer, .integer = value};
 }
 
-/// One value of a serial type, from a record's body. Nothing for a blob, of which we store none.
+/// One value of a serial type, from a record's body. Nothing for a blob, since we store none.
 std::optional<Value> value_of(std::uint64_t type, Reader& body) {
   constexpr std::array<std::size_t, 7> kIntegerSizes{0, 1, 2, 3, 4, 6, 8};
   if (type == 0) return Value{};
@@ -97,7 +97,7 @@ std::optional<Value> value_of(std::uint64_t type, Reader& body) {
                .text = {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
 }
 
-/// Nothing where the bytes are no record to the last of them.
+/// Nothing if the bytes are not exactly one record.
 std::optional<std::vector<Value>> values_of(Bytes record) {
   Reader start{record};
   const std::uint64_t header_size = start.varint();
@@ -117,8 +117,7 @@ std::optional<std::vector<Value>> values_of(Bytes record) {
   return values;
 }
 
-/// The part of a record that did not fit onto its page. A chain that comes back to itself is
-/// damage.
+/// Appends the part of a record that did not fit on its page. A chain with a loop is damage.
 bool append_overflow(std::vector<std::uint8_t>& record, std::size_t size, std::uint32_t next,
                      const PageOf& page_of) {
   std::set<std::uint32_t> seen;
@@ -133,7 +132,7 @@ bool append_overflow(std::vector<std::uint8_t>& record, std::size_t size, std::u
   return true;
 }
 
-/// How the pages of a kind hold rows.
+/// How a kind of page stores rows.
 struct PageKind {
   bool has_rowid;
   bool is_leaf;
@@ -142,11 +141,11 @@ struct PageKind {
 std::optional<PageKind> kind_of(std::uint8_t type) {
   if (type == 13) return PageKind{true, true};
   if (type == 10) return PageKind{false, true};
-  if (type == 2) return PageKind{false, false};  // rows between those of its children
+  if (type == 2) return PageKind{false, false};  // its rows lie between those of its children
   return {};
 }
 
-/// How much of a record of this size stays on the page.
+/// The part of a record of this size that stays on the page.
 std::size_t size_on_page(std::size_t size, bool has_rowid) {
   constexpr std::size_t kFits = (kPage - 12) * 64 / 255 - 23;
   constexpr std::size_t kLeast = (kPage - 12) * 32 / 255 - 23;
@@ -158,7 +157,7 @@ std::size_t size_on_page(std::size_t size, bool has_rowid) {
 
 std::optional<PageRow> row_of(Bytes cell, const PageKind& kind, const PageOf& page_of) {
   Reader reader{cell};
-  if (!kind.is_leaf) (void)reader.take(4);  // the child's number
+  if (!kind.is_leaf) (void)reader.take(4);  // the child's page number
   const std::uint64_t size = reader.varint();
   PageRow row;
   if (kind.has_rowid) row.rowid = static_cast<std::int64_t>(reader.varint());
@@ -176,7 +175,7 @@ std::optional<PageRow> row_of(Bytes cell, const PageKind& kind, const PageOf& pa
   return row;
 }
 
-/// SQLite's sum over a log: pairs of words, each in the order that the log's first word names.
+/// SQLite's checksum of a log: pairs of words, in the byte order that the log's first word names.
 struct LogSum {
   bool is_big_endian = false;
   std::uint32_t first = 0;
@@ -211,7 +210,7 @@ std::vector<std::uint8_t> read_at(std::ifstream& in, std::uint64_t at, std::size
 }  // namespace
 
 std::vector<PageRow> rows_on_page(Bytes page, bool is_first, const PageOf& page_of) {
-  const std::size_t begin = is_first ? 100 : 0;  // behind the file's header
+  const std::size_t begin = is_first ? 100 : 0;  // after the file's header
   if (page.size() < kPage) return {};
   const auto kind = kind_of(page[begin]);
   if (!kind) return {};
@@ -241,10 +240,10 @@ Result<PagedFile> PagedFile::open(const std::filesystem::path& file) {
   return paged;
 }
 
-/// Frames count up to the last one that ends a commit, as long as their sums hold.
+/// Frames count up to the last one that ends a commit, as long as their checksums are right.
 Result<void> PagedFile::read_log() {
   std::ifstream in{log_, std::ios::binary};
-  if (!in) return {};  // most files have none
+  if (!in) return {};  // most files have no log
   const auto header = read_at(in, 0, kLogHeader);
   if (header.size() < kLogHeader || big_endian(header, 8, 4) != kPage) return {};
   LogSum sum{.is_big_endian = (big_endian(header, 0, 4) & 1u) != 0};
@@ -276,7 +275,7 @@ std::vector<std::uint8_t> PagedFile::page(std::uint32_t number) const {
       logged == in_log_.end() ? (std::uint64_t{number} - 1) * kPage : logged->second;
   std::vector<std::uint8_t> bytes = read_at(in, at, kPage);
   if (bytes.empty()) return bytes;
-  bytes.resize(kPage);  // the last page of a file that was cut
+  bytes.resize(kPage);  // the last page of a truncated file
   return bytes;
 }
 

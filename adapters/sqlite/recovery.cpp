@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A store's file with its log, the log first: it says nothing without its file.
+/// The files of a store. The log goes first, since it is useless without its file.
 constexpr const char* kParts[] = {"-wal", "-shm", ""};
 
 /// The files of a recovery.
 struct Places {
   fs::path store;
-  fs::path note;  ///< Says that a recovery has begun, and what it began with.
-  fs::path made;  ///< The new store, until it is whole.
+  fs::path note;  ///< Records that a recovery has begun, and from what.
+  fs::path made;  ///< The new store, until it is complete.
 
   explicit Places(const fs::path& file)
       : store(file), note(file.string() + ".recovery"), made(file.string() + ".recovering") {}
@@ -37,15 +37,15 @@ bool is_there(const fs::path& file) {
   return fs::exists(file, ignored);
 }
 
-/// "20240301T051500Z", for a file's name.
+/// "20240301T051500Z", for a file name.
 std::string stamp_of(metering::Instant t) {
   std::string stamp = metering::to_string(t);
   std::erase_if(stamp, [](char c) { return c == '-' || c == ':'; });
   return stamp;
 }
 
-/// A name that nothing stands under: what was put aside is all that some rows are left of, and
-/// stamps repeat where a clock wakes up at the same time whenever the power comes back.
+/// A name that is not in use. Files put aside may hold the only copy of some rows, and time stamps
+/// repeat on a machine whose clock starts at the same time after each power cut.
 fs::path free_name(const fs::path& wanted) {
   fs::path name = wanted;
   const auto is_taken = [&](const char* part) { return is_there(name.string() + part); };
@@ -55,7 +55,7 @@ fs::path free_name(const fs::path& wanted) {
   return name;
 }
 
-/// Two lines: where the damaged file is put, and what was wrong with it.
+/// Writes two lines: where the damaged file is put, and what was wrong with it.
 Result<void> write_note(const Places& places, const Recovery& recovery) {
   return system::write_file(places.note,
                             recovery.damaged.filename().string() + "\n" + recovery.damage + "\n");
@@ -71,7 +71,7 @@ std::optional<Recovery> read_note(const Places& places) {
   return recovery;
 }
 
-/// The file and its log, which belong together. Parts that are there already stay.
+/// Moves the file and its log, which belong together. Parts that are already there stay.
 Result<void> put_aside(const Places& places, const fs::path& aside) {
   for (const char* part : kParts) {
     const fs::path from = places.store.string() + part;
@@ -81,7 +81,7 @@ Result<void> put_aside(const Places& places, const fs::path& aside) {
   return {};
 }
 
-/// @return io_failed where one cannot be read now: it may be the one that has what is missing.
+/// @return io_failed if one cannot be read now, because it may hold the missing rows.
 Result<std::optional<fs::path>> first_sound(const std::vector<fs::path>& backups,
                                             const OnProgress& on_progress) {
   const auto is_unsound = [](const auto& asked) {
@@ -105,7 +105,7 @@ Result<std::optional<fs::path>> first_sound(const std::vector<fs::path>& backups
   return std::optional<fs::path>{};
 }
 
-/// Copies all tables out of one file. @param rows  Where a table's number of rows is entered.
+/// Copies all tables from one file. @param rows  Receives the number of rows per table.
 Result<void> take_rows(const fs::path& file, Database& to, Recovery& recovery,
                        std::int64_t RecoveredTable::*rows, const OnProgress& on_progress) {
   const auto from = PagedFile::open(file);
@@ -120,8 +120,8 @@ Result<void> take_rows(const fs::path& file, Database& to, Recovery& recovery,
   return {};
 }
 
-/// When the recovery is told of: a clock that has not been set yet shows a time before all that is
-/// stored, and an event of 1970 would be deleted as an old one.
+/// The time of the recovery event. A clock that has not been set yet shows a time before everything
+/// stored, and an event of 1970 would be deleted as old.
 Result<metering::Instant> time_of_event(Database& made, metering::Instant now) {
   auto query = made.prepare("SELECT coalesce(max(t_start), 0) FROM interval");
   if (!query) return tl::unexpected(query.error());
@@ -142,7 +142,7 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
   Database& to = made.database();
   for (const TableShape& table : table_shapes()) recovery.tables.push_back({table.name});
   to.on_progress(on_progress);
-  // Rows come in order of their pages, not of what they refer to.
+  // Rows come in order of their pages, so a row may come before the rows it refers to.
   if (auto off = to.execute("PRAGMA foreign_keys=OFF"); !off) return off;
   auto taken =
       take_rows(recovery.damaged, to, recovery, &RecoveredTable::from_damaged, on_progress);
@@ -158,7 +158,7 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
   recovery.from_samples = refilled->from_samples;
   recovery.lost_intervals = refilled->still_missing;
   if (auto told = tell(made, recovery, now); !told) return told;
-  // All of it into the one file that is renamed.
+  // Moves everything into the one file that is renamed.
   return to.execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
@@ -167,11 +167,11 @@ void remove_store(const fs::path& file) {
   for (const char* part : kParts) fs::remove(file.string() + part, ignored);
 }
 
-/// The new store, whole, in the place of the old one.
+/// Builds the complete new store and replaces the old one with it.
 Result<void> make_anew(const Places& places, Recovery& recovery,
                        const std::vector<fs::path>& backups, metering::Instant now,
                        const OnProgress& on_progress) {
-  remove_store(places.made);  // what an interrupted recovery left
+  remove_store(places.made);  // left by an interrupted recovery
   auto backup = first_sound(backups, on_progress);
   if (!backup) return tl::unexpected(backup.error());
   recovery.backup = std::move(*backup);
@@ -181,13 +181,13 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
     return fill(*made, recovery, now, on_progress);
   }();
   if (!filled) {
-    remove_store(places.made);  // it takes room on a disk that may have none
+    remove_store(places.made);  // frees space on a disk that may be full
     return filled;
   }
   return system::rename_durably(places.made, places.store);
 }
 
-/// Whether an event of the store tells of this recovery.
+/// Whether an event in the store reports this recovery.
 Result<bool> tells_of(Database& store, const Recovery& recovery) {
   auto query =
       store.prepare("SELECT 1 FROM event WHERE kind = 'store_recovered' AND instr(text, ?) > 0");
@@ -195,12 +195,12 @@ Result<bool> tells_of(Database& store, const Recovery& recovery) {
   return query->bind(0, std::string_view{recovery.damaged.filename().native()}).step();
 }
 
-/// After the rename only the note was left to be removed; the new store tells of all. A store that
-/// does not was put there by somebody else: it is used, and what the damaged one holds must not be
-/// forgotten.
+/// After the rename only the note had to be removed, and the new store reports the recovery. A
+/// store without that event was put there by someone else: it is used, but the content of the
+/// damaged one must not be forgotten.
 Result<void> close_note(const Places& places, Recovery& recovery, metering::Instant now) {
   auto store = SqliteStore::open(places.store);
-  // A damaged one is looked at when the note is gone.
+  // A damaged store is examined after the note is removed.
   if (!store && store.error().code != ErrorCode::malformed) return tl::unexpected(store.error());
   if (store) {
     const auto tells = tells_of(store->database(), recovery);

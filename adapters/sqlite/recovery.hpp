@@ -1,13 +1,13 @@
-/// A store that is damaged: kept aside, and all that can still be read of it in a new one.
+/// Recovers a damaged store: puts the file aside and copies everything readable into a new one.
 ///
-/// Page by page, and not by the `.recover` of the sqlite3 program: Debian's library does not
-/// contain that, and a daemon should not depend on a program beside it. What lies on a page that
-/// cannot be read, or has a wrong check sum, comes from a backup where one has it, and intervals
-/// else from samples of their register.
+/// It works page by page. The `.recover` of the sqlite3 program is not in Debian's library, and a
+/// daemon should not depend on an external program. Rows on unreadable pages or with wrong
+/// checksums come from a backup, if one has them; otherwise intervals are rebuilt from the samples
+/// of their register.
 ///
-/// The process may end at any step. "FILE.recovery" says that a recovery has begun; the new store
-/// is made as "FILE.recovering" and takes its place by one rename. Who opens the store next goes
-/// on.
+/// The process may end at any step. "FILE.recovery" records that a recovery has begun; the new
+/// store is built as "FILE.recovering" and takes its place by one rename. The next process to open
+/// the store continues.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,16 @@ struct RecoveredTable {
 
 struct Recovery {
   std::string damage;             ///< In SQLite's words.
-  std::filesystem::path damaged;  ///< The file as it was, under its new name.
+  std::filesystem::path damaged;  ///< The damaged file under its new name.
   std::optional<std::filesystem::path> backup;
   std::vector<RecoveredTable> tables;
-  std::int64_t refused = 0;         ///< Rows of the damaged file whose check sum is wrong.
+  std::int64_t refused = 0;         ///< Rows of the damaged file with a wrong checksum.
   std::int64_t from_samples = 0;    ///< Intervals.
-  std::int64_t lost_intervals = 0;  ///< That lie between others and are in no source.
-  bool was_interrupted = false;     ///< An earlier process had begun it.
-  bool is_overtaken = false;        ///< And another store has taken its place meanwhile.
+  std::int64_t lost_intervals = 0;  ///< Between others, and not found in any source.
+  bool was_interrupted = false;     ///< An earlier process began it.
+  bool is_overtaken = false;        ///< Another store has since taken its place.
 
-  /// What happened, for a log and for people.
+  /// What happened, for the log and for people.
   [[nodiscard]] std::string sentence() const;
 };
 
@@ -47,15 +47,15 @@ struct CheckedStore {
   std::optional<Recovery> recovery;  ///< Absent: the file was sound, or new.
 };
 
-/// Opens a store to write after looking it through: its structure (`quick_check`) and its rows'
-/// check sums. A damaged file becomes "FILE.damaged-<time>", with its log, and a new one takes its
-/// place, in which an event "store_recovered" tells of it.
+/// Opens a store to write after checking its structure (`quick_check`) and its rows' checksums. A
+/// damaged file becomes "FILE.damaged-<time>", with its log, and is replaced by a new one, in which
+/// an event "store_recovered" reports this.
 ///
-/// @param backups  The newest first; the first that is sound is used, and only for what is damaged.
+/// @param backups  Newest first; the first sound one is used, and only for what is damaged.
 /// @pre  nobody else has the store open.
-/// @return or as SqliteStore::open; unsupported when the file is another program's database, which
-///         is left alone; io_failed when it cannot be put aside or the new one not be written:
-///         nothing is lost, and the next call goes on.
+/// @return the store, or as SqliteStore::open; unsupported when the file is another program's
+///         database, which is left alone; io_failed when it cannot be put aside or the new one
+///         cannot be written: nothing is lost, and the next call continues.
 [[nodiscard]] Result<CheckedStore> open_checked(const std::filesystem::path& file,
                                                 const std::vector<std::filesystem::path>& backups,
                                                 metering::Instant now,

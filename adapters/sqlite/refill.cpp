@@ -33,8 +33,8 @@ Result<std::vector<MeterRow>> meters_of(Database& database) {
   }
 }
 
-/// Where intervals are missing, in order of time.
-/// @param first  Start of the first interval that there ever was, as far as samples tell.
+/// Finds missing intervals, in order of time.
+/// @param first  Start of the first interval that ever existed, according to the samples.
 /// @param next   Start of the first interval that the meter's counter has not booked.
 Result<std::vector<TimeSpan>> gaps_of(SqliteStore& store, const MeterRow& meter,
                                       std::optional<Instant> first, std::optional<Instant> next) {
@@ -52,7 +52,7 @@ Result<std::vector<TimeSpan>> gaps_of(SqliteStore& store, const MeterRow& meter,
   return gaps;
 }
 
-/// What the meter's counter has seen, as far as it is kept.
+/// The kept samples of the meter's counter.
 Result<std::vector<metering::RegisterSample>> samples_of(SqliteStore& store, const MeterRow& meter,
                                                          const RegisterState& state) {
   std::vector<metering::RegisterSample> samples;
@@ -60,13 +60,13 @@ Result<std::vector<metering::RegisterSample>> samples_of(SqliteStore& store, con
       meter.number, state.field,
       [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
   if (!read) return tl::unexpected(read.error());
-  // The counter remembers the last sample that it believed, which may be lost with its interval.
+  // The counter remembers the last sample that it accepted, which may be lost with its interval.
   const metering::RegisterSample& last = state.counter.baseline;
   if (!samples.empty() && samples.back().time < last.time) samples.push_back(last);
   return samples;
 }
 
-/// The readings that lie in gaps.
+/// The readings that fill gaps.
 StoreBatch batch_for(std::span<const metering::Reading> readings,
                      const std::vector<TimeSpan>& gaps) {
   StoreBatch batch;
@@ -90,9 +90,9 @@ Result<std::optional<Instant>> first_boundary(SqliteStore& store, const MeterRow
   return instant_of(query->integer(0));
 }
 
-/// Adds what became of one meter.
+/// Refills one meter and adds up the counts.
 Result<void> refill(SqliteStore& store, const MeterRow& meter, Refilled& refilled) {
-  // A state that cannot be read says nothing about samples; the daemon begins it anew.
+  // An unreadable state does not affect the samples; the daemon starts it anew.
   const auto states = store.registers(meter.number);
   const RegisterState* state = states && !states->empty() ? &states->front() : nullptr;
   const auto next = state ? state->book.next : std::nullopt;
@@ -109,7 +109,7 @@ Result<void> refill(SqliteStore& store, const MeterRow& meter, Refilled& refille
     readings =
         metering::readings_from_register(meter.number, *samples, meter.interval, state->settings);
   }
-  // Of a meter that has lost its first intervals the samples alone say where they began.
+  // If a meter has lost its first intervals, only the samples show where they began.
   const auto first = readings.empty() ? std::nullopt : std::optional{readings.front().start};
   gaps = gaps_of(store, meter, first, next);
   if (!gaps) return tl::unexpected(gaps.error());

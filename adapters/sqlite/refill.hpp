@@ -1,4 +1,4 @@
-/// Intervals that a store has lost, out of the samples of their register that it still has.
+/// Rebuilds lost intervals of a store from the samples of their register that it still has.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace recald::sqlite {
 
 struct Refilled {
   std::int64_t from_samples = 0;
-  std::int64_t still_missing = 0;  ///< From the first to the last that there ever were.
+  std::int64_t still_missing = 0;  ///< Between the first and the last that ever existed.
 };
 
-/// Each meter's intervals follow each other without a gap, also where nothing was measured; so a
-/// gap is a loss. The samples kept around each boundary say what the register counted in between.
+/// Each meter's intervals follow each other without gaps, even when nothing was measured, so a gap
+/// is a loss. The samples around each boundary show what the register counted in between.
 [[nodiscard]] Result<Refilled> refill_intervals(SqliteStore& store);
 
 }  // namespace recald::sqlite

@@ -24,7 +24,7 @@ Instant instant_of(const Json& json) {
   return Instant{std::chrono::seconds{json.get<long long>()}};
 }
 
-// JSON has no infinity and no NaN; null is the one that the place can have.
+// JSON has no infinity and no NaN; null stands for the one that can occur in this place.
 double number_or(const Json& json, double absent) {
   return json.is_null() ? absent : json.get<double>();
 }
@@ -87,7 +87,8 @@ metering::PowerBook power_of(const Json& json) {
   return power;
 }
 
-/// Writes each state after each interval: a tree of JSON in between would be most of a commit.
+/// Writes JSON as text, since this runs after each interval and building a tree would take
+/// most of a commit.
 class Writer {
  public:
   [[nodiscard]] std::string text() && { return fmt::to_string(out_); }
@@ -107,7 +108,7 @@ class Writer {
   }
   Writer& time(Instant t) { return whole(t.time_since_epoch().count()); }
   Writer& time_or_null(const std::optional<Instant>& t) { return t ? time(*t) : raw("null"); }
-  /// Of known letters; anything else goes through `Json`.
+  /// For known letters only; other text goes through `Json`.
   Writer& word(std::string_view text) { return raw("\"").raw(text).raw("\""); }
   Writer& text(const std::string& any) {
     return raw(Json(any).dump(-1, ' ', false, Json::error_handler_t::replace));

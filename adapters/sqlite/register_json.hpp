@@ -1,4 +1,4 @@
-/// A register's state as text, for one column of the store.
+/// A register's state as text, stored in one column.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace recald::sqlite {
 
-/// JSON; doubles to the last bit, times in seconds since 1970.
+/// Writes JSON; doubles keep every bit, times are in seconds since 1970.
 [[nodiscard]] std::string to_json(const RegisterState& state);
 
-/// @return the state, or malformed with what is missing or wrong.
+/// @return the state, or malformed, saying what is missing or wrong.
 [[nodiscard]] Result<RegisterState> register_from_json(std::string_view text);
 
 }  // namespace recald::sqlite

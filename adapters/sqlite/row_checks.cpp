@@ -5,8 +5,8 @@
 namespace recald::sqlite {
 namespace {
 
-/// What can be wrong with rows, each as a query whose rows are the wrong ones, their parts in the
-/// order of the sentence.
+/// A possible fault of rows, as a query that returns the wrong rows, with the parts of the
+/// sentence in order.
 struct RowCheck {
   const char* sql;
   const char* sentence;
@@ -26,7 +26,7 @@ constexpr RowCheck kRowChecks[] = {
      "meter '{}' has {} intervals that are not on its interval grid"},
 };
 
-/// No more than this of one kind: a broken table would fill the screen.
+/// At most this many of one kind: a broken table would fill the screen.
 constexpr std::size_t kListedMax = 20;
 
 Result<void> check_rows(Database& database, const RowCheck& check,

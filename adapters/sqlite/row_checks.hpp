@@ -9,10 +9,10 @@
 
 namespace recald::sqlite {
 
-/// What is wrong with rows of a database that is not damaged, a sentence each.
+/// Faults in the rows of an undamaged database, one sentence each.
 [[nodiscard]] Result<std::vector<std::string>> row_problems(Database& database);
 
-/// Rows of intervals, all revisions.
+/// Number of interval rows, including all revisions.
 [[nodiscard]] Result<std::uint64_t> count_intervals(Database& database);
 
 }  // namespace recald::sqlite

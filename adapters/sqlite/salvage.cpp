@@ -12,9 +12,9 @@
 namespace recald::sqlite {
 namespace {
 
-constexpr std::uint32_t kPagesAtOnce = 2000;  // of one transaction
+constexpr std::uint32_t kPagesAtOnce = 2000;  // per transaction
 
-/// Makes a value what a column of this type gives back. @return whether it can be.
+/// Converts a value to this column type. @return whether that is possible.
 bool takes(char type, Value& value) {
   using Kind = Value::Kind;
   switch (type) {
@@ -29,14 +29,14 @@ bool takes(char type, Value& value) {
     default:
       break;
   }
-  // SQLite keeps a whole number of a real column as an integer.
+  // SQLite stores a whole number in a real column as an integer.
   if (value.kind == Kind::integer) {
     value = {.kind = Kind::real, .real = static_cast<double>(value.integer)};
   }
   return value.kind == Kind::real || value.kind == Kind::null;
 }
 
-/// The row as one of this table, or nothing: it cannot be one.
+/// The row as one of this table, or nothing if it cannot be one.
 std::optional<std::vector<Value>> as_row_of(const TableShape& table, const PageRow& row) {
   const std::size_t count = row.values.size();
   const std::size_t most = table.columns() + (table.has_sum() ? 1 : 0);
@@ -55,7 +55,7 @@ std::optional<std::vector<Value>> as_row_of(const TableShape& table, const PageR
   return values;
 }
 
-/// Rows from before there were sums have none, and are right as far as anybody knows.
+/// Rows from before the checksums have none and are accepted.
 bool has_right_sum(const TableShape& table, std::span<const Value> values) {
   if (values.size() <= table.columns() || values.back().kind == Value::Kind::null) return true;
   const auto summed = values.subspan(static_cast<std::size_t>(table.summed_from),
@@ -63,12 +63,12 @@ bool has_right_sum(const TableShape& table, std::span<const Value> values) {
   return values.back().integer == row_sum(table.name, summed);
 }
 
-/// Writes rows of a table, of any schema that recald has had.
+/// Writes rows of a table, in any schema that recald has had.
 class RowWriter {
  public:
   RowWriter(Database& to, const TableShape& table) : to_(to), table_(table) {}
 
-  /// @return whether the row was taken; invalid_value for one that the schema refuses.
+  /// @return whether the row was taken; invalid_value if the schema refuses it.
   [[nodiscard]] Result<bool> put(std::span<const Value> values) {
     auto statement = statement_for(values.size());
     if (!statement) return tl::unexpected(statement.error());
@@ -129,7 +129,7 @@ class RowWriter {
   std::map<std::size_t, Statement> statements_;  ///< By number of columns.
 };
 
-/// Puts each row where it belongs.
+/// Assigns each row to its table.
 class Sorting {
  public:
   explicit Sorting(Database& to) {
@@ -208,7 +208,7 @@ DELETE FROM reopened WHERE meter NOT IN (SELECT number FROM meter);
 DELETE FROM closing WHERE meter NOT IN (SELECT number FROM meter);
 )sql");
   if (!mended) return mended;
-  // A revision steps down only where the one below is free, hence in rounds.
+  // A revision moves down only if the number below is free, so this takes several rounds.
   mended = run_while_it_changes(database, R"sql(
 UPDATE OR IGNORE interval SET revision = revision - 1, sum = row_sum('interval', meter, t_start,
   revision - 1, mean_kW, validity, late, reasons, edit)

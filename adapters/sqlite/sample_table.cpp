@@ -19,8 +19,8 @@ Result<void> for_each_sample(Database& database, std::uint32_t meter, const std:
 }
 
 Result<int> delete_old_samples(Database& database, metering::Instant keep_from, int rows_max) {
-  // Meter by meter, where the key leads straight to the oldest. A table without rowids has no
-  // DELETE … LIMIT, so the oldest to stay is asked for first.
+  // Works meter by meter, where the key leads straight to the oldest row. A table without rowids
+  // has no DELETE … LIMIT, so we first look up the oldest row to keep.
   auto oldest_to_stay = database.prepare(
       "SELECT t FROM sample WHERE meter = ?1 AND t < ?2 ORDER BY t LIMIT 1 OFFSET ?3");
   if (!oldest_to_stay) return tl::unexpected(oldest_to_stay.error());

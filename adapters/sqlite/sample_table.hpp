@@ -1,4 +1,4 @@
-/// Registers as they were read, in the store's `sample` table: for a while.
+/// Registers as read, kept for a while in the store's `sample` table.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace recald::sqlite {
     Database& database, std::uint32_t meter, const std::string& field,
     const std::function<void(const metering::RegisterSample&)>& visit);
 
-/// Deletes samples from before `keep_from`, a bounded number at a time.
+/// Deletes samples from before `keep_from`, at most `rows_max` at a time.
 /// @return how many; fewer than `rows_max` when none are left.
 [[nodiscard]] Result<int> delete_old_samples(Database& database, metering::Instant keep_from,
                                              int rows_max);

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::int64_t kApplicationId = 0x52434C44;  // "RCLD", in the file's header
 
-/// One text a version: from the version before to this one. Each changes tables or indexes, and
-/// none is changed afterwards, not even its spaces: what a file holds is compared with what they
-/// make.
+/// One text per version: the step from the version before. Each changes tables or indexes.
+/// Never edit one afterwards, not even its spaces: a file's tables are compared with what
+/// these texts create.
 constexpr std::array<const char*, kSchemaVersion> kUpgrades{
     R"sql(
 CREATE TABLE meter (
@@ -170,7 +170,7 @@ Result<std::int64_t> ask(Database& database, std::string_view sql) {
   return value;
 }
 
-/// Of a file: "table interval", and for which table and by which text it was made.
+/// For each entry of a file, such as "table interval": its table, and the SQL that created it.
 using SchemaTexts = std::map<std::string, std::string>;
 
 Result<SchemaTexts> schema_of(Database& database) {
@@ -186,7 +186,7 @@ Result<SchemaTexts> schema_of(Database& database) {
   }
 }
 
-/// What each version's tables are, from version 0 on, which has none.
+/// The tables of each version; version 0 has none.
 Result<std::vector<SchemaTexts>> make_known_schemas() {
   auto database = Database::open(":memory:", {});
   if (!database) return tl::unexpected(database.error());
@@ -207,7 +207,8 @@ const Result<std::vector<SchemaTexts>>& known_schemas() {
   return known;
 }
 
-/// The newest version all of whose tables and indexes a file has as that version made them.
+/// The newest version whose tables and indexes are all in the file, exactly as that
+/// version created them.
 int version_of(const SchemaTexts& file, const std::vector<SchemaTexts>& known) {
   auto version = static_cast<int>(known.size()) - 1;
   while (version > 0 && !std::ranges::includes(file, known[static_cast<std::size_t>(version)])) {
@@ -216,14 +217,14 @@ int version_of(const SchemaTexts& file, const std::vector<SchemaTexts>& known) {
   return version;
 }
 
-/// Whether a file is recald's though neither its header nor all of its tables say so.
+/// Whether a file is recald's even if its header or some tables do not show it.
 bool has_our_tables(const SchemaTexts& file) {
   return std::ranges::count_if(
              std::array{"interval", "register", "reopened", "sample"},
              [&](const char* name) { return file.contains(std::string{"table "} + name); }) >= 3;
 }
 
-/// In which way a file that is ours is as no version has made it.
+/// How a file of ours differs from every version.
 std::string misfit(int named, int version, const SchemaTexts& file,
                    const std::vector<SchemaTexts>& known) {
   if (version > 0) {
@@ -257,8 +258,8 @@ Result<int> schema_version(Database& database) {
     return failure(ErrorCode::unsupported,
                    "the store file is a database of another program; name another file");
   }
-  // A newer version has other tables. Tables that are all of a version that we know, under a newer
-  // number, are that version's: the number was damaged.
+  // A newer version would have other tables. If all tables match a known version but the header has
+  // a newer number, the number is damaged.
   const bool is_known = tables->size() == (*known)[static_cast<std::size_t>(version)].size();
   if (named > kSchemaVersion && !is_known) {
     return failure(ErrorCode::unsupported,

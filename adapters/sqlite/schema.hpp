@@ -1,4 +1,4 @@
-/// The tables of the store and how older files are brought up to date. README.md describes them.
+/// The tables of the store and the upgrade of older files. README.md describes them.
 #pragma once
 
 #include "adapters/sqlite/database.hpp"
@@ -7,19 +7,19 @@ namespace recald::sqlite {
 
 inline constexpr int kSchemaVersion = 5;
 
-/// The version of a file's tables; 0: it has none yet. Its number stands in the header and is held
-/// against the tables themselves: one flipped bit in either must not pass for another version.
-/// @return or unsupported when the file was written by a newer version, or is another program's
-///         database; malformed when it is recald's, and header and tables do not fit each other; or
+/// The version of a file's tables; 0: it has none yet. The number in the header is compared with
+/// the tables themselves, so that a flipped bit in either cannot pass for another version.
+/// @return the version, or unsupported when the file was written by a newer version or is another
+///         program's database; malformed when it is recald's but header and tables do not match; or
 ///         as Database::execute.
 [[nodiscard]] Result<int> schema_version(Database& database);
 
-/// Creates the tables in a new file, upgrades an older one, each version in a transaction.
+/// Creates the tables in a new file, or upgrades an older one, each version in a transaction.
 /// @param until  The version to stop at.
 /// @return nothing, or as schema_version.
 [[nodiscard]] Result<void> bring_up_to_date(Database& database, int until = kSchemaVersion);
 
-/// For readers, who cannot upgrade anything. @return unsupported for an older file as well.
+/// For readers, which cannot upgrade. @return unsupported for an older file as well.
 [[nodiscard]] Result<void> require_current(Database& database);
 
 }  // namespace recald::sqlite

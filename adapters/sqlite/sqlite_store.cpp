@@ -109,7 +109,7 @@ Result<void> SqliteStore::for_each_interval(
 }
 
 Result<std::optional<metering::TimeSpan>> SqliteStore::interval_extent(std::uint32_t meter) {
-  // Each of them is one step in the index; both in one query would read all rows.
+  // Two subqueries take one index step each; a single query for both would read all rows.
   auto query = database_.prepare(
       "SELECT (SELECT min(t_start) FROM interval WHERE meter = ?1), "
       "(SELECT max(t_start) FROM interval WHERE meter = ?1)");
@@ -122,7 +122,7 @@ Result<std::optional<metering::TimeSpan>> SqliteStore::interval_extent(std::uint
 }
 
 Result<bool> SqliteStore::was_read_in(const metering::TimeSpan& span) {
-  // A cross join: meter by meter each is a step in the index.
+  // The cross join goes meter by meter, each one step in the index.
   auto query = database_.prepare(
       "SELECT EXISTS (SELECT 1 FROM meter CROSS JOIN interval ON interval.meter = meter.number "
       "WHERE t_start >= ? AND t_start < ? AND validity = 0)");

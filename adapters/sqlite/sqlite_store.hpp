@@ -1,4 +1,4 @@
-/// The store of a gateway: one SQLite file. Its tables are described in README.md beside this.
+/// The store of a gateway: one SQLite file. README.md in this folder describes its tables.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,11 @@ namespace recald::sqlite {
 
 class SqliteStore final : public Store {
  public:
-  /// Opens or creates, brings the schema up to date. Opened read-only it is for another thread or
-  /// process than the daemon's: it sees what is committed, never waits for it and never writes.
-  /// @return as Database::open; unsupported when the file was written by a newer recald, or, to be
-  ///         read only, by an older one.
+  /// Opens or creates a store and brings its schema up to date. Read only, it is for a thread
+  /// or process other than the daemon's: it sees what is committed, never waits for the daemon
+  /// and never writes.
+  /// @return the store, or as Database::open; unsupported when the file was written by a newer
+  ///         recald, or, if read only, by an older one.
   [[nodiscard]] static Result<SqliteStore> open(const std::filesystem::path& file,
                                                 const Database::Options& options = {});
 
@@ -64,7 +65,7 @@ class SqliteStore final : public Store {
  private:
   SqliteStore(Database database, std::optional<BatchWriter> writer);
 
-  /// One transaction; refused by the disk it is tried once more where room can be made.
+  /// One transaction. If the disk refuses it and room can be made, it is tried once more.
   template <class Work>
   [[nodiscard]] auto write(const Work& work) -> decltype(work()) {
     auto done = database_.transaction(work);
@@ -74,7 +75,7 @@ class SqliteStore final : public Store {
   }
 
   Database database_;
-  std::optional<BatchWriter> writer_;  ///< After the database: its statements end first.
+  std::optional<BatchWriter> writer_;  ///< After the database, so that its statements end first.
   std::function<bool()> make_room_;
 };
 

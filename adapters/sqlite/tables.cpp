@@ -14,7 +14,7 @@
 namespace recald::sqlite {
 namespace {
 
-/// Of a counter's state, as JSON: the time of the last sample in it.
+/// The time of the last sample in a counter's state, which is JSON.
 constexpr auto kNewerRegister =
     "json_valid(excluded.state) AND (NOT json_valid(register.state) OR "
     "coalesce(json_extract(excluded.state, '$.power.until'), "
@@ -47,7 +47,7 @@ class Crc {
     add('i');
     add(&value, sizeof value);
   }
-  /// SQLite gives −0 back as 0.
+  /// SQLite returns −0 as 0.
   void add(double value) {
     const double stored = value == 0.0 ? 0.0 : value;
     add('r');
@@ -134,7 +134,7 @@ std::uint32_t row_sum(std::string_view table, std::span<const Value> values) {
 }
 
 void add_row_sum(sqlite3* database) {
-  // Fails only for want of memory; a statement that needs it then says that there is none.
+  // Fails only when out of memory; a statement that needs it then reports that it is missing.
   (void)sqlite3_create_function(database, "row_sum", -1,
                                 SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS, nullptr,
                                 sql_row_sum, nullptr, nullptr);
@@ -155,7 +155,7 @@ Result<std::string> wrong_sums(Database& database) {
     if (!table.has_sum()) continue;
     auto columns = columns_of(database, table.name);
     if (!columns) return tl::unexpected(columns.error());
-    // A table of an older schema has none yet.
+    // A table of an older schema has no checksums yet.
     if (columns->size() != table.columns() + 1) continue;
     columns->pop_back();
     columns->erase(columns->begin(), columns->begin() + table.summed_from);

@@ -1,4 +1,4 @@
-/// Opens a site's store, whatever keeps it.
+/// Opens a site's store of any kind.
 #pragma once
 
 #include <filesystem>
@@ -11,32 +11,30 @@
 
 namespace recald::stores {
 
-/// For another thread or process than the daemon's: sees what is committed, never waits for the
+/// For a thread or process other than the daemon's: sees what is committed, never waits for the
 /// daemon and never writes.
-/// @return or io_failed: cannot be opened; malformed: no store, or a damaged one; unsupported:
-///         written by a newer or an older recald, or by another program.
+/// @return the store; or io_failed: cannot be opened; malformed: not a store, or a damaged one;
+///         unsupported: written by a newer or an older recald, or by another program.
 [[nodiscard]] Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& file);
 
-/// A store that lives as long as the value: for a time without a disk.
+/// A store that lives as long as the object, for running without a disk.
 [[nodiscard]] Result<std::unique_ptr<Store>> open_in_memory();
 
 struct CheckedStore {
   std::unique_ptr<Store> store;
-  std::string recovery;  ///< What was damaged and what could be read of it; empty: it was sound.
+  std::string recovery;  ///< What was damaged and what could be recovered; empty: no damage.
 };
 
-/// Opens or creates a store to write after looking it through, and brings an older one up to date.
-/// A damaged one is put aside, and what can still be read of it stands in a new one. There is no
-/// other way to write to one: whoever made a new store while a recovery waits to go on would hide
-/// all that the old one holds.
-/// @param backups      The newest first; the first that is sound is used, and only for what is
-///                     damaged.
-/// @param on_progress  Told now and then that it goes on; a large store takes minutes. May be
-///                     empty.
+/// Opens or creates a store for writing. Checks it first, and upgrades an older one. A damaged
+/// store is put aside, and whatever can still be read is copied into a new one. Stores must be
+/// opened for writing only this way: creating a new store while a recovery is pending would hide
+/// everything in the old one.
+/// @param backups      Newest first; the first sound one is used, and only for what is damaged.
+/// @param on_progress  Called from time to time, since a large store takes minutes. May be empty.
 /// @pre  nobody else has the store open.
-/// @return or io_failed: cannot be opened, disk full, in use by another writer, or a damaged one
-///         cannot be put aside or written anew: then nothing is lost, and the next call goes on;
-///         unsupported: written by a newer recald, or by another program.
+/// @return the store; or io_failed: cannot be opened, disk full, in use by another writer, or a
+///         damaged one cannot be put aside or rewritten (then nothing is lost and the next call
+///         continues); unsupported: written by a newer recald, or by another program.
 [[nodiscard]] Result<CheckedStore> open_checked(const std::filesystem::path& file,
                                                 const std::vector<std::filesystem::path>& backups,
                                                 metering::Instant now,

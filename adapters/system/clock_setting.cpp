@@ -16,7 +16,7 @@ bool is_clock_settling() {
   timespec up{};
   if (clock_gettime(CLOCK_BOOTTIME, &up) != 0) return false;
   if (std::chrono::seconds{up.tv_sec} > kAfterBoot) return false;
-  timex asked{};  // modes 0: nothing is set
+  timex asked{};  // modes 0: only asks
   return adjtimex(&asked) == TIME_ERROR;
 }
 

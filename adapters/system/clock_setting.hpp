@@ -3,9 +3,9 @@
 
 namespace recald::system {
 
-/// A machine that has booted within the last ten minutes, and whose kernel has not heard of a time
-/// server yet: its clock may be hours wrong and look right. Later it is taken as it is; there are
-/// places without a time server. Where the kernel does not tell, it is not about to be set.
+/// True on a machine that booted within the last ten minutes and whose kernel has not heard from a
+/// time server: its clock may be hours wrong yet look right. Later the clock is accepted, because
+/// some places have no time server. False if the kernel does not tell.
 [[nodiscard]] bool is_clock_settling();
 
 }  // namespace recald::system

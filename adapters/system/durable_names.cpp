@@ -10,7 +10,7 @@
 namespace recald::system {
 namespace {
 
-/// @return 0, or why the disk could not be brought to have it.
+/// @return 0, or the error that kept the bytes from reaching the disk.
 int flush(const std::filesystem::path& file, int flags) {
   const int descriptor = ::open(file.c_str(), flags | O_CLOEXEC);
   if (descriptor < 0) return 0;

@@ -20,7 +20,7 @@ std::optional<int> process_number(const fs::path& folder) {
   return number;
 }
 
-/// Processes end while they are looked at, so nothing here is an error.
+/// Processes may end while we look at them, so nothing here is an error.
 bool has_open(const fs::path& process, const fs::path& file) {
   std::error_code ignored;
   for (fs::directory_iterator one{process / "fd", ignored}, end; one != end;

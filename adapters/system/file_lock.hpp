@@ -1,4 +1,4 @@
-/// One process at a time.
+/// Lets only one process at a time run.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,12 @@
 
 namespace recald::system {
 
-/// Holds a file as long as it lives; the system lets go of it when the process ends, however it
-/// ends.
+/// Locks a file for its lifetime. The system releases the lock when the process ends,
+/// however it ends.
 class FileLock {
  public:
-  /// @return unsupported when another process holds it, io_failed when it cannot be made.
+  /// @return unsupported when another process holds the lock, io_failed when the file
+  ///         cannot be created.
   [[nodiscard]] static Result<FileLock> take(const std::filesystem::path& file);
 
   ~FileLock();

@@ -1,4 +1,4 @@
-/// Room on a disk that is kept for bad times.
+/// Disk space that is kept in reserve.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace recald::system {
 
-/// A file that does nothing but take up space, until it is given up. It outlives the process.
+/// A file that only takes up space until it is released. It outlives the process.
 class ReservedSpace {
  public:
   ReservedSpace(std::filesystem::path file, std::uintmax_t bytes);
 
-  /// Takes the room, where twice as much is free: a reserve that fills the disk would do the harm
-  /// that it is there against.
-  /// @return io_failed with what the system said, or how little is free.
+  /// Takes the space if twice as much is free: a reserve that fills the disk would cause the
+  /// problem that it should prevent.
+  /// @return io_failed with the system's reason, or how little is free.
   [[nodiscard]] Result<void> hold();
 
-  /// @return whether there was anything to give up.
+  /// @return whether there was anything to release.
   bool give_up();
 
   [[nodiscard]] bool is_held() const;

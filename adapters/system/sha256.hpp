@@ -1,4 +1,4 @@
-/// SHA-256 of what a result was made from, so that it can be told from another.
+/// SHA-256 of the inputs of a result, to tell results apart.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace recald::system {
 
-/// A running digest; OpenSSL does the work.
+/// An incremental digest, computed by OpenSSL.
 class Sha256 {
  public:
   Sha256();
@@ -21,7 +21,7 @@ class Sha256 {
   void add(std::string_view bytes);
   /// @return not_found or io_failed with the file's name.
   [[nodiscard]] Result<void> add_file(const std::filesystem::path& file);
-  /// 64 lower-case hex digits. Ends the digest.
+  /// 64 lower-case hex digits. Finishes the digest.
   [[nodiscard]] std::string hex();
 
  private:

@@ -10,7 +10,7 @@
 namespace recald::system {
 namespace {
 
-/// On Linux a thread has a niceness of its own. Refused in some sandboxes: then it is as it was.
+/// On Linux each thread has its own niceness. Some sandboxes refuse to change it; it then stays.
 void lower_priority() {
   constexpr int kNicest = 19;
   static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNicest));

@@ -1,4 +1,4 @@
-/// The worker as a thread of low priority: polling comes first.
+/// The worker as a low-priority thread, since polling comes first.
 #pragma once
 
 #include <condition_variable>
@@ -15,8 +15,8 @@ class WorkerThread final : public Worker {
  public:
   /// @param loop  Outlives this.
   explicit WorkerThread(Loop& loop);
-  /// Waits until the work that is under way has ended; who wants that soon tells the work to stop
-  /// first. Its `done` is not called any more.
+  /// Waits for the current work to end; to make that soon, tell the work to stop first. Its `done`
+  /// is not called any more.
   ~WorkerThread() override;
   WorkerThread(const WorkerThread&) = delete;
   WorkerThread& operator=(const WorkerThread&) = delete;
@@ -34,7 +34,7 @@ class WorkerThread final : public Worker {
   std::mutex mutex_;
   std::condition_variable_any ordered_;
   std::optional<Order> order_;
-  std::jthread thread_;  ///< Last: it ends before what it uses.
+  std::jthread thread_;  ///< Last: it must end before the members it uses.
 };
 
 }  // namespace recald::system

@@ -29,7 +29,7 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
-/// While it lives, this thread is not ended by Ctrl-C or SIGTERM: half a file would be left.
+/// Holds Ctrl-C and SIGTERM back for this thread, so that no half-written file is left.
 class HeldSignals {
  public:
   HeldSignals() {

@@ -46,7 +46,7 @@ Result<csv::ByteSource> Archive::bytes_of(const std::string& entry) const {
     return failure(ErrorCode::malformed, "workbook '" + handle_->name + "' has no readable '" +
                                              entry + "': " + zip_strerror(handle_->zip));
   }
-  // The archive stays open for as long as one of its entries is.
+  // The archive stays open as long as one of its entries does.
   const std::shared_ptr<zip_file_t> file{opened, zip_fclose};
   return csv::ByteSource{
       [handle = handle_, file, entry](char* buffer, std::size_t size) -> Result<std::size_t> {

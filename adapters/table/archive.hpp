@@ -11,12 +11,12 @@ namespace recald::table {
 
 class Archive {
  public:
-  /// @return the archive, or not_found, io_failed, malformed (no ZIP); messages name the file.
+  /// @return the archive, or not_found, io_failed, malformed (not a ZIP); messages name the file.
   [[nodiscard]] static Result<Archive> open(const std::filesystem::path& file);
 
   [[nodiscard]] bool has(const std::string& entry) const;
 
-  /// The entry's bytes, unpacked as they are read; outlives the archive.
+  /// The entry's bytes, decompressed as they are read; outlives the archive.
   [[nodiscard]] Result<csv::ByteSource> bytes_of(const std::string& entry) const;
 
  private:

@@ -14,7 +14,7 @@ constexpr std::string_view kNarrowNoBreakSpace = "\xE2\x80\xAF";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Bytes of a sign that sets thousands apart at the front of `text`; 0: there is none.
+/// Bytes of a thousands separator at the front of `text`; 0: there is none.
 std::size_t group_sign(std::string_view text, char decimal) {
   if (text.empty()) return 0;
   if (text.front() == ' ' || text.front() == '\'') return 1;
@@ -25,7 +25,7 @@ std::size_t group_sign(std::string_view text, char decimal) {
   return 0;
 }
 
-/// The whole part without the signs between its thousands; none where they stand elsewhere.
+/// The whole part without thousands separators; nothing if they are in the wrong places.
 std::optional<std::string> without_groups(std::string_view whole, char decimal) {
   std::string digits;
   std::size_t in_group = 0;
@@ -40,7 +40,7 @@ std::optional<std::string> without_groups(std::string_view whole, char decimal) 
     const std::size_t sign = group_sign(whole, decimal);
     const bool is_first = !has_groups;
     if (sign == 0 || in_group == 0 || (is_first ? in_group > 3 : in_group != 3)) return {};
-    if (is_first && digits == "0") return {};  // 0,125 sets no thousands apart
+    if (is_first && digits == "0") return {};  // 0,125 has no thousands
     has_groups = true;
     in_group = 0;
     whole.remove_prefix(sign);

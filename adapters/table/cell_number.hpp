@@ -1,4 +1,5 @@
-/// Numbers as people's programs write them: a decimal comma, thousands apart, a word for nothing.
+/// Numbers as other programs write them: decimal commas, thousands separators,
+/// words for "no value".
 #pragma once
 
 #include <optional>
@@ -7,18 +8,17 @@
 
 namespace recald::table {
 
-/// Nothing was measured: blank, "-", "n/a", "NaN", "null" and the like.
+/// Whether a cell holds no measurement: blank, "-", "n/a", "NaN", "null" and the like.
 [[nodiscard]] bool is_blank(std::string_view cell);
 
-/// A finite number with this decimal sign, '.' or ','; thousands may be set apart, in threes, by
-/// the other of the two, a blank or an apostrophe. None otherwise.
+/// A finite number with this decimal sign, '.' or ','. Groups of three digits may be separated by
+/// the other of the two, a space or an apostrophe. Otherwise nothing.
 [[nodiscard]] std::optional<double> parse_cell(std::string_view cell, char decimal);
 
-/// What is wrong with a cell that `parse_cell` refuses: "'1.234,5' is no number with a decimal
-/// point".
+/// Says why `parse_cell` refused a cell: "'1.234,5' is no number with a decimal point".
 [[nodiscard]] std::string cell_problem(std::string_view cell, char decimal);
 
-/// Which decimal sign a cell shows: it can be a point, or a comma, or both ("1,234").
+/// The decimal signs that a cell allows: a point, a comma, or both ("1,234").
 struct DecimalSigns {
   bool point;
   bool comma;

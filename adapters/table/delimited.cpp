@@ -28,7 +28,7 @@ void append_utf8(std::string& out, std::uint32_t point) {
   }
 }
 
-/// Bytes of a letter in UTF-8 by its first byte; 0 where none begins so.
+/// Length in bytes of a UTF-8 character, from its first byte; 0 if none starts with it.
 std::size_t letter_bytes(unsigned char first) {
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first < 0xE0) return 2;
@@ -49,7 +49,7 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// Reads the first bytes once, then all of it in one encoding.
+/// Detects the encoding from the first bytes, then converts the whole text.
 class Recoder {
  public:
   explicit Recoder(csv::ByteSource bytes) : bytes_{std::move(bytes)} {}
@@ -150,7 +150,7 @@ class DelimitedRows final : public RowSource {
   std::string unquoted_;
 };
 
-/// The contents of a quoted cell, whose opening quote is gone. @return false: it is never closed
+/// Reads a quoted cell after its opening quote. @return false: the quote is never closed
 bool take_quoted(std::string_view& line, std::string& unquoted) {
   for (;;) {
     const std::size_t quote = line.find('"');

@@ -1,4 +1,4 @@
-/// Text whose cells are separated by commas, semicolons, tabs or bars.
+/// Text with cells separated by commas, semicolons, tabs or bars.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace recald::table {
 
-/// Cells of one line by RFC 4180 with another separator, trimmed. Up to kCellsMax.
+/// Splits a line into trimmed cells by RFC 4180 with another separator. Up to kCellsMax.
 /// @param unquoted  Keeps the contents of quoted cells alive.
 /// @return false when a quote stays open, or text follows a closing one.
 [[nodiscard]] bool split_cells(std::string_view line, char separator,
@@ -21,11 +21,11 @@ namespace recald::table {
 /// quotes is a bad line.
 [[nodiscard]] std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator);
 
-/// UTF-16 with a byte order mark as UTF-8, as some spreadsheets write "Unicode text"; anything else
-/// as it is.
+/// Converts UTF-16 with a byte order mark to UTF-8, since some spreadsheets write "Unicode text";
+/// other text passes unchanged.
 [[nodiscard]] csv::ByteSource as_utf8(csv::ByteSource bytes);
 
-/// Text that is no UTF-8 is taken for Latin-1, as older programs write "m³" and "°C".
+/// Treats text that is not UTF-8 as Latin-1, in which older programs write "m³" and "°C".
 [[nodiscard]] std::string utf8_of(std::string_view text);
 
 }  // namespace recald::table

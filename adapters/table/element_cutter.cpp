@@ -42,7 +42,7 @@ bool ElementCutter::refill() {
   return got && *got > 0;
 }
 
-/// @param from, at  Past `at_`, which may move to the front meanwhile.
+/// @param from, at  After `at_`, which may move to the front meanwhile.
 bool ElementCutter::find(std::string_view text, std::size_t from, std::size_t& at) {
   for (;;) {
     const std::size_t found = buffer_.find(text, at_ + from);
@@ -50,14 +50,14 @@ bool ElementCutter::find(std::string_view text, std::size_t from, std::size_t& a
       at = found - at_;
       return true;
     }
-    // The text may lie across the end of what is there.
+    // The text may straddle the end of the buffer.
     const std::size_t left = buffer_.size() - at_;
     from = std::max(from, left >= text.size() ? left - text.size() + 1 : 0);
     if (!refill()) return false;
   }
 }
 
-/// The '>' of a tag, which may stand in quotes within it too.
+/// Finds the '>' that ends a tag; quotes in the tag may contain others.
 bool ElementCutter::find_tag_end(std::size_t from, std::size_t& at) {
   char quote = '\0';
   for (std::size_t i = from;; ++i) {

@@ -1,4 +1,4 @@
-/// Elements cut out of an XML text of any length, one after the other.
+/// Cuts elements out of an XML text of any length, one after the other.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,21 @@
 
 namespace recald::table {
 
-/// The name without its namespace's prefix: "row" of "x:row".
+/// The name without its namespace prefix: "row" of "x:row".
 [[nodiscard]] std::string_view local_name(std::string_view name);
 
-/// Finds the elements with one of some names, whatever stands around them, so that a long document
-/// is understood piece by piece. Elements of one name must not contain each other. Only whole
-/// elements come, each to be parsed by itself.
+/// Finds the elements with given names anywhere in a document, so that a long document is read
+/// piece by piece. Elements of one name must not contain each other. Returns only complete
+/// elements, each to be parsed on its own.
 class ElementCutter {
  public:
   /// @param names      Local names.
   /// @param bytes_max  Of one element; a larger one is an error.
   ElementCutter(csv::ByteSource source, std::vector<std::string> names, std::size_t bytes_max);
 
-  /// The next one, from its '<' to its last '>'; valid until the next call.
-  /// @return false at the end, and when the source fails or an element is cut: then `error`.
+  /// The next element, from its '<' to its last '>'; valid until the next call.
+  /// @return false at the end, and when the source fails or an element is cut off;
+  ///         then see `error`.
   bool next(std::string_view& element);
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
   [[nodiscard]] std::uint64_t tags() const { return tags_; }  ///< Seen so far.

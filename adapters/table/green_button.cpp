@@ -27,7 +27,7 @@ std::string_view text_of(const pugi::xml_node& node, std::string_view name) {
   return csv::trimmed(child_named(node, name).text().get());
 }
 
-/// The part of a link from the resource on, as hosts and customers differ between links of a feed.
+/// The part of a link from the resource on; hosts and customers differ between links of a feed.
 std::string resource(std::string_view link, std::string_view from, std::string_view until) {
   const std::size_t begin = link.rfind(from);
   if (begin == std::string_view::npos) return {};
@@ -38,14 +38,14 @@ std::string resource(std::string_view link, std::string_view from, std::string_v
   return std::string{link};
 }
 
-/// "UsagePoint/1/MeterReading/2" of the link to a meter reading or to one of its blocks.
+/// "UsagePoint/1/MeterReading/2" from the link to a meter reading or to one of its blocks.
 std::string meter_reading(std::string_view link) {
   if (link.find("MeterReading") == std::string_view::npos) return {};
   std::string key = resource(link, "UsagePoint/", "/IntervalBlock");
   return key.empty() ? resource(link, "MeterReading/", "/IntervalBlock") : key;
 }
 
-/// Units of measure by their code (IEC 61968-9), as far as energy is made of them.
+/// Units of measure by code (IEC 61968-9), as far as they concern energy.
 std::string unit_of(std::int64_t code) {
   struct Unit {
     std::int64_t code;
@@ -100,7 +100,7 @@ ReadingType reading_type(const pugi::xml_node& node) {
   return type;
 }
 
-/// A feed that is put together: what describes a meter may come after its readings.
+/// Collects a feed. The description of a meter may come after its readings.
 class FeedBuilder {
  public:
   Result<void> add_entry(const pugi::xml_node& entry) {
@@ -229,7 +229,7 @@ class FeedBuilder {
     return {};
   }
 
-  /// Where only one type is described, it is everybody's.
+  /// If the feed describes only one type, it applies to all meters.
   [[nodiscard]] ReadingType type_of(const std::string& key) const {
     const auto found = types_.find(key);
     if (found != types_.end()) return found->second;
@@ -246,7 +246,7 @@ class FeedBuilder {
   std::map<std::string, ReadingType> types_;
   std::map<std::string, std::optional<Utility>> services_;
   std::map<std::string, Described> meters_;
-  std::map<std::string, std::uint32_t> numbers_;  ///< Of meters with readings.
+  std::map<std::string, std::uint32_t> numbers_;  ///< Only meters with readings.
   std::string last_meter_;
   std::vector<FeedReading> readings_;
 };
@@ -284,7 +284,7 @@ class FeedRows final : public RowSource {
 
  private:
   Feed feed_;
-  std::uint64_t number_ = 0;  ///< Rows handed out.
+  std::uint64_t number_ = 0;  ///< Rows returned so far.
   std::string stamp_;
   std::string value_;
   std::string text_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kSearchedLines = 200;
 
-/// Of the line that has the time column, or else of the first line with anything in it.
+/// The separator of the line with the time column, or else of the first line that is not blank.
 Result<char> separator_of(const std::filesystem::path& file, std::string_view time_column) {
   auto bytes = csv::open_file(file, "export");
   if (!bytes) return tl::unexpected(bytes.error());

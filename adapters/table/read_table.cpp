@@ -20,12 +20,12 @@ namespace {
 using metering::Instant;
 using std::chrono::seconds;
 
-constexpr std::uint64_t kHeaderRowsMax = 200;  // above which a header is looked for
+constexpr std::uint64_t kHeaderRowsMax = 200;  // the header must be within these
 constexpr std::size_t kColumnsShown = 12;
-constexpr std::size_t kOrderRows = 64;  // that show whether the file runs from old to new
+constexpr std::size_t kOrderRows = 64;  // these show whether the file runs from old to new
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// "#3": the third column, 2 from 0.
+/// "#3" is the third column: index 2.
 std::optional<std::size_t> numbered(std::string_view column) {
   if (column.size() < 2 || column.front() != '#') return {};
   std::size_t number = 0;
@@ -36,13 +36,13 @@ std::optional<std::size_t> numbered(std::string_view column) {
   return number - 1;
 }
 
-/// Digits after the decimal sign, or none.
+/// Number of digits after the decimal sign, or nothing.
 std::size_t decimals_of(std::string_view cell, char decimal) {
   const std::size_t sign = cell.find(decimal);
   return sign == std::string_view::npos ? 0 : cell.size() - sign - 1;
 }
 
-/// Rows in one piece of memory, for a file that has to be kept.
+/// All rows of a file in one block of memory, for a file that must be read backwards.
 class KeptRows {
  public:
   void add(const TableRow& row) {
@@ -81,7 +81,7 @@ class KeptRows {
     std::size_t cells;
   };
   std::vector<Place> rows_;
-  std::vector<std::size_t> ends_;  ///< Of cells.
+  std::vector<std::size_t> ends_;  ///< Where each cell ends.
   std::string bytes_;
   TableRow shown_;
 };
@@ -113,7 +113,7 @@ class TableReader {
   [[nodiscard]] const ClockFacts& facts() const { return facts_; }
 
  private:
-  /// Goes to the row below the header.
+  /// Moves to the row below the header.
   Result<void> find_header() {
     if (numbered(shape_.time_column)) return resolve({});
     TableRow row;
@@ -209,7 +209,7 @@ class TableReader {
     if (order_ == Order::old_to_new) hand_on_kept();
   }
 
-  /// Portals often list the newest row first; such a file is kept and handed on from its end.
+  /// Portals often list the newest row first; such a file is kept in memory and read from its end.
   void find_order() {
     std::size_t rises = 0;
     std::size_t falls = 0;
@@ -237,7 +237,7 @@ class TableReader {
     read_long(row);
   }
 
-  /// What the row's clock shows, whatever its zone.
+  /// The row's time as its clock shows it, whatever its zone.
   [[nodiscard]] std::optional<Instant> clock_of(const TableRow& row) const {
     const auto written = parse_stamp(cell(row, time_), shape_.time_format);
     if (!written) return {};
@@ -254,7 +254,7 @@ class TableReader {
     return time_ < header_.size() && cell(row, time_) == header_[time_];
   }
 
-  /// Below the names: no time, and no number in any meter's column.
+  /// Whether the row below the names has no time, and no number in any meter's column.
   [[nodiscard]] bool is_row_of_units(const TableRow& row) const {
     if (parse_stamp(cell(row, time_), shape_.time_format)) return false;
     return std::none_of(value_.begin(), value_.end(), [&](std::size_t column) {
@@ -268,7 +268,7 @@ class TableReader {
     return decimals > 0 && decimals == last_decimals_;
   }
 
-  /// @param clock  Which clock's turn it is.
+  /// @param clock  Index of the clock.
   std::optional<Instant> instant_of(const TableRow& row, std::size_t clock,
                                     csv::IntakeMeter* meter) {
     const auto refuse = [&](std::string_view reason) {
@@ -355,14 +355,14 @@ class TableReader {
   const metering::LocalCalendar& calendar_;
   csv::ReadingIntake& intake_;
   std::vector<std::string> header_;
-  std::vector<std::size_t> value_;  ///< By meter.
+  std::vector<std::size_t> value_;  ///< One per meter.
   std::size_t time_ = kNone;
   std::size_t clock_ = kNone;
   std::size_t meter_ = kNone;
   std::size_t unit_ = kNone;
   std::map<std::string, std::size_t, std::less<>> by_name_;
   std::size_t last_meter_ = 0;
-  std::vector<ClockReader> clocks_;  ///< One for the table, or one for each meter of a long one.
+  std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.
   bool is_below_header_ = false;
   std::size_t last_cells_ = 0;
   std::size_t last_decimals_ = 0;

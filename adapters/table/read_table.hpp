@@ -1,4 +1,4 @@
-/// Exports to readings: any container and shape, the same rules as for recald's own CSV.
+/// Turns exports into readings: any container and shape, with the same rules as recald's own CSV.
 #pragma once
 
 #include <filesystem>
@@ -11,34 +11,36 @@
 
 namespace recald::table {
 
-/// Opens the file as what its shape says.
-/// @return not_found, io_failed, malformed (no workbook, no such sheet, no XML), all with its name.
+/// Opens the file with the container that its shape names.
+/// @return not_found, io_failed, malformed (not a workbook, no such sheet, not XML),
+///         all with its name.
 [[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const std::filesystem::path& file,
                                                            const TableShape& shape);
 
-/// What was said of clocks while a table was read.
+/// What was found out about clocks while a table was read.
 struct ClockFacts {
   std::uint64_t naive = 0;    ///< Stamps without an offset.
-  std::uint64_t skipped = 0;  ///< Of them, times that the clock jumps over.
+  std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
 };
 
-/// What an intake has to know of these meters.
+/// The intake's settings for these meters.
 [[nodiscard]] csv::ReadingsOptions intake_options(std::span<const TableMeter> meters);
 
-/// Reads the rows once, in order of time; memory does not grow with their number, but for counters
-/// and for tables whose first rows run from new to old, which are kept and read from their end. The
-/// header is the first row with the time column's name; what stands above is left alone, and so are
-/// blank rows, a row of units below the header and headers that come again. A bad row is reported
-/// with its number and kept out. The last line of a text without a line end counts only when it is
-/// surely whole: as many cells as before, the last one with as many decimals.
+/// Reads the rows once, in order of time. Memory does not grow with their number, except for
+/// counters and for tables whose first rows run from new to old, which are kept and read from
+/// their end. The header is the first row with the time column's name. Rows above it are ignored,
+/// as are blank rows, a row of units below the header, and repeated headers. A bad row is
+/// reported with its number and skipped. If the last line of a text has no line end, it counts
+/// only when it is certainly complete: it has as many cells as the lines before, and its last
+/// cell as many decimals.
 ///
-/// Stamps without an offset are on the clock of the shape's zone, else of `calendar`; see
-/// `ClockReader` for the hour that comes twice. A time that the clock jumps over is a bad row.
+/// Stamps without an offset are on the clock of the shape's zone, or else of `calendar`;
+/// `ClockReader` describes the hour that occurs twice. A time that the clock skips is a bad row.
 ///
-/// @param name    Stands in messages.
-/// @param intake  Of these meters; it may go on to further files of theirs.
-/// @return malformed (no such column; the message lists those there are), not_found (no such
-///         zone), or the source's failure.
+/// @param name    Names the file in messages.
+/// @param intake  For these meters; it may continue with further files of theirs.
+/// @return malformed (no such column; the message lists those there are), not_found (no such zone),
+///         or the source's failure.
 [[nodiscard]] Result<void> read_table(RowSource& rows, std::string_view name,
                                       const TableShape& shape, std::span<const TableMeter> meters,
                                       const metering::LocalCalendar& calendar,
@@ -49,7 +51,7 @@ struct ClockFacts {
                                       const metering::LocalCalendar& calendar,
                                       csv::ReadingIntake& intake, ClockFacts* facts = nullptr);
 
-/// A table that is all there is of its meters.
+/// As above, for a table that holds all readings of its meters.
 [[nodiscard]] Result<csv::ReadingsReport> read_table(RowSource& rows, std::string_view name,
                                                      const TableShape& shape,
                                                      std::span<const TableMeter> meters,
@@ -57,12 +59,12 @@ struct ClockFacts {
                                                      const csv::ReadingsSink& sink,
                                                      ClockFacts* facts = nullptr);
 
-/// Where a column stands in a header: by its name, or "#3". None: it has no such one.
+/// Index of a column in a header, by name or as "#3"; nothing if there is no such column.
 [[nodiscard]] std::optional<std::size_t> find_column(std::span<const std::string> header,
                                                      std::string_view column);
 
-/// Of the first line of a text with cells: the sign that there is most of, a tab before a semicolon
-/// before a comma where as many.
+/// The most frequent separator in a header line. Of equally frequent ones, a tab comes before a
+/// semicolon before a comma.
 [[nodiscard]] char likely_separator(std::string_view line);
 
 }  // namespace recald::table

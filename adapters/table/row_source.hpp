@@ -1,4 +1,4 @@
-/// Rows of text cells, whatever container they stand in.
+/// Rows of text cells from any container.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace recald::table {
 
-inline constexpr std::size_t kCellsMax = 1024;  ///< In a row; what follows is not looked at.
+inline constexpr std::size_t kCellsMax = 1024;  ///< Per row; further cells are ignored.
 
 struct TableRow {
   std::uint64_t number =
       0;  ///< From 1: the line of a text, the row of a sheet, a reading of a feed.
   std::vector<std::string_view> cells;  ///< Trimmed; valid until the next row.
-  std::string_view text;                ///< The row as it stands, for messages.
-  std::string_view problem;             ///< Why it has no cells: a quote that stays open.
-  bool is_terminated = true;            ///< False for the last line of a text that may be cut.
+  std::string_view text;                ///< The unchanged row, for messages.
+  std::string_view problem;             ///< Why it has no cells: a quote stays open.
+  bool is_terminated = true;            ///< False for a last line that may be cut off.
 };
 
 class RowSource {
  public:
   virtual ~RowSource() = default;
 
-  /// @return false at the end, and when the source fails: then `error` says so.
+  /// @return false at the end, and when the source fails; then `error` says why.
   virtual bool next(TableRow& row) = 0;
   [[nodiscard]] virtual const std::optional<Error>& error() const = 0;
 };

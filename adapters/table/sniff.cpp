@@ -19,7 +19,7 @@ namespace {
 using metering::Instant;
 using std::chrono::seconds;
 
-constexpr double kMost = 0.8;  // of a column's cells, so that it counts as one kind
+constexpr double kMost = 0.8;  // share of a column's cells that must be of one kind
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 constexpr std::array kDateFormats{TimeFormat::year_first, TimeFormat::day_first,
                                   TimeFormat::month_first};
@@ -50,7 +50,8 @@ bool is_number(std::string_view cell) {
   return signs.point || signs.comma;
 }
 
-/// A date in some order of its parts, and no plain number but one such as 202403311415.
+/// Whether a cell is a date in some order of its parts, and not a plain number, except one
+/// like 202403311415.
 bool is_stamp(std::string_view cell) {
   if (cell.size() < 6 || cell.size() > 40) return false;
   if (is_number(cell) && (cell.size() < 8 || !csv::is_digits(cell))) return false;
@@ -60,20 +61,20 @@ bool is_stamp(std::string_view cell) {
 
 std::string row_words(const KeptRow& row) { return "row " + std::to_string(row.number); }
 
-/// What stands in one column of the rows below the header.
+/// The contents of one column in the rows below the header.
 struct ColumnKinds {
   std::size_t filled = 0;
   std::size_t numbers = 0;
   std::size_t times_of_day = 0;
-  std::set<std::string> texts;  ///< Different ones that are no number, up to a hundred.
-  std::size_t words = 0;        ///< Cells that are no number.
+  std::set<std::string> texts;  ///< Different texts that are not numbers, up to a hundred.
+  std::size_t words = 0;        ///< Cells that are not numbers.
 
   [[nodiscard]] bool is_mostly(std::size_t count) const {
     return filled > 0 && static_cast<double>(count) >= kMost * static_cast<double>(filled);
   }
 };
 
-/// The guess as it grows.
+/// Builds up the guess step by step.
 class TableSniffer {
  public:
   explicit TableSniffer(std::span<const KeptRow> rows) {
@@ -97,7 +98,7 @@ class TableSniffer {
   }
 
  private:
-  /// The column with most stamps, and the first row that has one.
+  /// Finds the column with most stamps, and the first row that has one.
   Result<void> find_times() {
     std::size_t most = 0;
     for (std::size_t column = 0; column < width_; ++column) {
@@ -122,7 +123,8 @@ class TableSniffer {
                    "2024-03-31 14:15, 31/03/2024 14:15 or 03/31/2024 2:15 PM");
   }
 
-  /// Days of a spreadsheet, or seconds since 1970: numbers that rise, or fall, all the way.
+  /// Finds a column of numbers that always rise or always fall: days of a spreadsheet, or
+  /// seconds since 1970.
   bool find_counted_times(std::size_t column) {
     std::vector<double> counts;
     std::size_t first = kNowhere;
@@ -165,7 +167,7 @@ class TableSniffer {
       }
       return units > 0;
     };
-    // A row of units stands below names; units alone are the names themselves.
+    // A row of units stands below names; units without names are the header itself.
     if (at > 0 && is_units(*rows_[at]) && filled_cells(*rows_[at - 1]) >= 2 &&
         filled_cells(*rows_[at - 1]) + 1 >= filled_cells(*rows_[at])) {
       units_ = rows_[at];
@@ -217,7 +219,7 @@ class TableSniffer {
     return header_ == nullptr ? std::string_view{} : cell_of(*header_, column);
   }
 
-  /// The name that finds the column again.
+  /// The name by which the column is found again.
   [[nodiscard]] std::string column_text(std::size_t column) const {
     const std::string_view text = header_text(column);
     std::size_t first = kNowhere;
@@ -228,7 +230,7 @@ class TableSniffer {
     return std::string{text};
   }
 
-  /// Dates alone, and a column with the times.
+  /// If the stamps are only dates, finds the column with the times.
   void find_clock() {
     guess_.shape.time_column = column_text(time_);
     if (is_counted_) return;
@@ -329,7 +331,7 @@ class TableSniffer {
     }
   }
 
-  /// A long table has one column of numbers, and a column that names the meter of each row.
+  /// A long table has one column of numbers, and a column that names each row's meter.
   void find_meters() {
     std::vector<std::size_t> numbers;
     std::vector<std::size_t> names;
@@ -358,7 +360,7 @@ class TableSniffer {
         numbers.push_back(column);
       }
     }
-    // Numbers may be names too: 100200300 in a column called "meter id".
+    // Names may be numbers too: 100200300 in a column called "meter id".
     if (names.empty() && numbers.size() == 2) {
       for (const std::size_t column : numbers) {
         const ColumnKinds& kinds = kinds_[column];
@@ -384,10 +386,10 @@ class TableSniffer {
     if (unit_ != kNowhere) guess_.shape.unit_column = column_text(unit_);
   }
 
-  /// Cells by what their signs may mean.
+  /// Counts cells with one meaning of their signs.
   struct Signs {
     std::size_t count = 0;
-    const KeptRow* row = nullptr;  ///< The last of them.
+    const KeptRow* row = nullptr;  ///< The latest of these.
     std::string cell;
 
     void add(const KeptRow& in, std::string_view text) {
@@ -400,7 +402,7 @@ class TableSniffer {
   Result<void> find_decimal() {
     Signs points;
     Signs commas;
-    Signs open_points;  // 1.234 may be a thousand or so, or one and a little
+    Signs open_points;  // 1.234 may be about a thousand, or about one
     Signs open_commas;
     std::size_t plain = 0;
     for (const KeptRow* row : data()) {
@@ -435,8 +437,8 @@ class TableSniffer {
     return {};
   }
 
-  /// Three digits after the sign in every cell: where it sets thousands apart, smaller values would
-  /// have none.
+  /// Every cell has three digits after the sign. If it separated thousands, smaller values
+  /// would have no sign.
   void guess_open_decimal(const Signs& points, const Signs& commas, std::size_t plain) {
     guess_.shape.decimal = '.';
     guess_.decimal_because = "no value shows it";
@@ -451,7 +453,7 @@ class TableSniffer {
                              "; another number of digits would decide";
   }
 
-  /// Temperatures, voltages, costs: numbers, but no meter's.
+  /// Temperatures, voltages, costs: numbers, but not a meter's.
   [[nodiscard]] bool is_other_quantity(std::size_t column) const {
     constexpr std::array<std::string_view, 22> kWords{
         "temp",   "\xC2\xB0", "humid", "degc", "deg c",        "degf", "deg f",    "volt",
@@ -502,13 +504,13 @@ class TableSniffer {
     guess_.values.push_back(std::move(value));
   }
 
-  std::vector<const KeptRow*> rows_;  ///< Those with anything in them.
+  std::vector<const KeptRow*> rows_;  ///< Rows that are not blank.
   std::size_t width_ = 0;
   std::size_t time_ = kNowhere;
   std::size_t clock_ = kNowhere;
   std::size_t meter_ = kNowhere;
   std::size_t unit_ = kNowhere;         ///< Of a long table.
-  std::size_t unit_of_all_ = kNowhere;  ///< Of another one.
+  std::size_t unit_of_all_ = kNowhere;  ///< Of any other table.
   std::size_t data_ = 0;                ///< First row with a time.
   bool is_counted_ = false;
   const KeptRow* header_ = nullptr;
@@ -552,7 +554,8 @@ Result<Container> guess_container(std::string_view first_bytes) {
 }
 
 char guess_separator(std::span<const std::string> lines) {
-  // Of signs that cut as well the rarer one in text is meant: "1,5;2,5" is two numbers.
+  // If several signs fit equally well, the one that is rarer in text wins:
+  // "1,5;2,5" is two numbers.
   for (const char sign : {'\t', ';', '|', ','}) {
     std::map<std::ptrdiff_t, std::size_t> counts;
     std::size_t filled = 0;
@@ -594,8 +597,8 @@ NameAndUnit split_unit(std::string_view header) {
     return {name, std::string{unit}};
   }
   if (is_unit(text)) return {"", std::string{text}};
-  // The longest end that is a unit, "ton-hours" and not "hours"; of one letter it is more often a
-  // wing or a storey than watts.
+  // Take the longest ending that is a unit: "ton-hours", not "hours". A single letter is more often
+  // a wing or a storey than watts.
   constexpr std::string_view kSigns = " _,;:-";
   for (std::size_t cut = text.find_first_of(kSigns); cut != std::string_view::npos;
        cut = text.find_first_of(kSigns, cut + 1)) {

@@ -1,4 +1,4 @@
-/// How an export that nobody described is probably to be read.
+/// Guesses how to read an export that nobody described.
 #pragma once
 
 #include <cstdint>
@@ -13,51 +13,51 @@
 
 namespace recald::table {
 
-inline constexpr std::size_t kSniffedRows = 2000;  ///< From whose cells a shape is guessed.
+inline constexpr std::size_t kSniffedRows = 2000;  ///< The guess is based on these.
 
-/// A row, kept.
+/// A row that is kept.
 struct KeptRow {
   std::uint64_t number;
   std::vector<std::string> cells;  ///< UTF-8.
 };
 
 struct GuessedColumn {
-  std::string name;    ///< As the header has it, without the unit.
+  std::string name;    ///< As in the header, without the unit.
   std::string column;  ///< How a site file names it: the header's text, or "#3".
-  std::string unit;    ///< Empty: neither the header nor a row of units says it.
+  std::string unit;    ///< Empty: neither the header nor a row of units gives it.
 };
 
-/// A shape, with the reason for each guess in a few words.
+/// A guessed shape, with a short reason for each part.
 struct TableGuess {
   TableShape shape;
-  std::vector<GuessedColumn> values;  ///< A column a meter, or the values of a long table.
-  std::vector<std::string> ignored;   ///< Columns that are not used: "Status (text)".
+  std::vector<GuessedColumn> values;  ///< One column per meter, or the values of a long table.
+  std::vector<std::string> ignored;   ///< Unused columns: "Status (text)".
   std::string time_format_because;
-  bool is_time_format_open = false;  ///< Nothing decides between days and months.
+  bool is_time_format_open = false;  ///< Day or month first: the data do not tell.
   std::string decimal_because;
-  bool has_offsets = false;  ///< Stamps say their offset from UTC.
+  bool has_offsets = false;  ///< Stamps include their offset from UTC.
 };
 
 /// Finds header, times, numbers, meters and units in the first rows of a table.
-/// @return malformed: a sentence of what cannot be understood, without the file's name: no times,
+/// @return malformed: a sentence on what cannot be understood, without the file's name: no times,
 ///         no numbers, two headers, formats that change.
 [[nodiscard]] Result<TableGuess> guess_table(std::span<const KeptRow> rows);
 
-/// The container by a file's first bytes. @return or malformed: what else it seems to be
+/// The container, from a file's first bytes. @return or malformed: what the file
+/// seems to be instead
 [[nodiscard]] Result<Container> guess_container(std::string_view first_bytes);
 
-/// Of the first lines of a text: the sign that cuts most of them into as many cells.
+/// The separator that splits most of a text's first lines into the same number of cells.
 [[nodiscard]] char guess_separator(std::span<const std::string> lines);
 
-/// "Main (kWh)", "Main [kWh]", "Main kWh", "Main_kWh": the name and the unit; without one the unit
-/// is empty.
+/// "Main (kWh)", "Main [kWh]", "Main kWh", "Main_kWh" as name and unit; the unit may be empty.
 struct NameAndUnit {
   std::string name;
   std::string unit;
 };
 [[nodiscard]] NameAndUnit split_unit(std::string_view header);
 
-/// Whether a text is a unit that some meter may have.
+/// Whether a text is a possible unit of a meter.
 [[nodiscard]] bool is_unit(std::string_view text);
 
 }  // namespace recald::table

@@ -18,7 +18,7 @@ using std::chrono::seconds;
 bool is_figure(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
-/// What is left of a text that is read from its front.
+/// Reads a text from its front.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : text_{text} {}
@@ -39,7 +39,7 @@ class Scanner {
     }
   }
 
-  /// Up to `most` digits as a number; none where there is none.
+  /// Up to `most` digits as a number, or nothing if there are none.
   std::optional<int> number(std::size_t most) {
     int value = 0;
     std::size_t count = 0;
@@ -52,7 +52,7 @@ class Scanner {
     digits_ = count;
     return value;
   }
-  [[nodiscard]] std::size_t digits() const { return digits_; }  ///< Of the last number.
+  [[nodiscard]] std::size_t digits() const { return digits_; }  ///< In the last number read.
 
   /// The letters at the front.
   std::string_view word() {
@@ -68,7 +68,7 @@ class Scanner {
   std::size_t digits_ = 0;
 };
 
-/// 1…12 by the first three letters of its English name.
+/// 1…12, from the first three letters of the month's English name.
 std::optional<int> month_of(std::string_view name) {
   constexpr std::string_view kNames = "janfebmaraprmayjunjulaugsepoctnovdec";
   if (name.size() < 3) return {};
@@ -127,7 +127,7 @@ Date take_date(Scanner& scan, TimeFormat format) {
   return date;
 }
 
-/// "14:15:00.0", "2:15 PM", "1415". @return none where there is another thing
+/// "14:15:00.0", "2:15 PM", "1415". @return nothing for any other text
 std::optional<seconds> take_time(Scanner& scan) {
   const auto hour = scan.number(2);
   if (!hour) return {};
@@ -214,7 +214,7 @@ Result<WrittenTime> parse_count(std::string_view text, TimeFormat format) {
     const auto since = static_cast<std::int64_t>(std::llround((*count - kEpoch_days) * 86'400.0));
     return in_range({.clock = Instant{seconds{since}}}, text);
   }
-  constexpr double kFirstMilliseconds = 1e11;  // as seconds that would be the year 5138
+  constexpr double kFirstMilliseconds = 1e11;  // read as seconds, this would be the year 5138
   const double whole_s = *count >= kFirstMilliseconds ? *count / 1000.0 : *count;
   if (whole_s < 0.0 || whole_s > 4e9) {
     return failure(ErrorCode::out_of_range,
@@ -257,7 +257,8 @@ std::optional<seconds> parse_time_of_day(std::string_view text) {
 }
 
 std::optional<Instant> ClockReader::instant_of(Instant clock) {
-  // No zone changes twice within two days: the offsets a day before and after are all there are.
+  // No zone changes twice within two days, so the offsets a day before and a day after
+  // are the only ones.
   const auto with = [&](seconds offset) -> std::optional<Instant> {
     const Instant t = clock - offset;
     return calendar_->utc_offset(t) == offset ? std::optional{t} : std::nullopt;
@@ -273,7 +274,7 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const Instant first = std::min(*before, *after);
   const Instant second = std::max(*before, *after);
   if (last && clock < *last) in_second_pass_ = true;
-  // Files in order of the written stamp have both of a kind one after the other.
+  // If a file is sorted by the written stamp, both occurrences of a time are neighbours.
   const bool is_second = in_second_pass_ || (last && clock == *last);
   return is_second ? second : first;
 }

@@ -1,4 +1,4 @@
-/// Time stamps as exports write them, and the instants that clocks on a wall mean.
+/// Time stamps as exports write them, and the instants that local clock times stand for.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace recald::table {
 
-/// The order of a date's parts, or what is counted instead. Parts may stand apart by - / . or
-/// blanks, a month may be a name, a year may have two digits.
+/// The order of a date's parts, or the unit that is counted instead. Parts may be separated by - /
+/// . or spaces, a month may be a name, a year may have two digits.
 enum class TimeFormat : std::uint8_t {
   year_first,   ///< 2024-03-31 14:15, 2024-03-31T14:15:00+02:00, 20240331 1415
   day_first,    ///< 31/03/2024 14:15, 31.3.24 2:15 PM, 31-Mar-2024
   month_first,  ///< 03/31/2024 14:15, Mar 31, 2024
-  excel,        ///< Days since the end of 1899, as a spreadsheet counts them.
+  excel,        ///< Days since the end of 1899, as spreadsheets count them.
   unix,         ///< Seconds, or milliseconds, since 1970 in UTC.
 };
 
@@ -27,27 +27,27 @@ inline constexpr std::array<std::string_view, 5> kTimeFormats{"yyyy-mm-dd", "dd/
   return kTimeFormats[static_cast<std::size_t>(format)];
 }
 
-/// What a stamp says: a time on some clock, and perhaps which clock.
+/// The content of a stamp: a time on some clock, and possibly the clock's offset.
 struct WrittenTime {
   metering::Instant clock;  ///< As if the clock showed UTC.
   std::optional<std::chrono::seconds> utc_offset;
-  bool has_time = true;  ///< False: a day alone.
+  bool has_time = true;  ///< False: only a date.
 };
 
 /// @return the time, or malformed; out_of_range outside 1971…2037.
 [[nodiscard]] Result<WrittenTime> parse_stamp(std::string_view text, TimeFormat format);
 
-/// A time of the day alone: "14:15", "2:15:00 PM", "24:00".
+/// A time of day on its own: "14:15", "2:15:00 PM", "24:00".
 [[nodiscard]] std::optional<std::chrono::seconds> parse_time_of_day(std::string_view text);
 
-/// Instants of the times that one clock showed, one after the other. An hour that the clock shows
-/// twice is told apart by the order: the second time it begins, it is the later one.
+/// Converts successive times of one clock to instants. If the clock shows an hour twice, order
+/// tells the two apart: once its times start again, it is the later hour.
 class ClockReader {
  public:
   /// @param calendar  Outlives this.
   explicit ClockReader(const metering::LocalCalendar& calendar) : calendar_{&calendar} {}
 
-  /// @return none for a time that the clock jumps over.
+  /// @return nothing for a time that the clock skips.
   [[nodiscard]] std::optional<metering::Instant> instant_of(metering::Instant clock);
 
  private:

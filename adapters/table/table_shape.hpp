@@ -1,4 +1,4 @@
-/// How the rows of an export are to be read.
+/// How to read the rows of an export.
 #pragma once
 
 #include <array>
@@ -12,29 +12,29 @@
 
 namespace recald::table {
 
-/// What an export is written in.
+/// The format of an export.
 enum class Container : std::uint8_t {
-  text,          ///< Cells apart by commas, semicolons, tabs or bars.
+  text,          ///< Cells separated by commas, semicolons, tabs or bars.
   xlsx,          ///< A workbook.
   green_button,  ///< ESPI XML.
 };
 
-/// Names of columns are those of the header, or "#3" for the third column.
+/// Columns are named by their header, or "#3" for the third column.
 struct TableShape {
   Container container = Container::text;
-  char separator = '\0';     ///< Of a text; 0: as its header shows.
+  char separator = '\0';     ///< Of a text; 0: taken from the header.
   char decimal = '.';        ///< Or ','.
-  std::string sheet;         ///< Of a workbook; empty: its first one.
-  std::string time_column;   ///< Date and time, or the date alone.
-  std::string clock_column;  ///< The time, where it has a column of its own; else empty.
+  std::string sheet;         ///< Of a workbook; empty: the first.
+  std::string time_column;   ///< Date and time, or only the date.
+  std::string clock_column;  ///< The time, if it has its own column; else empty.
   TimeFormat time_format = TimeFormat::year_first;
-  std::string timezone;      ///< Of stamps without an offset; empty: the site's.
-  std::string meter_column;  ///< A row a meter: the column with its name. Empty: a column a meter.
-  std::string unit_column;   ///< A row a meter: the column with its unit. Empty: as declared.
+  std::string timezone;      ///< For stamps without an offset; empty: the site's.
+  std::string meter_column;  ///< One row per meter: its name. Empty: one column per meter.
+  std::string unit_column;   ///< Units, in a table of one row per meter. Empty: as declared.
   bool operator==(const TableShape&) const = default;
 };
 
-/// Green Button feeds come as rows of these columns.
+/// The columns of the rows that a Green Button feed is turned into.
 [[nodiscard]] inline TableShape green_button_shape() {
   return {.container = Container::green_button,
           .time_column = "timestamp",
@@ -45,8 +45,8 @@ struct TableShape {
 /// One meter of a table: its rows, by `name` in the meter column, or its column.
 struct TableMeter {
   csv::MeterRows rows;
-  std::string column;  ///< With its values.
-  std::string unit;    ///< Of the values; empty: as the unit column says.
+  std::string column;  ///< The column with its values.
+  std::string unit;    ///< Of the values; empty: taken from the unit column.
 };
 
 }  // namespace recald::table

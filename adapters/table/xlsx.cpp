@@ -15,15 +15,15 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr std::size_t kPartMax = 16u << 20;    // bytes of a part that is read as a whole
+constexpr std::size_t kPartMax = 16u << 20;    // largest part that is read as a whole, in bytes
 constexpr std::size_t kRowMax = 4u << 20;      // of one row
-constexpr std::size_t kSharedMax = 64u << 20;  // of all texts that cells share
+constexpr std::size_t kSharedMax = 64u << 20;  // of all shared texts
 
 bool is_named(const pugi::xml_node& node, std::string_view name) {
   return local_name(node.name()) == name;
 }
 
-/// All text below a node, but for the pronunciation beside it.
+/// Appends all text below a node, except phonetic guides.
 void add_text(const pugi::xml_node& node, std::string& text) {
   for (const pugi::xml_node& one : node.children()) {
     if (is_named(one, "t")) {
@@ -71,7 +71,7 @@ struct Workbook {
   bool counts_from_1904 = false;
 };
 
-/// A path of a part relative to xl/.
+/// The path of a part that is given relative to xl/.
 std::string entry_of(std::string_view target) {
   return target.starts_with('/') ? std::string{target.substr(1)} : "xl/" + std::string{target};
 }
@@ -111,7 +111,7 @@ Kind kind_of_code(std::string_view code) {
     const char c = static_cast<char>(std::tolower(static_cast<unsigned char>(code[i])));
     if (c == '"') in_quotes = !in_quotes;
     if (in_quotes) continue;
-    if (c == '\\' || c == '_' || c == '*') ++i;  // the next letter is shown as it is
+    if (c == '\\' || c == '_' || c == '*') ++i;  // the next letter is shown literally
     if (c == '[') {
       const std::size_t end = std::min(code.find(']', i), code.size());
       const std::string_view inside = code.substr(i + 1, end - i - 1);
@@ -133,7 +133,7 @@ Kind kind_of_id(int id) {
   return id == 22 ? Kind::date_and_time : Kind::number;
 }
 
-/// By a cell's style.
+/// The kind of cell for each style.
 Result<std::vector<Kind>> read_styles(const Archive& archive) {
   std::vector<Kind> kinds;
   if (!archive.has("xl/styles.xml")) return kinds;
@@ -184,7 +184,7 @@ std::string time_text(std::int64_t second_of_day) {
   return text.data();
 }
 
-/// A day count as the date and the time that it stands for.
+/// A day count as the date and time it stands for.
 std::string date_text(double serial_days, Kind kind) {
   constexpr std::int64_t kEpoch_days = 25'569;  // of 1970-01-01
   const std::int64_t since =
@@ -196,7 +196,7 @@ std::string date_text(double serial_days, Kind kind) {
   return day + " " + time_text((t - midnight).count());
 }
 
-/// 0 for "A7", 27 for "AB1".
+/// The column index: 0 for "A7", 27 for "AB1".
 std::optional<std::size_t> column_of(std::string_view reference) {
   std::size_t column = 0;
   std::size_t letters = 0;
@@ -253,7 +253,7 @@ class SheetRows final : public RowSource {
     const std::string_view reference = attribute(cell, "r");
     const auto column = reference.empty() ? std::optional{texts_.size()} : column_of(reference);
     if (!column || *column >= kCellsMax || *column < texts_.size()) return;
-    texts_.resize(*column);  // those left out are blank
+    texts_.resize(*column);  // omitted cells are blank
     texts_.push_back(text_of(cell));
   }
 

@@ -10,15 +10,15 @@
 
 namespace recald::table {
 
-/// Names of the sheets, in their order.
+/// Names of the sheets, in order.
 [[nodiscard]] Result<std::vector<std::string>> sheet_names(const std::filesystem::path& file);
 
-/// Rows of one sheet, one at a time. Numbers are as they are stored, with a decimal point; cells
-/// formatted as dates come as "2024-03-31 14:15:00", "2024-03-31" or "14:15:00". Texts that cells
-/// share are held, up to 64 MiB.
-/// @param sheet  Its name; empty: the first one.
-/// @return the rows, or not_found, io_failed, malformed (no workbook; no such sheet: the message
-///         lists those there are).
+/// Reads the rows of one sheet, one at a time. Numbers keep their stored value, with a decimal
+/// point; cells formatted as dates come as "2024-03-31 14:15:00", "2024-03-31" or "14:15:00".
+/// Shared texts are held in memory, up to 64 MiB.
+/// @param sheet  The name; empty: the first sheet.
+/// @return the rows, or not_found, io_failed, malformed (not a workbook; no such sheet: the message
+///         lists the sheets).
 [[nodiscard]] Result<std::unique_ptr<RowSource>> open_sheet(const std::filesystem::path& file,
                                                             const std::string& sheet);
 

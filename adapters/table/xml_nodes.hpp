@@ -1,4 +1,4 @@
-/// Ways into parsed XML, whatever prefixes its names have. For this room alone.
+/// Access to parsed XML regardless of its namespace prefixes. Internal to this folder.
 #pragma once
 
 #include <charconv>
@@ -11,7 +11,7 @@
 
 namespace recald::table {
 
-/// The first child of that local name; an empty node where there is none.
+/// The first child with this local name; an empty node if there is none.
 [[nodiscard]] inline pugi::xml_node child_named(const pugi::xml_node& node, std::string_view name) {
   for (const pugi::xml_node& one : node.children()) {
     if (local_name(one.name()) == name) return one;
@@ -19,7 +19,7 @@ namespace recald::table {
   return {};
 }
 
-/// Empty where there is none.
+/// Empty if there is none.
 [[nodiscard]] inline std::string_view attribute(const pugi::xml_node& node, std::string_view name) {
   for (const pugi::xml_attribute& one : node.attributes()) {
     if (local_name(one.name()) == name) return one.value();

@@ -8,8 +8,8 @@
 namespace recald::calibration {
 namespace {
 
-/// Variance of the best normal proposal over that of a normal density in d dimensions (Roberts,
-/// Gelman, Gilks 1997).
+/// Ratio of the best normal proposal's variance to that of a normal density in d dimensions
+/// (Roberts, Gelman, Gilks 1997).
 double best_variance_ratio(Eigen::Index d) { return 2.38 * 2.38 / static_cast<double>(d); }
 
 }  // namespace
@@ -66,8 +66,8 @@ void AdaptiveProposal::tune_scale(double acceptance) {
 }
 
 /// Eq. (1) of Vihola (2012): stretches the proposal along the direction just tried when such steps
-/// are accepted too often, and shrinks it when too rarely. The factor stays positive definite since
-/// |acceptance - target| < 1.
+/// are accepted too often, and shrinks it when too rarely. The factor stays positive definite
+/// because |acceptance - target| < 1.
 void AdaptiveProposal::tune_shape(const Eigen::VectorXd& unit, double acceptance) {
   const auto d = static_cast<double>(unit.size());
   const double gain = std::min(1.0, d * std::pow(tuned_, -2.0 / 3.0));
@@ -75,8 +75,8 @@ void AdaptiveProposal::tune_shape(const Eigen::VectorXd& unit, double acceptance
   shape_.rankUpdate(scratch_, gain * (acceptance - target_acceptance_) / unit.squaredNorm());
 }
 
-/// Takes the shape of `positions` (n x d), with a tenth of the present one so that no direction is
-/// lost in which the chain hardly moved; with more of it where few positions say little.
+/// Takes the shape of `positions` (n x d), mixed with a tenth of the present one so that no
+/// direction is lost in which the chain hardly moved; with more of it if there are few positions.
 void AdaptiveProposal::learn_shape(const Eigen::Ref<const Eigen::MatrixXd>& positions) {
   if (positions.rows() < 2) return;
   const Eigen::Index d = positions.cols();

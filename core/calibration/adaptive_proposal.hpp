@@ -1,4 +1,4 @@
-/// How far and in which directions a random walk steps, and how it learns that in the burn-in.
+/// The step size and shape of a random walk, and how they adapt during the burn-in.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -8,36 +8,37 @@
 
 namespace recald::calibration {
 
-/// Steps s L u of a random walk, u being d independent numbers of unit variance that the sampler
-/// draws. The scale s and the shape L follow the chain during the burn-in and are frozen after it,
-/// so that the kept draws are those of one fixed reversible chain.
+/// Steps s L u of a random walk, where u is d independent numbers of unit variance that the sampler
+/// draws. The scale s and the shape L adapt during the burn-in and are frozen after it, so that the
+/// kept draws come from one fixed reversible chain.
 ///
 ///  - s follows Robbins-Monro steps towards an acceptance rate throughout.
-///  - L starts from the spread of draws from the prior. For half of the burn-in it follows robust
-///    adaptive Metropolis: from acceptance, not from the chain's own covariance, which would turn a
-///    chain that has hardly moved yet into ever shorter steps. At one half and at five sixths it
-///    becomes the factor of the covariance of the chain's latest stretch.
-///  - A chain that begins at a state has a shape already: the first half is left out.
+///  - L starts from the spread of draws from the prior. For the first half of the burn-in it
+///    follows robust adaptive Metropolis: it learns from acceptance, not from the chain's own
+///    covariance, which would shorten the steps of a chain that has hardly moved. At one half and
+///    at five sixths it becomes the factor of the covariance of the chain's latest stretch.
+///  - A chain that begins at a state already has a shape, so it skips the first half.
 ///
 /// @see Haario, Saksman, Tamminen (2001), Bernoulli 7(2), "An adaptive Metropolis algorithm";
 ///      Vihola (2012), Stat. Comput. 22, "Robust adaptive Metropolis algorithm with coerced
 ///      acceptance rate".
 class AdaptiveProposal {
  public:
-  /// @return invalid_value or not_positive_definite when the shape to begin with is not one.
+  /// @return invalid_value or not_positive_definite when the initial shape is not a covariance.
   static Result<AdaptiveProposal> make(const Target& target, const SamplerOptions& options,
                                        double target_acceptance, Rng& rng);
 
   /// step = s L unit. Does not allocate.
   void to_step(const Eigen::VectorXd& unit, Eigen::VectorXd& step) const;
 
-  /// @param position    Where the chain stands after the iteration.
+  /// @param position    Position of the chain after the iteration.
   /// @param unit        u of the proposal.
   /// @param acceptance  Probability with which the proposal was accepted.
   void learn(const Eigen::VectorXd& position, const Eigen::VectorXd& unit, double acceptance);
 
-  /// `position`, with s as it is now and the covariance that L L' is 2.38^2 / d times of: about
-  /// that of the density, as other samplers keep it, so that one can begin where another ended.
+  /// `position`, with the current s and the covariance of which L L' is 2.38^2 / d times:
+  /// about that of the density, which other samplers also store, so that one can begin
+  /// where another ended.
   [[nodiscard]] ChainState state(const Eigen::VectorXd& position) const;
 
  private:

@@ -13,7 +13,7 @@
 namespace recald::calibration {
 namespace {
 
-/// The target in coordinates where it is about standard normal, made symmetric: log q(u).
+/// The target in coordinates where it is approximately standard normal, made symmetric: log q(u).
 class WarpedTarget {
  public:
   /// @param draws  (n x d)
@@ -62,7 +62,7 @@ double log_standard_normal(const Eigen::VectorXd& u) {
          0.5 * static_cast<double>(u.size()) * std::log(2.0 * std::numbers::pi);
 }
 
-/// log q - log g at n points, of which `draw_point` gives the i-th in whitened coordinates.
+/// log q - log g at n points; `draw_point` gives the i-th in whitened coordinates.
 template <class DrawPoint>
 Result<Eigen::VectorXd> log_ratios(WarpedTarget& warped, Eigen::Index n, DrawPoint draw_point) {
   Eigen::VectorXd ratios(n);
@@ -79,7 +79,7 @@ double relative_variance(const Eigen::ArrayXd& values) {
   return (values - values.mean()).square().mean() / (values.mean() * values.mean());
 }
 
-/// The iteration of Meng and Wong (1996), eq. (4.1), on log ratios less `shift`.
+/// The iteration of Meng and Wong (1996), eq. (4.1), on log ratios minus `shift`.
 class FixedPoint {
  public:
   FixedPoint(const Eigen::VectorXd& posterior, const Eigen::VectorXd& proposal)
@@ -113,7 +113,7 @@ class FixedPoint {
 
  private:
   // q / (s_1 q + s_2 r g) over draws of g, and g / (s_1 q + s_2 r g) over draws of the posterior,
-  // both divided by g above and below.
+  // with numerator and denominator both divided by g.
   [[nodiscard]] Eigen::ArrayXd bridged_proposal(double r) const {
     return (share_ + (1.0 - share_) * r / proposal_).inverse();
   }
@@ -121,8 +121,8 @@ class FixedPoint {
     return (share_ * posterior_ + (1.0 - share_) * r).inverse();
   }
 
-  /// Frühwirth-Schnatter (2004), eq. (14): relative variances of the two means, that over the
-  /// posterior with its autocorrelation time.
+  /// Frühwirth-Schnatter (2004), eq. (14): relative variances of the two means, the posterior one
+  /// with its autocorrelation time.
   [[nodiscard]] double standard_error(double r) const {
     const Eigen::ArrayXd over_proposal = bridged_proposal(r);
     const Eigen::ArrayXd over_posterior = bridged_posterior(r);
@@ -152,7 +152,7 @@ Result<BridgeEstimate> bridge_log_evidence(Target& target, const Eigen::MatrixXd
   auto warped = WarpedTarget::fit(target, draws.topRows(fitted));
   if (!warped) return tl::unexpected(warped.error());
   const Eigen::Index n = draws.rows() - fitted;
-  // The symmetric density has mu + L u and mu - L u alike, so a draw needs no random sign.
+  // The symmetrised density is the same at mu + L u and mu - L u, so a draw needs no random sign.
   const auto posterior = log_ratios(*warped, n, [&](Eigen::Index i) {
     return warped->whiten(draws.row(fitted + i).transpose());
   });

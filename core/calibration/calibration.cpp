@@ -48,8 +48,7 @@ void add_posterior_findings(const CalibrationProblem& problem, Calibration& c) {
   append(c.findings, conflict_findings(c.hyperparameters[1], c.hyper_prior.error_precision));
 }
 
-/// What the posterior is worth, beyond its draws. None of it is a condition: where one of these
-/// cannot be had it is left out.
+/// Checks the posterior beyond its draws. None of these is required: whatever fails is left out.
 void check_model(const Posterior& prototype, const Eigen::MatrixXd& points,
                  const CalibrationProblem& problem, const RunContext& context, Calibration& c) {
   Posterior posterior(prototype);
@@ -64,13 +63,14 @@ void check_model(const Posterior& prototype, const Eigen::MatrixXd& points,
   append(c.findings, discrepancy_findings(problem.outputs, c.normalisation, c.chains));
 }
 
-/// What is sampled in the place of a model that knows no derivative; absent: the model is.
+/// The emulator that is sampled instead of a model without derivatives; absent: the model
+/// itself is sampled.
 std::optional<Emulator> emulator_of(const MonthlyModel& prototype, const DesignRuns& design,
                                     const CalibrationOptions& options) {
   if (!options.emulate || prototype.has_jacobian()) return {};
   auto emulator =
       emulate(design.theta, design.outputs, prototype.output_count(), prototype.month_count());
-  if (!emulator) return {};  // too few runs for so many parameters
+  if (!emulator) return {};  // too few runs for this many parameters
   return std::move(*emulator);
 }
 
@@ -150,7 +150,8 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
 
 Result<Calibration> calibrate(const MonthlyModel& prototype, const CalibrationProblem& problem,
                               const CalibrationOptions& options, const RunContext& context) {
-  // Before the design too: an hour of model runs should not end in "weight outside (0, 1]".
+  // Check before the design too, so that an hour of model runs does not end in "weight
+  // outside (0, 1]".
   if (auto ok = check_problem(problem, prototype); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_calibration_options(options); !ok) return tl::unexpected(ok.error());
   auto design = run_design(prototype, problem, options.design_runs, context);

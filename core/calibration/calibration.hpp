@@ -1,9 +1,10 @@
-/// Bayesian calibration of a building energy model against monthly figures, from priors to verdict.
+/// Bayesian calibration of a building energy model against monthly figures, from priors to
+/// convergence checks.
 ///
 /// Method of Li, Gu, Augenbroe, Wu, Brown (2015), "A generic approach to calibrate building energy
 /// models under uncertainty using Bayesian inference", Building Simulation ("the seed"): triangular
-/// priors, a Latin hypercube of runs that fixes the normalisation, a Gaussian process for what the
-/// model lacks, Markov chains, and draws to push back through the model.
+/// priors, a Latin hypercube of runs that fixes the normalisation, a Gaussian process for the model
+/// discrepancy, Markov chains, and draws to run through the model again.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,8 +33,8 @@ struct CalibrationOptions {
   std::variant<HyperPriorProfile, HyperPrior> hyper_prior = HyperPriorProfile::scaled;
   SamplingOptions sampling;
   int thinned_draws = 270;  ///< Equally spaced over the pooled chains.
-  /// Samples a polynomial fitted to the design's runs in the place of a model without a Jacobian,
-  /// where there are runs enough; its error is counted as known variance.
+  /// Samples a polynomial fitted to the design's runs instead of a model without a Jacobian, if
+  /// there are enough runs; its error counts as known variance.
   bool emulate = false;
   bool predictive = false;  ///< Also fills `Calibration::predictions`.
 };
@@ -53,20 +54,20 @@ struct Calibration {
   std::vector<Summary> parameters;       ///< (q)
   std::vector<Summary> hyperparameters;  ///< lambda_delta, lambda_eps, beta_<input> …, beta_out
   SamplingReport sampling;
-  /// (outputs * months) sd of the polynomial that stood in for the model, in units; absent: the
-  /// model itself was sampled.
+  /// (outputs * months) sd of the polynomial that replaced the model, in units; absent: the model
+  /// itself was sampled.
   std::optional<Eigen::VectorXd> emulator_error_sd;
   Eigen::VectorXd posterior_mean;  ///< (q) theta, the point estimate.
   ThinnedDraws thinned;
-  /// log p(y) by bridge sampling; absent where it was not found. Compare models by it only where
-  /// both calibrations converged, and know that it moves with the width of the priors.
+  /// log p(y) by bridge sampling; absent if it was not found. Use it to compare models only if both
+  /// calibrations converged; it also depends on the width of the priors.
   std::optional<BridgeEstimate> evidence;
   std::vector<LeaveOutScore> leave_out;  ///< Single months, then quarters of a year.
   /// Of all kept draws; absent where nobody asked.
   std::optional<PointPredictions> predictions;
   std::vector<WeakDirection> weak_directions;  ///< What the data leave as the priors had it.
   bool converged;     ///< The gate holds for every parameter and hyper-parameter.
-  Findings findings;  ///< Everything to be said in words; empty for a calibration without a remark.
+  Findings findings;  ///< Everything to report in words; empty if there is nothing to remark.
   std::uint64_t seed;
 };
 
@@ -78,16 +79,16 @@ struct Calibration {
 /// The whole calibration: design, normalisation, range check, chains, diagnostics.
 ///
 /// @param prototype  Covers exactly the calibration months; cloned, never evaluated itself.
-/// @return the calibration, whether or not it converged and whatever was found; or
-///         the errors of `check_problem`, `normalise_design` (constant output) and `run_model`;
-///         invalid_value for options out of range; cancelled.
+/// @return the calibration, converged or not, with any findings; or the errors of `check_problem`,
+///         `normalise_design` (constant output) and `run_model`; invalid_value for options out of
+///         range; cancelled.
 /// @note   Pure: the same problem, options and seed give the same bytes with any executor.
 [[nodiscard]] Result<Calibration> calibrate(const MonthlyModel& prototype,
                                             const CalibrationProblem& problem,
                                             const CalibrationOptions& options,
                                             const RunContext& context);
 
-/// The same on a design that exists already: no run of the model but those of the chains.
+/// As above, on an existing design: the model is run only by the chains.
 [[nodiscard]] Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
                                                       const CalibrationProblem& problem,
                                                       const CalibrationOptions& options,

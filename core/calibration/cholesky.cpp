@@ -31,7 +31,7 @@ bool factorise_in_place(Eigen::MatrixXd& matrix) {
 }
 
 double log_determinant_of_factor(const Eigen::MatrixXd& factor) {
-  // A product of eight diagonal entries stays far from the ends of a double, and one log serves.
+  // A product of eight diagonal entries stays within the range of a double, so one log is enough.
   double sum = 0.0;
   double product = 1.0;
   for (Eigen::Index i = 0; i < factor.rows(); ++i) {
@@ -48,7 +48,7 @@ void invert_factor(const Eigen::MatrixXd& factor, Eigen::MatrixXd& scratch,
                    Eigen::MatrixXd& inverse) {
   const Eigen::Index n = factor.rows();
   assert(scratch.rows() == n && scratch.cols() == n && inverse.rows() == n && inverse.cols() == n);
-  // The reciprocals have the first row of the inverse to themselves until it is written last.
+  // The first row of the inverse holds the reciprocals until it is written last.
   double* reciprocals = inverse.col(n - 1).data();
   for (Eigen::Index i = 0; i < n; ++i) reciprocals[i] = 1.0 / factor(i, i);
   for (Eigen::Index j = 0; j < n; ++j) {

@@ -1,4 +1,4 @@
-/// The few dense kernels that a covariance of some dozen points needs, without allocation.
+/// Dense kernels for a covariance of a few dozen points, without allocation.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,7 +6,7 @@
 namespace recald::calibration {
 
 /// Replaces the lower triangle of `matrix` by its Cholesky factor L.
-/// @return whether there is one; otherwise `matrix` is of no further use.
+/// @return whether there is one; otherwise the content of `matrix` is undefined.
 [[nodiscard]] bool factorise_in_place(Eigen::MatrixXd& matrix);
 
 /// log|L L'| of a lower factor. NaN, which Eigen's factorisation lets through, stays NaN.
@@ -14,8 +14,8 @@ namespace recald::calibration {
 
 /// Lower triangle of (L L')^-1.
 ///
-/// By columns of L^-1 and then their inner products, n^3 / 3 multiplications in all on contiguous
-/// memory: at n = 24 a third of the time of a general triangular solve and product.
+/// Columns of L^-1 first, then their inner products: n^3 / 3 multiplications in all, on contiguous
+/// memory. At n = 24 this takes a third of the time of a general triangular solve and product.
 /// @param factor   (n x n) L in the lower triangle.
 /// @param scratch  (n x n), already of that size; L^-1 afterwards, lower triangle.
 /// @param inverse  (n x n), already of that size.

@@ -1,4 +1,4 @@
-/// Normal points given others that they are normal together with.
+/// The conditional distribution of some jointly normal points, given the others.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,11 +11,11 @@ struct ConditionalNormal {
   Eigen::MatrixXd covariance;
 };
 
-/// What the residuals of the points `asked` are expected to be, given those of all others:
+/// Distribution of the residuals of the points `asked`, given those of all others:
 ///
 ///     r_a | r_b ~ N( r_a - P_aa^-1 (P r)_a,  P_aa^-1 ) = N( -P_aa^-1 P_ab r_b,  P_aa^-1 )
 ///
-/// so that whatever stands for r_a is of no consequence.
+/// so the given values of r_a do not matter.
 ///
 /// @param precision          P = Sigma^-1 (m x m), whole.
 /// @param residual           r (m)

@@ -10,7 +10,7 @@
 namespace recald::calibration {
 namespace {
 
-/// Everything that one chain needs.
+/// Everything that a chain needs.
 struct CutProblem {
   const MonthlyModel& model;
   const CalibrationProblem& problem;
@@ -20,7 +20,7 @@ struct CutProblem {
   const CutOptions& options;
 };
 
-/// The posterior of θ with η held at row `row`.
+/// The posterior of θ with η fixed at row `row`.
 Result<Posterior> posterior_at(const CutProblem& cut, Eigen::Index row) {
   std::vector<int> free(cut.problem.parameters.size());
   std::iota(free.begin(), free.end(), 0);
@@ -31,7 +31,7 @@ Result<Posterior> posterior_at(const CutProblem& cut, Eigen::Index row) {
   return Posterior::make(model, cut.problem.parameters, cut.data, cut.hyper_prior);
 }
 
-/// Room for `kept` draws at each of `values` of η.
+/// Allocates room for `kept` draws at each of `values` of η.
 ChainDraws room_for(const CutProblem& cut, const ChainDraws& like) {
   const Eigen::Index rows = cut.eta.rows() * cut.options.kept_each;
   return {.theta = Eigen::MatrixXd(rows, like.theta.cols() + cut.eta.cols()),
@@ -42,7 +42,7 @@ ChainDraws room_for(const CutProblem& cut, const ChainDraws& like) {
           .acceptance_rate = 0.0};
 }
 
-/// Puts the draws that are kept at row `d` of η into every n-th row from `d`.
+/// Writes the kept draws at row `d` of η into every n-th row from `d`.
 void interleave(const CutProblem& cut, Eigen::Index d, const ChainDraws& part, ChainDraws& all) {
   const Eigen::Index n = cut.eta.rows();
   const Eigen::Index q = part.theta.cols();
@@ -61,7 +61,7 @@ void interleave(const CutProblem& cut, Eigen::Index d, const ChainDraws& part, C
 
 Error cancelled() { return {ErrorCode::cancelled, "the calibration was cancelled"}; }
 
-/// One chain through all values of η. `go_on(done)` is asked after each.
+/// Runs one chain through all values of η. Calls `go_on(done)` after each.
 template <class GoOn>
 Result<void> walk(const CutProblem& cut, Rng& rng, ChainDraws& draws, ChainStatistics& statistics,
                   GoOn go_on) {
@@ -77,7 +77,7 @@ Result<void> walk(const CutProblem& cut, Rng& rng, ChainDraws& draws, ChainStati
       state = first->last;
       statistics.density_evaluations += first->statistics.density_evaluations;
     }
-    // No burn-in: the steps stay as they were learnt, and what settles is dropped here.
+    // No burn-in: the steps stay as learnt, and the iterations that settle are dropped here.
     auto chain = dram(*posterior, {iterations, 0, std::move(state)}, rng);
     if (!chain) return tl::unexpected(chain.error());
     state = chain->last;

@@ -1,9 +1,10 @@
-/// Draws of θ that leave some parameters of the model, η, as they are known: a cut posterior.
+/// Draws of θ that do not change what is known of some other parameters η of the model:
+/// a cut posterior.
 ///
-/// p(θ, η) = p(θ | y, η) p(η | earlier data): the months teach θ for every value of η, and nothing
-/// flows back to η. Each chain walks through all values of η; at each it goes on from where it
-/// stood, settles, and is kept for a while. A walk through neighbouring targets needs no new
-/// burn-in for each of them.
+/// p(θ, η) = p(θ | y, η) p(η | earlier data): the months inform θ for every value of η, without
+/// feedback to η. Each chain goes through all values of η. At each value it continues from its
+/// position, settles, and is then kept for a while. Neighbouring targets are similar, so no new
+/// burn-in is needed.
 /// @see Plummer (2015), Stat. Comput. 25, "Cuts in Bayesian graphical models".
 #pragma once
 
@@ -20,23 +21,23 @@ struct CutOptions {
   int burn_in;      ///< Iterations at the first η, in which the walk learns its steps.
   int settle_each;  ///< Dropped after each change of η.
   int kept_each;    ///< Draws at each η,
-  int stride;       ///< every so many iterations.
+  int stride;       ///< one every so many iterations.
   int chains = 4;
 };
 
 struct CutDraws {
-  /// θ, then η in `theta`; the values of η take turns, so that draws next to each other are not of
-  /// one η.
+  /// θ, then η in `theta`; the values of η alternate, so adjacent draws have different η.
   std::vector<ChainDraws> chains;
-  std::vector<ChainStatistics> statistics;  ///< Acceptance and evaluations, a chain.
+  std::vector<ChainStatistics> statistics;  ///< Acceptance and evaluations, per chain.
 };
 
 /// @param model      θ (q), then η (r).
-/// @param base       Of the same problem at one η: its normalisation and hyper-prior are taken.
-/// @param problem    Parameters are θ alone.
+/// @param base       A calibration of the same problem at one η; gives normalisation
+///                   and hyper-prior.
+/// @param problem    Its parameters are θ alone.
 /// @param eta        (n x r), n >= 1.
 /// @return the draws; an error of the model; cancelled.
-/// @note   Chain k draws from a stream of its own: any executor gives the same bytes.
+/// @note   Chain k draws from its own stream, so any executor gives the same bytes.
 [[nodiscard]] Result<CutDraws> sample_given_eta(const MonthlyModel& model, const Calibration& base,
                                                 const CalibrationProblem& problem,
                                                 const Eigen::MatrixXd& eta,

@@ -24,11 +24,11 @@ Eigen::MatrixXd helmert(Eigen::Index outputs) {
   return turn;
 }
 
-/// s R / lambda_delta + diag(noise), of n months.
+/// s R / lambda_delta + diag(noise), for n months.
 struct Block {
   double share = 0.0;      ///< s
   double variance = 0.0;   ///< s / lambda_delta
-  Eigen::Index first = 0;  ///< Columns of the turned residual that belong to it.
+  Eigen::Index first = 0;  ///< Its columns of the rotated residual.
   Eigen::Index count = 0;
   Eigen::MatrixXd factor;   ///< L, lower triangle.
   Eigen::MatrixXd weights;  ///< W summed over its columns, lower triangle.
@@ -143,7 +143,7 @@ class DecoupledCovariance final : public ErrorCovariance {
                                    LikelihoodGradient& gradient) override {
     const double norm = squared_norm(residual);
     weigh_errors();
-    if (error_count() > 0) {  // Sigma^-1 r is B^-1 of what the common errors do not explain
+    if (error_count() > 0) {  // Sigma^-1 r is B^-1 of the part not explained by common errors
       error_factor_.matrixU().solveInPlace(explained_);
       Eigen::Map<Eigen::VectorXd>(whitened_.data(), whitened_.size()).noalias() -=
           white_errors_ * explained_;
@@ -187,7 +187,7 @@ class DecoupledCovariance final : public ErrorCovariance {
   }
   [[nodiscard]] Eigen::Index error_count() const { return turned_errors_.cols(); }
 
-  /// L^-1 of what is turned, (months x outputs), in place.
+  /// L^-1 of the rotated matrix, (months x outputs), in place.
   template <class Turned>
   void whiten(Turned& turned) const {
     for (const Block& block : blocks_) {
@@ -212,7 +212,7 @@ class DecoupledCovariance final : public ErrorCovariance {
     return error_factor_.info() == Eigen::Success;
   }
 
-  /// U with  Sigma^-1 = B^-1 - U U',  turned.
+  /// U with  Sigma^-1 = B^-1 - U U',  rotated.
   void weigh_errors() {
     if (error_count() == 0) return;
     // U' = K^-1 (L^-1 g)' L^-1, with K the factor above.
@@ -277,14 +277,14 @@ class DecoupledCovariance final : public ErrorCovariance {
   double error_variance_ = 0.0;
   double between_outputs_ = 1.0;  ///< c
   Eigen::MatrixXd scratch_;
-  Eigen::MatrixXd whitened_;  ///< (months x outputs) turned, then L^-1 of it.
-  Eigen::MatrixXd weighted_;  ///< (months x outputs) turned Sigma^-1 r.
+  Eigen::MatrixXd whitened_;  ///< (months x outputs) rotated, then L^-1 of it.
+  Eigen::MatrixXd weighted_;  ///< (months x outputs) rotated Sigma^-1 r.
   Eigen::VectorXd by_pair_;
 
-  Eigen::MatrixXd turned_errors_;  ///< (m x d) g, turned, by months and outputs; the next two, too.
-  Eigen::MatrixXd white_errors_;   ///< L^-1 g
-  Eigen::MatrixXd error_weights_;  ///< U
-  Eigen::MatrixXd between_errors_;            ///< (d x d) I + g' B^-1 g
+  Eigen::MatrixXd turned_errors_;   ///< (m x d) g, rotated, by months and outputs; next two too.
+  Eigen::MatrixXd white_errors_;    ///< L^-1 g
+  Eigen::MatrixXd error_weights_;   ///< U
+  Eigen::MatrixXd between_errors_;  ///< (d x d) I + g' B^-1 g
   Eigen::LLT<Eigen::MatrixXd> error_factor_;  ///< Of it.
   Eigen::VectorXd explained_;                 ///< (d) Of the last residual, by the common errors.
 };

@@ -17,7 +17,7 @@ namespace {
 
 bool is_constant(const Eigen::MatrixXd& draws) { return (draws.array() == draws(0, 0)).all(); }
 
-/// First and last half of each chain as chains of their own; a middle draw is left out.
+/// Splits each chain into its first and last half; a middle draw is left out.
 Eigen::MatrixXd split(const Eigen::MatrixXd& draws) {
   const Eigen::Index half = draws.rows() / 2;
   Eigen::MatrixXd halves(half, 2 * draws.cols());
@@ -50,7 +50,7 @@ double variance(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return (values.array() - values.mean()).square().sum() / static_cast<double>(values.size() - 1);
 }
 
-/// Gelman-Rubin R-hat of chains as they are (ibid., eqs. 1-4).
+/// Gelman-Rubin R-hat of unsplit chains (ibid., eqs. 1-4).
 double potential_scale_reduction(const Eigen::MatrixXd& chains) {
   const auto n = static_cast<double>(chains.rows());
   const Eigen::VectorXd means = chains.colwise().mean();
@@ -60,14 +60,14 @@ double potential_scale_reduction(const Eigen::MatrixXd& chains) {
   return std::sqrt((n - 1.0) / n + variance(means) / within);
 }
 
-/// Autocovariance at lags 0 … n - 1, biased (over n), averaged over chains.
+/// Autocovariance at lags 0 … n - 1, biased (divided by n), averaged over chains.
 ///
-/// Two chains go through one complex transform: for z = a + i b the power of a and b together at
-/// frequency f is (|Z(f)|^2 + |Z(-f)|^2) / 2, and the sum over chains is all that is needed.
+/// Two chains share one complex transform: for z = a + i b the power of a and b together at
+/// frequency f is (|Z(f)|^2 + |Z(-f)|^2) / 2, and only the sum over chains is needed.
 Eigen::VectorXd mean_autocovariance(const Eigen::MatrixXd& chains) {
   const Eigen::Index n = chains.rows();
   Eigen::Index size = 1;
-  while (size < 2 * n) size *= 2;  // padded with zeros, so that the ends do not meet
+  while (size < 2 * n) size *= 2;  // padded with zeros, so that the ends do not wrap around
   Eigen::FFT<double> fft;
   Eigen::VectorXcd padded(size);
   Eigen::VectorXcd spectrum(size);
@@ -80,17 +80,16 @@ Eigen::VectorXd mean_autocovariance(const Eigen::MatrixXd& chains) {
     fft.fwd(spectrum, padded);
     power += spectrum.cwiseAbs2();
   }
-  // power(f) + power(-f) over two is real and even, so its transform is real and the inverse up
+  // (power(f) + power(-f)) / 2 is real and even, so its transform is real and equals the inverse up
   // to the factor 1 / size.
   padded = power.cast<std::complex<double>>();
   fft.fwd(spectrum, padded);
   return spectrum.head(n).real() / static_cast<double>(size * n * chains.cols());
 }
 
-/// Autocorrelation time by Geyer's initial monotone sequence, with the truncation of R's
-/// posterior.
+/// Autocorrelation time by Geyer's initial monotone sequence, truncated as in R's posterior.
 ///
-/// @param rho  correlation at lags 0 …, from within and between chains together.
+/// @param rho  Correlation at lags 0 …, from within and between chains together.
 template <class Correlation>
 double autocorrelation_time(const Correlation& rho, Eigen::Index lags) {
   std::vector<double> pairs;  // rho(2k) + rho(2k + 1), the initial positive ones
@@ -126,7 +125,7 @@ double effective_sample_size(const Eigen::MatrixXd& draws) {
     return 1.0 - (within - covariance(lag)) / total;
   };
   const auto count = static_cast<double>(draws.size());
-  // The bound keeps antithetic chains from claiming more than count * log10(count).
+  // The bound limits antithetic chains to count * log10(count).
   return count / std::max(autocorrelation_time(correlation, draws.rows()), 1.0 / std::log10(count));
 }
 

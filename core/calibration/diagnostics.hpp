@@ -1,4 +1,4 @@
-/// Whether chains have found the same place, and how much their draws are worth.
+/// Whether chains agree, and how many independent draws they are worth.
 ///
 /// Vehtari, Gelman, Simpson, Carpenter, Bürkner (2021), Bayesian Analysis 16(2):
 /// "Rank-normalization, folding, and localization". Same definitions as R's package posterior.
@@ -8,9 +8,8 @@
 
 namespace recald::calibration {
 
-/// All of one scalar quantity. `draws` is (iterations x chains), iterations >= 8.
-/// A quantity that is the same in every draw, or not finite, has r-hat infinity and ESS 0: nothing
-/// was learnt of it.
+/// All diagnostics of one scalar quantity. `draws` is (iterations x chains), iterations >= 8. A
+/// quantity that is the same in every draw, or not finite, has R-hat infinity and ESS 0.
 struct Diagnostics {
   double rhat;      ///< Larger of the rank-normalised split R-hat and that of the folded draws.
   double ess_bulk;  ///< Effective draws for the centre.
@@ -20,8 +19,8 @@ struct Diagnostics {
 
 [[nodiscard]] Diagnostics diagnose(const Eigen::MatrixXd& draws);
 
-/// Effective sample size of the mean of (iterations x chains) as they are: no split, no ranks.
-/// Geyer's initial monotone sequence over autocovariances averaged over chains (ibid., section 3).
+/// Effective sample size of the mean of (iterations x chains), without splitting or ranks. Geyer's
+/// initial monotone sequence over autocovariances averaged over chains (ibid., section 3).
 [[nodiscard]] double effective_sample_size(const Eigen::MatrixXd& draws);
 
 }  // namespace recald::calibration

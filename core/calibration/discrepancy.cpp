@@ -7,7 +7,7 @@
 namespace recald::calibration {
 namespace {
 
-/// Months that hold at least one point, ascending.
+/// Months with at least one point, ascending.
 std::vector<int> months_in_use(const std::vector<PointIndex>& points) {
   std::vector<int> months;
   months.reserve(points.size());
@@ -54,7 +54,7 @@ DiscrepancyKernel::DiscrepancyKernel(const Eigen::MatrixXd& month_inputs,
 
 void DiscrepancyKernel::correlate_months(const Eigen::VectorXd& beta) {
   assert(beta.size() == dimension());
-  // An infinite beta times a zero distance is 0 / 0 in disguise; the largest double does the same.
+  // Infinite beta times zero distance would be NaN; the largest double has the same effect.
   constexpr double beta_max = 1e300;
   packed_.setZero();
   for (Eigen::Index s = 0; s < distances_.cols(); ++s) {

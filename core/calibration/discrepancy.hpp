@@ -1,4 +1,4 @@
-/// The Gaussian process of what the model lacks, at the measured points.
+/// The Gaussian process of the model discrepancy, at the measured points.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,15 +16,15 @@ struct PointIndex {
 ///
 ///     C_ij = variance * exp( - sum_s beta_s D_s,ij )
 ///
-/// D_s,ij is the squared distance of points i and j in model input s. When the points belong to
-/// more than one output there is one more, last, dimension: D = 1 between points of different
-/// outputs and 0 otherwise. For two outputs that is the seed's 0/1 dummy. For more it stays a valid
-/// kernel where numbering the outputs 0, 1, 2, … would call the first and third less alike than
-/// neighbours: with c = exp(-beta) <= 1 the factor between outputs is the matrix c 1 1' + (1 - c)
-/// I, positive semi-definite, and products of such factors stay so (Schur).
+/// D_s,ij is the squared distance of points i and j in model input s. If the points belong to more
+/// than one output, there is one additional, last dimension: D = 1 between points of different
+/// outputs and 0 otherwise. For two outputs this is the seed's 0/1 dummy. For more it is still a
+/// valid kernel, while numbering the outputs 0, 1, 2, … would make the first and third less similar
+/// than neighbours: with c = exp(-beta) <= 1 the factor between outputs is the matrix c 1 1' + (1 -
+/// c) I, positive semi-definite, and products of such factors are too (Schur).
 ///
-/// The distances never change, so they are computed once. Points of one month differ in their
-/// output alone, so exp() runs over pairs of months, not of points: a quarter of the work for two
+/// The distances never change, so they are computed once. Points of one month differ only in their
+/// output, so exp() is evaluated for pairs of months, not of points: a quarter of the work for two
 /// outputs. Pairs of months are packed: the strictly lower triangle, column by column.
 class DiscrepancyKernel {
  public:
@@ -32,7 +32,7 @@ class DiscrepancyKernel {
   /// @param points        Ordered by output, then by month, each at most once; at least one.
   DiscrepancyKernel(const Eigen::MatrixXd& month_inputs, std::vector<PointIndex> points);
 
-  /// Length of beta: p, plus one where the points belong to more than one output.
+  /// Length of beta: p, plus one if the points belong to more than one output.
   [[nodiscard]] Eigen::Index dimension() const { return input_count() + (cross_output_ ? 1 : 0); }
   [[nodiscard]] Eigen::Index input_count() const { return distances_.cols(); }
   [[nodiscard]] Eigen::Index point_count() const { return static_cast<Eigen::Index>(row_.size()); }
@@ -50,10 +50,10 @@ class DiscrepancyKernel {
   ///              dimension, if any, is not used.
   /// @note  Does not allocate. O(months^2 p).
   void correlate_months(const Eigen::VectorXd& beta);
-  /// (pairs) as computed last, packed.
+  /// (pairs) the last result, packed.
   [[nodiscard]] const Eigen::VectorXd& month_correlations() const { return packed_; }
 
-  /// Writes C into the lower triangle and diagonal of `covariance`; the rest is left alone.
+  /// Writes C into the lower triangle and diagonal of `covariance`; the rest is unchanged.
   ///
   /// @param variance    1 / lambda_delta, normalised units squared.
   /// @param beta        (dimension) >= 0
@@ -61,14 +61,14 @@ class DiscrepancyKernel {
   /// @note  Does not allocate. O(months^2 p + points^2).
   void covariance(double variance, const Eigen::VectorXd& beta, Eigen::MatrixXd& covariance);
 
-  /// What a derivative of the log-likelihood needs of  sum_ij W_ij C_ij D_s,ij / 2.
+  /// The sums needed for a derivative of the log-likelihood,  sum_ij W_ij C_ij D_s,ij / 2.
   struct Sums {
-    double same_output = 0.0;   ///< sum_ij W_ij C_ij / 2 over pairs of the same output, i = j too.
-    double cross_output = 0.0;  ///< The same over pairs of different outputs.
+    double same_output = 0.0;   ///< sum_ij W_ij C_ij / 2 over pairs of the same output and i = j.
+    double cross_output = 0.0;  ///< As above, over pairs of different outputs.
   };
 
   /// @param weights     W (points x points), lower triangle.
-  /// @param covariance  C, lower triangle, as `covariance` wrote it.
+  /// @param covariance  C, lower triangle, as written by `covariance`.
   /// @param by_pair     (pairs of months) receives the sum of W_ij C_ij over the pairs of points of
   ///                    these two months, each pair of points once.
   Sums sum_products(const Eigen::MatrixXd& weights, const Eigen::MatrixXd& covariance,
@@ -83,7 +83,7 @@ class DiscrepancyKernel {
     Eigen::Index end;
   };
 
-  /// Position of the pair of month rows i > j among the packed ones.
+  /// Position of the pair of month rows i > j in packed order.
   [[nodiscard]] Eigen::Index pair_index(Eigen::Index i, Eigen::Index j) const {
     return j * months_ - j * (j + 1) / 2 + (i - j - 1);
   }

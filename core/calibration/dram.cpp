@@ -35,9 +35,9 @@ class DelayedRejectionWalk final : public RandomWalk {
   }
 
  private:
-  /// Log of the ratio of the second stage. The first proposal was refused, so a(z, y1) < 1.
+  /// Log of the ratio of the second stage. The first proposal was rejected, so a(z, y1) < 1.
   [[nodiscard]] double second_log_ratio() const {
-    // From y2 the first proposal would have been accepted for certain: no way back.
+    // From y2 the first proposal would certainly have been accepted, so there is no way back.
     if (!(second_.log_density > first_.log_density)) {
       return -std::numeric_limits<double>::infinity();
     }

@@ -7,7 +7,7 @@
 namespace recald::calibration {
 namespace {
 
-/// One quantity in the draws of all chains, (iterations x chains), and what its prior says of it.
+/// One quantity in the draws of all chains, (iterations x chains), and its prior.
 struct Quantity {
   std::string name;
   std::string unit;

@@ -1,4 +1,4 @@
-/// Posterior draws in natural units, and what is read off them.
+/// Posterior draws in natural units, and their summaries.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 
 namespace recald::calibration {
 
-/// Kept draws of one chain in natural units, one row an iteration.
+/// Kept draws of one chain in natural units, one row per iteration.
 struct ChainDraws {
   Eigen::MatrixXd theta;                  ///< (n x q) in the parameters' units.
   Eigen::VectorXd discrepancy_precision;  ///< (n) lambda_delta, normalised scale.
@@ -24,32 +24,32 @@ struct ChainDraws {
   double acceptance_rate;
 };
 
-/// Equally spaced draws over the pooled chains: what goes through the model for a report.
+/// Equally spaced draws over the pooled chains, to run through the model for a report.
 struct ThinnedDraws {
   std::vector<int> chain;      ///< (count)
   std::vector<int> iteration;  ///< (count) row in that chain's draws.
   Eigen::MatrixXd theta;       ///< (count x q)
 };
 
-/// A chain of `posterior`'s unconstrained coordinates in natural units.
+/// Converts a chain in `posterior`'s unconstrained coordinates to natural units.
 [[nodiscard]] ChainDraws to_natural_units(const Chain& chain, const Posterior& posterior);
 
 /// `count` draws equally spaced over the pooled chains. @pre chains of equal, positive length
 [[nodiscard]] ThinnedDraws thin(const std::vector<ChainDraws>& chains, int count);
 
-/// One summary a parameter, pooled over chains; the executor runs them side by side.
+/// One summary per parameter, pooled over chains; the executor runs them in parallel.
 [[nodiscard]] std::vector<Summary> summarise_parameters(const std::vector<Parameter>& parameters,
                                                         const std::vector<ChainDraws>& chains,
                                                         const ForEachIndex& executor);
 
-/// The same for lambda_delta, lambda_eps and the betas.
+/// As above for lambda_delta, lambda_eps and the betas.
 /// @param names  `hyperparameter_names`
 [[nodiscard]] std::vector<Summary> summarise_hyperparameters(const HyperPrior& prior,
                                                              const std::vector<std::string>& names,
                                                              const std::vector<ChainDraws>& chains,
                                                              const ForEachIndex& executor);
 
-/// lambda_delta, lambda_eps, beta_<input> …, and beta_out where there is more than one output.
+/// lambda_delta, lambda_eps, beta_<input> …, and beta_out if there is more than one output.
 [[nodiscard]] std::vector<std::string> hyperparameter_names(
     const std::vector<std::string>& input_names, bool has_output_dimension);
 

@@ -47,7 +47,7 @@ Result<Emulator> emulate(const Eigen::MatrixXd& theta, const Eigen::MatrixXd& ou
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr{x};
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(x.rows(), coefficients);
   const Eigen::MatrixXd fitted = qr.solve(outputs);
-  // Of a run that the fit has not seen: its residual over one less its leverage.
+  // Residual of a run left out of the fit: its residual divided by one minus its leverage.
   const Eigen::ArrayXd unseen = 1.0 - q.rowwise().squaredNorm().array();
   const Eigen::MatrixXd left = ((outputs - x * fitted).array().colwise() / unseen).matrix();
 

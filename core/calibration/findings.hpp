@@ -1,4 +1,4 @@
-/// What a calibration wants a person to know besides its numbers.
+/// What people should know about a calibration besides its numbers.
 #pragma once
 
 #include <string>
@@ -10,18 +10,18 @@ namespace recald::calibration {
 enum class FindingKind {
   extrapolation,        ///< A measured value outside all design runs of all months.
   range_fail,           ///< A measured value outside the design runs of its own month.
-  prior_edge,           ///< Posterior mass piled up at the end of a prior: a model-form alarm.
+  prior_edge,           ///< Posterior mass near a bound of a prior: the model form may be wrong.
   hyperprior_conflict,  ///< A precision's posterior mean outside its prior's 1-99 % range.
   not_converged,        ///< The convergence gate failed for a quantity.
   prior_driven,         ///< A parameter follows the discrepancy prior rather than the data.
-  sampler_replaced,     ///< Chains could not agree and populations took their place.
-  weak_direction,       ///< A combination of parameters that the data leave as the prior had it.
-  evidence_disagrees,   ///< Two ways to the evidence differ by more than half a nat.
-  discrepancy_size,     ///< What the model misses, and so what cannot be read from it.
-  jitter_used,          ///< Some covariance had no factor until jitter was added.
+  sampler_replaced,     ///< The chains disagreed and populations replaced them.
+  weak_direction,       ///< A combination of parameters that the data did not inform.
+  evidence_disagrees,   ///< Two estimates of the evidence differ by more than half a nat.
+  discrepancy_size,     ///< The size of the model discrepancy, which limits what can be concluded.
+  jitter_used,          ///< Some covariance could not be factorised without jitter.
 };
 
-/// The kind as files and machines write it: "range_fail".
+/// The kind as written in files: "range_fail".
 [[nodiscard]] std::string_view to_string(FindingKind kind);
 
 struct Finding {

@@ -16,8 +16,8 @@ namespace recald::calibration {
 namespace {
 
 constexpr int kIterationsMax = 100;
-constexpr double kTolerance = 1e-4;  // nats a point, between iterations
-// Of the covariance of all points, added to each component's so that none collapses.
+constexpr double kTolerance = 1e-4;  // nats per point, between iterations
+// Of the covariance of all points, added to each component so that none collapses.
 constexpr double kRidge = 1e-3;
 constexpr double kWidening = 1.2;
 constexpr double kWideWeight = 0.1;
@@ -36,7 +36,7 @@ Eigen::MatrixXd weighted_covariance(const Eigen::MatrixXd& points, const Eigen::
   return centred.transpose() * weights.asDiagonal() * centred / weights.sum();
 }
 
-/// Expectation-maximisation for one number of components.
+/// Expectation-maximisation for a fixed number of components.
 class Fit {
  public:
   Fit(const Eigen::MatrixXd& points, const Eigen::MatrixXd& covariance, int components, Rng& rng)
@@ -57,7 +57,7 @@ class Fit {
     usable_ = true;
   }
 
-  /// None when a component had too few points to be one.
+  /// Nothing if a component had too few points.
   [[nodiscard]] std::optional<double> bic() const {
     if (!usable_) return std::nullopt;
     const auto d = static_cast<double>(points_.cols());
@@ -69,7 +69,7 @@ class Fit {
   [[nodiscard]] std::vector<GaussianComponent> components() && { return std::move(components_); }
 
  private:
-  /// Centres far from each other (k-means++), every point to the nearest.
+  /// Starts with distant centres (k-means++) and assigns each point to the nearest.
   void begin(const Eigen::MatrixXd& factor, Rng& rng) {
     const Eigen::MatrixXd white =
         factor.triangularView<Eigen::Lower>().solve(points_.transpose()).transpose();

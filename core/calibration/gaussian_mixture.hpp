@@ -1,4 +1,4 @@
-/// A mixture of normal densities fitted to points: a map of where a posterior's hills are.
+/// A mixture of normal densities fitted to points: a map of a posterior's modes.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 
 namespace recald::calibration {
 
-/// N(mean, L L') with a share of a mixture.
+/// N(mean, L L') with its weight in a mixture.
 struct GaussianComponent {
   double weight;
   Eigen::VectorXd mean;
@@ -24,7 +24,7 @@ class GaussianMixture {
 
   [[nodiscard]] const std::vector<GaussianComponent>& components() const { return components_; }
 
-  /// With its constant. Does not allocate.
+  /// Includes the constant. Does not allocate.
   [[nodiscard]] double log_density(const Eigen::VectorXd& point);
   /// @param point  (d), already of that size. Does not allocate.
   void draw(Rng& rng, Eigen::VectorXd& point);
@@ -38,14 +38,14 @@ class GaussianMixture {
 ///
 /// @param points          (n x d), n > d + 1, not all in one plane.
 /// @param components_max  >= 1
-/// @param rng             Chooses the points to begin from.
-/// @note  O(n components d^2) an iteration. The same points and state of `rng` give the same bits.
+/// @param rng             Chooses the starting points.
+/// @note  O(n components d^2) per iteration. The same points and state of `rng` give the same bits.
 /// @see   Dempster, Laird, Rubin (1977), J. R. Stat. Soc. B 39(1).
 [[nodiscard]] GaussianMixture fit_mixture(const Eigen::MatrixXd& points, int components_max,
                                           Rng& rng);
 
-/// Wider than what it was fitted to, as a proposal has to be: covariances grow by a fifth, and a
-/// tenth of the weight goes to a component with twice the covariance of the whole mixture.
+/// Widens a fitted mixture for use as a proposal: covariances grow by a fifth, and a tenth of the
+/// weight goes to a component with twice the covariance of the whole mixture.
 [[nodiscard]] GaussianMixture widen(const GaussianMixture& mixture);
 
 }  // namespace recald::calibration

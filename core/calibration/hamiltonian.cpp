@@ -24,7 +24,7 @@ Result<void> Hamiltonian::evaluate(PhasePoint& point) {
 
 Result<void> Hamiltonian::leapfrog(PhasePoint& point, double step) {
   point.momentum += 0.5 * step * point.force;
-  // A product with the zeros of L included: for a dozen dimensions that beats a triangular one.
+  // A full product including the zeros of L: for a dozen dimensions faster than a triangular one.
   point.position.noalias() += step * factor_ * point.momentum;
   if (auto evaluated = evaluate(point); !evaluated) return evaluated;
   point.momentum += 0.5 * step * point.force;

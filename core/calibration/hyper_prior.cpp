@@ -14,8 +14,8 @@
 
 namespace recald::calibration {
 
-// Boost's lgamma throughout: the C library's writes a global (signgam), which two chains would
-// share.
+// Boost's lgamma throughout: the C library's writes a global (signgam), which two
+// chains would share.
 using boost::math::lgamma;
 
 double GammaPrior::log_constant() const { return shape * std::log(rate) - lgamma(shape); }
@@ -41,8 +41,8 @@ double BetaPrior::quantile(double probability) const {
 
 double BetaPrior::logit_quantile(double probability) const {
   const boost::math::beta_distribution<> rho(a, b);
-  // 1 - rho ~ Beta(b, a): each from its own side, so neither is lost to rounding near 1. Beyond the
-  // smallest double, 1 - rho is as good as that.
+  // 1 - rho ~ Beta(b, a): each is computed from its own side, so rounding near 1 does not matter.
+  // Below the smallest double, the exact value of 1 - rho does not matter.
   const boost::math::beta_distribution<> complement(b, a);
   constexpr double tiny = std::numeric_limits<double>::min();
   const double value = std::max(boost::math::quantile(rho, probability), tiny);
@@ -71,7 +71,7 @@ double BetaPrior::log_constant_of_score() const {
 }
 
 double BetaPrior::score_quantile(double probability) const {
-  // Phi(-score) = (1 - rho)^b, with log(1 - rho) from the logit so that none of it is lost near 1.
+  // Phi(-score) = (1 - rho)^b, with log(1 - rho) from the logit so that no digits are lost near 1.
   const double log_above = -b * softplus(logit_quantile(probability));
   const double above = std::max(std::exp(log_above), 1e-300);
   const double below = std::max(-std::expm1(log_above), 1e-300);
@@ -99,7 +99,7 @@ double logit_from_beta(double beta) {
 
 HyperPrior make_hyper_prior(HyperPriorProfile profile, double pooled_variance) {
   assert(pooled_variance > 0.0);
-  constexpr BetaPrior rho{1.0, 0.3};  // mass near 1: an input matters only if the data say so
+  constexpr BetaPrior rho{1.0, 0.3};  // mass near 1: an input matters only if the data show it
   switch (profile) {
     case HyperPriorProfile::scaled:
       return {"scaled", {10.0, 0.3 * pooled_variance}, {10.0, 0.03 * pooled_variance}, rho};

@@ -12,7 +12,7 @@
 namespace recald::calibration {
 namespace {
 
-constexpr double kParetoKMax = 0.7;  // Vehtari et al. (2024): beyond, the estimate is unreliable
+constexpr double kParetoKMax = 0.7;  // Vehtari et al. (2024): above this the estimate is unreliable
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-/// How well the posterior predicts months that it is not shown, without fitting again.
+/// How well the posterior predicts left-out months, without refitting.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ namespace recald::calibration {
 /// Points that are left out together, as indices into the posterior's points.
 using PointBlocks = std::vector<std::vector<Eigen::Index>>;
 
-/// The points of every `months` consecutive months in use, all outputs together.
+/// The points of each block of `months` consecutive months in use, all outputs together.
 /// @pre months >= 1
 [[nodiscard]] PointBlocks blocks_of_months(const std::vector<PointIndex>& points, int months);
 
@@ -32,18 +32,18 @@ using PointBlocks = std::vector<std::vector<Eigen::Index>>;
                                                        const std::vector<ChainDraws>& chains,
                                                        int count, const PointBlocks& blocks);
 
-/// Expected log density of blocks not seen, by importance sampling from the whole posterior.
+/// Expected log density of left-out blocks, by importance sampling from the whole posterior.
 struct LeaveOutScore {
   int block_months;
   int blocks;
   double elpd;            ///< Sum over blocks of log p(y_b | y_rest), on the normalised scale.
   double standard_error;  ///< Of the sum.
-  double pareto_k_max;    ///< Above 0.7 the block of that k had to be fitted again to be trusted.
+  double pareto_k_max;    ///< Above 0.7, that block would have to be refitted.
   int unreliable;         ///< Blocks with k above 0.7.
 };
 
-/// PSIS over the blocks of `months` consecutive months. Single months lean on their neighbours, as
-/// discrepancies of adjacent months are correlated; longer blocks ask for prediction.
+/// PSIS over blocks of `months` consecutive months. Single months borrow from their neighbours,
+/// because discrepancies of adjacent months are correlated; longer blocks test prediction.
 [[nodiscard]] Result<LeaveOutScore> leave_out_score(Posterior& posterior,
                                                     const std::vector<ChainDraws>& chains,
                                                     int months, int count = 1000);

@@ -1,4 +1,4 @@
-/// Sums of numbers that are known by their logarithms.
+/// Sums of numbers given by their logarithms.
 #pragma once
 
 #include <Eigen/Core>

@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kHillsMax = 6;
 constexpr int kRounds = 3;
-constexpr long kJumpsEnough = 10;  // a particle, on average
+constexpr long kJumpsEnough = 10;  // per particle, on average
 constexpr double kEffectiveShareMin = 0.02;
 
-/// Sums of importance weights as they come, relative to the largest so far.
+/// Running sums of importance weights, relative to the largest so far.
 class WeightSums {
  public:
   void add(double log_weight) {
@@ -46,7 +46,7 @@ class WeightSums {
   double squares_ = 0.0;
 };
 
-/// One proposal, and what came of it.
+/// One proposal density, and the results of its jumps.
 class Round {
  public:
   Round(Target& target, Chain& population, Rng& rng)
@@ -63,7 +63,7 @@ class Round {
     }
   }
 
-  /// Every particle tries one jump.
+  /// Each particle tries one jump.
   Result<void> sweep() {
     for (Eigen::Index i = 0; i < at_particle_.size(); ++i) {
       proposal_.draw(rng_, point_);
@@ -98,7 +98,7 @@ class Round {
   Rng& rng_;
   GaussianMixture fitted_;
   GaussianMixture proposal_;
-  Eigen::VectorXd at_particle_;  ///< (n) log density of the proposal where each particle stands.
+  Eigen::VectorXd at_particle_;  ///< (n) log density of the proposal at each particle.
   Eigen::VectorXd point_;        ///< (d)
   WeightSums weights_;
   long accepted_ = 0;

@@ -15,7 +15,7 @@ auto block_of(const Eigen::MatrixXd& design_outputs, std::size_t output, int mon
   return design_outputs.middleCols(static_cast<Eigen::Index>(output) * months, months);
 }
 
-/// Mean and sum of squares of normalised values, over all outputs that are measured.
+/// Mean and sum of squares of normalised values, over all measured outputs.
 double pooled_variance(const Eigen::MatrixXd& design_outputs,
                        std::span<const OutputMeasurements> outputs,
                        const std::vector<OutputScale>& scales, int months) {

@@ -14,8 +14,8 @@
 namespace recald::calibration {
 namespace {
 
-/// Energy Bayesian fraction of missing information: how far one new momentum moves the energy,
-/// compared with how far the energy ranges. Betancourt (2016), arXiv:1604.00695, eq. (4.1).
+/// Energy Bayesian fraction of missing information: how far a new momentum changes the energy,
+/// compared with the range of the energy. Betancourt (2016), arXiv:1604.00695, eq. (4.1).
 class EnergyFraction {
  public:
   void add(double energy) {
@@ -36,7 +36,7 @@ class EnergyFraction {
   double squares_ = 0.0;
 };
 
-/// Iterations of the longest window, for which the estimator needs room.
+/// Iterations of the longest window, for which the estimator allocates room.
 int longest_window(const std::vector<int>& ends) {
   int longest = 0;
   for (std::size_t i = 1; i < ends.size(); ++i) longest = std::max(longest, ends[i] - ends[i - 1]);
@@ -128,7 +128,7 @@ class NutsKernel final : public ChainKernel {
     return {};
   }
 
-  /// Looks for a step anew, as a new metric asks for another one.
+  /// Searches for a new step size, because the metric has changed.
   Result<void> begin_averaging() {
     auto step = reasonable_step(hamiltonian_, current_, step_, rng_);
     if (!step) return tl::unexpected(step.error());
@@ -146,7 +146,7 @@ class NutsKernel final : public ChainKernel {
   DualAveraging averaging_;
   std::vector<int> window_ends_;
   MetricEstimator estimator_;
-  int adapted_ = 0;  ///< Iterations of the burn-in done.
+  int adapted_ = 0;  ///< Finished iterations of the burn-in.
 
   double acceptance_ = 0.0;  ///< Of the last iteration.
   double acceptance_sum_ = 0.0;

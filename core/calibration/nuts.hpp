@@ -12,18 +12,17 @@ struct NutsOptions {
 };
 
 /// Multinomial NUTS with a dense metric, for targets with a gradient.
-///
-/// One iteration is one trajectory (`TrajectorySampler`). The burn-in finds the step by dual
+/// One iteration is one trajectory (`TrajectorySampler`). The burn-in finds the step size by dual
 /// averaging and the metric in windows (`warm_up.hpp`); both are frozen after it. A chain that
-/// begins at a state has the state's covariance as its metric and its scale as its step, so a
-/// burn-in of a hundred iterations is enough; with a burn-in of 0 it goes on as it was.
+/// begins at a state uses the state's covariance as its metric and its scale as its step size, so a
+/// burn-in of a hundred iterations is enough; with a burn-in of 0 it continues unchanged.
 ///
 /// Points of zero or unknown density end a trajectory as a divergence and are never chosen.
 ///
-/// @return the chain; unsupported for a target without gradient; invalid_value for options or a
-///         state that make no sense; not_positive_definite for a state's covariance; not_finite
-///         when there is nowhere to start; an error of the target; cancelled. The observer is asked
-///         after every iteration.
+/// @return the chain; unsupported for a target without gradient; invalid_value for invalid options
+///         or state; not_positive_definite for a state's covariance; not_finite when there is no
+///         valid starting point; an error of the target; cancelled. The observer is called after
+///         every iteration.
 [[nodiscard]] Result<Chain> nuts(Target& target, const SamplerOptions& options, Rng& rng,
                                  const SamplerObserver& observer = {},
                                  const NutsOptions& nuts_options = {});

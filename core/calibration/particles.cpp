@@ -12,7 +12,7 @@
 namespace recald::calibration {
 namespace {
 
-/// Correlation of two rows; 1 when either does not vary, as nothing has moved then.
+/// Correlation of two rows; 1 if either does not vary, since nothing has moved then.
 template <class Row>
 double correlation(const Row& a, const Row& b) {
   const double mean_a = a.mean();
@@ -28,7 +28,7 @@ void copy_particle(Particles& particles, Eigen::Index from, Eigen::Index to) {
   particles.log_likelihood(to) = particles.log_likelihood(from);
 }
 
-/// For each place its ancestor, ascending: the comb's tooth i stands at (i + u) / n.
+/// The ancestor of each place, ascending: the comb's tooth i is at (i + u) / n.
 std::vector<Eigen::Index> systematic_ancestors(const Eigen::VectorXd& log_weight, Rng& rng) {
   const Eigen::Index n = log_weight.size();
   const double log_total = log_sum(log_weight);
@@ -44,7 +44,8 @@ std::vector<Eigen::Index> systematic_ancestors(const Eigen::VectorXd& log_weight
     }
     ancestors[static_cast<std::size_t>(i)] = ancestor;
   }
-  // Rounding may leave the last teeth beyond the last weight; that one has to be positive.
+  // Rounding may leave the last teeth beyond the last weight; their ancestor must have a
+  // positive weight.
   while (std::isinf(log_weight(ancestors.back()))) --ancestors.back();
   for (std::size_t i = ancestors.size() - 1; i-- > 0;) {
     ancestors[i] = std::min(ancestors[i], ancestors.back());
@@ -86,7 +87,7 @@ Eigen::MatrixXd covariance(const Particles& particles) {
 
 void resample(Particles& particles, Rng& rng) {
   const std::vector<Eigen::Index> ancestors = systematic_ancestors(particles.log_weight, rng);
-  // In place: ancestors ascend, so a source to the right of its place is still untouched when the
+  // In place: ancestors ascend, so a source to the right of its place is not yet overwritten when
   // places are filled from the left, and one to the left when they are filled from the right.
   const auto ancestor = [&](Eigen::Index i) { return ancestors[static_cast<std::size_t>(i)]; };
   for (Eigen::Index i = 0; i < particles.count(); ++i) {
@@ -145,7 +146,7 @@ Result<void> ParticleMover::sweep(Particles& particles, double temperature,
   }
   evaluations_ += particles.count();
   acceptance_rate_ = static_cast<double>(accepted) / static_cast<double>(particles.count());
-  // The rate is that of thousands of proposals, so the step may be bold.
+  // The rate is over thousands of proposals, so the step may be bold.
   scale_ *= std::exp(1.5 * (acceptance_rate_ - target_acceptance));
   return {};
 }

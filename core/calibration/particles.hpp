@@ -1,7 +1,7 @@
-/// A population of points that stands for a density, and how it follows a density that changes.
+/// A population of points that represents a density, and follows it as it changes.
 ///
-/// The pieces of sequential Monte Carlo: tempering (`smc.hpp`) is one way to put them together,
-/// taking in one month of data after another (IBIS, Chopin 2002) another.
+/// The parts of sequential Monte Carlo. Tempering (`smc.hpp`) is one way to combine them; adding
+/// the data month by month (IBIS, Chopin 2002) is another.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -12,22 +12,22 @@
 
 namespace recald::calibration {
 
-/// n weighted points. Columns stand side by side in the order of their ancestors.
+/// n weighted points. Columns are in the order of their ancestors.
 struct Particles {
-  Eigen::MatrixXd positions;       ///< (d x n) one column a particle.
+  Eigen::MatrixXd positions;       ///< (d x n) one column per particle.
   Eigen::VectorXd log_prior;       ///< (n)
-  Eigen::VectorXd log_likelihood;  ///< (n) log density less log prior.
+  Eigen::VectorXd log_likelihood;  ///< (n) log density minus log prior.
   Eigen::VectorXd log_weight;      ///< (n) up to a constant common to all.
 
   [[nodiscard]] Eigen::Index count() const { return positions.cols(); }
 };
 
-/// `count` draws from the prior, weights equal. One evaluation each.
+/// `count` draws from the prior with equal weights. One evaluation each.
 /// @return an error of the target. @pre count >= 2
 [[nodiscard]] Result<Particles> draw_particles(Target& target, int count, Rng& rng);
 
-/// (sum w)^2 / sum w^2: how many equally weighted points the weighted ones are worth; 0 when no
-/// weight is positive.
+/// (sum w)^2 / sum w^2: the number of equally weighted points that the weighted ones are worth; 0
+/// when no weight is positive.
 [[nodiscard]] double effective_count(const Eigen::VectorXd& log_weight);
 
 /// Weighted covariance (d x d).
@@ -35,8 +35,8 @@ struct Particles {
 
 /// Systematic resampling (one random number, comb of n teeth); weights are equal afterwards.
 ///
-/// The order is kept, so that copies of one ancestor stay side by side. Whoever then counts
-/// effective draws from the autocorrelation along the columns counts relatives as what they are.
+/// Keeps the order, so that copies of one ancestor stay adjacent. An effective size computed from
+/// the autocorrelation along the columns then accounts for them.
 /// @pre some weight is positive
 void resample(Particles& particles, Rng& rng);
 
@@ -46,7 +46,7 @@ class ParticleMover {
   struct Options {
     int sweeps_min = 3;
     int sweeps_max = 20;
-    /// Moved enough when no coordinate's correlation with where it came from is larger.
+    /// Particles have moved enough when no coordinate's correlation with its origin is larger.
     double correlation_max = 0.3;
   };
 
@@ -55,19 +55,19 @@ class ParticleMover {
   /// The random walk's shape: 2.38^2 / d times `covariance`. @return not_positive_definite
   [[nodiscard]] Result<void> set_shape(const Eigen::MatrixXd& covariance);
 
-  /// One sweep: every particle proposes one normal step and accepts it with respect to
-  /// log prior + temperature * log likelihood. Afterwards the scale is adapted towards an
-  /// acceptance of 0.27. Does not allocate.
+  /// One sweep: every particle proposes one normal step and accepts it with respect to log prior
+  /// + temperature * log likelihood. Then the scale is adapted towards an acceptance of 0.27.
+  /// Does not allocate.
   /// @return an error of the target.
   [[nodiscard]] Result<void> sweep(Particles& particles, double temperature,
                                    const std::function<bool()>& proceed = {});
 
   /// Sweeps until the particles have moved enough.
-  /// @param proceed  Asked within and after each sweep; false gives `cancelled`.
+  /// @param proceed  Called within and after each sweep; false gives `cancelled`.
   [[nodiscard]] Result<void> move(Particles& particles, double temperature,
                                   const std::function<bool()>& proceed = {});
 
-  [[nodiscard]] double acceptance_rate() const { return acceptance_rate_; }  ///< Last sweep.
+  [[nodiscard]] double acceptance_rate() const { return acceptance_rate_; }  ///< In the last sweep.
   [[nodiscard]] double scale() const { return scale_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
@@ -82,7 +82,7 @@ class ParticleMover {
   double scale_ = 1.0;
   double acceptance_rate_ = 0.0;
   long evaluations_ = 0;
-  Eigen::MatrixXd origins_;  ///< (d x n) where the particles stood before the first sweep.
+  Eigen::MatrixXd origins_;  ///< (d x n) positions of the particles before the first sweep.
   Eigen::VectorXd unit_;
   Eigen::VectorXd proposed_;
 };

@@ -31,7 +31,7 @@ bool any_weight(const PosteriorData& data) {
   return std::any_of(data.weights.begin(), data.weights.end(), [](double w) { return w < 1.0; });
 }
 
-/// (1/w - 1) S_t of every doubted output, lower triangle, added to `fixed`.
+/// (1/w - 1) S_t of every output with reduced weight, lower triangle, added to `fixed`.
 void add_weights(const PosteriorData& data, const HyperPrior& prior, DiscrepancyKernel kernel,
                  Eigen::MatrixXd& fixed) {
   const Hyperparameters at =
@@ -83,7 +83,7 @@ std::unique_ptr<ErrorCovariance> make_covariance(const PosteriorData& data,
 bool factorise(ErrorCovariance& covariance, const Hyperparameters& hyper, bool& jittered) {
   const auto has_factor = [&](double jitter) {
     return covariance.factorise(hyper, jitter) &&
-           std::isfinite(covariance.log_determinant());  // Eigen lets a NaN through
+           std::isfinite(covariance.log_determinant());  // Eigen accepts a NaN
   };
   jittered = false;
   if (has_factor(0.0)) return true;
@@ -265,7 +265,7 @@ bool Posterior::place(const Eigen::VectorXd& point) {
     log_prior_ += at.log_density;
     prior_gradient_(q + 2 + s) = at.density_derivative;
   }
-  // exp() may underflow; a variance of infinity has no density either.
+  // exp() may underflow; an infinite variance has no density either.
   return std::isfinite(log_prior_) && hyper_.discrepancy_precision > 0.0 &&
          hyper_.error_precision > 0.0;
 }

@@ -18,26 +18,26 @@
 
 namespace recald::calibration {
 
-/// Everything measured, on the normalised scale. m points: missing months are simply not there.
+/// All measurements, on the normalised scale. m points: missing months have no point.
 struct PosteriorData {
   std::vector<PointIndex> points;   ///< (m) ordered by output, then month.
   Eigen::VectorXd values;           ///< (m) measured.
   Eigen::VectorXd extra_variances;  ///< (m) >= 0: sigma_r^2 of the output plus v_i of the point.
   Eigen::MatrixXd month_inputs;     ///< (months x p) scaled to [0, 1].
   Eigen::MatrixXd common_errors;    ///< (m x directions) g: errors common to all points, 1 sd each.
-  std::vector<OutputScale> scales;  ///< (outputs) bring model outputs to this scale.
+  std::vector<OutputScale> scales;  ///< (outputs) convert model outputs to this scale.
   std::vector<double> weights;      ///< (outputs) in (0, 1].
   /// Where the weights' extra error is fixed; by default the prior means of the precisions and the
   /// prior median of rho.
   std::optional<Hyperparameters> weight_reference;
 };
 
-/// Sigma of the points, as `Posterior` describes it: the cheapest form that fits them.
+/// Sigma of the points, as described at `Posterior`, in the cheapest form that fits them.
 [[nodiscard]] std::unique_ptr<ErrorCovariance> make_covariance(const PosteriorData& data,
                                                                const HyperPrior& prior);
 
 /// Assembles and factorises Sigma, with a jitter of 1e-10 only after a first failure.
-/// @param jittered  Whether it took that.
+/// @param jittered  Whether jitter was needed.
 /// @return whether there is a factor.
 [[nodiscard]] bool factorise(ErrorCovariance& covariance, const Hyperparameters& hyper,
                              bool& jittered);
@@ -59,20 +59,19 @@ struct LogDensityTerms {
 ///
 ///     Sigma = C(lambda_delta, beta) + diag(1/lambda_epsilon + extra variances) + g g' + W
 ///
-/// W makes an output of weight w < 1 count for less: independent extra error (1/w - 1) S_t for the
-/// block of that output, S_t being its block of Sigma at fixed hyper-parameters. A sum of
-/// covariances, hence valid for every w, and as w -> 0 the output drops out of the likelihood up to
-/// a constant.
+/// W reduces the influence of an output with weight w < 1: it adds independent error (1/w - 1)
+/// S_t to the block of that output, where S_t is its block of Sigma at fixed hyper-parameters. A
+/// sum of covariances is valid for every w, and as w -> 0 the output drops out of the likelihood
+/// up to a constant.
 ///
 /// As a `Target` its coordinates are unconstrained, with the Jacobians included:
 /// (z_1 … z_q, log lambda_delta, log lambda_epsilon, s_1 … s_S), where theta_j = F_j^-1(Phi(z_j)),
 /// so that z_j is standard normal under the prior, and s is the score of rho
-/// (`BetaPrior::at_score`). Where the data say nothing the density is a standard normal, which
-/// gradients and random walks both find their way in best; a logistic coordinate has exponential
-/// tails instead.
+/// (`BetaPrior::at_score`). Without information in the data the density is a standard normal, which
+/// suits both gradients and random walks best; a logistic coordinate would have exponential tails.
 ///
-/// Evaluation does not allocate. Assembly and factorisation depend on the hyper-parameters alone
-/// and are kept while those stay the same, which leaves one triangular solve for a change of theta.
+/// Evaluation does not allocate. Assembly and factorisation depend only on the hyper-parameters and
+/// are reused while those stay the same, which leaves one triangular solve for a change of theta.
 class Posterior final : public Target {
  public:
   /// @param prototype   Cloned.
@@ -89,7 +88,7 @@ class Posterior final : public Target {
   ~Posterior() override = default;
 
   [[nodiscard]] Eigen::Index dimension() const override;
-  /// @return the log density in unconstrained coordinates; minus infinity where Sigma has no factor
+  /// @return the log density in unconstrained coordinates; minus infinity if Sigma has no factor
   ///         even with jitter; not_finite when the model gives a NaN or infinity.
   [[nodiscard]] Result<double> log_density(const Eigen::VectorXd& point) override;
   [[nodiscard]] bool has_gradient() const override { return model_->has_jacobian(); }
@@ -104,15 +103,15 @@ class Posterior final : public Target {
                                               const Hyperparameters& hyper);
 
   /// Assembles and factorises Sigma. Jitter of 1e-10 is added only after a first failure.
-  /// @return whether there is a factor; `log_likelihood` may be asked only then.
+  /// @return whether there is a factor; call `log_likelihood` only then.
   [[nodiscard]] bool set_hyperparameters(const Hyperparameters& hyper);
-  /// log p(y | theta, phi) of eq. (7), full constant, at the hyper-parameters set last.
+  /// log p(y | theta, phi) of eq. (7), with all constants, at the current hyper-parameters.
   [[nodiscard]] Result<double> log_likelihood(std::span<const double> theta);
-  /// The same of given residuals y - f(theta) (m): one triangular solve.
+  /// As above, for given residuals y - f(theta) (m): one triangular solve.
   [[nodiscard]] double log_likelihood_of_residual(const Eigen::VectorXd& residual);
   /// y - f(theta) on the normalised scale (m), valid until the next call.
   [[nodiscard]] const Eigen::VectorXd& residual_at(std::span<const double> theta);
-  /// Sigma^-1 at the hyper-parameters set last. @param inverse  (m x m), already of that size.
+  /// Sigma^-1 at the current hyper-parameters. @param inverse  (m x m), already of that size.
   void precision(Eigen::MatrixXd& inverse) { covariance_->precision(inverse); }
 
   /// Natural values of a point in unconstrained coordinates; `theta` and `hyper` already sized.
@@ -126,15 +125,16 @@ class Posterior final : public Target {
   [[nodiscard]] const PosteriorData& data() const { return data_; }
   [[nodiscard]] const std::vector<Parameter>& parameters() const { return parameters_; }
   [[nodiscard]] const HyperPrior& prior() const { return prior_; }
-  /// Factorisations so far that needed jitter.
+  /// Number of factorisations so far that needed jitter.
   [[nodiscard]] long jitter_count() const { return jitter_count_; }
 
  private:
   Posterior(const MonthlyModel& prototype, std::vector<Parameter> parameters, PosteriorData data,
             HyperPrior prior);
 
-  /// What the point in unconstrained coordinates means, with the slopes of the coordinates.
-  /// @return false where no double is left: nobody goes there.
+  /// Computes the natural values of the point in unconstrained coordinates, and the slopes of
+  /// the coordinates.
+  /// @return false if they cannot be represented as doubles; the density there is zero.
   [[nodiscard]] bool place(const Eigen::VectorXd& point);
   [[nodiscard]] bool factorise_here(const Eigen::VectorXd& point);
   void evaluate_residual(std::span<const double> theta, bool with_jacobian);
@@ -144,17 +144,17 @@ class Posterior final : public Target {
   std::vector<Parameter> parameters_;
   PosteriorData data_;
   HyperPrior prior_;
-  double prior_constant_ = 0.0;  ///< Of all prior densities, in the coordinates.
+  double prior_constant_ = 0.0;  ///< Of all prior densities, in these coordinates.
   Eigen::Index kernel_dimension_;
   bool has_output_dimension_;
   std::unique_ptr<ErrorCovariance> covariance_;
 
-  Eigen::VectorXd hyper_point_;  ///< Coordinates at which the factor stands.
+  Eigen::VectorXd hyper_point_;  ///< Coordinates of the current factor.
   bool has_factor_ = false;
   long jitter_count_ = 0;
   double log_normaliser_ = 0.0;  ///< -1/2 log|Sigma| - m/2 log 2 pi
 
-  Eigen::VectorXd theta_;           ///< Of the point being evaluated, as are the six below.
+  Eigen::VectorXd theta_;           ///< Of the current point, as are the six below.
   Eigen::VectorXd theta_slope_;     ///< d theta_j / d z_j
   Eigen::VectorXd theta_gradient_;  ///< d log L / d theta_j
   Hyperparameters hyper_;

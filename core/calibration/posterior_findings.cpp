@@ -31,7 +31,7 @@ Findings edge_findings(const std::vector<Parameter>& parameters,
   Findings findings;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const Prior& prior = parameters[j].prior;
-    // An endless tail has no end to pile up at; its length counts without its last thousandth.
+    // An unbounded tail has no bound to pile up at; its length counts without its last thousandth.
     const double width = kEdgeWidth * (std::min(prior.max(), prior.quantile(0.999)) -
                                        std::max(prior.min(), prior.quantile(0.001)));
     double low = 0.0;

@@ -1,4 +1,4 @@
-/// What a posterior says against the model or the beliefs that went into it.
+/// Signs in a posterior that the model or the priors are wrong.
 #pragma once
 
 #include <optional>
@@ -15,21 +15,22 @@
 
 namespace recald::calibration {
 
-/// `prior_edge`: more than 20 % of the mass within 5 % of the prior's range of one of its ends. A
-/// posterior piled up there is a model-form alarm, not a result, unless the end is a physical
-/// limit.
+/// `prior_edge`: more than 20 % of the mass lies within 5 % of the prior's range from one
+/// of its bounds. Unless the bound is a physical limit, this is a sign of a wrong model
+/// form, not a result.
 [[nodiscard]] Findings edge_findings(const std::vector<Parameter>& parameters,
                                      const std::vector<ChainDraws>& chains);
 
 /// `hyperprior_conflict`: the posterior mean of a precision outside its prior's 1-99 % range.
 [[nodiscard]] Findings conflict_findings(const Summary& precision, const GammaPrior& prior);
 
-/// `not_converged`: trajectories that diverged, or an energy that a chain explores too slowly.
-/// Where that happens part of the posterior may never have been visited, whatever R-hat says.
+/// `not_converged`: trajectories that diverged, or an energy that a chain explores too slowly. Then
+/// part of the posterior may never have been visited, whatever R-hat says.
 [[nodiscard]] Findings trajectory_findings(const std::vector<ChainStatistics>& chains,
                                            const ConvergenceGate& gate);
 
-/// `evidence_disagrees`: bridge and populations, where both were had, differ by more than 0.5.
+/// `evidence_disagrees`: the estimates by bridge and populations, if both exist, differ
+/// by more than 0.5.
 [[nodiscard]] Findings evidence_findings(const SamplingReport& report,
                                          const std::optional<BridgeEstimate>& bridge);
 
@@ -40,7 +41,7 @@ namespace recald::calibration {
                                             const Normalisation& normalisation,
                                             const std::vector<ChainDraws>& chains);
 
-/// `jitter_used`: `count` covariances had no Cholesky factor as they were.
+/// `jitter_used`: `count` covariances could not be factorised without jitter.
 [[nodiscard]] Findings jitter_findings(long count);
 
 }  // namespace recald::calibration

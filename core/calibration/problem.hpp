@@ -1,4 +1,4 @@
-/// What is to be calibrated against what: the input of a calibration, checked and normalised.
+/// The input of a calibration, checked and normalised.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,14 +13,14 @@
 
 namespace recald::calibration {
 
-/// Known inputs that the discrepancy varies over, such as monthly mean dry bulb, in their own
-/// units.
+/// Known inputs over which the discrepancy varies, such as monthly mean dry bulb, in
+/// their own units.
 struct ModelInputs {
   std::vector<std::string> names;  ///< (p)
   Eigen::MatrixXd values;          ///< (months x p)
 };
 
-/// Covers exactly the calibration months of the model it goes with.
+/// Covers exactly the calibration months of its model.
 struct CalibrationProblem {
   std::vector<Parameter> parameters;        ///< (q) in the model's order.
   std::vector<std::string> month_names;     ///< (months) for sentences: "2016-03".
@@ -34,7 +34,7 @@ struct CalibrationProblem {
   std::vector<double> model_error_sd;
 };
 
-/// θ and the two variances: with fewer points than unknowns only the prior would come out.
+/// θ and the two variances: with fewer points than unknowns the result would be just the prior.
 constexpr int kPointsBeyondParameters = 2;
 
 [[nodiscard]] int measured_points(const CalibrationProblem& problem);
@@ -43,23 +43,24 @@ constexpr int kPointsBeyondParameters = 2;
 ///
 /// @return not_enough_data  fewer measured points than calibration parameters plus two;
 ///         invalid_value    a weight outside (0, 1], a negative or missing extra variance, a prior
-///         out
-///                          of order, names or shapes that do not fit the model, no model input, or
-///                          one that is the same in every month;
+///                          out of order, names or shapes that do not fit the
+///                          model, no model input,
+///                          or one that is the same in every month;
 ///         not_finite       an infinite measurement, or a NaN among the model inputs.
 [[nodiscard]] Result<void> check_problem(const CalibrationProblem& problem,
                                          const MonthlyModel& model);
 
 /// The measured points on the normalised scale. Weights are relative: they are divided by the
 /// largest among the measured outputs.
-/// @param reference_months  The first months, by whose range inputs are scaled; 0: all of them.
+/// @param reference_months  Inputs are scaled by their range over the first so many
+///                          months; 0: all of them.
 /// @pre check_problem passed
 [[nodiscard]] PosteriorData normalise_problem(const CalibrationProblem& problem,
                                               const Normalisation& normalisation,
                                               Eigen::Index reference_months = 0);
 
-/// Each column by its min and max over the first `reference_months`: later months must not change
-/// what was said of earlier ones, so they may leave [0, 1]. @pre no column is constant over them
+/// Scales each column by its min and max over the first `reference_months`. Later months must not
+/// change results for earlier ones, so they may leave [0, 1]. @pre no column is constant over them
 [[nodiscard]] Eigen::MatrixXd scale_inputs(const Eigen::MatrixXd& values,
                                            Eigen::Index reference_months);
 

@@ -23,8 +23,8 @@ struct GeneralisedPareto {
 };
 
 /// Zhang and Stephens (2009), Technometrics 51(3): the posterior mean of theta = -k / sigma over a
-/// grid of quantiles of a prior, then k by its closed form; and k drawn towards 0.5 as if by ten
-/// more points (Vehtari et al. 2024, appendix C).
+/// grid of quantiles of a prior, then k in closed form. k is shrunk towards 0.5 as if by ten more
+/// points (Vehtari et al. 2024, appendix C).
 /// @param excess  Positive, ascending.
 GeneralisedPareto fit_tail(const Eigen::ArrayXd& excess) {
   const Eigen::Index n = excess.size();
@@ -46,7 +46,7 @@ GeneralisedPareto fit_tail(const Eigen::ArrayXd& excess) {
   return {.shape = (k * count + 5.0) / (count + 10.0), .scale = -k / mean_theta};
 }
 
-/// Places of the `length` largest values, ascending by value.
+/// Indices of the `length` largest values, ascending by value.
 std::vector<Eigen::Index> largest(const Eigen::VectorXd& values, Eigen::Index length) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -66,7 +66,7 @@ SmoothedWeights pareto_smooth(const Eigen::VectorXd& log_ratio, double relative_
                          std::numeric_limits<double>::infinity()};
   Eigen::VectorXd& log_weight = result.log_weight;
   if (tail >= tail_min) {
-    // One place more: the largest value below the tail is where the tail begins.
+    // One index more: the tail begins at the largest value below it.
     const std::vector<Eigen::Index> places = largest(log_weight, tail + 1);
     const double cutoff = std::exp(log_weight(places.front()));
     Eigen::ArrayXd excess(tail);
@@ -105,7 +105,7 @@ Result<LeaveOneOut> psis_loo(const Eigen::MatrixXd& log_likelihood, double relat
                                                 std::to_string(unit + 1) + " of " +
                                                 std::to_string(units) + " is not finite in a draw");
     }
-    // The ratio of the density without the unit to that with it is one over its likelihood.
+    // The ratio of the density without the unit to that with it is one over the unit's likelihood.
     const SmoothedWeights weights = pareto_smooth(-column, relative_efficiency);
     result.unit_elpd(unit) = log_sum(weights.log_weight + column);
     result.pareto_k(unit) = weights.pareto_k;
@@ -113,7 +113,7 @@ Result<LeaveOneOut> psis_loo(const Eigen::MatrixXd& log_likelihood, double relat
   }
   result.elpd = result.unit_elpd.sum();
   const double mean = result.unit_elpd.mean();
-  // A single unit has no spread to judge by: its error is NaN, as in loo.
+  // A single unit has no spread, so its error is NaN, as in loo.
   const double variance =
       (result.unit_elpd.array() - mean).square().sum() / static_cast<double>(units - 1);
   result.standard_error = std::sqrt(static_cast<double>(units) * variance);

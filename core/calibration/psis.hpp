@@ -1,4 +1,4 @@
-/// How well a calibrated model predicts a unit of data that it has not seen, without refitting.
+/// How well a calibrated model predicts a left-out unit of data, without refitting.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@ namespace recald::calibration {
 /// Importance weights whose largest have been replaced by quantiles of a fitted tail.
 struct SmoothedWeights {
   Eigen::VectorXd log_weight;  ///< (draws) normalised: the weights sum to one.
-  /// Shape of the tail. Above 0.7 the estimate is not to be trusted; infinite when there are too
-  /// few draws to fit one.
+  /// Shape of the tail. Above 0.7 the estimate is unreliable; infinite when there are too few
+  /// draws to fit one.
   double pareto_k;
 };
 
@@ -19,7 +19,7 @@ struct SmoothedWeights {
 ///
 /// The largest min(0.2 S, 3 sqrt(S / r)) of S ratios are replaced by the expected order statistics
 /// of a generalised Pareto density fitted to them (Zhang, Stephens 2009, with the weak prior of
-/// `loo`), and cut at the largest ratio.
+/// `loo`), and truncated at the largest ratio.
 ///
 /// @param log_ratio            (S) up to a constant.
 /// @param relative_efficiency  r: effective over actual draws, 1 for independent ones.
@@ -29,13 +29,13 @@ struct SmoothedWeights {
 [[nodiscard]] SmoothedWeights pareto_smooth(const Eigen::VectorXd& log_ratio,
                                             double relative_efficiency = 1.0);
 
-/// Leave-one-out estimates, one a unit: a month, or whatever the caller leaves out at a time.
+/// Leave-one-out estimates, one per unit: a month, or whatever the caller leaves out at a time.
 struct LeaveOneOut {
-  double elpd;            ///< Sum over units of the log predictive density of the unit left out.
+  double elpd;            ///< Sum over units of the log predictive density of the left-out unit.
   double standard_error;  ///< Of `elpd`, from its spread over units: sqrt(units * variance).
-  double effective_parameters;  ///< Log density with the units less `elpd`: p_loo.
+  double effective_parameters;  ///< Log density with the units minus `elpd`: p_loo.
   Eigen::VectorXd unit_elpd;    ///< (units)
-  Eigen::VectorXd pareto_k;     ///< (units) above 0.7: leave the unit out for real.
+  Eigen::VectorXd pareto_k;     ///< (units) above 0.7: refit without the unit.
 };
 
 /// PSIS-LOO from the log likelihood of each unit under each draw, given the draw's parameters (and,
@@ -43,8 +43,8 @@ struct LeaveOneOut {
 ///
 /// @param log_likelihood       (draws x units)
 /// @param relative_efficiency  Of the draws, as in `pareto_smooth`.
-/// @return not_enough_data for no unit or fewer than 5 draws; not_finite for a NaN or infinity in
-///         `log_likelihood`, with its place.
+/// @return the estimates; not_enough_data for no unit or fewer than 5 draws; not_finite for a NaN
+///         or infinity in `log_likelihood`, with its position.
 /// @see   Vehtari, Gelman, Gabry (2017), Stat. Comput. 27.
 [[nodiscard]] Result<LeaveOneOut> psis_loo(const Eigen::MatrixXd& log_likelihood,
                                            double relative_efficiency = 1.0);

@@ -1,4 +1,4 @@
-/// What random walks share: the current point, the adaptive proposal, the counts.
+/// Shared by random walks: the current point, the adaptive proposal, the counts.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,10 +10,10 @@
 
 namespace recald::calibration {
 
-/// min(1, exp(log_ratio)); 0 for a NaN, so that a chain never moves to where nothing is known.
+/// min(1, exp(log_ratio)); 0 for a NaN, so that a chain never moves to a point of unknown density.
 [[nodiscard]] double metropolis_probability(double log_ratio);
 
-/// A proposed point, and how it came about.
+/// A proposed point, and the step that led to it.
 struct Proposal {
   explicit Proposal(Eigen::Index d) : unit(d), step(d), position(d) {}
   Eigen::VectorXd unit;  ///< u
@@ -22,7 +22,7 @@ struct Proposal {
   double log_density = 0.0;
 };
 
-/// Random-walk Metropolis but for the step itself.
+/// Random-walk Metropolis without the step itself.
 class RandomWalk : public ChainKernel {
  public:
   RandomWalk(Target& target, Rng& rng, StartingPoint start, AdaptiveProposal proposal);
@@ -35,7 +35,8 @@ class RandomWalk : public ChainKernel {
   [[nodiscard]] ChainState state() const override { return proposal_.state(current_.position); }
 
  protected:
-  /// From `proposal.unit`, already drawn: the point `length` times the step away, and its density.
+  /// Computes the point at `length` times the step from `proposal.unit`, already drawn,
+  /// and its density.
   [[nodiscard]] Result<void> propose(Proposal& proposal, double length = 1.0);
   void move_to(Proposal& proposal);
 
@@ -52,7 +53,7 @@ class RandomWalk : public ChainKernel {
   long accepted_ = 0;
 };
 
-/// A chain of `Walk`, which derives from `RandomWalk` and adds a step.
+/// Runs a chain of `Walk`, which derives from `RandomWalk` and adds a step.
 template <class Walk>
 Result<Chain> run_random_walk(Target& target, const SamplerOptions& options, Rng& rng,
                               const SamplerObserver& observer) {

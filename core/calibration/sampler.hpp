@@ -1,4 +1,4 @@
-/// What every sampler takes and gives.
+/// The interface of samplers: targets, options, results.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,14 +21,14 @@ class Target {
   [[nodiscard]] virtual Eigen::Index dimension() const = 0;
 
   /// @param point  (dimension)
-  /// @return the log density, minus infinity where the density is zero; or an error that no choice
-  ///         of the sampler can repair, such as not_finite from the model.
+  /// @return the log density, minus infinity where the density is zero; or an error that the
+  ///         sampler cannot avoid, such as not_finite from the model.
   [[nodiscard]] virtual Result<double> log_density(const Eigen::VectorXd& point) = 0;
 
   /// Whether `log_density_and_gradient` may be called.
   [[nodiscard]] virtual bool has_gradient() const { return false; }
 
-  /// The same, and its gradient. Where the density is zero the gradient is left undefined.
+  /// As above, with its gradient. Where the density is zero the gradient is undefined.
   /// @param gradient  (dimension), already of that size.
   [[nodiscard]] virtual Result<double> log_density_and_gradient(const Eigen::VectorXd& point,
                                                                 Eigen::VectorXd& gradient);
@@ -38,11 +38,11 @@ class Target {
   /// the evidence comes out as the integral of the rest over the prior.
   [[nodiscard]] virtual double log_prior(const Eigen::VectorXd& point) const = 0;
 
-  /// A draw from the prior: a point to start from, more spread out than the density itself.
+  /// A draw from the prior: a starting point, more dispersed than the density itself.
   [[nodiscard]] virtual Eigen::VectorXd draw_start(Rng& rng) const = 0;
 };
 
-/// Where a chain stands and how it has learnt to move; enough to continue it.
+/// Position of a chain and its learnt step; enough to continue it.
 struct ChainState {
   Eigen::VectorXd position;    ///< (d)
   double scale = 1.0;          ///< Step size or scale of the proposal.
@@ -50,22 +50,22 @@ struct ChainState {
 };
 
 struct SamplerOptions {
-  int iterations = 30'000;  ///< All of them, burn-in included. Of `smc`: particles.
-  int burn_in = 3'000;      ///< Dropped; the only time a sampler may adapt.
-  /// Where to begin, instead of a draw from the prior. With burn_in = 0 the chain that ended so is
-  /// continued: its scale and covariance stay as they are.
+  int iterations = 30'000;  ///< Including burn-in. For `smc`: particles.
+  int burn_in = 3'000;      ///< Dropped; a sampler may adapt only during it.
+  /// Where to begin, instead of a draw from the prior. With burn_in = 0 the chain with this final
+  /// state is continued: its scale and covariance do not change.
   std::optional<ChainState> begin_at = {};
 };
 
-/// What a chain did, besides its draws. Absent figures are NaN.
+/// Statistics of a chain besides its draws. Absent figures are NaN.
 struct ChainStatistics {
   double acceptance_rate = kAbsent;  ///< Of the kept iterations.
-  long divergences = 0;              ///< Kept trajectories whose energy error passed all bounds.
+  long divergences = 0;              ///< Kept trajectories whose energy error exceeded the limit.
   long depth_limit_hits = 0;         ///< Kept trajectories cut at the largest tree depth.
-  double e_bfmi = kAbsent;           ///< Betancourt (2016); below 0.3 bad.
-  long density_evaluations = 0;      ///< Burn-in included.
-  long gradient_evaluations = 0;     ///< Burn-in included.
-  /// log of the integral of density over prior times prior; `smc` alone knows it.
+  double e_bfmi = kAbsent;           ///< Betancourt (2016); below 0.3 is bad.
+  long density_evaluations = 0;      ///< Including burn-in.
+  long gradient_evaluations = 0;     ///< Including burn-in.
+  /// log of the integral of (density / prior) times prior; only `smc` computes it.
   double log_evidence = kAbsent;
 };
 
@@ -77,18 +77,18 @@ struct Chain {
   ChainState last;  ///< To continue from.
 };
 
-/// Told from time to time how many iterations are done; returns false to stop.
+/// Called from time to time with the number of finished iterations; returns false to stop.
 using SamplerObserver = std::function<bool(int done, int total)>;
 
-/// One chain. The same target, options and generator state give the same bytes.
+/// Runs one chain. The same target, options and generator state give the same bytes.
 ///
-/// @return the chain, or an error of the target, or invalid_value for options that make no sense,
-///         or cancelled.
+/// @return the chain, or an error of the target, or invalid_value for invalid
+///         options, or cancelled.
 using SampleFunction = std::function<Result<Chain>(Target& target, const SamplerOptions& options,
                                                    Rng& rng, const SamplerObserver& observer)>;
 
-/// @return invalid_value unless 0 < burn_in < iterations, or burn_in = 0 and there is a state to
-///         continue from.
+/// @return invalid_value unless 0 < burn_in < iterations, or burn_in = 0 and there is a state
+///         to continue from.
 [[nodiscard]] Result<void> check_options(const SamplerOptions& options);
 
 }  // namespace recald::calibration

@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 4> kNames{"nuts", "dram", "smc", "seed_rw
 
 std::span<const Sampler> samplers() {
   // The defaults pass the gate (R-hat 1.01, 400 effective draws over four chains) on a posterior of
-  // thirteen dimensions with a margin; seed_rwm keeps the numbers of the seed and often does not.
+  // thirteen dimensions with a margin. seed_rwm keeps the seed's numbers and often does not pass.
   static const std::array<Sampler, 4> table{
       Sampler{kNames[0], true, false, {.iterations = 1'300, .burn_in = 300}, run_nuts},
       Sampler{kNames[1], false, false, {.iterations = 30'000, .burn_in = 10'000}, dram},

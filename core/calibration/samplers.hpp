@@ -12,14 +12,14 @@ struct Sampler {
   std::string_view name;
   bool uses_gradient;       ///< Needs `Target::has_gradient`.
   bool is_population;       ///< Draws are particles; `iterations` counts them, no burn-in.
-  SamplerOptions defaults;  ///< Of one chain of four.
+  SamplerOptions defaults;  ///< For one chain of four.
   SampleFunction run;
 };
 
 /// nuts, dram, smc, seed_rwm.
 [[nodiscard]] std::span<const Sampler> samplers();
 
-/// @return not_found with the names there are, and the one that was probably meant.
+/// @return the sampler, or not_found with the available names and the nearest one.
 [[nodiscard]] Result<const Sampler*> find_sampler(std::string_view name);
 
 }  // namespace recald::calibration

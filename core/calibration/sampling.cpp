@@ -13,32 +13,32 @@
 namespace recald::calibration {
 namespace {
 
-// The pilot is to see hills, to begin chains on them and to give a metric; with these figures it
-// costs an eighth of the chains where gradients are cheap.
+// The pilot finds modes, starting points and a metric. With these figures it costs an eighth of the
+// chains where gradients are cheap.
 constexpr int kPilotParticles = 96;
 constexpr ParticleMover::Options kPilotMoves{.sweeps_min = 2, .sweeps_max = 6};
-// A chain that begins where the pilot ended, with its covariance, needs no long way in. Gradients
-// teach a metric in far fewer steps than acceptances do.
+// A chain that starts where the pilot ended, with its covariance, needs only a short burn-in.
+// Gradients teach a metric in far fewer steps than acceptances do.
 constexpr int kGradientBurnInAfterPilot = 200;
 constexpr int kWalkBurnInAfterPilot = 2'000;
-// Chains further apart than this stand in different places; more of the same will not help.
+// Chains further apart than this are in different modes; more draws will not help.
 constexpr double kHopelessRhat = 1.1;
-// Jumps between hills that each particle of a population may try.
+// Jumps between modes that each particle of a population may try.
 constexpr int kJumpSweeps = 60;
-constexpr int kPointsMax = 2'000;  // kept for a bridge to the evidence
+constexpr int kPointsMax = 2'000;  // kept for bridge sampling of the evidence
 
-// A pilot has seen a hill that the chains have not when so many of its particles stand further out
-// than any draw of the chains, and as high as these.
+// The pilot has found a mode that the chains missed if this share of its particles is further out
+// than any draw of the chains, and has as high a density.
 constexpr double kMissedShare = 0.03;
 
-/// One chain with all it needs to go on.
+/// One chain with everything needed to continue it.
 struct Worker {
   Posterior posterior;
   Rng rng;
   Chain chain;
 };
 
-/// The chains of one sampler, run side by side and extended side by side.
+/// The chains of one sampler, run and extended in parallel.
 class Chains {
  public:
   Chains(const Posterior& prototype, const Sampler& sampler, int count, const streams::Block& block,
@@ -51,10 +51,10 @@ class Chains {
     }
   }
 
-  /// Lets populations jump between hills before they are handed back.
+  /// Lets populations jump between modes before they are returned.
   void let_jump() { jumps_ = true; }
 
-  /// @param begin_at  One state a chain, or none.
+  /// @param begin_at  One state per chain, or none.
   Result<void> run(SamplerOptions options, const std::vector<ChainState>& begin_at) {
     return for_each([&](Worker& worker, int k) -> Result<void> {
       SamplerOptions own = options;
@@ -66,7 +66,7 @@ class Chains {
     });
   }
 
-  /// As many more draws as there are.
+  /// Adds as many draws as there are.
   Result<void> double_draws() {
     return for_each([&](Worker& worker, int k) -> Result<void> {
       const auto kept = static_cast<int>(worker.chain.draws.rows());
@@ -161,7 +161,7 @@ struct LogMean {
   double standard_error;
 };
 
-/// log of the mean of exp(values), each being log evidence of one population.
+/// log of the mean of exp(values), where each value is the log evidence of one population.
 LogMean log_mean(const std::vector<Worker>& populations) {
   const auto n = static_cast<double>(populations.size());
   double largest = -std::numeric_limits<double>::infinity();
@@ -324,7 +324,7 @@ class Sampling {
     }
   }
 
-  /// Summaries and gate of what the chains hold now.
+  /// Computes summaries and checks the gate for the chains' current draws.
   void judge(const Sampler& sampler, const Chains& chains, int doublings) {
     result_.chains = chains.natural_draws();
     result_.parameters =
@@ -362,7 +362,7 @@ class Sampling {
     result_.report.log_evidence_se = evidence.standard_error;
   }
 
-  /// Each chain starts at a particle of its own pilot, with the covariance of all.
+  /// Each chain starts at a particle of its own pilot, with the covariance of all pilots.
   [[nodiscard]] std::vector<ChainState> starts(const Chains& pilot) const {
     const Eigen::MatrixXd covariance = covariance_of(pooled_draws(pilot.workers()));
     const auto d = static_cast<double>(covariance.rows());
@@ -376,10 +376,10 @@ class Sampling {
     return states;
   }
 
-  /// Chains that all missed a hill agree with each other but not with the pilot, which came down
-  /// from the prior and saw it. Distances are Mahalanobis's from the chains' own mean; the pilot's
-  /// means would not do, a population this small and quick being rough by half a deviation.
-  /// @return what disagrees, in words; empty: nothing.
+  /// Chains that all missed a mode agree with each other but not with the pilot, which started from
+  /// the prior and found it. Uses Mahalanobis distances from the chains' own mean; the pilot's
+  /// means are too rough, because a small, quick population is off by half a deviation.
+  /// @return the disagreement in words; empty: none.
   [[nodiscard]] std::string compare(const Chains& pilot, const Chains& chains) const {
     const Eigen::MatrixXd draws = pooled_draws(chains.workers());
     const Eigen::MatrixXd particles = pooled_draws(pilot.workers());
@@ -399,7 +399,7 @@ class Sampling {
     Eigen::RowVectorXd outside = Eigen::RowVectorXd::Zero(mean.size());
     int count = 0;
     for (Eigen::Index i = 0; i < distances.size(); ++i) {
-      // A straggler that the pilot did not move far enough stands outside too, but low.
+      // A particle that the pilot did not move far enough is also outside, but has a low density.
       if (distances(i) <= furthest || densities(i) < lowest) continue;
       outside += particles.row(i) - mean;
       ++count;

@@ -1,5 +1,4 @@
-/// From a posterior to draws that several chains agree on, or to the plain statement that they do
-/// not.
+/// Turns a posterior into draws on which several chains agree, or reports that they do not.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +18,8 @@
 
 namespace recald::calibration {
 
-/// What is being done. Comes from any thread the executor uses, so the observer has to be safe for
-/// that.
+/// The current stage. May come from any thread of the executor, so the observer
+/// must be thread-safe.
 struct Progress {
   enum class Stage { design, sampling, predicting };
   Stage stage;
@@ -32,7 +31,7 @@ struct Progress {
 /// Returns false to cancel.
 using Observer = std::function<bool(const Progress&)>;
 
-/// How a caller takes part: chance, threads, and the wish to stop.
+/// The caller's part: random numbers, threads, progress and cancelling.
 struct RunContext {
   std::uint64_t seed = 1;
   ForEachIndex executor = for_each_index_serially;
@@ -40,32 +39,32 @@ struct RunContext {
 };
 
 struct SamplingOptions {
-  /// Null chooses: NUTS where the model has a gradient, DRAM where it has none, from a short
-  /// tempered pilot that also checks them, and populations (SMC) in their place when the chains
-  /// cannot agree. A sampler named here is used alone and starts from the prior.
+  /// Null chooses automatically: NUTS if the model has a gradient, otherwise DRAM, started from a
+  /// short tempered pilot that also checks them, and populations (SMC) instead if the chains
+  /// disagree. A sampler given here is used alone and starts from the prior.
   const Sampler* sampler = nullptr;
-  /// Of a chain, burn-in included. Whoever gives a number gets it: nothing is doubled or replaced
-  /// then, and a gate that fails is reported.
+  /// Of a chain, burn-in included. A given number is used exactly: nothing is doubled or replaced
+  /// then, and a failed gate is reported.
   std::optional<int> iterations = {};
   std::optional<int> burn_in = {};
-  int chains = 4;         ///< >= 2, or R-hat says little. Chain k draws from stream k.
+  int chains = 4;         ///< >= 2, otherwise R-hat says little. Chain k draws from stream k.
   int doublings_max = 2;  ///< How often the draws are doubled while the gate fails.
   ConvergenceGate gate;
 };
 
-/// What it took.
+/// How the draws were obtained.
 struct SamplingReport {
-  std::string sampler;  ///< That gave the draws.
+  std::string sampler;  ///< The sampler that gave the draws.
   int burn_in = 0;      ///< Of each chain; 0 for populations.
   int kept = 0;         ///< Draws of each chain.
   int doublings = 0;
-  std::string taken_over;  ///< Why populations took the place of chains; else empty.
+  std::string taken_over;  ///< Why populations replaced the chains; else empty.
   std::vector<ChainStatistics> chains;
-  /// Everything that was run, pilots and discarded chains included.
+  /// Everything that was run, including pilots and discarded chains.
   long density_evaluations = 0;
   long gradient_evaluations = 0;
   /// Natural log of p(y), mean over populations, and its standard error; NaN unless populations
-  /// gave the draws (those of a pilot are too few and too quick to know it).
+  /// gave the draws (a pilot's are too few and too quick to estimate it).
   double log_evidence = kAbsent;
   double log_evidence_se = kAbsent;
 };
@@ -76,9 +75,9 @@ struct SampledPosterior {
   std::vector<Summary> hyperparameters;  ///< lambda_delta, lambda_eps, beta_<input> …, beta_out
   SamplingReport report;
   /// (at most 2000 x d) equally spaced draws in the posterior's coordinates, chains one below the
-  /// other: what a bridge to the evidence needs.
+  /// other, for bridge sampling of the evidence.
   Eigen::MatrixXd points;
-  Findings findings;  ///< Of the gate (none: converged), of jitter, of a change of sampler.
+  Findings findings;  ///< From the gate (none: converged), jitter, or a change of sampler.
   bool converged = false;
 };
 
@@ -86,8 +85,8 @@ struct SampledPosterior {
 /// `doublings_max` times.
 ///
 /// @param input_names  Of the model inputs, for the names of hyper-parameters.
-/// @return the draws, converged or not; invalid_value for options that make no sense; an error of
-///         the model; cancelled.
+/// @return the draws, converged or not; invalid_value for invalid options; an error of the
+///         model; cancelled.
 /// @note   Pure: the same posterior, options and seed give the same bytes with any executor.
 [[nodiscard]] Result<SampledPosterior> sample_posterior(const Posterior& posterior,
                                                         const std::vector<std::string>& input_names,

@@ -12,8 +12,8 @@ namespace recald::calibration {
 ///     z' = z + s L u,   u_j uniform on (-sqrt 3, sqrt 3),
 ///
 /// uniform on a box in the coordinates that L whitens. s and L adapt during the burn-in only
-/// (`AdaptiveProposal`), towards an acceptance rate of a quarter: near the optimum 0.234 for many
-/// dimensions and still good for few.
+/// (`AdaptiveProposal`), towards an acceptance rate of a quarter: close to the optimum of 0.234 for
+/// many dimensions and still good for few.
 [[nodiscard]] Result<Chain> seed_rwm(Target& target, const SamplerOptions& options, Rng& rng,
                                      const SamplerObserver& observer = {});
 

@@ -1,4 +1,4 @@
-/// Does the answer come from the data or from what was believed about the discrepancy?
+/// Whether a result comes from the data or from the discrepancy prior.
 #pragma once
 
 #include <vector>
@@ -18,11 +18,11 @@ struct ParameterSensitivity {
 struct PriorSensitivity {
   double factor;
   std::vector<ParameterSensitivity> parameters;  ///< (q)
-  Findings findings;  ///< One a prior-driven parameter, and of failed gates.
+  Findings findings;  ///< One per prior-driven parameter, and those of failed gates.
 };
 
-/// Calibrates twice more on the design of `base`, with the prior mean of lambda_delta times and
-/// over `factor` (shape kept). Costs two calibrations.
+/// Calibrates twice more on the design of `base`, with the prior mean of lambda_delta multiplied
+/// and divided by `factor` (shape kept). Costs two calibrations.
 /// @pre factor > 1, `base` belongs to this problem
 [[nodiscard]] Result<PriorSensitivity> prior_sensitivity(const MonthlyModel& prototype,
                                                          const CalibrationProblem& problem,

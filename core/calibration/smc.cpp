@@ -45,7 +45,7 @@ double next_temperature(const Particles& particles, double temperature, double s
   const double alive =
       (likelihoods > -std::numeric_limits<double>::infinity()).cast<double>().sum();
   const auto effective = [&](double rise) {
-    // 0 times minus infinity is no number, but a rise of exactly 0 is never asked for.
+    // 0 times minus infinity is NaN, but the rise is never exactly 0.
     return effective_count(rise * likelihoods);
   };
   double high = 1.0 - temperature;

@@ -27,7 +27,7 @@ double DualAveraging::mean_step() const { return std::exp(log_step_mean_); }
 
 Result<double> reasonable_step(Hamiltonian& hamiltonian, const PhasePoint& point, double step,
                                Rng& rng) {
-  constexpr int doublings_max = 40;  // a flat density would go on for ever
+  constexpr int doublings_max = 40;  // a flat density would go on forever
   const double log_threshold = std::log(0.8);
   PhasePoint trial = point;
   int direction = 0;

@@ -42,7 +42,7 @@ Findings gate_findings(const std::vector<Summary>& summaries, const ConvergenceG
     const auto add = [&faults](const std::string& fault) {
       faults += (faults.empty() ? "" : ", ") + fault;
     };
-    // Written so that a NaN fails.
+    // Written so that a NaN fails the gate.
     if (!(s.rhat <= gate.rhat_max)) {
       add("R-hat " + number_text(s.rhat, 5) + " above " + number_text(gate.rhat_max));
     }

@@ -1,4 +1,4 @@
-/// Draws turned into what a report prints and a gate decides on.
+/// Summaries of draws for reports and the convergence gate.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ struct Summary {
   double q95;
   double prior_mean;
   double prior_sd;
-  double contraction;  ///< 1 - sd^2 / prior_sd^2: what the data taught; near 0 or below: nothing.
+  double contraction;  ///< 1 - sd^2 / prior_sd^2: information from the data; near 0 or below: none.
   double rhat;
   double ess_bulk;
   double ess_tail;
@@ -32,7 +32,7 @@ struct Summary {
 [[nodiscard]] Summary summarise(std::string name, std::string unit, const Eigen::MatrixXd& draws,
                                 double prior_mean, double prior_sd);
 
-/// Limits of Vehtari et al. (2021) and on the error of the mean.
+/// Limits of Vehtari et al. (2021), and on the error of the mean.
 struct ConvergenceGate {
   double rhat_max = 1.01;
   double ess_min = 400.0;        ///< Bulk and tail, over all chains.
@@ -41,12 +41,12 @@ struct ConvergenceGate {
   long divergences_max = 0;      ///< Over all chains.
 };
 
-/// One finding a failing quantity; empty: the gate passes.
+/// One finding per failing quantity; empty: the gate passes.
 [[nodiscard]] Findings gate_findings(const std::vector<Summary>& summaries,
                                      const ConvergenceGate& gate = {});
 
-/// `count` indices into [0, total), equally spaced, the middle of each of `count` equal stretches.
-/// All of them when total <= count.
+/// `count` indices into [0, total), equally spaced, in the middle of each of `count` equal
+/// stretches. All of them when total <= count.
 [[nodiscard]] std::vector<int> equally_spaced(int total, int count);
 
 }  // namespace recald::calibration

@@ -63,7 +63,7 @@ TrajectorySampler::Outcome TrajectorySampler::extend(int depth) {
   return turned ? Outcome::turned : Outcome::whole;
 }
 
-/// 2^depth steps at the front. A part that turns or diverges makes the whole worthless.
+/// 2^depth steps at the front. If any part turns or diverges, the whole is discarded.
 TrajectorySampler::Outcome TrajectorySampler::walk(int depth, Stretch& stretch) {
   if (depth == 0) return walk_one_step(stretch);
   Stretch& second = second_halves_[static_cast<std::size_t>(depth - 1)];
@@ -92,7 +92,7 @@ TrajectorySampler::Outcome TrajectorySampler::walk_one_step(Stretch& stretch) {
   return Outcome::whole;
 }
 
-/// Whether `first` followed by `second` goes back on itself, as a whole or where the two meet.
+/// Whether `first` followed by `second` turns back on itself, as a whole or where the two meet.
 /// Time reversal changes nothing: all momenta keep the sign of time running forward.
 bool TrajectorySampler::turns(const Stretch& first, const Stretch& second) {
   const auto& rho_1 = first.momentum_sum;

@@ -9,37 +9,39 @@
 
 namespace recald::calibration {
 
-/// What one transition did.
+/// The result of one transition.
 struct Transition {
   double acceptance;  ///< Mean of min(1, exp(H_0 - H)) over the points visited.
-  double energy;      ///< H of the point chosen, with the momentum it was reached with.
+  double energy;      ///< H of the chosen point, with the momentum at which it was reached.
   bool diverged;
   bool at_depth_limit;
 };
 
-/// Grows trajectories by doubling until they turn round, and picks one of their points.
+/// Grows trajectories by doubling until they turn round, and chooses one of their points.
 ///
 /// Multinomial sampling with weights exp(-H) within a trajectory, biased towards the newer half at
 /// the top (Betancourt 2017, appendix A.3). A trajectory has turned when the sum rho of its momenta
-/// points against the momentum at one of its ends; as in Stan the two halves are also checked with
-/// the nearest point of each other, which catches turns whose length just fits a doubling.
+/// points against the momentum at one of its ends. As in Stan, each half is also checked together
+/// with the nearest point of the other, which catches turns whose length just fits a doubling.
 ///
-/// All storage is made at construction, one stretch a depth, so a transition does not allocate.
+/// All storage is allocated at construction, one stretch per depth, so a transition
+/// does not allocate.
 ///
 /// @see Hoffman, Gelman (2014), J. Mach. Learn. Res. 15, algorithm 3; Betancourt (2017),
 ///      arXiv:1701.02434.
 class TrajectorySampler {
  public:
   /// @param depth_max          Longest trajectory: 2^depth_max steps.
-  /// @param divergence_energy  A step that raises H above its start by more ends the trajectory.
+  /// @param divergence_energy  A step that raises H above its start by more than this
+  ///                           ends the trajectory.
   TrajectorySampler(Hamiltonian& hamiltonian, Rng& rng, int depth_max, double divergence_energy);
 
-  /// Moves `current` (density and force known; the momentum is drawn anew) to the point chosen.
-  /// @return what happened, or an error of the target, after which `current` is as before.
+  /// Moves `current` (density and force known; the momentum is drawn anew) to the chosen point.
+  /// @return what happened, or an error of the target, after which `current` is unchanged.
   [[nodiscard]] Result<Transition> transition(PhasePoint& current, double step);
 
  private:
-  /// A point that may become the next of the chain.
+  /// A candidate for the next point of the chain.
   struct Choice {
     explicit Choice(Eigen::Index d) : position(d), force(d) {}
     Eigen::VectorXd position;
@@ -47,7 +49,7 @@ class TrajectorySampler {
     double log_density = 0.0;
     double energy = 0.0;
   };
-  /// Part of a trajectory, in the order in which it was walked.
+  /// Part of a trajectory, in the order of its steps.
   struct Stretch {
     explicit Stretch(Eigen::Index d)
         : first_momentum(d), last_momentum(d), momentum_sum(d), choice(d) {}
@@ -74,11 +76,11 @@ class TrajectorySampler {
   int depth_max_;
   double divergence_energy_;
 
-  PhasePoint front_;  // the end that walks
+  PhasePoint front_;  // the end that moves
   PhasePoint back_;   // the other end
   Stretch whole_;     // its last momentum is that of front_ when the walk began
   Stretch extension_;
-  std::vector<Stretch> second_halves_;  // (depth_max) one for each depth of the recursion
+  std::vector<Stretch> second_halves_;  // (depth_max) one per depth of the recursion
   double step_ = 0.0;                   // signed
   double energy_0_ = 0.0;
   double acceptance_sum_ = 0.0;

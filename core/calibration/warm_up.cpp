@@ -8,7 +8,7 @@
 namespace recald::calibration {
 namespace {
 
-/// Covariance (d x d) of the columns, shrunk towards the unit matrix by one column's worth.
+/// Covariance (d x d) of the columns, shrunk towards the unit matrix by the weight of one column.
 Eigen::MatrixXd shrunk_covariance(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
   constexpr double shrinkage = 1.0;
   const auto n = static_cast<double>(columns.cols());
@@ -44,7 +44,7 @@ std::vector<int> window_ends(int burn_in, bool has_metric) {
   std::vector<int> ends{start};
   const int last = burn_in - end;
   while (ends.back() < last) {
-    // The next window, twice as long, has to fit too; else this one takes what is left.
+    // The next window, twice as long, must fit too; otherwise this one takes the rest.
     const bool next_fits = ends.back() + 3 * window <= last;
     ends.push_back(next_fits ? ends.back() + window : last);
     window *= 2;

@@ -11,10 +11,10 @@
 namespace recald::calibration {
 namespace {
 
-constexpr double kStep = 0.01;          // of a prior sd, for differences
+constexpr double kStep = 0.01;          // of a prior sd, for finite differences
 constexpr double kWeak = 1.0;           // the prior's own information
 constexpr std::size_t kNamedMax = 4;    // in a sentence, weakest first
-constexpr double kLeastLoading = 0.35;  // worth a word: an eighth of the direction
+constexpr double kLeastLoading = 0.35;  // worth mentioning: an eighth of the direction
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -63,13 +63,13 @@ Eigen::MatrixXd scaled_jacobian(Posterior& posterior, const Eigen::VectorXd& mea
   return jacobian;
 }
 
-/// "occupancy up with outdoor_air down": what of the direction is worth a word.
+/// "occupancy up with outdoor_air down": the parts of the direction worth mentioning.
 std::string in_words(const WeakDirection& direction, const std::vector<Parameter>& parameters) {
   std::vector<Eigen::Index> order;
   for (Eigen::Index j = 0; j < direction.loadings.size(); ++j) {
     if (std::abs(direction.loadings(j)) >= kLeastLoading) order.push_back(j);
   }
-  if (order.empty()) {  // spread over many: the largest stands for them
+  if (order.empty()) {  // spread over many: the largest represents them
     Eigen::Index largest = 0;
     direction.loadings.cwiseAbs().maxCoeff(&largest);
     order.push_back(largest);

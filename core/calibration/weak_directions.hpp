@@ -1,4 +1,4 @@
-/// Which combinations of parameters the data leave as the priors had them.
+/// Finds combinations of parameters that the data did not inform.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,12 +14,13 @@ namespace recald::calibration {
 /// A direction in units of prior standard deviations, of length 1.
 struct WeakDirection {
   Eigen::VectorXd loadings;  ///< (q)
-  double information;        ///< Of the data relative to the prior's; below 1 for a weak direction.
+  double information;  ///< Of the data, relative to the prior's; below 1 for a weak direction.
 };
 
-/// Eigenvectors of  S J' Sigma^-1 J S + I  with eigenvalues below 2: there the data say less than
-/// the prior does. J are the derivatives of the model's outputs at the posterior mean, S the prior
-/// standard deviations, Sigma taken at the posterior medians of the hyper-parameters.
+/// Eigenvectors of  S J' Sigma^-1 J S + I  with eigenvalues below 2, where the data give less
+/// information than the prior. J holds the derivatives of the model's outputs at the posterior
+/// mean, S the prior standard deviations; Sigma is taken at the posterior medians of the
+/// hyper-parameters.
 ///
 /// @param posterior  Its factor is replaced.
 /// @param mean       (q) in the parameters' units.

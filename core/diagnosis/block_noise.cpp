@@ -16,10 +16,9 @@ constexpr int columns_of_strip = 8;
 
 using SparseColumn = Eigen::SparseMatrix<double>::InnerIterator;
 
-/// Calls `work(strip, first, count)` for all columns: strip (8 x n) has `count` of them, from
-/// `first` on, as rows, and zeros below. A point's values then lie beside each other, and what runs
-/// over the points keeps eight columns in registers. The last one, if alone, has a strip of its own
-/// (1 x n).
+/// Calls `work(strip, first, count)` for all columns: strip (8 x n) has `count` of them, starting
+/// at `first`, as rows, and zeros below. A point's values are then adjacent, and loops over the
+/// points keep eight columns in registers. A single last column has its own strip (1 x n).
 template <class Work>
 void by_strips(const Eigen::MatrixXd& columns, const Work& work) {
   Eigen::Index first = 0;
@@ -41,7 +40,7 @@ constexpr double correlation_min_h = 12.0;
 constexpr double correlation_max_h = 480.0;
 constexpr double white_share_min = 1e-4;
 constexpr double white_share_max = 1.0;
-constexpr double structure_share_min = 1e-4;  // below it u is nothing; its log needs an end
+constexpr double structure_share_min = 1e-4;  // below it u is negligible; its log needs a bound
 constexpr double structure_share_max = 1.0;
 
 /// log s, log T, log sigma
@@ -57,7 +56,7 @@ struct Peak {
 template <class Function>
 Peak climb(const Function& function, const LogLevel& start, double step) {
   constexpr int rounds_max = 200;
-  constexpr double tolerance = 0.2;  // nats between best and worst corner: below what matters
+  constexpr double tolerance = 0.2;  // nats between best and worst corner: negligible
   std::array<Peak, 4> corners;
   for (int i = 0; i < 4; ++i) {
     LogLevel at = start;
@@ -111,7 +110,7 @@ NoiseLevel level_at(const LogLevel& at, double pattern_sd) {
           .pattern_sd = pattern_sd};
 }
 
-/// Which points stand out from the prediction of the filter, patterns removed.
+/// Points that stand out from the filter's prediction, with patterns removed.
 std::vector<bool> standing_out(const GateInput& input, double limit_sd) {
   const BlockDesign ungated{input.design.times_h, input.design.patterns, {}};
   const BlockNoise noise(ungated, input.level);
@@ -211,7 +210,7 @@ void BlockNoise::factor_patterns() {
     const Eigen::MatrixXd some = patterns_->middleCols(j, count);
     matrix.middleCols(j, count) += level_.pattern_sd * whiten_and_gather(some).in_patterns;
   }
-  // I plus a positive semi-definite matrix: it has a factor whatever the data.
+  // I plus a positive semi-definite matrix can always be factorised.
   pattern_factor_.compute(matrix);
   log_determinant_ += 2.0 * pattern_factor_.matrixLLT().diagonal().array().log().sum();
 }
@@ -227,7 +226,7 @@ void BlockNoise::whiten_strip(Strip& strip) const {
   }
 }
 
-// `whiten_strip` read backwards: `pull` is the derivative with respect to the next prediction.
+// `whiten_strip` in reverse: `pull` is the derivative with respect to the next prediction.
 template <class Strip>
 void BlockNoise::whiten_strip_transposed(Strip& strip) const {
   constexpr int width = Strip::RowsAtCompileTime;
@@ -341,8 +340,8 @@ Eigen::VectorXd BlockNoise::draw(Rng& rng) const {
 }
 
 Eigen::VectorXd BlockNoise::inverse_diagonal() const {
-  // Squared norms of the columns of W, last one first: what a reading leaves in the errors after
-  // it.
+  // Squared norms of the columns of W, last one first: the effect of a reading on the
+  // errors after it.
   Eigen::VectorXd diagonal(points());
   double later = 0.0;
   for (Eigen::Index i = points() - 1; i >= 0; --i) {
@@ -356,9 +355,9 @@ Eigen::VectorXd BlockNoise::inverse_diagonal() const {
   return diagonal - explained.colwise().squaredNorm().transpose();
 }
 
-// e | r, parameters has mean E Sigma^-1 r and covariance E - E Sigma^-1 E, and so has the structure
-// r - e but for its mean. The parameters then move both: e by E Sigma^-1 J, the rest by J minus
-// that.
+// e | r, parameters has mean E Sigma^-1 r and covariance E - E Sigma^-1 E; so does the
+// structure r - e, except for its mean. The parameters then move both: e by E Sigma^-1 J, and
+// the rest by J minus that.
 ResidualShares BlockNoise::residual_shares(const Eigen::VectorXd& residual,
                                            const Eigen::MatrixXd& jacobian,
                                            const Eigen::MatrixXd& covariance) const {
@@ -397,13 +396,13 @@ Result<LevelFit> fit_levels(const Eigen::VectorXd& residual, const BlockDesign& 
     const NoiseLevel level = level_at(inside, pattern_share * mean);
     ++evaluations;
     const double standardised = level.structure_sd / (structure_prior_share * mean);
-    // Outside the support a slope leads back, where a wall would flatten the simplex.
+    // Outside the support a slope leads back; a wall would flatten the simplex.
     return BlockNoise(design, level, patterns).marginal_log_density(residual) -
            0.5 * standardised * standardised - (at - inside).squaredNorm();
   };
   const double root_mean_square = residual.norm() / std::sqrt(static_cast<double>(residual.size()));
   const double sd = std::max(root_mean_square, 1e-3 * mean);
-  // Mostly slow structure, or mostly noise: the two kinds of maximum this density can have.
+  // Mostly slow structure, or mostly noise: this density has these two kinds of maximum.
   const LogLevel slow = LogLevel(0.8 * sd, 120.0, 0.4 * sd).array().log();
   const LogLevel noisy = LogLevel(0.4 * sd, 24.0, 0.8 * sd).array().log();
   constexpr double step = 0.7;

@@ -9,8 +9,8 @@
 namespace recald::diagnosis {
 namespace {
 
-/// What is scanned is no amount, even where it has a neutral value: a clock two hours off is not
-/// twice a clock one hour off.
+/// A scanned parameter is not an amount, even if it has a neutral value: a clock two hours off is
+/// not twice a clock one hour off.
 bool is_amount(const EffectParameter& parameter) {
   return std::isfinite(parameter.neutral) && parameter.scan.empty();
 }
@@ -23,12 +23,12 @@ AmountPrior factor_prior(const EffectParameter& parameter) {
   if (std::holds_alternative<UniformPrior>(prior.distribution())) {
     return {AmountPriorKind::uniform, (prior.max() - prior.min()) / typical};
   }
-  // Of a half-normal: its second moment about the neutral value is the scale squared.
+  // For a half-normal: its second moment about the neutral value is the scale squared.
   const double shift = prior.mean() - parameter.neutral;
   return {AmountPriorKind::half_normal, std::sqrt(prior.variance() + shift * shift) / typical};
 }
 
-/// Without the days that it begins or ends on.
+/// Without the first and last days.
 std::span<const EffectParameter> own_parameters(const Candidate& candidate) {
   const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
   return {candidate.parameters.data(), candidate.parameters.size() - days};
@@ -36,8 +36,8 @@ std::span<const EffectParameter> own_parameters(const Candidate& candidate) {
 
 constexpr std::ptrdiff_t kAllAmounts = -1;
 
-/// All combinations of what is scanned, amounts typical.
-/// @param only  Of the amounts, the only one that is there; the others are neutral.
+/// All combinations of the scanned values, with typical amounts.
+/// @param only  The only amount that is not neutral.
 std::vector<std::vector<double>> shapes_with(std::span<const EffectParameter> parameters,
                                              std::ptrdiff_t only) {
   std::vector<std::vector<double>> shapes{{}};
@@ -74,7 +74,7 @@ AmountPrior amount_prior(const Candidate& candidate) {
   for (const EffectParameter& parameter : candidate.parameters) {
     if (is_amount(parameter)) return factor_prior(parameter);
   }
-  return {AmountPriorKind::half_normal, 1.0};  // nothing but shapes: there or not
+  return {AmountPriorKind::half_normal, 1.0};  // only shapes: present or absent
 }
 
 std::vector<double> with_amount(const Candidate& candidate, std::vector<double> values,

@@ -12,7 +12,7 @@ struct DayPartParameter {
   std::string_view name;
   double log_sd = 0.0;        ///< 0: the library's prior.
   double median = 0.0;        ///< 0: the drawings' value.
-  double second_start = 0.0;  ///< Score.
+  double second_start = 0.0;  ///< A score.
   bool of_own_chiller = false;
 };
 constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
@@ -35,7 +35,7 @@ constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {"supply_reset"},
     {"warm_up"},
     {"closed_start"},
-    // What no drawing gives: about what the training buildings have.
+    // Not in any drawing: approximate values of the training buildings.
     {"mass_coupling", 0.5, 0.5},
     {.name = "core_mass", .log_sd = 0.9, .median = 0.3, .second_start = -1.0},
     {"air_capacity", 0.5, 35.0},
@@ -43,7 +43,7 @@ constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {.name = "chiller_lift", .of_own_chiller = true},
 });
 
-/// nullptr: none of them.
+/// nullptr: not one of them.
 const DayPartParameter* find_day_part_parameter(std::string_view name) {
   const auto found = std::ranges::find(kDayPartParameters, name, &DayPartParameter::name);
   return found == kDayPartParameters.end() ? nullptr : &*found;

@@ -1,5 +1,5 @@
-/// Parameters that day parts can inform beyond those that a site lists, and their priors in a
-/// diagnosis.
+/// Parameters that day parts can inform in addition to those that a site lists, and their
+/// priors in a diagnosis.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,17 +14,19 @@
 
 namespace recald::diagnosis {
 
-/// Names of those that such a building has.
+/// Names of those that apply to this building.
 [[nodiscard]] std::vector<std::string_view> day_part_parameters(const model::Building& nominal);
 
-/// Where drawings may be wrong by a factor the prior is log-normal about them, wider than the
-/// library's range: a diagnosis must not mistake a wrong number in the site file for an effect.
-/// @return nothing where the library's prior will do, or the drawings say 0.
+/// If drawings may be wrong by a factor, the prior is log-normal around their value and wider
+/// than the library's range, because a diagnosis must not mistake a wrong number in the site
+/// file for an effect.
+/// @return nothing if the library's prior is sufficient, or the drawings say 0.
 [[nodiscard]] std::optional<Prior> wide_prior(std::string_view name,
                                               const model::Building& nominal);
 
-/// (parameters) scores. Where the middle of the priors leads astray: rooms that are cool at night
-/// either have closets or little mass, and from the one no small step leads to the other.
+/// (parameters) scores of a second start, because the middle of the priors may be misleading:
+/// rooms that are cool at night have either closets or little mass, and no small step leads from
+/// one to the other.
 [[nodiscard]] Eigen::VectorXd second_start_of(std::span<const Parameter> parameters);
 
 }  // namespace recald::diagnosis

@@ -46,7 +46,8 @@ void add_hour(const model::DriverHour& hour, int index, std::vector<DayPart>& pa
   last.global_horizontal_W_m2 += hour.global_horizontal_W_m2;
 }
 
-/// The latest month of this season that is neither shown nor among the first three of the record.
+/// The latest month of this season that is neither held out nor among the first
+/// three of the record.
 template <class IsSeason>
 void show_one(const std::vector<metering::Month>& months, IsSeason is_season,
               std::vector<Role>& roles) {
@@ -135,13 +136,13 @@ std::vector<Role> split_months(const std::vector<metering::Month>& months,
     show_one(months, is_winter, roles);
     show_one(months, is_summer, roles);
   }
-  // The rest one by one from the end, each at least two months from what is shown already.
+  // The rest one by one from the end, each at least two months from the months already held out.
   for (std::size_t i = n; i-- > 3 && count_of(roles, Role::show) < share(options.show_share);) {
     const bool apart = roles[i] == Role::fit &&
                        (i + 2 >= n || (roles[i + 1] == Role::fit && roles[i + 2] == Role::fit));
     if (apart) roles[i] = Role::show;
   }
-  // Months to choose by: spread evenly, so that every season has some.
+  // Months to choose by are spread evenly, so that every season has some.
   const std::size_t wanted = share(options.select_share);
   const std::size_t left = n - count_of(roles, Role::show);
   std::size_t seen = 0;
@@ -184,7 +185,7 @@ std::vector<Role> part_roles(const DayParts& day_parts, const std::vector<Role>&
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (i > 0 && before[i] == before[i - 1]) continue;
     if (i == 0) continue;
-    // A change of role between i-1 and i: the yielding side loses its nearest days.
+    // The role changes between i-1 and i: the yielding side loses its nearest days.
     if (yields(before[i - 1], before[i])) {
       for (std::size_t j = i; j-- > 0 && before[j] == before[i - 1] &&
                               parts[i].day_index - parts[j].day_index <= buffer_days;) {

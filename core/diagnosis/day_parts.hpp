@@ -1,8 +1,8 @@
-/// Power averaged over six four-hour parts of each local day: the grain at which effects are told
-/// apart.
+/// Power averaged over six four-hour parts of each local day, the resolution at which effects
+/// are distinguished.
 ///
-/// Monthly figures cannot name effects and single hours are not worth their cost; four hours show
-/// nights, mornings, working hours and evenings.
+/// Monthly figures cannot identify effects, and single hours cost too much; four hours show nights,
+/// mornings, working hours and evenings.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,14 +18,14 @@ inline constexpr int kPartsPerDay = 6;
 inline constexpr int kPartsPerWeek = 7 * kPartsPerDay;
 inline constexpr int kHoursPerPart = 24 / kPartsPerDay;
 
-/// What a block may be used for. Buffers between the others keep the answer from leaking across.
+/// The use of a block. Buffers between the others prevent leakage across the split.
 enum class Role { fit, select, show, buffer };
 
 struct DayPart {
   metering::Day date;
   int part;          ///< 0…5: 00–04 h … 20–24 h local.
   int day_index;     ///< As `DriverHour::day_index`.
-  int part_of_week;  ///< 0…41 from Sunday 00 h; holidays stand where their date stands.
+  int part_of_week;  ///< 0…41 from Sunday 00 h; holidays keep their weekday.
   int first_hour;    ///< Index into Drivers::hours.
   int hours;         ///< 3, 4 or 5.
   int month;         ///< Index into Drivers::months.
@@ -47,8 +47,8 @@ struct DayParts {
 
 [[nodiscard]] DayParts make_day_parts(const model::Drivers& drivers);
 
-/// Means of measured hours over the parts; NaN where less than three quarters of a part's hours
-/// were measured: a filled hour carries no information.
+/// Means of measured hours over the parts; NaN if less than three quarters of a part's hours were
+/// measured, since filled hours carry no information.
 /// @param hourly_kW  (hours x m) NaN where not measured.
 [[nodiscard]] Eigen::ArrayXXd measured_parts(const DayParts& day_parts,
                                              const Eigen::Ref<const Eigen::ArrayXXd>& hourly_kW);
@@ -60,21 +60,21 @@ struct SplitOptions {
   int last_months_to_show = 3;
 };
 
-/// Whole months for fitting, for choosing and for showing at the end: the last three months are
-/// shown, and at least one winter and one summer month where the period has them.
-/// @return one role a month, before buffers. Fewer than 6 months: all fit.
+/// Assigns whole months to fitting, choosing and the final check: the last three months are held
+/// out for the check (`show`), and at least one winter and one summer month if the period has them.
+/// @return one role per month, before buffers. Fewer than 6 months: all fit.
 [[nodiscard]] std::vector<Role> split_months(const std::vector<metering::Month>& months,
                                              const SplitOptions& options);
 
-/// The same of those months that were read. A month without readings proves nothing, so it is not
-/// held out: it counts as one to fit and adds nothing.
+/// As above, for months with readings. A month without readings proves nothing, so it is not held
+/// out: it counts as one to fit and adds nothing.
 /// @param read  Some of `months`, in their order.
 [[nodiscard]] std::vector<Role> split_months(const std::vector<metering::Month>& months,
                                              const std::vector<metering::Month>& read,
                                              const SplitOptions& options);
 
-/// One role a part: its month's, or buffer within `buffer_days` of a month with another role.
-/// Buffers are taken from the fitted side, so that what is shown stays whole.
+/// One role per part: its month's, or buffer within `buffer_days` of a month with another role.
+/// Buffers are taken from the fitted side, so that held-out months stay complete.
 [[nodiscard]] std::vector<Role> part_roles(const DayParts& day_parts,
                                            const std::vector<Role>& month_roles, int buffer_days);
 

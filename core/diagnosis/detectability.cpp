@@ -17,7 +17,7 @@ Eigen::Index count_of(const MeterRows& meter) {
   return static_cast<Eigen::Index>(meter.rows.size());
 }
 
-/// P: means over the rows of a group, each row weighing as many hours as its part has.
+/// P: means over the rows of a group, each row weighted by the hours of its part.
 Averaging averaging_of(const SiteProblem& site, const MeterRows& meter,
                        int (*group)(const DayPart&)) {
   std::vector<Eigen::Triplet<double>> weights;
@@ -38,7 +38,7 @@ Averaging averaging_of(const SiteProblem& site, const MeterRows& meter,
   return averaging;
 }
 
-/// K_u X: the sum over earlier and later points decays from each to the next, so that no n x n
+/// K_u X: the sum over earlier and later points decays from each to the next, so no n x n
 /// matrix is needed.
 Eigen::MatrixXd structure_times(const BlockDesign& design, const NoiseLevel& level,
                                 const Eigen::MatrixXd& columns) {
@@ -78,7 +78,7 @@ Eigen::MatrixXd averaged_covariance(const BlockDesign& design, const NoiseLevel&
 Result<Eigen::LLT<Eigen::MatrixXd>> posterior_factor(const Eigen::MatrixXd& information) {
   const Eigen::Index q = information.rows();
   Eigen::LLT<Eigen::MatrixXd> factor(Eigen::MatrixXd::Identity(q, q) + information);
-  // Eigen lets a NaN through its factorisation.
+  // Eigen accepts a NaN in its factorisation.
   if (factor.info() != Eigen::Success || !factor.matrixLLT().allFinite()) {
     return failure(ErrorCode::not_positive_definite,
                    "a sensitivity of the base model is not a finite number, so recald cannot tell "
@@ -142,7 +142,7 @@ Result<FootprintGauge::CoarseGrain> FootprintGauge::coarse_grain(
   for (std::size_t g = 0; g < observations_.meters.size(); ++g) {
     const MeterRows& meter = observations_.meters[g];
     Averages averages{averaging_of(*twin_, meter, group), {}, {}};
-    // White noise in every row: it has a factor whatever the data.
+    // With white noise in every row the matrix can always be factorised.
     averages.covariance.compute(
         averaged_covariance(meter.design, noise_.meters[g].level(), averages.averaging));
     averages.jacobian = averages.averaging * jacobian.middleRows(meter.offset, count_of(meter));
@@ -160,8 +160,8 @@ Result<Detectability> FootprintGauge::measure(
     const Eigen::Ref<const Eigen::ArrayXXd>& footprint_kW) const {
   assert(footprint_kW.rows() == twin_->measured_kW.rows());
   assert(footprint_kW.cols() == twin_->measured_kW.cols());
-  // Averaging is linear, so parts of (twin + s) minus parts of the twin are those of s, under the
-  // twin's mask.
+  // Averaging is linear, so parts of (twin + s) minus parts of the twin equal those of s, with
+  // the twin's mask.
   const Eigen::ArrayXXd counted = twin_->measured_kW.isFinite().select(footprint_kW, kAbsent);
   const Eigen::ArrayXXd parts_kW = measured_parts(twin_->day_parts, counted);
   const Eigen::VectorXd footprint =

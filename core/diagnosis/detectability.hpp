@@ -1,13 +1,13 @@
 /// How visible an effect of a known footprint is at a site: d*.
 ///
-/// A simulator tells what an effect adds to each meter; the meters without the effect, its twin,
-/// tell what the model gets wrong anyway and what its parameters could imitate. With Sigma and the
+/// A simulator gives the effect's addition to each meter. The meters without the effect, the twin,
+/// show what the model gets wrong anyway and what its parameters could imitate. With Sigma and the
 /// Jacobian J of the base model calibrated to the twin, and s the footprint on the meters' scales,
 ///     d = sqrt(s' M s),  M = (Sigma + J J')^-1   (parameters as standard normal scores),
-/// usual errors among the parameters. The scores of effects that are not there would vary by 1 if
-/// that were all that models get wrong; they vary by `null_score_spread`. So
+/// with the usual errors among the parameters. Scores of absent effects would have sd 1 if models
+/// had no other errors; their sd is `null_score_spread`. So
 ///     d* = d / null_score_spread
-/// is what the same signal would show against noise that is known.
+/// is the detectability of the same signal against known noise.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -21,14 +21,14 @@
 
 namespace recald::diagnosis {
 
-/// What one grain of the data shows of a footprint. Pure numbers.
+/// How visible a footprint is at one resolution of the data. Dimensionless.
 struct Visibility {
   double detectability;   ///< d = sqrt(s' M s)
   double unprojected;     ///< sqrt(s' Sigma^-1 s): as if the base parameters were known.
-  double absorbed_share;  ///< 1 - s' M s / s' Sigma^-1 s; 0 where nothing shows at all.
+  double absorbed_share;  ///< 1 - s' M s / s' Sigma^-1 s; 0 if nothing is visible.
 };
 
-/// A footprint beside its meter, over the parts that count: months to fit, measured.
+/// A footprint relative to its meter, over the parts used: months to fit, measured.
 struct MeterMove {
   double net_share;    ///< sum s / sum y, signed.
   double moved_share;  ///< sum |s| / sum y, four hours at a time.
@@ -37,23 +37,23 @@ struct MeterMove {
 struct Detectability {
   Visibility month;  ///< Means of the measured parts of each month.
   Visibility day;
-  Visibility block;               ///< Four-hour parts: what a diagnosis reads.
-  double d_star;                  ///< Of these parts, in units of what null scores vary by.
+  Visibility block;               ///< Four-hour parts, which a diagnosis uses.
+  double d_star;                  ///< For these parts, relative to the spread of null scores.
   std::vector<MeterMove> meters;  ///< (m)
 };
 
-/// Measures footprints at one site. Made once, it costs some 10 ms a footprint.
+/// Measures footprints at one site. Once created, it costs some 10 ms per footprint.
 class FootprintGauge {
  public:
   /// Calibrates the base model to the twin and fixes the noise at the node of highest weight.
   /// @param twin  The meters without the effect; must outlive the gauge.
-  /// @return the gauge, or what `lay_ground` refuses.
+  /// @return the gauge, or an error of `lay_ground`.
   [[nodiscard]] static Result<FootprintGauge> calibrate(const SiteProblem& twin);
 
-  /// From parts at hand.
-  /// @param observations  (n) what counts of the twin.
+  /// From existing parts.
+  /// @param observations  (n) the observations of the twin to use.
   /// @param noise     Sigma of these observations.
-  /// @param jacobian  J (n x q) on the meters' scales, for a unit of each standard normal score.
+  /// @param jacobian  J (n x q) on the meters' scales, per unit of each standard normal score.
   /// @return not_positive_definite if a sensitivity is not finite.
   [[nodiscard]] static Result<FootprintGauge> make(const SiteProblem& twin,
                                                    const Observations& observations,
@@ -61,15 +61,15 @@ class FootprintGauge {
                                                    const Eigen::MatrixXd& jacobian);
 
   /// @param footprint_kW  (hours x m) meters with the effect minus without, by the twin's hours.
-  ///                      Where the twin was not measured it does not count.
-  /// @return or not_finite where it counts and is no number.
+  ///                      Ignored where the twin was not measured.
+  /// @return the detectability, or not_finite for a footprint that is used and not finite.
   [[nodiscard]] Result<Detectability> measure(
       const Eigen::Ref<const Eigen::ArrayXXd>& footprint_kW) const;
 
  private:
   using Factor = Eigen::LLT<Eigen::MatrixXd>;
 
-  /// A coarser grain of one meter: P averages its rows by day or month.
+  /// A coarser resolution of one meter: P averages its rows by day or month.
   struct Averages {
     Eigen::SparseMatrix<double, Eigen::RowMajor> averaging;  ///< P (groups x n)
     Factor covariance;                                       ///< P Sigma P'

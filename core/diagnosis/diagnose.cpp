@@ -82,7 +82,8 @@ std::vector<Candidate> still_open(const CandidateList& list, const std::vector<A
   return open;
 }
 
-/// One pass: where, who, which one. @param now  The model as it stands, with `accepted`.
+/// One pass: where the gap is, and which effect explains it. @param now  The current model,
+/// with `accepted`.
 Result<Pass> search(Predictor& predictor, const SiteProblem& site, const Ground& now,
                     const HeldJudge& shown, const std::vector<Candidate>& open,
                     const NamingRules& rules, Rng& rng) {
@@ -102,7 +103,7 @@ Result<Pass> search(Predictor& predictor, const SiteProblem& site, const Ground&
               .gaps = gaps_of(site, now, shown)};
 }
 
-/// Of `open`, what is meant by an id such as "scale_fault:steam": indices.
+/// Indices of the candidates in `open` with an id such as "scale_fault:steam".
 Result<std::vector<std::size_t>> meant_by(const std::string& id, const std::vector<Candidate>& open,
                                           const SiteProblem& site, const CandidateList& list) {
   std::vector<std::size_t> meant;
@@ -121,7 +122,7 @@ Result<std::vector<std::size_t>> meant_by(const std::string& id, const std::vect
                  "'" + id + "' is not an effect of the catalogue, or the model already has it");
 }
 
-/// Within the posterior, linearised in the scores.
+/// From the posterior, linearised in the scores.
 std::vector<ParameterBelief> beliefs_of(const SiteProblem& site, const JointFit& fit) {
   constexpr double kQuantile95 = 1.6448536269514722;
   std::vector<ParameterBelief> beliefs;
@@ -134,7 +135,7 @@ std::vector<ParameterBelief> beliefs_of(const SiteProblem& site, const JointFit&
   return beliefs;
 }
 
-/// The best fit of what is assumed stands as named.
+/// Treats the best fit among the assumed effects as named.
 void take_as_named(Naming& naming) {
   naming.outcome = Outcome::named;
   naming.named = 0;
@@ -148,8 +149,7 @@ void take_back(const char* why, Diagnosis& result) {
   result.parameters_after = result.parameters_before;
 }
 
-/// The scores of the held-out months for one addition, and the base parameters with all additions
-/// so far.
+/// The held-out scores for one addition, and the base parameters with all additions so far.
 struct Shown {
   MonthScores change;
   bool confirmed;
@@ -169,9 +169,9 @@ void keep_first(std::size_t count, const std::vector<Shown>& shown, Diagnosis& r
   result.parameters_after = shown[count - 1].parameters;
 }
 
-/// The verdict of the first pass, unless the held-out months do not confirm the additions: then as
-/// many of the first additions as they confirm.
-/// @param shown  Of each addition; empty if no month was held out.
+/// The outcome of the first pass, unless the held-out months do not confirm the additions; then the
+/// longest confirmed sequence of first additions.
+/// @param shown  One per addition; empty if no month was held out.
 void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) {
   const Naming& verdict = result.passes.front().naming;
   result.outcome = verdict.outcome;
@@ -199,10 +199,10 @@ void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) 
   }
 }
 
-/// A diagnosis on its way: the model as it stands and what was found so far.
+/// A diagnosis in progress: the current model and the findings so far.
 class Search {
  public:
-  /// @param proceed  Asked before each run of the model.
+  /// @param proceed  Called before each run of the model.
   Search(const SiteProblem& site, const DiagnoseOptions& options, std::function<bool()> proceed)
       : site_(site), options_(options), proceed_(std::move(proceed)), list_(list_candidates(site)) {
     result_.not_identifiable = list_.not_identifiable;
@@ -218,7 +218,7 @@ class Search {
     return {};
   }
 
-  /// One pass, and the next model where it named something. @return whether to go on
+  /// One pass, and the next model if an effect was named. @return whether to continue
   Result<bool> turn() {
     const std::size_t count = result_.passes.size();
     Rng rng{options_.seed, streams::kPasses[count]};
@@ -239,22 +239,23 @@ class Search {
       result_.added.push_back(addition_of(predictor, site_, open, pass->naming, rng));
       if (first_.show.count() > 0) shown_.push_back(show(pass->naming));
     }
-    pass->naming.better_base.reset();  // large, and of no more use
+    pass->naming.better_base.reset();  // large, and not needed any more
     result_.passes.push_back(std::move(*pass));
     result_.model_runs += predictor.runs();
     if (!named) return false;
     const Naming& naming = result_.passes.back().naming;
     auto added = take_up(result_.added.back(), naming.explanations[*naming.named].fit);
     if (!added) return tl::unexpected(added.error());
-    // An addition that the held-out months do not confirm is withdrawn, and so are all that follow
-    // it.
+    // An addition that the held-out months do not confirm is withdrawn, together
+    // with all later ones.
     return assumed || (!shown_.empty() && shown_.back().confirmed);
   }
 
   Diagnosis end() && {
     result_.modelled_kW = now().none.parts_kW;
     result_.gaps = gaps_of(site_, now(), judge_of(site_, first_, first_.show));
-    // Rivals may have shown a better mode of the drawings' model on the way: only now it stands.
+    // The rivals may have found a better mode of the drawings' model in the meantime; it
+    // is final only now.
     result_.base_fit = gaps_of(site_, first_, judge_of(site_, first_, first_.fit));
     if (!first_.none.converged) {
       result_.warnings.push_back(
@@ -285,8 +286,8 @@ class Search {
   [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
   [[nodiscard]] Ground& now() { return latest_ ? *latest_ : first_; }
 
-  /// If the rivals show a much better mode of the base model, the first look was around the wrong
-  /// mode: search again from the better one.
+  /// If the rivals find a much better mode of the base model, the first look used the wrong mode:
+  /// search again from the better one.
   Result<Pass> search_again(Predictor& predictor, const std::vector<Candidate>& open,
                             const NamingRules& rules, Rng& rng) {
     const auto once = [&] {
@@ -311,7 +312,7 @@ class Search {
                                              : options_.assumed.size());
   }
 
-  /// The scores of the held-out months for the effect just named, on the ground where it was found.
+  /// The held-out scores for the effect just named, on the ground where it was found.
   [[nodiscard]] Shown show(const Naming& naming) const {
     const Explanation& e = naming.explanations[*naming.named];
     const HeldJudge judge = judge_of(site_, now(), now().show);
@@ -322,7 +323,7 @@ class Search {
     return {std::move(change), confirmed};
   }
 
-  /// The model with one more effect. @param found  The base parameters fitted together with it.
+  /// Adds the effect to the model. @param found  The base parameters fitted together with it.
   Result<void> take_up(const Addition& addition, const JointFit& found) {
     accepted_.push_back(alteration_of(addition.candidate, site_.facts(), addition.eta));
     Predictor altered{site_, accepted_, proceed_};
@@ -340,7 +341,7 @@ class Search {
   CandidateList list_;
   Alterations accepted_;
   Ground first_;
-  std::optional<Ground> latest_;  ///< Of the model with what was added.
+  std::optional<Ground> latest_;  ///< Of the model with all additions.
   std::vector<Shown> shown_;
   Diagnosis result_;
 };

@@ -19,13 +19,13 @@ struct DiagnoseOptions {
   NamingRules rules;
   int additions_max = 4;
   std::uint64_t seed = 1;
-  /// Effects known to be present, "damper_stuck_open" or "scale_fault:steam". They are added in
-  /// this order whatever their probability, and kept whatever the held-out months say. Nothing else
-  /// is added.
+  /// Effects known to be present, "damper_stuck_open" or "scale_fault:steam". They are
+  /// added in this order and kept, whatever their probability and the held-out scores.
+  /// Nothing else is added.
   std::vector<std::string> assumed = {};
 };
 
-/// One effect that was added, as it stood when it was.
+/// One added effect, as found when it was added.
 struct Addition {
   Candidate candidate;
   std::vector<double> eta;                 ///< At the mode.
@@ -38,7 +38,7 @@ struct Addition {
   Eigen::ArrayXXd effect_kW;        ///< (parts x m) with the effect minus without.
 };
 
-/// A base parameter as the hourly model was calibrated, in its own unit.
+/// A base parameter from the calibration of the hourly model, in its own unit.
 struct ParameterBelief {
   double mode;
   double q05;
@@ -55,10 +55,10 @@ struct Pass {
 };
 
 struct Diagnosis {
-  Outcome outcome = Outcome::none;  ///< named as soon as one effect was added and confirmed.
+  Outcome outcome = Outcome::none;  ///< `named` once one effect was added and confirmed.
   std::vector<Candidate> candidates;
   std::vector<NotIdentifiable> not_identifiable;
-  std::vector<Pass> passes;  ///< The first one is of the drawings.
+  std::vector<Pass> passes;  ///< The first one starts from the drawings.
   std::string why;           ///< Why this outcome, one sentence.
   std::vector<Addition> added;
   Eigen::ArrayXXd modelled_kW;     ///< (parts x m) the final model.
@@ -72,13 +72,14 @@ struct Diagnosis {
   int model_runs = 0;
 };
 
-/// Progress in words and as a share; false stops the diagnosis. Asked before each run of the model,
-/// many times a second.
+/// Progress in words and as a share; returning false stops the diagnosis. Called before each run of
+/// the model, many times per second.
 using Observer = std::function<bool(const char* what, double share)>;
 
 /// @return the diagnosis, whatever its outcome; or
 ///         not_enough_data  a meter has fewer than 100 measured day parts in the months to fit;
-///         not_found        an assumed effect is not in the catalogue, or not to be seen here;
+///         not_found        an assumed effect is not in the catalogue, or cannot be
+///         seen at this site;
 ///         not_finite, not_positive_definite from the fits; cancelled.
 [[nodiscard]] Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& options,
                                          const Observer& observer = {});

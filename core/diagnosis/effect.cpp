@@ -32,7 +32,7 @@ class WithinDates final : public Alteration {
     if (contains(hour)) inner_->supply(building, hour, operation, loads);
   }
 
-  /// The inner effect sees the hours between the dates as if there were no others.
+  /// The inner effect sees only the hours between the dates.
   void record(std::span<const model::DriverHour> hours, int meter,
               std::span<double> power_kW) const override {
     if (hours.empty()) return;

@@ -1,6 +1,6 @@
-/// One entry of the catalogue: a physical effect that a building may have and its model lack.
+/// One entry of the catalogue: a physical effect that a building may have and its model lacks.
 ///
-/// An entry is data and one small function. Adding one is adding a file to `effects/`: the file
+/// An entry is data and one small function. To add one, add a file to `effects/`: the file
 /// `effects/<id>.cpp` defines `Effect recald::diagnosis::effects::<id>()`, and the build finds it.
 #pragma once
 
@@ -27,24 +27,24 @@ struct SiteFacts {
   const model::Drivers& drivers;
   std::vector<metering::Utility> utilities;  ///< (m) of the model's meters.
   std::vector<double> mean_kW;               ///< (m) measured mean power of each.
-  /// Of the meter that carries this utility, or 0 where none does. Gas and steam count as heating.
+  /// For the meter of this utility, or 0 if there is none. Gas and steam count as heating.
   [[nodiscard]] double mean_of_kW(metering::Utility utility) const;
 };
 
 struct EffectParameter {
   std::string name;  ///< snake_case
   std::string unit;
-  Prior prior;  ///< With physical sign and bounds.
-  double
-      neutral;  ///< The model equals its parent here, bit for bit. Shape parameters have none: NaN.
+  Prior prior;     ///< With physical sign and bounds.
+  double neutral;  ///< At this value the model equals its parent, bit for bit. Shape parameters
+                   ///< have none: NaN.
   /// Values at which the first look tries a shape (threshold, hour, date); empty: an amount, which
-  /// the first look takes as linear around a typical value.
+  /// the first look treats as linear around a typical value.
   std::vector<double> scan = {};
-  /// Only the scanned values are possible (a calendar, for instance). Chosen, never fitted.
+  /// Only the scanned values are possible (for example a calendar). Chosen, not fitted.
   bool choice = false;
 };
 
-/// What an effect needs before it may be a candidate.
+/// What an effect needs in order to be a candidate.
 struct EffectNeeds {
   bool air_system = false;
   bool humidity = false;
@@ -56,15 +56,15 @@ struct EffectNeeds {
   bool night_set_back = false;  ///< Unoccupied set-points differ from occupied ones.
 };
 
-/// How an effect may stand in time.
+/// How an effect can be limited in time.
 enum class Dating {
   always,      ///< A property of the building.
-  may_begin,   ///< Either always, or since a date that is then a parameter.
-  must_begin,  ///< Since a date.
+  may_begin,   ///< Either always, or from a date that is then a parameter.
+  must_begin,  ///< From a date.
   window,      ///< From one date to another.
 };
 
-/// A rival effect, and how to tell the two apart.
+/// A rival effect, and how to distinguish the two.
 struct Confusable {
   std::string_view effect;
   std::string_view separated_by;  ///< The measurement, as a building operator would order it.
@@ -73,12 +73,12 @@ struct Confusable {
 struct Effect {
   std::string_view id;
   std::string_view title;    ///< "Night set-back missing"
-  std::string_view meaning;  ///< For the people in the building, one or two sentences.
+  std::string_view meaning;  ///< For the people in the building, in one or two sentences.
   std::string_view physics;  ///< The equation as text, with units.
   EffectClass effect_class;
   Dating dating = Dating::always;
-  /// Changes what one meter records, not the building: there is one candidate a meter of these
-  /// utilities (empty: every meter), and `bind` is told which.
+  /// Changes what one meter records, not the building. There is one candidate per meter of these
+  /// utilities (empty: every meter), and `bind` gets the meter.
   bool of_one_meter = false;
   std::vector<metering::Utility> meter_utilities = {};
   EffectNeeds needs = {};
@@ -94,11 +94,11 @@ struct Effect {
 
 /// All entries, ordered by id.
 [[nodiscard]] std::span<const Effect> catalogue();
-/// @return nullptr where no entry has this id.
+/// @return nullptr if no entry has this id.
 [[nodiscard]] const Effect* find_effect(std::string_view id);
 
 /// Calls `inner` only in hours that start in [from_day, to_day), counted as `DriverHour::day_index`
-/// with the hour as fraction; `rebuild` is never called, so a dated effect must not use it.
+/// with the hour as fraction. Never calls `rebuild`, so a dated effect must not use it.
 [[nodiscard]] std::unique_ptr<model::hourly::Alteration> within_dates(
     std::unique_ptr<model::hourly::Alteration> inner, double from_day, double to_day);
 

@@ -1,4 +1,4 @@
-/// What is known of an effect's parameters after the data, in their own units.
+/// The posterior of an effect's parameters, in their own units.
 #pragma once
 
 #include <string>
@@ -21,15 +21,15 @@ struct ParameterPosterior {
   [[nodiscard]] bool is_day() const { return unit == "day"; }
 };
 
-/// Of an effect that was added: from its draws.
+/// For an added effect, from its draws.
 [[nodiscard]] std::vector<ParameterPosterior> posterior_of(const Addition& addition);
 
-/// Of a rival explanation: its scores are normal around the mode, its values their images, so the
-/// quantiles are exact for that normal and no value leaves its prior.
+/// For a rival explanation: its scores are normal around the mode and its values their images, so
+/// the quantiles are exact for that normal and no value leaves its prior.
 [[nodiscard]] std::vector<ParameterPosterior> posterior_of(const Candidate& candidate,
                                                            const JointFit& fit);
 
-/// The local day so many days after the record's first.
+/// The local day a number of days after the record's first.
 [[nodiscard]] metering::Day day_after(const SiteProblem& site, double days);
 
 }  // namespace recald::diagnosis

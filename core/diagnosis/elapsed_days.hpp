@@ -1,4 +1,4 @@
-/// Time as the dates of effects count it.
+/// Time as counted for the dates of effects.
 #pragma once
 
 #include "core/diagnosis/effect.hpp"
@@ -7,8 +7,7 @@ namespace recald::diagnosis::effects {
 
 inline constexpr double kDaysPerYear = 365.25;
 
-/// Local days since the day of the first hour, with the local hour as fraction; never falls
-/// from hour to hour.
+/// Local days since the day of the first hour, with the local hour as fraction; never decreases.
 [[nodiscard]] inline double elapsed_days(const model::DriverHour& hour) {
   return hour.day_index + hour.local_hour / 24.0;
 }

@@ -6,7 +6,7 @@
 namespace recald::diagnosis {
 namespace {
 
-/// Positions of the values, smallest first.
+/// Indices of the values, smallest first.
 std::vector<std::size_t> ascending_order(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -24,7 +24,7 @@ std::vector<double> benjamini_yekutieli(std::span<const double> p_values) {
   for (double i = 1.0; i <= tests; ++i) harmonic += 1.0 / i;
 
   std::vector<double> adjusted(order.size());
-  double least = 1.0;  // among this and all larger p-values
+  double least = 1.0;  // of this and all larger p-values
   for (std::size_t rank = order.size(); rank > 0; --rank) {
     const std::size_t test = order[rank - 1];
     least = std::min(least, tests * harmonic * p_values[test] / static_cast<double>(rank));
@@ -35,7 +35,7 @@ std::vector<double> benjamini_yekutieli(std::span<const double> p_values) {
 
 std::vector<double> holm(std::span<const double> p_values) {
   std::vector<double> adjusted(p_values.size());
-  double largest = 0.0;  // among this and all smaller p-values
+  double largest = 0.0;  // of this and all smaller p-values
   auto tests_left = static_cast<double>(p_values.size());
   for (const std::size_t test : ascending_order(p_values)) {
     largest = std::max(largest, std::min(1.0, tests_left * p_values[test]));

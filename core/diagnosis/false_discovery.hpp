@@ -1,4 +1,4 @@
-/// Many tests at once: which of them may be called findings.
+/// Multiple tests: which of them count as findings.
 #pragma once
 
 #include <span>
@@ -6,15 +6,15 @@
 
 namespace recald::diagnosis {
 
-/// Adjusted p-values under any dependence: a test is a finding at rate q when its value is <= q.
+/// Adjusted p-values under any dependence: a test is a finding at rate q if its value is <= q.
 ///
 /// With p_(1) <= ... <= p_(m) and c = sum_{i<=m} 1/i, the i-th is  min_{j>=i} m c p_(j) / j, at
 /// most 1. Controls the expected share of false findings among all findings.
-/// @param p_values  In [0, 1]; may be empty. NaN is a caller's bug.
+/// @param p_values  In [0, 1]; may be empty. A NaN is a bug of the caller.
 /// @see Benjamini, Yekutieli (2001), Ann. Statist. 29(4), theorem 1.3.
 [[nodiscard]] std::vector<double> benjamini_yekutieli(std::span<const double> p_values);
 
-/// Adjusted p-values that control the chance of a single false finding; any dependence.
+/// Adjusted p-values that control the probability of any false finding; any dependence.
 /// @see Holm (1979), Scand. J. Statist. 6(2).
 [[nodiscard]] std::vector<double> holm(std::span<const double> p_values);
 
@@ -26,7 +26,7 @@ struct TestFamily {
 
 /// Flags of the bins that are findings, family by family.
 ///
-/// A family is opened by its omnibus test (Holm over families at `rate`); its bins are then judged
+/// A family is opened by its omnibus test (Holm over families at `rate`); its bins are then tested
 /// by Benjamini-Yekutieli at `rate`.
 [[nodiscard]] std::vector<std::vector<bool>> findings(std::span<const TestFamily> families,
                                                       double rate = 0.05);

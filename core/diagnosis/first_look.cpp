@@ -13,7 +13,7 @@ constexpr std::size_t kColumnsAtOnce = 24;
 constexpr int kNullDraws = 999;
 constexpr double kNullProbability = 0.99;
 
-/// First and last days to try: all pairs in which the effect lasts a week at least.
+/// First and last days to try: all pairs in which the effect lasts at least a week.
 std::vector<std::pair<double, double>> day_choices(const Candidate& candidate) {
   constexpr double kForever = 1e9;
   constexpr std::array<double, 5> kLengths_d{10.0, 30.0, 60.0, 120.0, 240.0};
@@ -34,7 +34,7 @@ std::vector<std::pair<double, double>> day_choices(const Candidate& candidate) {
   return choices;
 }
 
-/// A footprint of an effect that acts always, cut to its days: exact but for what the building
+/// Limits the footprint of a permanent effect to its days: exact except for what the building
 /// remembers of the day before.
 Eigen::VectorXd cut_to_days(const SiteProblem& site, const Observations& observations,
                             const Eigen::VectorXd& footprint, std::pair<double, double> days) {
@@ -49,13 +49,13 @@ Eigen::VectorXd cut_to_days(const SiteProblem& site, const Observations& observa
   return cut;
 }
 
-/// How visible columns are and how far the residual speaks for them, many at once.
+/// How visible columns are and how strongly the residual supports them, many at once.
 struct Judgement {
   Eigen::VectorXd detectability;  ///< (k) d
-  Eigen::VectorXd score;          ///< (k) z, 0 where nothing is visible.
+  Eigen::VectorXd score;          ///< (k) z, 0 if invisible.
 };
 
-/// M as it stands under the base model, factored once for thousands of columns.
+/// M under the base model, factorised once for thousands of columns.
 class Judge {
  public:
   static Result<Judge> make(const FitContext& context, const JointFit& none) {
@@ -85,7 +85,7 @@ class Judge {
     return {d, (d.array() > kInvisible).select(spoken.array() / d.array(), 0.0)};
   }
 
-  /// All products, also between the columns.
+  /// All products, including those between the columns.
   [[nodiscard]] Result<GramSystem> system(const JointFit& none,
                                           const Eigen::MatrixXd& columns) const {
     const Eigen::Index q = none.jacobian.cols();
@@ -108,7 +108,7 @@ class Judge {
   const NoiseNode& node_;
   Eigen::MatrixXd solved_;              ///< Sigma^-1 [r | J] (n x (1 + q))
   Eigen::LLT<Eigen::MatrixXd> factor_;  ///< I + J' Sigma^-1 J
-  Eigen::VectorXd residual_;            ///< (q) J' Sigma^-1 r under that factor.
+  Eigen::VectorXd residual_;            ///< (q) J' Sigma^-1 r with that factor.
 };
 
 struct Footprints {
@@ -122,7 +122,7 @@ Footprints footprints_of(Predictor& predictor, const FitContext& context, const 
   Footprints result;
   const SiteFacts facts = context.site.facts();
   const AmountPrior prior = amount_prior(candidate);
-  // Undated first: days are cut out of one run.
+  // Undated first: dated footprints are cut out of one run.
   Candidate undated = candidate;
   undated.begins = undated.ends = false;
   for (const std::vector<double>& shape : shapes_to_try(candidate)) {

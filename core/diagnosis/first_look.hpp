@@ -1,9 +1,9 @@
 /// A first look at every candidate: how visible it is here, and how strongly the residuals support
 /// it.
 ///
-/// Linear: one run of the model per shape, and no refit beyond integrating out the base parameters.
-/// Decides which candidates are worth a fit, which cannot be told apart and which cannot be seen at
-/// all.
+/// Linear: one run of the model per shape, with the base parameters only integrated out, not
+/// refitted. Decides which candidates are worth a fit, which cannot be distinguished, and which
+/// cannot be seen at all.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ namespace recald::diagnosis {
 /// A candidate with one choice of shapes and days.
 struct Look {
   std::size_t candidate;       ///< Index into the list.
-  std::vector<double> values;  ///< Of all its parameters; amounts at a typical value.
+  std::vector<double> values;  ///< Of all its parameters; amounts are typical.
   double detectability = 0.0;  ///< d of the typical amount.
   double score = 0.0;          ///< z
   AmountPrior prior;           ///< Of the factor on the typical amount.
@@ -27,7 +27,7 @@ struct CandidateLook {
   Look best;                ///< The shape that fits the residuals best.
   double log_bayes_factor;  ///< Averaged over the shapes tried.
   double most_detectable;   ///< Largest d over the shapes.
-  bool visible;             ///< d of at least 3 somewhere: may be named at this site.
+  bool visible;             ///< d reaches at least 3: the effect may be named at this site.
 };
 
 struct FirstLook {

@@ -9,10 +9,10 @@
 namespace recald::diagnosis {
 namespace {
 
-// Of what other meters gain.
+// Of the gain of other meters.
 constexpr double kMostHarm = 0.25;
 
-/// Root mean square error over groups of parts (days, months), of the mean of the groups.
+/// Root mean square error over groups of parts (days, months), relative to the mean of the groups.
 double cvrmse_by(const SiteProblem& site, const MeterRows& rows, Eigen::Index g,
                  const Eigen::ArrayXXd& parts_kW, int (*group)(const DayPart&)) {
   std::map<int, std::pair<double, double>> sums;

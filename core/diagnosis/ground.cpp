@@ -9,21 +9,22 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr std::size_t kLeastGround = 100;
-// Spread of residuals in the upper half of the levels over that in the lower half, beyond which a
-// meter is judged on the square-root scale.
+// If residuals spread more than this at the upper half of the levels than at the lower half, a
+// meter uses the square-root scale.
 constexpr double kSpreadRatio = 1.6;
-constexpr double kGenerous = 1.5;        // patterns of the unknown model, over those of all others
-constexpr double kGenerousErrors = 3.0;  // and its errors in the ways that the catalogue knows
+constexpr double kGenerous = 1.5;        // patterns of the unknown model, relative to all others
+constexpr double kGenerousErrors = 3.0;  // and its errors of the kinds in the catalogue
 constexpr int kFirstIterations = 25;     // from the middle of the priors
 constexpr int kIterations = 8;
 constexpr int kLastIterations = 30;  // the mode that everything is compared with
 constexpr int kHops = 2;
 constexpr int kLastHops = 6;
-constexpr double kLeastNodeWeight = 1e-6;  // of the likeliest: what weighs less has no say
-// What the anonymous patterns may be, in units of a meter's mean; the likeliest is taken.
+constexpr double kLeastNodeWeight = 1e-6;  // relative to the likeliest; below it nodes are ignored
+// Possible sizes of the anonymous patterns, in units of a meter's mean; the likeliest is used.
 constexpr std::array kPatternShares{0.02, 0.06, 0.15};
 
-/// Root mean square of the residuals at the upper half of the modelled levels over the lower half.
+/// Root mean square of the residuals in the upper half of the modelled levels divided by that
+/// in the lower half.
 double spread_ratio(const Observations& observations, std::size_t meter,
                     const Eigen::VectorXd& residual, const Eigen::VectorXd& modelled) {
   const MeterRows& rows = observations.meters[meter];
@@ -41,7 +42,7 @@ double spread_ratio(const Observations& observations, std::size_t meter,
   return std::sqrt(high / std::max(low, 1e-12));
 }
 
-/// The likeliest noise of one meter, its patterns' size among those known.
+/// The likeliest noise of one meter, over the possible sizes of its patterns.
 Result<NoiseLevel> level_of(const MeterRows& meter, const Eigen::VectorXd& residual) {
   std::optional<LevelFit> best;
   for (const double share : kPatternShares) {
@@ -53,7 +54,7 @@ Result<NoiseLevel> level_of(const MeterRows& meter, const Eigen::VectorXd& resid
   return best->level;
 }
 
-/// The same once more near a level, the patterns' size as there.
+/// As above, near a given level and with its size of patterns.
 Result<NoiseLevel> refined(const MeterRows& meter, const Eigen::VectorXd& residual,
                            const NoiseLevel& near) {
   const double mean = std::max(meter.mean_kW, 1e-6);
@@ -62,7 +63,7 @@ Result<NoiseLevel> refined(const MeterRows& meter, const Eigen::VectorXd& residu
   return fitted->level;
 }
 
-/// @param before  Levels of the round before; empty in the first.
+/// @param before  Levels of the previous round; empty in the first.
 Result<std::vector<NoiseLevel>> levels_of(const Observations& observations,
                                           const Eigen::VectorXd& residual,
                                           const std::vector<NoiseLevel>& before) {
@@ -78,8 +79,9 @@ Result<std::vector<NoiseLevel>> levels_of(const Observations& observations,
   return levels;
 }
 
-/// Nearly white: with much slow structure a poor start would pass for the meters' own ways.
-/// @param residual  (n) that the white noise shall be as strong as; empty: 10 % of each mean.
+/// Nearly white: with much slow structure, the errors of a poor start would be
+/// absorbed by the noise.
+/// @param residual  (n) sets the strength of the white noise; empty: 10 % of each mean.
 NoiseNode search_noise(const Observations& observations, const Eigen::VectorXd& residual) {
   constexpr double kFirst = 0.1;
   constexpr double kLeast = 0.01;
@@ -113,7 +115,7 @@ void set_gates(Observations& observations, const Eigen::VectorXd& residual,
   for (std::size_t g = 0; g < gates.size(); ++g) observations.meters[g].design.gated = gates[g];
 }
 
-/// From what patterns and usual errors leave over.
+/// From the residuals without patterns and usual errors.
 void set_spreads(const SiteProblem& site, const Ground& ground, std::vector<MeterScale>& scales) {
   const NoiseNode& node = ground.grid[static_cast<std::size_t>(ground.none.best_node)];
   for (std::size_t g = 0; g < scales.size(); ++g) {
@@ -125,7 +127,7 @@ void set_spreads(const SiteProblem& site, const Ground& ground, std::vector<Mete
   }
 }
 
-/// Under nearly white noise and without usual errors: first the parameters explain all they can.
+/// With nearly white noise and no usual errors, so that the parameters first explain all they can.
 Ground plain_ground(const SiteProblem& site) {
   Ground ground;
   ground.fit = observe(site, parts_of(site, {Role::fit}),
@@ -142,7 +144,8 @@ Result<JointFit> plain_fit(Predictor& predictor, const SiteProblem& site, const 
                      {.iterations_max = kFirstIterations});
 }
 
-/// The base model from the middle of the priors and from the site's second start: the likelier.
+/// Fits the base model from the middle of the priors and from the site's second start;
+/// returns the likelier.
 Result<JointFit> first_fit(Predictor& predictor, const SiteProblem& site, const Ground& plain) {
   Eigen::VectorXd start = Eigen::VectorXd::Zero(std::ssize(site.parameters));
   auto best = plain_fit(predictor, site, plain, start);
@@ -166,7 +169,7 @@ Result<void> require_parts(const SiteProblem& site, const Observations& fit) {
   return {};
 }
 
-/// Which meters err in proportion to what they show.
+/// Finds the meters whose errors are proportional to their level.
 void set_levels_scale(const Ground& ground, std::vector<MeterScale>& scales) {
   const Eigen::VectorXd modelled = ground.fit.stack(ground.none.parts_kW);
   for (std::size_t g = 0; g < scales.size(); ++g) {
@@ -176,7 +179,7 @@ void set_levels_scale(const Ground& ground, std::vector<MeterScale>& scales) {
   }
 }
 
-/// The usual errors at the present mode: base parameters move when errors join them, and the
+/// The usual errors at the current mode: base parameters move when errors are added, and the
 /// errors' shapes with them. @return scores to start from
 Eigen::VectorXd draw_errors(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
                             Ground& ground) {
@@ -192,8 +195,8 @@ Eigen::VectorXd draw_errors(Predictor& predictor, const SiteProblem& site, Model
   return start;
 }
 
-/// Noise of what the present mode leaves, to search under and to judge by.
-/// @param last  Near the levels known, and a whole grid.
+/// Noise of the residuals at the current mode, for the search and for scoring.
+/// @param last  Start near the known levels, and use a whole grid.
 Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last) {
   const Eigen::VectorXd gap = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
   ground.search = search_noise(ground.fit, gap);
@@ -207,7 +210,7 @@ Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last
   return {};
 }
 
-/// Goes on with the nodes that have a say, by the likeliest of them.
+/// Keeps the nodes that matter; the likeliest becomes the reference.
 void keep_likely_nodes(Ground& ground) {
   const Eigen::VectorXd& weights = ground.none.node_weights;
   std::vector<NoiseNode> likely;
@@ -219,7 +222,7 @@ void keep_likely_nodes(Ground& ground) {
   ground.grid = std::move(likely);
 }
 
-/// Draws the usual errors where the mode stands, and fits the base model from there once more.
+/// Draws the usual errors at the mode, and fits the base model again from there.
 Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
                     Ground& ground) {
   const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
@@ -230,7 +233,7 @@ Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors e
   return {};
 }
 
-/// Usual errors, noise and mode once, in this order.
+/// Usual errors, noise and mode once each, in this order.
 Result<void> learn(Predictor& predictor, const SiteProblem& site, ModelErrors errors, bool last,
                    Ground& ground) {
   const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
@@ -263,7 +266,7 @@ Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelEr
     if (!last) set_spreads(site, ground, scales);
   }
   keep_likely_nodes(ground);
-  // Under the final noise the mode has moved once more.
+  // The mode has moved again under the final noise.
   if (auto settled = settle(predictor, site, errors, ground); !settled) {
     return tl::unexpected(settled.error());
   }

@@ -13,10 +13,10 @@
 
 namespace recald::diagnosis {
 
-/// What the model is taken to err by, besides its parameters and its noise.
+/// The assumed errors of the model, besides its parameters and noise.
 enum class ModelErrors {
-  usual,  ///< What was learnt of models where nothing was hidden.
-  none,   ///< Nothing: the model made the data itself (tests).
+  usual,  ///< As learnt from models of buildings with nothing hidden.
+  none,   ///< None: the model itself made the data (tests).
 };
 
 /// Observations by role, noise and base fit of one version of the model.
@@ -26,10 +26,10 @@ struct Ground {
   Observations show;                         ///< Held-out months; may be empty.
   std::shared_ptr<const UsualErrors> usual;  ///< Drawn at a mode near the last one.
   Eigen::MatrixXd errors;                    ///< E of the months to fit.
-  std::vector<NoiseLevel> levels;            ///< (m) as fitted to what the base model leaves.
-  std::vector<NoiseNode> grid;               ///< Nodes that the base model leaves any weight.
+  std::vector<NoiseLevel> levels;            ///< (m) as fitted to the residuals of the base model.
+  std::vector<NoiseNode> grid;               ///< Nodes with some weight under the base model.
   std::size_t reference_node = 0;
-  NoiseNode search;  ///< Nearly white, as strong as what the base model leaves of each meter.
+  NoiseNode search;  ///< Nearly white, as strong as the residuals of the base model for each meter.
   JointFit none;     ///< Base parameters alone, at their mode.
 
   [[nodiscard]] FitContext context(const SiteProblem& site) const {
@@ -37,27 +37,27 @@ struct Ground {
   }
 };
 
-/// Log evidence of the unknown model: the base model, linearised at its mode, under larger patterns
+/// Log evidence of the unknown model: the base model, linearised at its mode, with larger patterns
 /// and one in date.
 [[nodiscard]] Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground);
 
 /// Finds scales, noise and mode in turn: the first fit gives the scales, the second the noise, and
 /// the third is the result.
-/// @param predictor  With the effects that the model has already.
-/// @return the ground; not_enough_data where a meter has fewer than 100 measured parts to fit; or
+/// @param predictor  With the effects that the model already has.
+/// @return the ground; not_enough_data if a meter has fewer than 100 measured parts to fit; or
 ///         not_finite, not_positive_definite from the fits.
 [[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
                                         ModelErrors errors = ModelErrors::usual);
 
-/// The ground of a model with one effect more, from where that effect was found: same scales, noise
-/// and mode anew. Two grounds then differ by the effect, not by another mode.
+/// The ground of a model with one more effect, starting where that effect was found: same scales,
+/// new noise and mode. Two grounds then differ by the effect and not by another mode.
 /// @param predictor  With the effect.
 /// @param found      The base parameters fitted together with it, on `before`.
 [[nodiscard]] Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site,
                                              const Ground& before, const JointFit& found,
                                              ModelErrors errors = ModelErrors::usual);
 
-/// Goes over to a better mode of the same model. @param mode  Base parameters alone.
+/// Moves the ground to a better mode of the same model. @param mode  Base parameters alone.
 [[nodiscard]] Result<void> move_ground(Predictor& predictor, const SiteProblem& site, JointFit mode,
                                        Ground& ground, ModelErrors errors = ModelErrors::usual);
 

@@ -6,9 +6,9 @@
 namespace recald::diagnosis {
 namespace {
 
-// Of the sd of a pattern after two years have taught it: about a third.
+// Of the sd of a pattern, after two years of data: about a third.
 constexpr double kPatternsLeftOpen = 0.3;
-// Of the size of a held month's noise: known within a factor of two or so.
+// Of the size of a held-out month's noise, which is known within a factor of about two.
 constexpr double kFreedom = 4.0;
 
 ScoreGain gain_of(const std::vector<double>& differences) {
@@ -24,7 +24,8 @@ ScoreGain gain_of(const std::vector<double>& differences) {
   return {sum, std::sqrt(n * variance)};
 }
 
-/// What the fitted months leave open of the usual errors' amounts: a root of their covariance.
+/// Remaining uncertainty of the usual errors' amounts after the fitted months: a root of
+/// their covariance.
 Eigen::MatrixXd root_of_errors(const JointFit& model) {
   const Eigen::Index k = model.usual.size();
   const auto q = static_cast<Eigen::Index>(model.theta.size());
@@ -32,8 +33,8 @@ Eigen::MatrixXd root_of_errors(const JointFit& model) {
   return model.posterior.covariance.block(q, q, k, k).llt().matrixL();
 }
 
-/// A drift is not learnt from other months, and the errors' amounts are not known to the digit.
-/// @param errors  (n x k) one sd of each, in units of the patterns left open.
+/// A drift cannot be learnt from other months, and the errors' amounts are not known exactly.
+/// @param errors  (n x k) one sd of each, in units of the remaining patterns.
 void leave_open(BlockDesign& month, const Eigen::MatrixXd& errors) {
   Eigen::MatrixXd patterns(month.patterns.rows(), month.patterns.cols() + errors.cols());
   patterns << month.patterns, errors;

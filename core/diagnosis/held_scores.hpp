@@ -1,4 +1,4 @@
-/// How well months that were not fitted are predicted.
+/// How well held-out months are predicted.
 #pragma once
 
 #include <map>
@@ -10,35 +10,36 @@
 
 namespace recald::diagnosis {
 
-/// Log density of each held month by its index, meter by meter (m): a Student t, since the size of
-/// that month's noise is not known to the digit and months that go wrong altogether must not decide
-/// by the square of it. No month knows its neighbours'
+/// Log density of each held-out month by its index, meter by meter (m). It is a Student t, because
+/// the size of that month's noise is not known exactly and months that go wrong altogether must not
+/// decide by their square. A month does not use its neighbours' slow structure, which would leak
+/// across the split.
 /// slow structure, or the answer would leak across the split.
 using MonthScores = std::vector<std::map<int, double>>;
 
-/// An error that the model makes in every week and weather is no evidence in a held month. Each
-/// model therefore includes the recurring patterns and usual errors that it needs on the fitted
-/// months; only the uncertainty that remains counts as noise.
+/// An error that the model makes in every week and all weather is no evidence in a held-out month.
+/// So each model includes the recurring patterns and usual errors that it needs on the fitted
+/// months; only the remaining uncertainty counts as noise.
 struct HeldJudge {
   const SiteProblem& site;
-  const Observations& fit;             ///< Months that teach the patterns.
+  const Observations& fit;             ///< Months from which patterns are learnt.
   const NoiseNode& node;               ///< Their noise.
   const Observations& held;            ///< Months that are scored.
-  std::span<const NoiseLevel> levels;  ///< (m) noise of a held month.
+  std::span<const NoiseLevel> levels;  ///< (m) noise of a held-out month.
 
-  /// @param usual  The usual errors that the model was fitted with.
+  /// @param usual  The usual errors used in the model's fit.
   [[nodiscard]] MonthScores scores(const JointFit& model, const UsualErrors& usual) const;
 };
 
-/// A sum over months and its standard error, the months taken as independent.
+/// A sum over months and its standard error, with months treated as independent.
 struct ScoreGain {
   double sum = 0.0;
-  double se = 0.0;  ///< 0 where there are fewer than two months.
+  double se = 0.0;  ///< 0 for fewer than two months.
 };
 
-/// with - without, month by month.
+/// `with` minus `without`, month by month.
 [[nodiscard]] MonthScores difference(const MonthScores& with, const MonthScores& without);
-/// Of several differences of the same months.
+/// Sum of several differences for the same months.
 [[nodiscard]] MonthScores sum_of(std::span<const MonthScores> changes);
 
 /// Of each meter (m). @param change  A difference.

@@ -10,21 +10,21 @@
 namespace recald::diagnosis {
 namespace {
 
-// Slopes are taken over steps as long as what the data leave open of a score, or a little longer:
-// the model has a kink wherever a thermostat or a valve changes its mind.
+// Slopes are taken over steps as long as the remaining uncertainty of a score, or slightly longer,
+// because the model has kinks at thermostats and valves.
 constexpr double kScoreStep = 0.03;
 constexpr double kEffectStep = 0.1;
-// A day moved by its tenth of a score would jump a month; two days are still many parts.
+// A tenth of a score could move a day by a month; two days are still many parts.
 constexpr double kDayStep_d = 2.0;
 constexpr double kScoreLimit = 5.0;
 constexpr int kTrialsMax = 6;
-// Precision of the damped steps, in units of the priors': the least, and factors after a step that
-// failed and after one that helped at once.
+// Precision of the damped steps, in units of the priors': the minimum, and factors after a failed
+// step and after one that helped at once.
 constexpr double kLeastDamping = 3.0;
 constexpr double kMoreDamping = 8.0;
 constexpr double kLessDamping = 0.1;
 constexpr double kNoDamping = 0.05;
-// A hop goes so far in each score, climbs so often, and is given up so far below.
+// How far a hop goes in each score, how often it climbs, and how far below it is abandoned.
 constexpr double kHop = 0.4;
 constexpr int kHopIterations = 6;
 constexpr int kHopTrial = 3;
@@ -32,7 +32,7 @@ constexpr double kHopSmallGain = 0.5;
 constexpr double kHopHopeless = 60.0;
 constexpr std::uint64_t kHopSeed = 1;
 
-/// Runs the model at own scores v = [theta | eta] (q + r) and stacks the result.
+/// Runs the model at its own scores v = [theta | eta] (q + r) and stacks the result.
 class ScoredModel {
  public:
   ScoredModel(Predictor& predictor, const FitContext& context, const Candidate& candidate)
@@ -67,7 +67,7 @@ class ScoredModel {
   }
   [[nodiscard]] bool is_stopped() const { return predictor_.is_stopped(); }
 
-  /// What is chosen, never fitted. @param j  Index into eta.
+  /// Whether the parameter is chosen, not fitted. @param j  Index into eta.
   [[nodiscard]] bool is_choice(Eigen::Index j) const { return parameter(j).choice; }
   [[nodiscard]] bool is_day(Eigen::Index j) const { return parameter(j).unit == "day"; }
   [[nodiscard]] bool has_days() const { return candidate_.begins; }
@@ -77,7 +77,7 @@ class ScoredModel {
     }
     return jacobian;
   }
-  /// A choice is as it is. @param eta_begin  Of the posterior.
+  /// Fixes the choices. @param eta_begin  Index in the posterior.
   void hold_choices(Eigen::Index eta_begin, GaussianPosterior& posterior) const {
     constexpr double kNoSpread = 1e-12;
     for (Eigen::Index j = 0; j < eta_count(); ++j) {
@@ -87,7 +87,7 @@ class ScoredModel {
       posterior.covariance(eta_begin + j, eta_begin + j) = kNoSpread;
     }
   }
-  /// Log of how many ways there were to choose: what one of them pays in evidence.
+  /// Log of the number of choices, which is subtracted from the evidence of each.
   [[nodiscard]] double log_choices() const {
     double logs = 0.0;
     for (const EffectParameter& parameter : candidate_.parameters) {
@@ -105,7 +105,7 @@ class ScoredModel {
         columns.col(j).setZero();
         continue;
       }
-      // Towards the middle of the prior: the step never leaves what is plausible.
+      // Towards the middle of the prior, so that the step stays plausible.
       const double step = (own[j] > 0.0 ? -1.0 : 1.0) * step_of(j, own[j]);
       moved[j] = own[j] + step;
       columns.col(j) = (stacked(moved) - here) / step;
@@ -142,16 +142,17 @@ Eigen::MatrixXd beside(const Eigen::VectorXd& residual, const Eigen::MatrixXd& j
 
 Eigen::MatrixXd unit_precision(Eigen::Index q) { return Eigen::MatrixXd::Identity(q, q); }
 
-/// Where a search stands.
+/// The current point of a search.
 struct Place {
   Eigen::VectorXd own;       ///< (q + r)
   Eigen::VectorXd residual;  ///< (n) measured - modelled
-  Eigen::MatrixXd jacobian;  ///< (n x (q + r)) of the model, at `own` or one step before.
-  double log_density = 0.0;  ///< Posterior under the search's noise, but a constant.
+  Eigen::MatrixXd jacobian;  ///< (n x (q + r)) of the model, at `own` or one step earlier.
+  double log_density = 0.0;  ///< Posterior under the search's noise, up to a constant.
   double damping = 0.0;
 };
 
-/// Climbs towards the mode with damped Gauss-Newton steps, under the context's noise for it.
+/// Climbs towards the mode with damped Gauss-Newton steps, under the context's
+/// noise for the search.
 class ModeSearch {
  public:
   ModeSearch(ScoredModel& model, const FitContext& context, const Eigen::VectorXd& start)
@@ -159,7 +160,7 @@ class ModeSearch {
     move_to(start);
   }
 
-  /// @return whether it came to an end
+  /// @return whether it converged
   Result<bool> climb(int iterations_max, double small_gain) {
     for (int i = 0; i < iterations_max; ++i) {
       const auto gain = iterate();
@@ -170,8 +171,8 @@ class ModeSearch {
     return false;
   }
 
-  /// From places nearby, in case the hill is not the highest. Days and choices stay.
-  /// @return whether one led higher
+  /// Restarts from nearby points, in case this mode is not the highest. Days and choices stay.
+  /// @return whether a higher mode was found
   Result<bool> hop(int hops) {
     Rng rng{kHopSeed};
     bool higher = false;
@@ -210,7 +211,7 @@ class ModeSearch {
     return -0.5 * (noise_.squared_norms(observations_, residual)[0] + own.squaredNorm());
   }
 
-  /// Linearises and steps. @return what the step gained, 0 where none helped
+  /// Linearises and steps. @return the gain of the step, 0 if none helped
   Result<double> iterate() {
     if (!std::isfinite(place.log_density)) {
       return failure(
@@ -221,7 +222,7 @@ class ModeSearch {
     place.jacobian = model_.jacobian(place.own, observations_.measured - place.residual);
     auto gain = step_by(place.jacobian);
     if (!gain || *gain > 0.0 || !model_.has_days()) return gain;
-    // A day moves the meters by jerks, and a step that trusts its slope may help nothing else.
+    // Moving a day changes the meters in jumps, and a step based on its slope may not help.
     place.damping = 0.0;
     return step_by(model_.with_days_held(place.jacobian));
   }
@@ -233,7 +234,7 @@ class ModeSearch {
     for (int trial = 0; trial < kTrialsMax; ++trial) {
       const auto target = posterior(system, (1.0 + place.damping) * unit_precision(model_.count()));
       if (!target) return tl::unexpected(target.error());
-      // The damping is a further prior about the present scores; what moves nothing stays.
+      // The damping is an additional prior around the current scores; scores without effect stay.
       const Eigen::VectorXd aim = target->mean + place.damping * (target->covariance * place.own);
       const Eigen::VectorXd tried = (place.own + moves.select(aim - place.own, 0.0))
                                         .cwiseMax(-kScoreLimit)
@@ -259,7 +260,7 @@ class ModeSearch {
   const NoiseNode& noise_;
 };
 
-/// The three kinds of scores in their order: (q + k + r).
+/// The three kinds of scores in order: (q + k + r).
 Eigen::VectorXd all_scores(const Eigen::VectorXd& own, const Eigen::VectorXd& usual,
                            Eigen::Index q) {
   Eigen::VectorXd scores(own.size() + usual.size());

@@ -1,10 +1,11 @@
 /// Base parameters and one candidate effect fitted together, from their original priors.
 ///
-/// Everything is a standard normal score: value = prior.at_score(u), so the prior of all scores is
-/// N(0, I) and no value ever leaves its prior. Damped Gauss-Newton steps find the mode under nearly
-/// white noise: recurring patterns and usual errors could stand in for the building, and would
-/// leave the parameters where no footprint is true. There the model is linearised, and the evidence
-/// is that of the linear model under all that a model may err by, at every node of the noise grid.
+/// All parameters are standard normal scores: value = prior.at_score(u), so the prior of all scores
+/// is N(0, I) and no value ever leaves its prior. Damped Gauss-Newton steps find the mode under
+/// nearly white noise. Recurring patterns and usual errors are left out of this search, because
+/// they could replace the building's parameters, and footprints would be wrong at the resulting
+/// mode. At the mode the model is linearised. The evidence is that of the linear model with all
+/// possible errors, at every node of the noise grid.
 /// @see Tierney, Kadane (1986), J. Am. Stat. Assoc. 81(393): Laplace's approximation.
 #pragma once
 
@@ -21,13 +22,13 @@ namespace recald::diagnosis {
 
 struct FitOptions {
   int iterations_max = 8;
-  double small_gain = 0.05;  ///< Stop when an iteration gains less log posterior density.
-  /// From the mode found to places nearby, climbing again from each: a model with thermostats has
-  /// many hills beside each other.
+  double small_gain = 0.05;  ///< Stop when an iteration gains less log posterior density than this.
+  /// Number of restarts from points near the mode: a model with thermostats has many
+  /// neighbouring modes.
   int hops = 0;
 };
 
-/// A model linearised at its mode; usual errors as they are likeliest there.
+/// A model linearised at its mode, with the likeliest usual errors there.
 struct JointFit {
   Eigen::VectorXd scores;        ///< (q + k + r) at the mode: theta, usual errors, eta.
   std::vector<double> theta;     ///< (q)
@@ -36,7 +37,7 @@ struct JointFit {
   Eigen::VectorXd residual;      ///< (n) measured - modelled - E b, on the scale.
   Eigen::MatrixXd jacobian;      ///< (n x (q + k + r)) with respect to the scores.
   Eigen::ArrayXXd parts_kW;      ///< (parts x m) the model at the mode, whole period, without E b.
-  double log_density = 0.0;      ///< Of theta and eta under the search's noise, but a constant.
+  double log_density = 0.0;      ///< Of theta and eta under the search's noise, up to a constant.
   double log_evidence = 0.0;     ///< Over the grid.
   double log_likelihood = 0.0;   ///< Of all scores at the mode, at the best node.
   Eigen::VectorXd node_weights;  ///< (nodes) posterior.
@@ -45,28 +46,28 @@ struct JointFit {
   int iterations = 0;
   bool converged = false;
 
-  /// r + J u: the residual column of the linear model whose prior is N(0, I) at score 0.
+  /// r + J u: the residual column of the linear model with prior N(0, I) at score 0.
   [[nodiscard]] Eigen::VectorXd linear_residual() const { return residual + jacobian * scores; }
 };
 
-/// What a fit is made on. References live as long as the call.
+/// The data and noise of a fit. References live as long as the call.
 struct FitContext {
   const SiteProblem& site;
   const Observations& observations;
   const Eigen::MatrixXd& errors;  ///< E (n x k), usual errors of these observations; k may be 0.
   const std::vector<NoiseNode>& grid;
-  std::size_t reference_node;  ///< The likeliest amounts of the usual errors are this one's.
-  const NoiseNode& search;     ///< Nearly white: under this noise the mode is found.
+  std::size_t reference_node;  ///< Used for the likeliest amounts of the usual errors.
+  const NoiseNode& search;     ///< Nearly white: the mode is found under this noise.
 };
 
 /// @param candidate  effect == nullptr: the base model alone.
 /// @param start      (q + k + r) scores.
-/// @return the fit, converged or not; not_finite where the model leaves the numbers.
+/// @return the fit, converged or not; not_finite if the model gives no finite values.
 [[nodiscard]] Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
                                            const Candidate& candidate, const Eigen::VectorXd& start,
                                            const FitOptions& options = {});
 
-/// The evidence of an existing linearisation under another noise: no run of the model.
+/// The evidence of an existing linearisation with another noise, without running the model.
 struct GridEvidence {
   double log_evidence;
   Eigen::VectorXd node_weights;
@@ -77,13 +78,13 @@ struct GridEvidence {
                                                  const Eigen::VectorXd& linear_residual,
                                                  const Eigen::MatrixXd& jacobian);
 
-/// The values that scores stand for. @param priors  (r) in order.
+/// The values of scores. @param priors  (r) in order.
 [[nodiscard]] std::vector<double> values_at(std::span<const Prior> priors,
                                             const Eigen::Ref<const Eigen::VectorXd>& scores);
 [[nodiscard]] std::vector<Prior> priors_of(const SiteProblem& site);
 [[nodiscard]] std::vector<Prior> priors_of(const Candidate& candidate);
 
-/// Score of a value, kept within +-limit.
+/// The score of a value, limited to +-limit.
 [[nodiscard]] double score_of(const Prior& prior, double value, double limit = 3.0);
 
 }  // namespace recald::diagnosis

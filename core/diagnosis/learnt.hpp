@@ -1,4 +1,4 @@
-/// Figures of effects that a training population taught.
+/// Figures of effects learnt from a training population.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ struct Learnt {
   double value;
 };
 
-/// @param otherwise  For an effect that the population had no say about.
+/// @param otherwise  For an effect about which the population showed nothing.
 [[nodiscard]] inline double learnt_of(std::span<const Learnt> table, std::string_view effect,
                                       double otherwise) {
   const auto found = std::ranges::find(table, effect, &Learnt::effect);

@@ -27,7 +27,7 @@ std::string number(double value, const display::Unit& unit) {
   return text + unit.name;
 }
 
-/// How a family names the bin of a part; equal numbers are one bin, negative is none.
+/// How a family assigns a part to a bin; equal numbers share a bin, negative is none.
 struct Family {
   std::string name;
   std::function<int(const DayPart&)> bin;
@@ -112,7 +112,7 @@ std::vector<Family> families_of(const SiteProblem& site) {
         site, {"sun", "sun", {"W/m²"}, [](const DayPart& p) { return p.global_horizontal_W_m2; }},
         8));
   }
-  // Hours by temperature: a third of the temperatures each.
+  // Hours by temperature: three classes of equal count.
   Family warm = quantile_family(site, temperature, 3);
   families.push_back({"hours by outdoor temperature",
                       [bin = warm.bin](const DayPart& p) { return bin(p) * kPartsPerDay + p.part; },
@@ -129,7 +129,7 @@ struct Bin {
   int number;
 };
 
-/// One column a bin: ones where its parts stand.
+/// One column per bin: ones in its parts.
 struct BinColumns {
   std::vector<Bin> bins;
   Eigen::MatrixXd columns;

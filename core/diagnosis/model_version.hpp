@@ -1,6 +1,6 @@
-/// A version of a site's model: the drawings, and the effects that were added to them one by one.
+/// A version of a site's model: the drawings, and the effects that were added one by one.
 ///
-/// Versions are never changed, only followed by others: what an effect was accepted on stays
+/// Versions never change; changes make new ones. So the basis on which an effect was accepted stays
 /// readable, and every addition can be reverted.
 #pragma once
 
@@ -25,7 +25,7 @@ struct EffectParameterRecord {
   std::string name;
   std::string unit;
   Prior prior;
-  double mean;  ///< Of the posterior, as all that follow.
+  double mean;  ///< Of the posterior, as all below.
   double sd;
   double q05;
   double q50;
@@ -35,34 +35,34 @@ struct EffectParameterRecord {
   bool operator==(const EffectParameterRecord&) const = default;
 };
 
-/// What the effect changes a meter by in a month, mean over `months_used` and the posterior.
+/// What the effect changes at a meter per month, mean over `months_used` and the posterior.
 struct MeterImpact {
   std::string meter;
   double monthly_kWh;  ///< With the effect minus without it.
   bool operator==(const MeterImpact&) const = default;
 };
 
-/// Another explanation that was weighed: an effect's id, "none" or "unknown".
+/// Another explanation that was considered: an effect's id, "none" or "unknown".
 struct Rival {
   std::string effect;
   double probability;
   bool operator==(const Rival&) const = default;
 };
 
-/// An effect as it stands in a model, with what it was accepted on.
+/// An effect in a model, with the evidence on which it was accepted.
 struct AddedEffect {
   std::string effect;                 ///< Id in the catalogue.
   std::string title;                  ///< "Night set-back missing"
-  std::string meter;                  ///< Of an effect on one meter's record; else empty.
-  std::optional<metering::Day> from;  ///< First day it acts; absent: always did.
-  std::optional<metering::Day> to;    ///< First day it no longer acts; absent: still does.
+  std::string meter;                  ///< For an effect on one meter's record; else empty.
+  std::optional<metering::Day> from;  ///< First day of the effect; absent: from the beginning.
+  std::optional<metering::Day> to;    ///< First day without the effect again; absent: to the end.
   std::string physics;                ///< The equation as text, with units.
   std::vector<EffectParameterRecord> parameters;
   double log_evidence_gain;  ///< ln of the evidence with it over that without, nats.
   double probability;        ///< 0…1
   std::vector<Rival> rivals = {};
   std::vector<MeterImpact> impacts = {};
-  /// Months the diagnosis learnt from, ascending. They must not teach these parameters again.
+  /// Months used by the diagnosis, ascending. They must not be used for these parameters again.
   std::vector<metering::Month> months_used = {};
   bool operator==(const AddedEffect&) const = default;
 };
@@ -71,7 +71,7 @@ enum class VersionAuthor { automatic, human };
 inline constexpr std::array<std::string_view, 2> kVersionAuthors = {"auto", "human"};
 
 enum class VersionStatus {
-  proposed,  ///< Written, and never in force.
+  proposed,  ///< Written, but never in force.
   accepted,
   retired,   ///< Later data spoke against its effect.
   reverted,  ///< Withdrawn.
@@ -87,15 +87,15 @@ inline constexpr std::array<std::string_view, 4> kVersionStatuses = {"proposed",
 }
 
 struct ModelVersion {
-  std::string version;  ///< SHA-256 of all but status and time, hex; or `kBaseVersion`.
+  std::string version;  ///< SHA-256 of everything except status and time, hex; or `kBaseVersion`.
   std::string parent;   ///< Empty for the base version.
   std::string site_id;
   std::string created_at;  ///< ISO 8601, UTC.
   VersionAuthor author = VersionAuthor::human;
   VersionStatus status = VersionStatus::proposed;
-  std::string data_revision;              ///< SHA-256 over the site file and its data.
-  std::string catalogue_version;          ///< The program whose catalogue the effects are from.
-  std::vector<AddedEffect> effects = {};  ///< All that the model has, in the order of addition.
+  std::string data_revision;      ///< SHA-256 over the site file and its data.
+  std::string catalogue_version;  ///< The program version whose catalogue the effects are from.
+  std::vector<AddedEffect> effects = {};  ///< All effects of the model, in the order of addition.
   bool operator==(const ModelVersion&) const = default;
 };
 
@@ -107,7 +107,7 @@ struct ModelVersion {
   return base;
 }
 
-/// The first twelve digits of a version: what people read and type.
+/// The first twelve digits of a version, for people to read and type.
 [[nodiscard]] inline std::string short_version(std::string_view version) {
   return std::string{version.substr(0, 12)};
 }

@@ -12,13 +12,13 @@ namespace {
 
 using model::hourly::Alteration;
 
-/// Values of each parameter, by the number of parameters: at most 243 runs.
+/// Number of values per parameter, by the number of parameters: at most 243 runs.
 constexpr std::array<int, 6> kNodes = {1, 9, 9, 5, 3, 3};
 
 /// Probability below one standard deviation under the mean of a normal.
 constexpr double kBelow = 0.1587;
 
-/// Less of a meter's mean month than this gives no ratio to go by.
+/// If a meter's mean month is below this share, no ratio is computed.
 constexpr double kLeastShareOfMean = 1e-6;
 
 std::vector<double> nodes_of(const ParameterRange& range, int count) {
@@ -29,7 +29,7 @@ std::vector<double> nodes_of(const ParameterRange& range, int count) {
   for (int i = 0; i < count; ++i) {
     nodes.push_back(range.low + (range.high - range.low) * i / (count - 1));
   }
-  nodes.back() = range.high;  // what rounding must not push out of a prior's support
+  nodes.back() = range.high;  // rounding must not leave the prior's support
   return nodes;
 }
 
@@ -49,13 +49,13 @@ Eigen::ArrayXd daily_averages(const SiteProblem& site, const Eigen::ArrayXXd& ho
   return sums;
 }
 
-/// Recorded over unrecorded; 1 where nothing was consumed that could be recorded wrongly.
+/// Recorded divided by unrecorded; 1 if there was no consumption.
 Eigen::ArrayXd ratios(const Eigen::ArrayXd& recorded, const Eigen::ArrayXd& unrecorded) {
   const double least = kLeastShareOfMean * unrecorded.mean();
   return (unrecorded > least).select(recorded / unrecorded, 1.0);
 }
 
-/// Where a value lies between two nodes: the lower one and the share of the upper.
+/// Position of a value between two nodes: the lower one and the weight of the upper.
 struct NodePlace {
   Eigen::Index lower;
   double upper_share;
@@ -72,7 +72,7 @@ NodePlace place_of(const std::vector<double>& nodes, double value) {
 
 using Nodes = std::vector<std::vector<double>>;
 
-/// Values of the parameters at a point of the grid, first parameter fastest.
+/// Parameter values at a point of the grid, first parameter fastest.
 void values_at_point(const Nodes& nodes, Eigen::Index point, std::vector<double>& values) {
   for (std::size_t j = 0; j < nodes.size(); ++j) {
     const auto size = static_cast<Eigen::Index>(nodes[j].size());
@@ -204,7 +204,7 @@ MonthlyEffect tabulate_effect(const SiteProblem& site,
     at[j] = middle[j];
   }
   const auto months = static_cast<int>(site.drivers->months.size());
-  // A record's ratio does not ask what was consumed.
+  // The ratio of a record does not depend on the consumption.
   if (candidate.meter >= 0) return {std::move(nodes), candidate.meter, std::move(table), months};
   return {std::move(nodes), -1, std::move(table), months, middle, std::move(slopes)};
 }

@@ -1,10 +1,10 @@
-/// The monthly form of an effect, for models that know no hours.
+/// The monthly form of an effect, for models without hours.
 ///
-/// The hourly model of the site is run with and without the effect over a grid of the effect's
-/// parameters, and what each meter changes by in each month is kept. A monthly model adds that
-/// change to its own meters, so that it has the same effect at the same values. Meters are sums of
-/// end uses, so a table by meter holds the numbers that one by end use would. An effect on one
-/// meter's record is no energy: of it the ratio of recorded to unrecorded is kept.
+/// The site's hourly model is run with and without the effect over a grid of the effect's
+/// parameters, and the change of each meter in each month is stored. A monthly model adds that
+/// change to its own meters, so it has the same effect at the same values. Meters are sums of end
+/// uses, so a table by meter suffices. For an effect on a single meter's record we store the ratio
+/// of recorded to unrecorded.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,30 +17,29 @@
 
 namespace recald::diagnosis {
 
-/// Where a parameter of an effect is looked at. low == high: it is held there.
+/// The range of a parameter of an effect. low == high: it is fixed.
 struct ParameterRange {
   double low;
   double high;
 };
 
-/// Where a parameter of the model is expected, and about one sd below and above.
+/// The expected value of a model parameter, and about one sd below and above.
 struct ParameterSpread {
   double low;
   double middle;
   double high;
 };
 
-/// What an effect does to the meters of each month, as a function of its own parameters η and, to
-/// first order, of the model's parameters θ: more outdoor air makes a damper that is stuck open
-/// cost more.
+/// The effect on the meters of each month as a function of its own parameters η and, to first
+/// order, of the model's parameters θ: with more outdoor air, for example, a stuck-open
+/// damper costs more.
 class MonthlyEffect {
  public:
   /// @param nodes   (r) ascending values of each parameter at which the effect is known.
-  /// @param meter   Of an effect on one meter's record; -1: of the building.
+  /// @param meter   For an effect on one meter's record; -1: on the building.
   /// @param table   (meters * months x grid points), meter-major, first parameter fastest: change
-  /// of
-  ///                the daily average in kWh/day; or (months x grid points), the ratio, of a
-  ///                record.
+  ///                of the daily average in kWh/day; or, for a record, the ratio (months x grid
+  ///                points).
   /// @param months  Of the table.
   /// @param middle  (q) θ of the table; may be empty.
   /// @param slopes  (q) tables of the change by θ.
@@ -51,9 +50,9 @@ class MonthlyEffect {
   [[nodiscard]] int parameter_count() const { return static_cast<int>(nodes_.size()); }
   [[nodiscard]] bool is_of_record() const { return meter_ >= 0; }
 
-  /// Changes a month's meters as the effect does: linear between the grid's values, level beyond
+  /// Applies the effect to a month's meters: linear between the grid's values, constant beyond
   /// them; no meter falls below zero. Does not allocate.
-  /// @param theta      Its first q count; fewer are not allowed.
+  /// @param theta      The first q are used; fewer are not allowed.
   /// @param eta        (r)
   /// @param daily_kWh  (meters * months), meter-major, in place.
   void apply(std::span<const double> theta, std::span<const double> eta,
@@ -71,15 +70,16 @@ class MonthlyEffect {
   std::vector<Eigen::ArrayXXd> slopes_;
 };
 
-/// Runs the hourly model over the grid: 9 values for each of one or two parameters, 5 for three, 3
-/// for more; and for every θ once more at its low and its high end. 2 ms a run of two years.
+/// Runs the hourly model over the grid: 9 values for each of one or two parameters, 5 for
+/// three, 3 for more; and once more for the low and the high end of every θ. Takes 2 ms per
+/// run of two years.
 ///
-/// @param before  Effects that the model has already, in order.
+/// @param before  Effects that the model already has, in order.
 /// @param ranges  (r) in order of the candidate's parameters, within their priors' supports.
 /// @param theta   (q) the first parameters of the site, those of the monthly model; empty: the
-///                change is taken at the drawings, whatever θ.
-/// @return the effect in the months of the site's drivers. @pre low <= high, of θ low < high;
-/// finite
+///                change is computed for the drawings, whatever θ.
+/// @return the effect in the months of the site's drivers. @pre low <= high, for θ
+///         low < high; finite
 [[nodiscard]] MonthlyEffect tabulate_effect(
     const SiteProblem& site,
     const std::vector<std::shared_ptr<const model::hourly::Alteration>>& before,
@@ -89,12 +89,11 @@ class MonthlyEffect {
 /// Prior modes, 16 % and 84 % quantiles, for `tabulate_effect`.
 [[nodiscard]] std::vector<ParameterSpread> spreads_of(std::span<const Parameter> parameters);
 
-/// A model of daily averages with effects on top of it: its own parameters θ, then η of each
-/// effect.
+/// A model of daily averages with effects added: its own parameters θ, then η of each effect.
 class AlteredMonthlyModel final : public MonthlyModel {
  public:
   /// @param model    Its outputs are the meters of the effects' tables, in kWh/day.
-  /// @param effects  In the order of addition. Records are altered last.
+  /// @param effects  In the order of addition. Effects on records are applied last.
   AlteredMonthlyModel(std::unique_ptr<MonthlyModel> model, std::vector<MonthlyEffect> effects);
 
   [[nodiscard]] std::unique_ptr<MonthlyModel> clone() const override;

@@ -6,7 +6,7 @@
 namespace recald::diagnosis {
 namespace {
 
-constexpr double kLeastMonths = 1.0 / 31.0;  // a day, where the dates leave less
+constexpr double kLeastMonths = 1.0 / 31.0;  // one day, if the dates leave less
 
 double months_of(const SiteProblem& site, const Candidate& candidate, std::span<const double> eta) {
   const auto all = static_cast<double>(site.drivers->months.size());

@@ -1,4 +1,4 @@
-/// What an effect changes in a month, for people.
+/// The monthly change caused by an effect, for people.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,8 @@
 
 namespace recald::diagnosis {
 
-/// kWh of a mean month in which the effect is there: of all months, or of a dated one those between
-/// its dates, parts of a month counting as parts.
+/// kWh in a mean month of the effect: of all months, or for a dated effect of those between its
+/// dates, with fractions of a month.
 /// @param eta        Values of the candidate's parameters, dates last.
 /// @param effect_kW  (parts x m) with the effect minus without.
 /// @return (m)

@@ -33,7 +33,7 @@ std::vector<double> theta_at(std::span<const Parameter> parameters, const Eigen:
   return theta;
 }
 
-/// Mean of what was measured of an output in the fitted months.
+/// Mean of an output's measurements in the fitted months.
 double mean_of(const MonthlyFigures& measured, std::size_t output) {
   double sum = 0.0;
   int n = 0;
@@ -45,7 +45,7 @@ double mean_of(const MonthlyFigures& measured, std::size_t output) {
   return n > 0 ? sum / n : 0.0;
 }
 
-/// (points) residuals over their sd, measured - modelled, of the fitted months.
+/// (points) residuals divided by their sd, measured - modelled, in the fitted months.
 Eigen::VectorXd residuals(const MonthlyFigures& measured, const std::vector<double>& modelled,
                           const std::vector<double>& error_sd) {
   const std::size_t months = modelled.size() / measured.outputs.size();
@@ -59,7 +59,7 @@ Eigen::VectorXd residuals(const MonthlyFigures& measured, const std::vector<doub
   return Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
 }
 
-/// Scores at which  |residuals|^2 + |scores|^2  is least: every score is standard normal before.
+/// Scores that minimise  |residuals|^2 + |scores|^2; a priori every score is standard normal.
 Eigen::VectorXd most_probable(MonthlyModel& model, std::span<const Parameter> parameters,
                               const MonthlyFigures& measured, const std::vector<double>& error_sd) {
   const auto q = static_cast<Eigen::Index>(parameters.size());
@@ -96,7 +96,7 @@ Eigen::VectorXd most_probable(MonthlyModel& model, std::span<const Parameter> pa
   return scores;
 }
 
-/// (outputs) sd of what a fit leaves, no less than a share of the mean.
+/// (outputs) sd of the residuals, but at least a share of the mean.
 std::vector<double> errors_left(const MonthlyFigures& measured,
                                 const std::vector<double>& modelled) {
   const std::size_t months = modelled.size() / measured.outputs.size();
@@ -121,7 +121,7 @@ struct Fit {
   std::vector<double> error_sd;  ///< (outputs)
 };
 
-/// Errors and parameters by turns.
+/// Fits errors and parameters alternately.
 Fit fit_before(MonthlyModel& model, std::span<const Parameter> parameters,
                const MonthlyFigures& measured) {
   Fit fit;
@@ -131,7 +131,7 @@ Fit fit_before(MonthlyModel& model, std::span<const Parameter> parameters,
   for (int round = 0;; ++round) {
     const auto scores = most_probable(model, parameters, measured, fit.error_sd);
     fit.modelled = evaluate(model, theta_at(parameters, scores));
-    // Both models are to be fitted under the same errors, so the last fit leaves them alone.
+    // Both models must be fitted with the same errors, so the last fit does not change them.
     if (round == kErrorRounds) return fit;
     fit.error_sd = errors_left(measured, fit.modelled);
   }
@@ -141,7 +141,7 @@ double log_density(double error, double sd) {
   return -0.5 * (error * error / (sd * sd) + std::log(2.0 * std::numbers::pi * sd * sd));
 }
 
-/// One output on the months shown: pairs of measured and modelled.
+/// One output in the held-out months: pairs of measured and modelled.
 struct Pairs {
   std::vector<double> measured;
   std::vector<double> before;
@@ -188,7 +188,7 @@ ScoreGain summed_gain(const std::vector<double>& gains) {
   return gain;
 }
 
-/// Changes of |NMBE| and CV(RMSE) over resampled months, before and after always of the same ones.
+/// Changes of |NMBE| and CV(RMSE) over resampled months, always the same ones before and after.
 /// Held-out months are far apart, so they are resampled one by one.
 std::pair<ChangeInterval, ChangeInterval> resampled(const Pairs& pairs, Rng& rng) {
   std::vector<double> nmbe;

@@ -1,4 +1,4 @@
-/// Whether an effect that the hourly model was given also helps a monthly model: fitted on the
+/// Whether an effect found with the hourly model also improves a monthly model: fitted on the
 /// months to fit and to choose by, judged on the held-out months.
 #pragma once
 
@@ -16,23 +16,23 @@
 
 namespace recald::diagnosis {
 
-/// 90 % interval of a change, after - before, over resampled months; NaN without a month.
+/// 90 % interval of a change, after - before, over resampled months; NaN without data.
 struct ChangeInterval {
   double low;
   double high;
 };
 
-/// The gap of another model than the hourly one, before and after it got the same effects, on the
+/// The gap of a model other than the hourly one, before and after adding the same effects, on the
 /// same held-out months.
 struct ModelGap {
-  /// One output; NaN where there is nothing to judge by.
+  /// One output; NaN without data.
   struct Figures {
     double nmbe_sim_minus_meas;
     double cvrmse;  ///< Of months.
     double log_score;
     double discrepancy_share;
   };
-  /// Of one output, after - before.
+  /// For one output, after - before.
   struct Change {
     ScoreGain log_score;
     ChangeInterval nmbe_size;
@@ -45,24 +45,24 @@ struct ModelGap {
   std::vector<Change> change;        ///< (n)
 };
 
-/// What a monthly model says of effects that the hourly one was given.
+/// The verdict of a monthly model on effects found with the hourly one.
 struct MonthlyVote {
-  /// Log scores are mean log densities of a month's daily average in kWh, under the errors that the
-  /// fit before left: a change of noise is no better model. A monthly model has no discrepancy
-  /// share of its own: NaN.
+  /// Log scores are mean log densities of a month's daily average in kWh, with the errors of the
+  /// fit before, because a change of noise does not make a better model. A monthly model has no
+  /// discrepancy share of its own: NaN.
   ModelGap gap;
   ScoreGain total;  ///< Of all outputs, month by month.
   int months_shown;
-  int figures_shown;  ///< Measured monthly figures in them, of all outputs.
-  /// Whether there is anything to judge by.
+  int figures_shown;  ///< Measured monthly figures in the held-out months, of all outputs.
+  /// Whether there are data to judge by.
   [[nodiscard]] bool has_vote() const { return figures_shown > 0; }
-  /// The held-out months do not contradict the effect in this model either: not by more than a nat
-  /// beyond two standard errors. What leaves monthly figures as they are, a clock, must not fall
-  /// for their noise. @pre has_vote()
+  /// Whether the held-out months agree with the effect in this model too: the loss is at most one
+  /// nat plus two standard errors. An effect that does not change monthly figures, such as a clock,
+  /// must not fail because of their noise. @pre has_vote()
   [[nodiscard]] bool agrees() const { return total.sum >= -2.0 * total.se - 1.0; }
 };
 
-/// What was measured of a monthly model's outputs, and which months may be used for what.
+/// Measurements of a monthly model's outputs, and the use of each month.
 struct MonthlyFigures {
   std::vector<std::string> outputs;         ///< (n) as in calibration.json
   std::vector<std::vector<double>> values;  ///< (n) of (months); NaN: not measured.
@@ -77,13 +77,13 @@ struct MonthlyFigures {
   }
 };
 
-/// Whether there is enough to fit a model of so many parameters and to judge it by.
-/// @return not_enough_data  fewer than two months shown, or too few to fit.
+/// Checks that there are enough data to fit and judge a model with this many parameters.
+/// @return not_enough_data  fewer than two held-out months, or too few to fit.
 [[nodiscard]] Result<void> require_enough(const MonthlyFigures& measured, std::size_t parameters);
 
-/// Fits both models, maximum a posteriori by Gauss-Newton, the second under the errors that the
-/// first one left, and compares them on the months shown.
-/// @param before, after  Of all months of `measured` and the same parameters.
+/// Fits both models, maximum a posteriori by Gauss-Newton, the second with the errors of the first,
+/// and compares them on the held-out months.
+/// @param before, after  With all months of `measured` and the same parameters.
 /// @note  Well under a second. Same input, same bytes.
 [[nodiscard]] MonthlyVote monthly_vote(MonthlyModel& before, MonthlyModel& after,
                                        std::span<const Parameter> parameters,

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kConfusable = 0.7;
 constexpr double kSameSignal = 0.9;
-// Of the prior's range: so near its upper end a value is taken to run against it.
+// Of the prior's range: a value this near its upper bound counts as limited by it.
 constexpr double kNearEnd = 0.05;
 
 double class_weight(EffectClass effect_class) {
@@ -33,14 +33,14 @@ double class_weight(EffectClass effect_class) {
   return 1.0;
 }
 
-/// One name: an effect, at one meter if it is a meter's.
+/// One name: an effect, with its meter if it affects one meter.
 using Name = std::pair<std::string, int>;
 Name name_of(const Candidate& candidate) {
   return {std::string{candidate.effect->id}, candidate.meter};
 }
 
-/// Prior probability of each candidate: classes by weight, within a class all effects alike, an
-/// effect's meters and datings sharing its part.
+/// Prior probability of each candidate: classes by weight, all effects of a class alike, and an
+/// effect's meters and datings share its part.
 std::vector<double> log_priors(const std::vector<Candidate>& candidates, const NamingRules& rules) {
   std::map<EffectClass, std::set<std::string_view>> effects;
   std::map<std::string_view, int> variants;
@@ -61,8 +61,8 @@ std::vector<double> log_priors(const std::vector<Candidate>& candidates, const N
   return priors;
 }
 
-/// What each candidate's evidence counts in units of: the least null scale of all whose footprints
-/// are here the same. What models seldom do by chance they do as seldom under another name.
+/// The unit for each candidate's evidence: the smallest null scale among all candidates with the
+/// same footprint at this site. An error that is rare under one name is equally rare under another.
 std::vector<double> scales_of(const FirstLook& look, const std::vector<Candidate>& candidates,
                               const NamingRules& rules) {
   std::vector<double> scales(candidates.size(), 1.0);
@@ -80,8 +80,8 @@ std::vector<double> scales_of(const FirstLook& look, const std::vector<Candidate
   return scales;
 }
 
-/// Who is worth a fit: the best by evidence in units of its null scale, and whoever is like the
-/// best one.
+/// Candidates worth a fit: the best by evidence in units of null scale, and those
+/// similar to the best.
 std::vector<std::size_t> survivors_of(const FirstLook& look, const std::vector<double>& scales,
                                       const NamingRules& rules) {
   const auto evidence = [&](std::size_t i) {
@@ -107,9 +107,10 @@ std::vector<std::size_t> survivors_of(const FirstLook& look, const std::vector<d
   return kept;
 }
 
-/// The base model's mode, and of the effect as much as the first look would have, were it linear.
+/// The base model's mode, with the amount of the effect that the first look estimates by
+/// its linear model.
 Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const Look& look) {
-  constexpr double kLeast = 0.05;  // of typical: from nothing there is no slope to a shape
+  constexpr double kLeast = 0.05;  // of typical: at zero amount there is no slope to a shape
   constexpr double kMost = 3.0;
   const double factor = look.detectability > 0.0 ? look.score / look.detectability : 1.0;
   const double taken = std::copysign(std::clamp(std::abs(factor), kLeast, kMost), factor);
@@ -123,7 +124,7 @@ Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const
   return start;
 }
 
-/// sum |with - without| / sum without, of the meter where it is largest.
+/// sum |with - without| / sum without, for the meter where it is largest.
 double largest_move(const Eigen::ArrayXXd& with_kW, const Eigen::ArrayXXd& without_kW) {
   const Eigen::ArrayXd moved = (with_kW - without_kW).abs().colwise().sum().transpose();
   const Eigen::ArrayXd whole = without_kW.abs().colwise().sum().transpose();
@@ -134,7 +135,8 @@ bool is_at_truncation(const Candidate& candidate, const JointFit& fit) {
   for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
     const Prior& prior = candidate.parameters[j].prior;
     const double value = fit.eta[j];
-    // Shares end where nature ends them; only cut normals and log-normals can be cut too early.
+    // Uniform priors end at natural bounds; only truncated normals and log-normals
+    // may end too early.
     const bool natural = std::holds_alternative<UniformPrior>(prior.distribution());
     if (!natural && std::isfinite(prior.max()) && std::isfinite(prior.min()) &&
         value > prior.max() - kNearEnd * (prior.max() - prior.min()))
@@ -163,8 +165,8 @@ namespace {
 
 /// Probabilities of all names, none and unknown, at the rules' temperature.
 ///
-/// An effect's support counts in units of what the same effect shows where nothing is hidden: as
-/// if every model had, along with its other errors, one of this effect's own shape.
+/// An effect's support is measured in units of what the same effect shows where nothing is hidden:
+/// as if every model had an additional error with this effect's shape.
 std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& explanations,
                                               const std::vector<Candidate>& candidates,
                                               double unknown_gain, const NamingRules& rules) {
@@ -196,7 +198,7 @@ std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& ex
   return list;
 }
 
-/// What every name stands on.
+/// The conditions for every name.
 struct Grounds {
   bool settled;  ///< The base calibration is at its mode.
   int months;    ///< With readings.
@@ -212,7 +214,7 @@ int months_read(const SiteProblem& site) {
   return static_cast<int>(months.size());
 }
 
-/// What keeps an explanation from being named; empty where nothing does.
+/// The reason why an explanation cannot be named; empty if there is none.
 std::string objection(const Explanation& e, const Grounds& grounds, const Naming& naming,
                       const NamingRules& rules) {
   const double least = std::max(rules.least_evidence, naming.null_threshold);
@@ -272,19 +274,19 @@ void decide(Naming& naming, const NamingRules& rules) {
   naming.why = "no effect is supported strongly enough";
 }
 
-/// @param rules  Whether the model errs.
+/// @param rules  Whether the model has errors.
 void settle_support(const NamingRules& rules, Explanation& e) {
   e.support = rules.errs_as_learnt ? std::min(e.evidence_gain, e.first_look) : e.evidence_gain;
 }
 
 void take_fit(JointFit fit, const JointFit& none, Explanation& e) {
   e.fit = std::move(fit);
-  e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and nobody asks for it again
+  e.fit.jacobian.resize(0, 0);  // the largest part of a fit, and no longer needed
   e.evidence_gain = e.fit.log_evidence - none.log_evidence;
   e.likelihood_gain = e.fit.log_likelihood - none.log_likelihood;
 }
 
-/// What a fit says by itself, against the base model alone.
+/// The result of a fit compared with the base model alone.
 Explanation explanation_of(JointFit fit, const JointFit& none, double null_scale) {
   Explanation e{};
   e.null_scale = null_scale;
@@ -297,7 +299,7 @@ void sort_by_support(std::vector<Explanation>& explanations) {
                            [](const Explanation& e) { return e.support / e.null_scale; });
 }
 
-// So many of the best rivals are looked into, if they have half of the support that a name needs.
+// Number of best rivals to restart, if they have half of the support that a name needs.
 constexpr std::size_t kRestarts = 3;
 constexpr double kWorthRestarts = 0.5;
 const FitOptions kRestart{.hops = 2};
@@ -308,8 +310,8 @@ bool is_worth_restarts(const std::vector<Explanation>& sorted, const NamingRules
                                      kWorthRestarts * rules.least_evidence);
 }
 
-/// Rivals near the first, and the base model, searched for alike: what a rival owes to a better
-/// mode of the base model is none of its own, and no less is tried for it than for none.
+/// Restarts rivals near the first and the base model equally. A rival's gain from a better mode of
+/// the base model is not its own, so as much effort goes into the model without effects.
 class Restarts {
  public:
   Restarts(Predictor& predictor, const FitContext& context,
@@ -322,7 +324,7 @@ class Restarts {
         explanations_(explanations),
         count_(std::min(kRestarts, explanations.size())) {}
 
-  /// @return a better mode of the base model, if there is one
+  /// @return a better mode of the base model, if one was found
   Result<std::optional<JointFit>> run() {
     for (std::size_t i = 0; i < count_; ++i) {
       if (auto again = refit(i, explanations_[i].fit.scores, kRestart); !again) {

@@ -12,7 +12,7 @@ std::string meter_name(const SiteProblem& site, int meter) {
   return meter < 0 ? std::string{} : site.meters[static_cast<std::size_t>(meter)].id;
 }
 
-/// Months whose readings were fitted or chose.
+/// Months whose readings were used to fit or to choose.
 std::vector<metering::Month> months_that_taught(const SiteProblem& site) {
   std::set<metering::Month> months;
   for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {

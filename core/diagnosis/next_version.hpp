@@ -1,4 +1,4 @@
-/// What a diagnosis adds to the model, as the model's next version keeps it.
+/// Turns the result of a diagnosis into the model's next version.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace recald::diagnosis {
 
-/// Where a version comes from.
+/// The origin of a version.
 struct VersionOrigin {
-  std::string data_revision;      ///< Of the readings that were diagnosed.
+  std::string data_revision;      ///< Of the diagnosed readings.
   std::string catalogue_version;  ///< Of the program whose effects were tried.
   std::string created_at;
 };
 
-/// The parent and what the diagnosis added.
+/// The parent plus the additions of the diagnosis.
 [[nodiscard]] ModelVersion next_version(const Diagnosis& diagnosis, const SiteProblem& site,
                                         const ModelVersion& parent, const VersionOrigin& origin);
 

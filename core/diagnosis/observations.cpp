@@ -14,10 +14,10 @@ constexpr int kTemperatureSplinesByPart = 5;
 constexpr int kDriverSplines = 6;
 constexpr int kSeasonSplines = 10;
 constexpr double kDaysPerDateSpline = 45.0;
-// A slow drift of the meters' own ways, in units of the other patterns.
+// A slow drift of the meters' patterns, in units of the other patterns.
 constexpr double kDateFactor = 0.5;
-// The electricity meter's hourly pattern was read off the meter itself: its level in each part of
-// the week says nothing about the model.
+// The electricity meter's hourly pattern was derived from the meter itself, so its level in each
+// part of the week says nothing about the model.
 constexpr double kElectricityPatternFactor = 15.0;
 
 /// Linear B-splines (hats) on equally populated knots: local, sparse and never negative.
@@ -57,7 +57,7 @@ struct Hats {
 
 using PartValue = double (*)(const DayPart&);
 
-/// Day of the year; the hats' two ends meet at New Year without knowing of each other.
+/// Day of the year; the hats at the two ends are adjacent at New Year but unconnected.
 double season_days(metering::Day date) {
   const std::chrono::sys_days new_year{date.year() / 1 / 1};
   return static_cast<double>((std::chrono::sys_days{date} - new_year).count());
@@ -66,11 +66,11 @@ double season_days(metering::Day date) {
 struct SplineOver {
   PartValue value;
   Hats hats;
-  double factor = 1.0;  ///< Of its size, on that of the other patterns.
+  double factor = 1.0;  ///< Of its size, relative to the other patterns.
 };
 
-/// Knots of the whole period, whatever months are observed: what one set of months teaches can be
-/// said of another.
+/// Knots for the whole period, whatever months are observed, so that patterns learnt from one set
+/// of months apply to another.
 SplineOver spline_over(const SiteProblem& site, PartValue value, int count) {
   std::vector<double> values;
   values.reserve(site.day_parts.parts.size());
@@ -102,8 +102,8 @@ std::vector<SplineOver> splines_of(const SiteProblem& site, Patterns patterns) {
 BlockDesign design_of(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
                       bool electricity, Patterns patterns) {
   const std::vector<SplineOver> splines = splines_of(site, patterns);
-  // A spline in outdoor temperature for each part of the day, workdays and others apart: where a
-  // simpler building model errs, it errs by hour and weather.
+  // A spline in outdoor temperature for each part of the day, separately for workdays and other
+  // days: the errors of a simple building model depend on hour and weather.
   const SplineOver by_part = spline_over(
       site, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatureSplinesByPart);
   const Eigen::Index per_part = by_part.hats.count();
@@ -188,8 +188,8 @@ Observations observe(const SiteProblem& site, const std::vector<bool>& part_flag
 Eigen::ArrayXd spread_of(const SiteProblem& site, const MeterRows& meter,
                          const Eigen::Ref<const Eigen::VectorXd>& residual) {
   constexpr int kTemperatures = 3;
-  constexpr double kPriorParts = 50.0;  // the weight of all bins' mean in each
-  constexpr double kLeast = 0.25;       // of that mean: no part is known to the watt
+  constexpr double kPriorParts = 50.0;  // the weight of the overall mean in each bin
+  constexpr double kLeast = 0.25;       // of that mean: no part is known exactly
   const SplineOver thirds = spline_over(
       site, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatures + 1);
   const auto bin_of = [&](const DayPart& part) {

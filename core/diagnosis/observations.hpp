@@ -1,4 +1,4 @@
-/// What the meters said in the parts of some roles, stacked meter by meter, and its noise.
+/// The meters' observations in parts with certain roles, stacked meter by meter, and their noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,21 +14,21 @@ namespace recald::diagnosis {
 /// The scale on which a meter's residuals have the same spread at all levels.
 enum class ResidualScale { linear, square_root };
 
-/// y on the scale, in kW at the meter's mean: the derivative there is 1.
+/// y on the scale, in kW at the meter's mean, where the derivative is 1.
 /// square_root: 2 sqrt(m (y + m/10)) with the mean m; y below 0 counts as 0.
 [[nodiscard]] double on_scale(double power_kW, double mean_kW, ResidualScale scale);
 
-/// On which a meter's residuals have the same spread at all times.
+/// The scale on which a meter's residuals have the same spread at all times.
 struct MeterScale {
   ResidualScale levels = ResidualScale::linear;
-  /// (parts) Spread of the residuals, its geometric mean 1: powers are divided by it. Empty: 1.
+  /// (parts) spread of the residuals, with geometric mean 1: powers are divided by it. Empty: 1.
   Eigen::ArrayXd spread = {};
 };
 
 struct MeterRows {
-  std::vector<Eigen::Index> rows;  ///< Parts that were measured and have a wanted role.
-  BlockDesign design;              ///< Part of week and a spline in outdoor temperature.
-  Eigen::Index offset = 0;         ///< Of the meter in stacked vectors.
+  std::vector<Eigen::Index> rows;  ///< Measured parts with a wanted role.
+  BlockDesign design;       ///< Patterns by part of week and a spline in outdoor temperature.
+  Eigen::Index offset = 0;  ///< Start of the meter in stacked vectors.
   double mean_kW = 0.0;
   MeterScale scale;
 };
@@ -38,11 +38,11 @@ struct Observations {
   Eigen::VectorXd measured;  ///< (n) on the scale, stacked.
 
   [[nodiscard]] Eigen::Index count() const { return measured.size(); }
-  /// Picks the rows of a run. @param parts_kW  (parts x m)
+  /// Selects the rows of a run. @param parts_kW  (parts x m)
   [[nodiscard]] Eigen::VectorXd stack(const Eigen::ArrayXXd& parts_kW) const;
 };
 
-/// How generous the anonymous terms are.
+/// The size of the anonymous terms.
 enum class Patterns {
   modest,    ///< In every model: part of week, season, weather, outdoor temperature by part of the
              ///< day.
@@ -50,14 +50,14 @@ enum class Patterns {
 };
 
 /// @param scales  (m)
-/// @param part_flags  (parts) which to take.
+/// @param part_flags  (parts) which parts to use.
 [[nodiscard]] Observations observe(const SiteProblem& site, const std::vector<bool>& part_flags,
                                    std::span<const MeterScale> scales, Patterns patterns);
 
-/// How the spread of a meter's residuals goes with the part of the day, workdays and others apart,
-/// and outdoor temperature: a model errs most where most happens.
-/// @param residual  (n) of the meter's rows, recurring patterns taken out.
-/// @return (parts) for the whole period; bins of few parts are drawn towards the mean of all.
+/// How the spread of a meter's residuals depends on the part of the day, separately for workdays
+/// and other days, and on outdoor temperature: errors are largest where consumption is.
+/// @param residual  (n) of the meter's rows, without recurring patterns.
+/// @return (parts) for the whole period; bins with few parts are shrunk towards the overall mean.
 [[nodiscard]] Eigen::ArrayXd spread_of(const SiteProblem& site, const MeterRows& meter,
                                        const Eigen::Ref<const Eigen::VectorXd>& residual);
 
@@ -85,8 +85,8 @@ struct NoiseNode {
 };
 
 /// Common factors on structure_sd, correlation_h and white_sd: 3 x 3 x 3 nodes around the fitted
-/// levels, or only the one in the middle. Noise learnt once, without an effect, would have
-/// the effect in it and hide it.
+/// levels, or only the middle one. A single noise level, learnt without an effect, would contain
+/// the effect and hide it.
 [[nodiscard]] std::vector<NoiseNode> noise_grid(const Observations& observations,
                                                 std::span<const NoiseLevel> levels, bool whole);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double log_two_pi = 1.8378770664093454836;
 
-/// Of the largest d^2: a column below this is invisible but for rounding.
+/// Of the largest d^2: a column below this is invisible except for rounding.
 constexpr double invisible = 1e-12;
 
 using Factor = Eigen::LLT<Eigen::MatrixXd>;
@@ -31,7 +31,7 @@ Result<Factor> posterior_factor(const GramSystem& system, const Eigen::MatrixXd&
   const Eigen::Index q = prior_precision.rows();
   assert(prior_precision.cols() == q && system.gram.rows() > q);
   Factor factor(system.gram.block(1, 1, q, q) + prior_precision);
-  // Eigen lets a NaN through its factorisation.
+  // Eigen accepts a NaN in its factorisation.
   if (factor.info() != Eigen::Success || !std::isfinite(log_determinant(factor))) {
     return failure(ErrorCode::not_positive_definite,
                    "the posterior precision of " + std::to_string(q) +
@@ -51,7 +51,7 @@ Eigen::VectorXd visible_scale(const GramSystem& system) {
 /// log erfc(x).
 double log_erfc(double x) {
   if (x < 20.0) return std::log(std::erfc(x));
-  // Abramowitz, Stegun (1964), 7.1.23; the first term left out is below 2e-13 from x = 20 on.
+  // Abramowitz, Stegun (1964), 7.1.23; the first omitted term is below 2e-13 from x = 20 on.
   const double y = 0.5 / (x * x);
   const double series = y * (-1.0 + y * (3.0 + y * (-15.0 + y * (105.0 - y * 945.0))));
   return -x * x - std::log(x * std::sqrt(std::numbers::pi)) + std::log1p(series);
@@ -60,11 +60,11 @@ double log_erfc(double x) {
 /// log of the mean over x in (0, c) of exp(x z - x^2 / 2).
 double log_mean_likelihood(double c, double z) {
   if (c * (1.0 + std::abs(z)) < 1e-3) {
-    // The difference below would lose its digits; the series is off by its fourth order, < 1e-12.
+    // The difference below would lose its digits; the series has a fourth-order error, < 1e-12.
     return c * z / 2.0 + c * c * (z * z / 24.0 - 1.0 / 6.0) - c * c * c * z / 24.0;
   }
-  // The integral is sqrt(2 pi) exp(z^2 / 2) times the normal mass between -z and c - z. Seen from
-  // the tail that holds both ends, neither is lost against 1.
+  // The integral is sqrt(2 pi) exp(z^2 / 2) times the normal mass between -z and c - z. Computed
+  // from the tail that contains both ends, so that neither is lost against 1.
   double near = -z;
   double far = c - z;
   if (near + far < 0.0) {
@@ -179,7 +179,8 @@ Eigen::VectorXd node_weights(const Eigen::VectorXd& log_evidences,
 }
 
 Eigen::MatrixXd draw_scores(const Eigen::MatrixXd& correlation, int draws, Rng& rng) {
-  // Bins that add up to others make the matrix singular: pivoting puts what is left of rank last.
+  // Bins that add up to others make the matrix singular; pivoting puts the
+  // rank-deficient part last.
   const Eigen::LDLT<Eigen::MatrixXd> factor(correlation);
   Eigen::MatrixXd root = factor.matrixL();
   const Eigen::VectorXd pivots = factor.vectorD();

@@ -1,13 +1,13 @@
-/// Evidence of a linear-Gaussian model from inner products: which effect, how sure, how much.
+/// Evidence of a linear-Gaussian model from inner products: which effect, how certain, how large.
 ///
 /// Near a mode the meters are linear in the base parameters theta and in the amount eta of an
-/// effect,  y - f(theta_0) = J theta + s eta + noise,  noise ~ N(0, Sigma),  theta ~ N(0,
-/// Lambda^-1) as a deviation from its prior mean. After Gauss-Newton at theta_1 the residual column
-/// is therefore  r = y - f(theta_1) + J (theta_1 - theta_0).  All that evidence needs is the Gram
-/// matrix of the columns [r | J | s] under Sigma^-1; integrating a block of parameters out is a
-/// Schur complement, which turns Sigma^-1 into
-///     M = Sigma^-1 - Sigma^-1 J (J' Sigma^-1 J + Lambda)^-1 J' Sigma^-1 = (Sigma + J Lambda^-1
-///     J')^-1.
+/// effect,  y - f(theta_0) = J theta + s eta + noise,  noise ~ N(0, Sigma),
+/// theta ~ N(0, Lambda^-1) as a deviation from its prior mean. After Gauss-Newton at theta_1 the
+/// residual column is therefore  r = y - f(theta_1) + J (theta_1 - theta_0).
+/// Evidence needs only the Gram matrix of the columns [r | J | s] under Sigma^-1. Integrating out a
+/// block of parameters is a Schur complement, which turns Sigma^-1 into
+///     M = Sigma^-1 - Sigma^-1 J (J' Sigma^-1 J + Lambda)^-1 J' Sigma^-1
+///       = (Sigma + J Lambda^-1 J')^-1.
 /// @see Rasmussen, Williams (2006), Gaussian Processes for Machine Learning, section 2.7.
 #pragma once
 
@@ -37,7 +37,7 @@ struct GaussianPosterior {
   Eigen::MatrixXd covariance;  ///< (q x q)
 };
 
-/// Integrates columns 1 to q out, each prior N(0, .) with joint precision `prior_precision`.
+/// Integrates out columns 1 to q, with priors N(0, .) and joint precision `prior_precision`.
 ///
 /// The effect of one candidate is integrated out like theta: put its column next and extend the
 /// precision by 1 / sd^2.
@@ -46,23 +46,23 @@ struct GaussianPosterior {
 [[nodiscard]] Result<GramSystem> marginalise(const GramSystem& system,
                                              const Eigen::MatrixXd& prior_precision);
 
-/// Posterior of the parameters of columns 1 to q; the columns after them are left out of the model.
-/// @return or not_positive_definite.
+/// Posterior of the parameters of columns 1 to q; later columns are left out of the model.
+/// @return the posterior, or not_positive_definite.
 [[nodiscard]] Result<GaussianPosterior> posterior(const GramSystem& system,
                                                   const Eigen::MatrixXd& prior_precision);
 
-/// The system of the residual and the chosen columns, in the order given (0 is the residual and
-/// comes first by itself).
+/// The system of the residual and the chosen columns, in the given order. The residual (0)
+/// always comes first.
 [[nodiscard]] GramSystem select(const GramSystem& system, std::span<const Eigen::Index> columns);
 
-/// log N(r; 0, P^-1): the evidence, once every parameter is integrated out. Other columns have no
-/// part in it.
+/// log N(r; 0, P^-1): the evidence, once every parameter is integrated out. Other
+/// columns are ignored.
 [[nodiscard]] double log_evidence(const GramSystem& system);
 
-/// d_j = sqrt(s_j' M s_j) (k) of columns 1 to k: signal of one unit in sd of what is not explained.
+/// d_j = sqrt(s_j' M s_j) (k) of columns 1 to k: signal of one unit, in sd of the unexplained part.
 [[nodiscard]] Eigen::VectorXd detectability(const GramSystem& system);
 
-/// z_j = s_j' M r / d_j (k): N(0, 1) where the model is complete. 0 for an invisible column.
+/// z_j = s_j' M r / d_j (k): N(0, 1) if the model is complete. 0 for an invisible column.
 [[nodiscard]] Eigen::VectorXd score(const GramSystem& system);
 
 /// kappa_ij = s_i' M s_j / (d_i d_j) (k x k): correlation of the scores. Invisible columns, those
@@ -76,7 +76,7 @@ struct GaussianPosterior {
 
 enum class AmountPriorKind {
   normal,       ///< N(0, scale^2)
-  half_normal,  ///< The same on eta > 0.
+  half_normal,  ///< As above, for eta > 0.
   uniform,      ///< U(0, scale)
 };
 
@@ -87,7 +87,7 @@ struct AmountPrior {
 };
 
 /// Log Bayes factor of "the effect, amount by its prior" against "no effect". Exact for a linear
-/// effect; signs are the column's, so a prior on negative amounts takes the column reversed.
+/// effect. Signs are the column's, so a prior on negative amounts needs the column reversed.
 /// @param detectability  d >= 0.   @param score  z.
 [[nodiscard]] double log_bayes_factor(double detectability, double score, const AmountPrior& prior);
 
@@ -103,7 +103,7 @@ struct AmountPrior {
 [[nodiscard]] Eigen::VectorXd node_weights(const Eigen::VectorXd& log_evidences,
                                            const Eigen::VectorXd& log_weights);
 
-/// Draws of N(0, correlation), one a column (k x draws).
+/// Draws of N(0, correlation), one per column (k x draws).
 /// @param correlation  (k x k) positive semi-definite; singular is fine.
 [[nodiscard]] Eigen::MatrixXd draw_scores(const Eigen::MatrixXd& correlation, int draws, Rng& rng);
 
@@ -117,13 +117,13 @@ struct AmountPrior {
 /// Two-sided p-value of a standard normal score.
 [[nodiscard]] double normal_p_value(double score);
 
-/// What one candidate brings to the null distribution of the best log Bayes factor.
+/// What one candidate contributes to the null distribution of the best log Bayes factor.
 struct CandidateScale {
   double detectability;
   AmountPrior prior;
 };
 
-/// c_99: quantile of the largest log Bayes factor over all candidates where none is true.
+/// c_99: quantile of the largest log Bayes factor over all candidates if none is true.
 /// @param candidates     (k), in the order of `confusability`.
 /// @param confusability  kappa (k x k).
 /// @param probability    0.99

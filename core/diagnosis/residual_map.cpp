@@ -13,7 +13,7 @@ namespace {
 constexpr int kTemperatureBinsMax = 14;
 constexpr std::array<double, 5> kBinWidths_K = {1.0, 2.0, 3.0, 5.0, 10.0};
 
-/// Weighted means in a table of cells, NaN where a cell stayed empty.
+/// Weighted means in a table of cells, NaN for empty cells.
 class CellMeans {
  public:
   CellMeans(Eigen::Index rows, Eigen::Index columns)
@@ -32,7 +32,7 @@ class CellMeans {
   Eigen::ArrayXXd weights_;
 };
 
-/// Bin of a temperature; the outermost bins take what lies beyond them.
+/// Bin of a temperature; the outermost bins include everything beyond them.
 Eigen::Index bin_of(double temperature_C, const std::vector<double>& limits_C) {
   const auto above = std::ranges::upper_bound(limits_C, temperature_C) - limits_C.begin();
   return std::clamp<Eigen::Index>(above - 1, 0, std::ssize(limits_C) - 2);

@@ -1,8 +1,8 @@
-/// What a model leaves over, averaged into maps that people can read.
+/// Residuals of a model, averaged into maps that people can read.
 ///
-/// All values are shares of the meter's mean measured power, measured minus modelled: +0.1 says
-/// that the meter read a tenth of its mean more than the model. Means are weighted by the parts'
-/// hours; NaN where nothing was measured, so an empty cell is never taken for agreement.
+/// All values are shares of the meter's mean measured power, measured minus modelled: +0.1 means
+/// that the meter read more than the model by a tenth of its mean. Means are weighted by the parts'
+/// hours; NaN without measurements, so an empty cell is never mistaken for agreement.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace recald::diagnosis {
 
-/// Mean of a meter over its measured parts, kW; NaN where there is none.
+/// Mean of a meter over its measured parts, kW; NaN if there are none.
 [[nodiscard]] double measured_mean_kW(const SiteProblem& site, Eigen::Index meter);
 
 /// @param modelled_kW  (parts x m)
@@ -21,14 +21,14 @@ namespace recald::diagnosis {
 [[nodiscard]] Eigen::ArrayXXd residual_shares(const SiteProblem& site,
                                               const Eigen::ArrayXXd& modelled_kW);
 
-/// A change of the model on the scale of `residual_shares`, and with the same gaps: means of the
-/// two are means over the same parts.
+/// A change of the model on the scale of `residual_shares`, with the same gaps, so that means of
+/// the two cover the same parts.
 /// @param change_kW  (parts x m), e.g. an effect's footprint
 [[nodiscard]] Eigen::ArrayXXd change_shares(const SiteProblem& site,
                                             const Eigen::ArrayXXd& change_kW);
 
-/// Ends of bins of outdoor temperature, whole degC and equally wide (1, 2, 3, 5 or 10 K), at most
-/// 14 bins, which hold every part of the period. Empty where there is no part.
+/// Limits of bins of outdoor temperature: whole degC and equally wide (1, 2, 3, 5 or 10 K), at most
+/// 14 bins, which contain every part of the period. Empty if there is no part.
 [[nodiscard]] std::vector<double> temperature_limits_C(const DayParts& day_parts);
 
 /// One meter's shares in two maps.
@@ -44,7 +44,7 @@ struct ResidualMap {
                                        const Eigen::Ref<const Eigen::ArrayXd>& shares,
                                        std::size_t months, const std::vector<double>& limits_C);
 
-/// The shape of one column: what an effect's footprint is held against.
+/// The shape of one column, for comparison with an effect's footprint.
 struct Signature {
   Eigen::ArrayXd by_part_of_week;  ///< (42)
   Eigen::ArrayXd by_temperature;   ///< (bins)

@@ -12,7 +12,7 @@ namespace {
 
 using metering::Utility;
 
-// A first or last day so near an end of the record shows nothing of what was before or after.
+// A first or last day this close to an end of the record shows nothing of the time before or after.
 constexpr double kLeastDaysAtEnds = 21.0;
 constexpr double kDaysBetweenLooks = 14.0;
 
@@ -26,7 +26,7 @@ bool has_night_set_back(const model::SetPoints& set) {
          set.cooling_unoccupied_C > set.cooling_occupied_C;
 }
 
-/// Empty where the effect may be judged; else what is missing, in words.
+/// What is missing to judge the effect, in words; empty: nothing.
 std::string lacking(const Effect& effect, const SiteProblem& site) {
   const EffectNeeds& needs = effect.needs;
   const model::Building& b = site.nominal;

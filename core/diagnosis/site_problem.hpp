@@ -1,5 +1,5 @@
-/// Everything a diagnosis knows of a site: its drawings, what is uncertain about them, what drove
-/// it and what its meters said.
+/// Everything that a diagnosis knows about a site: its drawings, their uncertainty, its
+/// drivers and its meters.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ struct MeterData {
   std::string id;
   metering::Utility utility;
   model::MeterMap end_uses;
-  std::optional<double> price_per_kWh{};  ///< Mean over what it uses; in the site's currency.
+  std::optional<double> price_per_kWh{};  ///< Mean over its consumption; in the site's currency.
   std::optional<double> emissions_kg_per_kWh{};  ///< CO2.
 };
 
@@ -29,7 +29,7 @@ struct SiteProblem {
   model::Building nominal;
   std::vector<const model::ParameterDefinition*> definitions;  ///< (q)
   std::vector<Parameter> parameters;                           ///< (q) with their original priors.
-  /// (q) scores of a second place from which the base model is fitted, beside the middle of the
+  /// (q) scores of a second starting point for the base model, besides the middle of the
   /// priors; empty: none.
   Eigen::VectorXd second_start;
   std::shared_ptr<const model::Drivers> drivers;
@@ -49,16 +49,16 @@ struct SiteProblem {
 /// One way in which the site may differ from its model.
 struct Candidate {
   const Effect* effect = nullptr;           ///< Null: none.
-  int meter = -1;                           ///< Which, of an effect of one meter.
-  bool begins = false;                      ///< Has a first day, as a further parameter.
-  bool ends = false;                        ///< Has a last day, too.
+  int meter = -1;                           ///< Index, for an effect on one meter.
+  bool begins = false;                      ///< Has a first day, as an additional parameter.
+  bool ends = false;                        ///< Also has a last day.
   std::vector<EffectParameter> parameters;  ///< The effect's own, then its days.
 
   /// "steam_trap_leak", "scale_fault:steam", "equipment_step@": unique among a site's candidates.
   [[nodiscard]] std::string key(const SiteProblem& site) const;
 };
 
-/// An effect that cannot be judged at this site, and why.
+/// An effect that cannot be judged at this site, and the reason.
 struct NotIdentifiable {
   std::string effect;
   std::string why;  ///< In words.
@@ -69,23 +69,23 @@ struct CandidateList {
   std::vector<NotIdentifiable> not_identifiable;
 };
 
-/// Every entry of the catalogue that this site's meters, plant and weather could show.
+/// Every entry of the catalogue that could be visible with this site's meters, plant and weather.
 [[nodiscard]] CandidateList list_candidates(const SiteProblem& site);
 
-/// The candidate's effect at these values, within its days.
+/// The candidate's effect at these values, limited to its days.
 [[nodiscard]] std::unique_ptr<model::hourly::Alteration> alteration_of(
     const Candidate& candidate, const SiteFacts& facts, std::span<const double> values);
 
-/// Runs the hourly model for a site and reduces it to day parts. One instance a thread.
+/// Runs the hourly model for a site and reduces it to day parts. Use one instance per thread.
 class Predictor {
  public:
-  /// @param accepted  Effects of the model's present version: applied first, in every run.
-  /// @param proceed   Asked before each run. Once it says no, nothing more is run.
+  /// @param accepted  Effects of the current model version: applied first, in every run.
+  /// @param proceed   Called before each run. Once it returns false, nothing more is run.
   explicit Predictor(const SiteProblem& site,
                      std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted = {},
                      std::function<bool()> proceed = {});
 
-  /// Whether it was told to stop: what came since means nothing, and whoever runs it gives up.
+  /// Whether it was told to stop; results since then are meaningless, and the caller must give up.
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
 
   /// @param theta  (q) in the parameters' units.
@@ -93,7 +93,7 @@ class Predictor {
   /// @return (parts x m) kW, valid until the next call.
   const Eigen::ArrayXXd& parts_kW(std::span<const double> theta,
                                   const model::hourly::Alteration* extra = nullptr);
-  /// Of the last call: (hours x m) kW.
+  /// From the last call: (hours x m) kW.
   [[nodiscard]] const Eigen::ArrayXXd& hours_kW() const { return hours_kW_; }
   [[nodiscard]] int runs() const { return runs_; }
 
@@ -111,7 +111,7 @@ class Predictor {
   bool is_stopped_ = false;
 };
 
-/// What those who run a predictor give up with.
+/// The error to return when a predictor was stopped.
 [[nodiscard]] Error diagnosis_cancelled();
 
 }  // namespace recald::diagnosis

@@ -9,11 +9,11 @@
 namespace recald::diagnosis {
 namespace {
 
-/// Of an effect with many shapes a few stand for all.
+/// If an effect has more shapes, this many represent all.
 constexpr std::size_t kShapesMax = 6;
 
-// Training population of seed 601, 34 buildings with nothing hidden: the sizes under which their
-// residuals are likeliest (expectation maximisation), at most 3.
+// Training population of seed 601, 34 buildings with nothing hidden: the sizes with maximum
+// likelihood for their residuals (expectation maximisation), at most 3.
 constexpr double kAnyEffect = 0.26;
 constexpr auto kUsualAmounts = std::to_array<Learnt>({
     {"after_hours", 0.04},
@@ -51,12 +51,12 @@ constexpr auto kUsualAmounts = std::to_array<Learnt>({
     {"wind_infiltration", 0.20},
 });
 
-/// A meter's factor is seldom known to the per cent; its clock is right or it is wrong.
+/// A meter's factor is seldom known to the per cent; its clock is either right or wrong.
 bool is_usual(const Effect& effect) {
   return effect.effect_class != EffectClass::meter || effect.id == "scale_fault";
 }
 
-/// Evenly through the list.
+/// Evenly spaced in the list.
 std::vector<std::vector<double>> few_shapes(const Candidate& candidate) {
   const std::vector<std::vector<double>> shapes = own_shapes(candidate);
   if (shapes.size() <= kShapesMax) return shapes;

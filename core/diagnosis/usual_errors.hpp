@@ -1,13 +1,13 @@
-/// How building models usually err: a little in every way that the catalogue knows.
+/// The usual errors of building models: small amounts of every effect in the catalogue.
 ///
-/// Where nothing is hidden a calibrated model still leaves gaps that look like a little of an
-/// effect on all meters at once: some per cent of a scale, a touch of an open damper. Sigma of one
-/// meter cannot know that. So every competing model carries, with small amounts learnt where
-/// nothing was hidden, all effects of the catalogue:
+/// Even if nothing is hidden, a calibrated model leaves gaps that look like a small amount of an
+/// effect on all meters at once: some per cent of a scale, a slightly open damper. Sigma of one
+/// meter cannot represent that. So every competing model includes all effects of the catalogue,
+/// with small amounts learnt where nothing was hidden:
 ///     y = f(theta, eta) + E b + Z a + u + e,   b ~ N(0, I),
-/// E holding the footprint of each effect for one learnt standard deviation of its amount. A named
-/// effect is then one that is there in far more than the usual amount, and what two effects share
-/// with the usual errors speaks for neither.
+/// where E holds the footprint of each effect for one learnt standard deviation of its amount. A
+/// named effect is one that is present in far more than its usual amount, and what two effects have
+/// in common with the usual errors supports neither.
 /// @see Brynjarsdottir, O'Hagan (2014), Inverse Problems 30(11): why a model needs its discrepancy.
 #pragma once
 
@@ -22,11 +22,11 @@ namespace recald::diagnosis {
 
 class UsualErrors {
  public:
-  /// A model that errs by its parameters and its noise alone.
+  /// A model with no errors besides its parameters and noise.
   UsualErrors() = default;
 
-  /// One footprint for each undated shape of every effect that the site could show.
-  /// @param predictor  The model; its runs are what this costs, some fifty.
+  /// One footprint for each undated shape of every effect that could be visible at the site.
+  /// @param predictor  The model; this takes about fifty runs.
   /// @param theta      (q) where the footprints are drawn: base parameters at their mode.
   [[nodiscard]] static UsualErrors draw(Predictor& predictor, const SiteProblem& site,
                                         std::span<const double> theta);
@@ -36,7 +36,7 @@ class UsualErrors {
   /// E (n x count) on the meters' scales.
   [[nodiscard]] Eigen::MatrixXd columns(const Observations& observations) const;
 
-  /// The effect that a column is a little of.
+  /// The effect of each column.
   [[nodiscard]] const std::vector<std::string_view>& effects() const { return effects_; }
 
  private:
@@ -45,9 +45,9 @@ class UsualErrors {
   std::vector<std::string_view> effects_;
 };
 
-/// Standard deviation of an effect's amount where it is not there, in units of its typical amount.
-/// @return the median of all effects for one that was not there when this was learnt.
-/// @see tests/results/diagnosis.md for the population that taught it.
+/// Standard deviation of an effect's amount where it is absent, in units of its typical amount.
+/// @return the median of all effects for one that was not visible in the training population.
+/// @see tests/results/diagnosis.md for that population.
 [[nodiscard]] double usual_amount_sd(std::string_view effect);
 
 }  // namespace recald::diagnosis

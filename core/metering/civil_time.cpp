@@ -19,8 +19,8 @@ using std::chrono::sys_days;
 constexpr Instant kEarliestInstant =
     sys_days{Day{std::chrono::year{1970}, std::chrono::month{1}, std::chrono::day{1}}};
 
-/// The transitions of a zone over the years we accept. A zone has about two a year, so a binary
-/// search in a flat vector replaces the library's lookup, which builds strings on each call.
+/// The transitions of a zone over the years we accept. A zone has about two per year, so we search
+/// a flat vector instead of using the library's lookup, which builds strings on each call.
 std::vector<OffsetSpan> offsets_of(const date::time_zone& zone) {
   std::vector<OffsetSpan> offsets;
   Instant t = kEarliestInstant;
@@ -65,8 +65,8 @@ const OffsetSpan& LocalCalendar::offset_span(Instant t) const {
 
 Instant LocalCalendar::first_instant(Day day, int minute_of_day) const {
   const Instant as_if_utc = Instant{sys_days{day}} + std::chrono::minutes{minute_of_day};
-  // Offsets lie within a day of UTC: of the spans around, the first whose local times reach the
-  // asked one contains its first showing, or begins at the jump over it.
+  // Offsets are within a day of UTC. Of the spans around, the first whose local times reach the
+  // requested one contains its first occurrence, or begins at the jump over it.
   auto entry = std::upper_bound(
       offsets_.begin(), offsets_.end(), as_if_utc - days{1},
       [](Instant instant, const OffsetSpan& candidate) { return instant < candidate.span.begin; });

@@ -1,7 +1,6 @@
-/// Where instants meet local calendars: months, days and schedule hours of one time zone.
+/// Converts between instants and local calendars: months, days and schedule hours of one time zone.
 ///
-/// Everything inside is UTC; local time exists at month, day and schedule arithmetic and for
-/// people.
+/// Everything inside recald is UTC; local time is used only for months, days, schedules and people.
 #pragma once
 
 #include <chrono>
@@ -21,14 +20,14 @@ using Instant = std::chrono::sys_seconds;  ///< UTC, whole seconds.
 using Month = std::chrono::year_month;     ///< A local calendar month.
 using Day = std::chrono::year_month_day;   ///< A local calendar day.
 
-inline constexpr std::chrono::seconds kDay{86'400};  ///< Of 24 hours, as most are.
+inline constexpr std::chrono::seconds kDay{86'400};  ///< 24 hours, as most days have.
 
 [[nodiscard]] inline double in_hours(std::chrono::seconds span) {
   return static_cast<double>(span.count()) / 3600.0;
 }
 
-/// Of the intervals that begin at whole multiples since 1970 the one that holds t. @pre t from then
-/// on
+/// The start of the interval that contains t, on a grid of whole multiples since 1970. @pre t
+/// is not before 1970
 [[nodiscard]] inline Instant interval_start(Instant t, std::chrono::seconds interval) {
   return t - t.time_since_epoch() % interval;
 }
@@ -43,13 +42,13 @@ struct TimeSpan {
   bool operator==(const TimeSpan&) const = default;
 };
 
-/// A local wall-clock reading of an instant.
+/// An instant in local wall-clock time.
 struct LocalTime {
   Day date;
-  int minute_of_day;  ///< 0…1439, as the clock on the wall shows it.
+  int minute_of_day;  ///< 0…1439, as on the wall clock.
 };
 
-/// First instant that recald refuses: the zone library knows only listed transitions up to 2037.
+/// First instant that recald refuses: the zone library lists transitions only up to 2037.
 inline constexpr Instant kLatestInstant =
     std::chrono::sys_days{Day{std::chrono::year{2038}, std::chrono::month{1}, std::chrono::day{1}}};
 
@@ -66,8 +65,8 @@ class LocalCalendar {
   static Result<LocalCalendar> open(std::string_view zone_name);
 
   /// [first instant of day 1, first instant of the next month's day 1).
-  /// A midnight that does not exist starts at the first existing instant, one that occurs twice at
-  /// the first. @pre the month lies in 1971…2037.
+  /// A midnight that does not exist starts at the first existing instant, a repeated one at its
+  /// first occurrence. @pre the month lies in 1971…2037.
   [[nodiscard]] TimeSpan month_span(Month month) const;
   [[nodiscard]] TimeSpan day_span(Day day) const;
 
@@ -75,8 +74,7 @@ class LocalCalendar {
   [[nodiscard]] Month month_of(Instant t) const;
   [[nodiscard]] std::chrono::seconds utc_offset(Instant t) const;
 
-  /// The first instant that shows this wall-clock time, or, where the clock jumps over it, the
-  /// jump.
+  /// The first instant that shows this wall-clock time, or the jump if the clock skips it.
   [[nodiscard]] Instant first_instant(Day day, int minute_of_day) const;
 
   [[nodiscard]] const std::string& zone_name() const { return zone_name_; }
@@ -86,7 +84,7 @@ class LocalCalendar {
   [[nodiscard]] const OffsetSpan& offset_span(Instant t) const;
 
   std::string zone_name_;
-  std::vector<OffsetSpan> offsets_;  ///< Ordered, gapless over 1970…2037.
+  std::vector<OffsetSpan> offsets_;  ///< Ordered and without gaps over 1970…2037.
 };
 
 /// Days of the month, 28…31.
@@ -102,7 +100,7 @@ class LocalCalendar {
 [[nodiscard]] std::string to_string(Day day);
 [[nodiscard]] std::string to_string(Instant t);
 
-/// Exactly "YYYY-MM" or "YYYY-MM-DD"; anything else is malformed.
+/// Accepts exactly "YYYY-MM" or "YYYY-MM-DD"; anything else is malformed.
 [[nodiscard]] Result<Month> parse_month(std::string_view text);
 [[nodiscard]] Result<Day> parse_day(std::string_view text);
 

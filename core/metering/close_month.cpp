@@ -19,7 +19,7 @@ seconds peak_window(const MonthSlots& month, const PeakRule& rule) {
   return fits ? rule.window : interval;
 }
 
-/// Whether slots [begin, begin + width) are measured and follow each other on the wall clock.
+/// Whether slots [begin, begin + width) are measured and consecutive on the wall clock.
 bool is_complete_block(const MonthSlots& month, int begin, int width) {
   for (int i = 0; i < width; ++i) {
     const int slot = begin + i;
@@ -63,7 +63,7 @@ std::string text(const char* format, Values... values) {
   return buffer.data();
 }
 
-/// " (971 suspect: zero_run)" where suspect slots are part of the trouble.
+/// " (971 suspect: zero_run)" if suspect slots contribute to the problem.
 std::string suspects_in_words(const MonthlyFigure& figure) {
   const int suspect = figure.slots_by_validity[static_cast<std::size_t>(Validity::suspect)];
   if (suspect == 0) return {};
@@ -151,7 +151,7 @@ ClosedMonth close_month(std::uint32_t meter_index, MonthSlots received, const Me
   };
   figure.coverage = count(Validity::ok) / slots;
   figure.filled_share = (fill.filled + count(Validity::scaled)) / slots;
-  figure.daily_average_kWh = energy_kWh(month) / days;  // NaN where nothing was measured
+  figure.daily_average_kWh = energy_kWh(month) / days;  // NaN if nothing was measured
   figure.daily_average_variance_kWh2 = fill.variance_kWh2 / (days * days);
   figure.unusable_because = why_unusable(month, figure, options);
   figure.usable = figure.unusable_because.empty();

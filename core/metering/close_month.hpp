@@ -1,4 +1,4 @@
-/// From a month's readings to the figures that a model is judged by.
+/// From a month's readings to the figures that a model is compared with.
 #pragma once
 
 #include <chrono>
@@ -20,18 +20,18 @@ struct ClosingOptions {
 struct ClosedMonth {
   std::uint32_t meter;
   MonthlyFigure figure;
-  MonthSlots slots;  ///< Validated and filled: what the figure was made from.
+  MonthSlots slots;  ///< Validated and filled: the basis of the figure.
 };
 
-/// Largest mean over complete blocks of the rule's window, every slot of them measured and valid.
-/// Blocks start where the local clock shows a multiple of the window. A window shorter than the
-/// interval or no multiple of it is the interval.
-/// @return none when no block is complete.
+/// Largest mean over complete blocks of the rule's window, with every slot measured and valid.
+/// Blocks start where the local clock shows a multiple of the window. If the window is shorter than
+/// the interval or not a multiple of it, the interval is used.
+/// @return nothing if no block is complete.
 [[nodiscard]] std::optional<PeakDemand> find_peak(const MonthSlots& month, const PeakRule& rule);
 
-/// Validates, fills and sums one month. `received` is the month as it came: measured values, `ok`,
-/// `missing` or what the source said. Coverage counts against all slots of the local month, so
-/// a record that starts in its middle says so.
+/// Validates, fills and sums one month. `received` is the month as it arrived: measured values,
+/// `ok`, `missing` or the source's own flag. Coverage is relative to all slots of the local month,
+/// so it also shows that a record starts mid-month.
 [[nodiscard]] ClosedMonth close_month(std::uint32_t meter_index, MonthSlots received,
                                       const Meter& meter, const ValidationContext& context,
                                       const ClosingOptions& options);

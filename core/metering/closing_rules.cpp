@@ -8,10 +8,10 @@
 namespace recald::metering {
 namespace {
 
-/// To be raised when the program itself closes months differently.
+/// Increase this when the program itself closes months differently.
 constexpr int kVersion = 2;
 
-/// FNV-1a, 64 bit: rules are told apart, not protected. @see RFC draft eastlake-fnv.
+/// FNV-1a, 64 bit, used to distinguish rules, not to protect them. @see RFC draft eastlake-fnv.
 class Digest {
  public:
   void add(std::integral auto value) {

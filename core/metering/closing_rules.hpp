@@ -7,9 +7,9 @@
 
 namespace recald::metering {
 
-/// The same text for the same rules, on every machine; another one when a rule for gaps, holidays,
-/// coverage, validation or peaks changes, or what the meter is said to be able to do. What has no
-/// say in a month's figures (its watermark, how long it may be reopened) is not in it.
+/// The same text for the same rules, on every machine. It changes with the rules for gaps,
+/// holidays, coverage, validation or peaks, and with the meter's declared limits. Settings that do
+/// not affect a month's figures (its watermark, how long it may be reopened) are not included.
 [[nodiscard]] std::string closing_rules(const ClosingOptions& options, const Meter& meter);
 
 }  // namespace recald::metering

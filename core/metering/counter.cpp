@@ -19,7 +19,7 @@ constexpr double kRolloverFrom = 0.9;  // of the modulus
 constexpr std::size_t kErraticRestarts = 10;
 constexpr seconds kErraticTime{3600};
 
-/// A: the most that the register can have risen.
+/// A: the most by which the register can have risen.
 double rise_max_kWh(seconds span, const CounterSettings& settings) {
   return kRatedMargin * settings.rated_kW * in_hours(span) + 2.0 * settings.resolution_kWh;
 }
@@ -40,7 +40,8 @@ CounterBooking unbooked(Instant from, Instant to, Reason reason) {
   return {{from, to}, kAbsent, Validity::missing, reason};
 }
 
-/// One call of `advance`; each branch of the state table is a function that says whether it held.
+/// One call of `advance`; each branch of the state table is a function that returns
+/// whether it applied.
 class Transition {
  public:
   Transition(CounterState state, const RegisterSample& sample, const CounterSettings& settings)
@@ -75,13 +76,13 @@ class Transition {
     return true;
   }
 
-  /// Nothing was counted since the old line was given up.
+  /// Whether nothing was counted since the old line was abandoned.
   [[nodiscard]] bool stands() const {
     const auto& previous = step_.state.previous;
     return previous && previous->expires == CounterState::kStands;
   }
 
-  /// The sample lies on the line that was given up, and counting does not explain how it got there.
+  /// Whether the sample lies on the abandoned line, and counting does not explain how it got there.
   [[nodiscard]] bool is_back() const {
     const auto& previous = step_.state.previous;
     if (!previous || !fits(sample_, previous->sample, settings_)) return false;
@@ -107,7 +108,7 @@ class Transition {
   bool jitter() {
     if (rise_kWh_ >= 0.0 || rise_kWh_ < -2.0 * settings_.resolution_kWh) return false;
     step_.bookings.push_back(measured(step_.state.baseline, sample_, 0.0));
-    believe({sample_.time, step_.state.baseline.value_kWh});  // so the dip is not booked again
+    believe({sample_.time, step_.state.baseline.value_kWh});  // so that the dip is not booked again
     return true;
   }
 
@@ -144,7 +145,7 @@ class Transition {
     return true;
   }
 
-  /// The register is back on the line that was given up: what was booked since was wrong.
+  /// The register is back on the abandoned line, so what was booked since was wrong.
   bool restore_previous() {
     const RegisterSample first = step_.state.pending->first;
     if (!is_back() || !fits(first, step_.state.previous->sample, settings_)) return false;

@@ -1,4 +1,4 @@
-/// A cumulative register that wraps, bounces, jitters and is reset, turned into booked energy.
+/// Books energy from a cumulative register that wraps, bounces, jitters and is reset.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace recald::metering {
 
 struct CounterSettings {
-  double rated_kW;              ///< The most that the load can draw.
-  double resolution_kWh = 0.0;  ///< r: step of the register.
+  double rated_kW;                                               ///< The largest power of the load.
+  double resolution_kWh = 0.0;                                   ///< r: step of the register.
   double modulus_kWh = std::numeric_limits<double>::infinity();  ///< M: where it wraps.
 };
 
@@ -24,9 +24,9 @@ struct RegisterSample {
 
 enum class CounterPhase : std::uint8_t {
   empty,  ///< No baseline yet.
-  run,    ///< Last sample believed.
-  low,    ///< The register fell, not yet believed.
-  high,   ///< The register rose by more than the load can draw, not yet believed.
+  run,    ///< The last sample was accepted.
+  low,    ///< The register fell; not accepted yet.
+  high,   ///< The register rose by more than the load can draw; not accepted yet.
 };
 
 enum class CounterEvent : std::uint8_t { none, bounce, reset, restored, jump, erratic, swapped };
@@ -38,21 +38,21 @@ struct CounterState {
     RegisterSample last;
     int samples;
   };
-  /// An outage leaves a register standing at one value, often 0; for as long as it stands it may
-  /// come back. A register that counts on its own has probably been reset.
+  /// An outage leaves a register at one value, often 0; while it stays there, it may return to its
+  /// old line. A register that counts on from there has probably been reset.
   struct OldBaseline {
     RegisterSample sample;
-    Instant expires;  ///< 7 days after the register counted again; `kStands` until then.
+    Instant expires;  ///< 7 days after the register resumed counting; `kStands` until then.
   };
   static constexpr Instant kStands = Instant::max();
   CounterPhase phase = CounterPhase::empty;
-  RegisterSample baseline{};            ///< B: last sample believed.
+  RegisterSample baseline{};            ///< B: last accepted sample.
   std::optional<OldBaseline> previous;  ///< O: the baseline before the last rebase.
   std::optional<Pending> pending;       ///< P: samples that contradict B.
-  std::vector<Instant> restarts;        ///< When P started again within the last hour.
+  std::vector<Instant> restarts;        ///< Times when P was restarted within the last hour.
 };
 
-/// What one sample settled.
+/// The energy that one sample decides.
 struct CounterBooking {
   TimeSpan span;      ///< (begin, end] in register terms.
   double energy_kWh;  ///< NaN: the span is missing.
@@ -67,21 +67,22 @@ struct CounterStep {
   CounterEvent event = CounterEvent::none;
 };
 
-/// One sample through the state machine. Samples come in time order.
+/// Runs one sample through the state machine. Samples come in time order.
 ///
-/// With A = 1.2 rated Δt + 2 r, the most that can have been drawn since a sample: a rise within
-/// A is booked; a fall within 2 r is jitter; a fall near the modulus that fits A after adding M is
-/// a roll-over; anything else waits until three samples over two minutes agree with each other.
-/// Then a fall was a reset (the span up to it is missing, never guessed), a rise a jump.
+/// A = 1.2 rated Δt + 2 r is the most that can have been drawn since a sample. A rise within A is
+/// booked. A fall within 2 r is jitter. A fall near the modulus that fits A after adding M is a
+/// roll-over. Anything else waits until three samples over two minutes agree with each other. Then
+/// a fall was a reset (the span up to it is missing, never guessed), and a rise a jump.
 ///
-/// If the register returns to the line before the last rebase, that line holds: what was booked
-/// since is superseded by the difference, `scaled`. A register that has stood still since then may
-/// return after any time, one that counts within 7 days and only over a difference that its load
-/// cannot have drawn: counting up through the old value is not a return.
+/// If the register returns to the line before the last rebase, that line is valid again: what
+/// was booked since is superseded by the difference, `scaled`. A register that has stood still
+/// since then may return after any time. One that counts may return within 7 days, and only
+/// over a difference that its load cannot have drawn, because counting up through the old value
+/// is not a return.
 [[nodiscard]] CounterStep advance(CounterState state, const RegisterSample& sample,
                                   const CounterSettings& settings);
 
-/// The device was exchanged (another serial): the next sample is a new baseline.
+/// The device was replaced (new serial number): the next sample is a new baseline.
 [[nodiscard]] CounterStep swap_meter(CounterState state);
 
 }  // namespace recald::metering

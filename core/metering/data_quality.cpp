@@ -28,7 +28,7 @@ std::string span_words(const TimeSpan& span) {
   return text.data();
 }
 
-/// "2017-11-21 09:00", as the clock on the wall shows it.
+/// "2017-11-21 09:00" in local time.
 std::string local_words(Instant t, const LocalCalendar& calendar) {
   const LocalTime local = calendar.local_time(t);
   std::array<char, 16> clock{};
@@ -41,7 +41,7 @@ std::string plural(int count, std::string_view one, std::string_view many) {
   return std::to_string(count) + " " + std::string{count == 1 ? one : many};
 }
 
-/// What a set of reasons means to the person who reads the meter.
+/// The meaning of a set of reasons for the person responsible for the meter.
 std::string reason_words(const Episode& episode) {
   const Reason r = episode.reasons;
   if (!episode.suspect && r == Reason::none) return "without readings";
@@ -110,7 +110,7 @@ void describe_unusable(std::string_view meter, const std::vector<MonthlyFigure>&
        DataFinding::Grade::warning});
 }
 
-/// The change's words begin with the meter's name, which a finding has beside its sentence.
+/// Removes the meter's name from the start, because a finding shows it beside its sentence.
 std::string without_name(std::string words, std::string_view meter) {
   if (words.starts_with(meter) && words.size() > meter.size() + 1) {
     words.erase(0, meter.size() + 1);

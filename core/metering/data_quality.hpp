@@ -1,4 +1,4 @@
-/// What a meter's record shows about itself, in words for people.
+/// What a meter's record shows about its quality, in words for people.
 #pragma once
 
 #include <map>
@@ -27,7 +27,7 @@ struct Episode {
 /// Joins episodes that meet at a month's end.
 [[nodiscard]] std::vector<Episode> join_episodes(std::vector<Episode> episodes);
 
-/// One thing a person should know about a meter's data.
+/// Something that people should know about a meter's data.
 struct DataFinding {
   enum class Grade { note, warning };
   std::string meter;
@@ -37,11 +37,11 @@ struct DataFinding {
   Grade grade = Grade::note;
 };
 
-/// One finding for each kind of episode (with the longest one named), for conflicts and refused
+/// One finding for each kind of episode (naming the longest one), for conflicts and refused
 /// readings, for unusable months, and for each level change.
 ///
-/// A run of zeros that the meter's settings take for a load is reported as well once it is longer
-/// than three days: nobody but the owner can know whether it means "no load" or "no data".
+/// A run of zeros that the settings accept as load is also reported if it is longer than three
+/// days, because only the owner can know whether it means "no load" or "no data".
 /// @param zero_runs  Runs of exact zeros that passed as `ok`, see `find_believed_zero_runs`.
 [[nodiscard]] std::vector<DataFinding> describe_data(std::string_view meter,
                                                      const std::vector<Episode>& episodes,

@@ -1,4 +1,4 @@
-/// How slots that are not measured are estimated: the rule that a site asks for, and what was done.
+/// How slots without measurements are estimated: the rule a site chooses, and the method used.
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 namespace recald::metering {
 
 enum class FillRule : std::uint8_t {
-  same_time,     ///< Mean of the same time of day in the same month, whatever the gap (the seed).
+  same_time,     ///< Mean of the same time of day in the same month, for any gap (the seed).
   linear_short,  ///< A straight line across gaps up to `line_max`, same_time beyond.
 };
 inline constexpr std::array<std::string_view, 2> kFillRules = {"same_time", "linear_short"};
 
-/// How a slot's energy was found.
+/// How a slot's energy was determined.
 enum class FillMethod : std::uint8_t {
-  none,                 ///< Measured, or not known at all.
+  none,                 ///< Measured, or unknown.
   same_time,            ///< Mean of the same time of day in the same month (the seed).
   same_time_like_days,  ///< … over days of the same type, working or not.
   neighbouring_times,   ///< Fewer than three such days: one interval before and after as well.

@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::seconds;
 
-/// Count, mean and sum of squared deviations; two of them merge without their readings.
+/// Count, mean and sum of squared deviations; two of them can be merged without their readings.
 struct Moments {
   double n = 0.0;
   double mean = 0.0;
@@ -27,7 +27,7 @@ struct Moments {
   [[nodiscard]] double variance() const { return n < 2.0 ? 0.0 : squares / (n - 1.0); }
 };
 
-/// Readings that are averaged together, and how many slots were filled from that average.
+/// Readings that are averaged together, and the number of slots filled with that average.
 struct Pool {
   Moments readings;
   double variance_kW2 = 0.0;
@@ -40,7 +40,7 @@ struct Gap {
   int end;
 };
 
-/// The work on one month; the arrays are indexed by day type and time of day.
+/// The computation for one month; the arrays are indexed by day type and time of day.
 class MonthFiller {
  public:
   MonthFiller(MonthSlots& month, const FillOptions& options)
@@ -83,8 +83,8 @@ class MonthFiller {
     return by_time_[static_cast<std::size_t>(type * times_ + time)];
   }
 
-  /// One pass: sums of the deviations from the first reading of each time of day, which is near
-  /// enough to their mean that no digits are lost.
+  /// One pass over deviations from the first reading of each time of day, which is close enough to
+  /// their mean to lose no digits.
   void learn_times_of_day() {
     struct Sums {
       double n = 0.0;
@@ -206,7 +206,7 @@ class MonthFiller {
       pool.known = true;
       pool.readings = readings();
       pool.variance_kW2 = pool.readings.variance();
-      // One or two readings say little about their spread; the month's is wider, so use that.
+      // One or two readings say little about their spread, so use the month's, which is wider.
       if (pool.readings.n < options_.days_min) {
         pool.variance_kW2 = std::max(pool.variance_kW2, whole_month_.variance());
       }
@@ -214,7 +214,7 @@ class MonthFiller {
     return pool;
   }
 
-  /// Of the slots in long gaps, from the means of complete days.
+  /// For the slots in long gaps, from the means of complete days.
   [[nodiscard]] double block_variance_kWh2() const {
     if (days_missing_ == 0.0) return 0.0;
     Moments complete_days;
@@ -232,7 +232,7 @@ class MonthFiller {
     double variance_kW2 = complete_days.variance();
     double days_known = complete_days.n;
     if (complete_days.n < options_.days_min) {
-      // Without whole days to compare, a day is taken to stray as far as a single slot does.
+      // Without complete days to compare, assume that a day varies as much as a single slot.
       variance_kW2 = whole_month_.variance();
       days_known = std::max(1.0, whole_month_.n / times_);
     }

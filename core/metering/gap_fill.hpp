@@ -1,4 +1,5 @@
-/// Estimates for the slots of a month that are not measured, and how uncertain they make its sum.
+/// Estimates for the slots of a month without measurements, and the uncertainty
+/// they add to its sum.
 #pragma once
 
 #include <chrono>
@@ -11,11 +12,11 @@ namespace recald::metering {
 
 struct FillOptions {
   FillRule rule = FillRule::same_time;
-  bool daytype = false;       ///< Average over like days only: working or not. Off as in the seed.
-  std::vector<Day> holidays;  ///< Local days counted as not working.
+  bool daytype = false;       ///< Average over like days only: working or not. Off, as in the seed.
+  std::vector<Day> holidays;  ///< Local days treated as not working.
   std::chrono::seconds line_max{2 * 3600};
-  int days_min = 3;  ///< Fewer measured days at a time of day ask for a wider mean.
-  /// Beyond this a gap's slots do not err independently: the variance of whole days is used.
+  int days_min = 3;  ///< With fewer measured days at a time of day, a wider mean is used.
+  /// In longer gaps, errors of slots are not independent: the variance of whole days is used.
   std::chrono::seconds independent_gap_max{24 * 3600};
 };
 
@@ -24,16 +25,16 @@ struct FillResult {
   double variance_kWh2 = 0.0;  ///< Of the month's energy, from the estimates alone.
 };
 
-/// Sets `used_kW` of every slot: its measured value where `ok` or `scaled`, an estimate elsewhere.
-/// `missing` slots become `filled`, `suspect` ones stay suspect with an estimate beside the value.
-/// A month without any measured slot is left without estimates.
+/// Sets `used_kW` of every slot: its measured value if `ok` or `scaled`, otherwise an estimate.
+/// `missing` slots become `filled`; `suspect` ones stay suspect, with an estimate beside the value.
+/// A month without any measured slot gets no estimates.
 ///
 /// With n days measured at a time of day, sample variance s² and J slots filled from that mean,
 ///   Var += s² (J + J²/n) h²,  h the interval in hours:
 /// J independent deviations plus the error of the mean they share. Slots of gaps longer than
-/// `independent_gap_max` enter by the daily means of complete days instead, D days missing of n_d:
+/// `independent_gap_max` use the daily means of complete days instead, D days missing of n_d:
 ///   Var += s_day² (D + D²/n_d) (24 h)².
-/// A line's errors within its gap are taken as fully correlated, (Σ s h)².
+/// A line's errors within its gap are assumed to be fully correlated, (Σ s h)².
 /// @see the seed, section 2, for the estimate.
 [[nodiscard]] FillResult fill_gaps(MonthSlots& month, const FillOptions& options);
 

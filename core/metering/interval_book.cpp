@@ -30,7 +30,8 @@ std::vector<double> shaped_by(const LoadShape& shape, std::span<const CounterBoo
   return expected;
 }
 
-/// A booking cut at the interval boundaries; energies follow the shape and add up to the booking's.
+/// Cuts a booking at the interval boundaries; energies follow the shape and add up
+/// to the booking's.
 std::vector<CounterBooking> cut(const CounterBooking& booking, const BookingRules& rules,
                                 const LoadShape& shape) {
   std::vector<CounterBooking> pieces;
@@ -42,7 +43,7 @@ std::vector<CounterBooking> cut(const CounterBooking& booking, const BookingRule
     pieces.push_back(piece);
     begin = end;
   }
-  // Between close samples the load is taken as constant; a hole is an estimate.
+  // Between close samples the load is taken as constant; across a hole it is estimated.
   const bool is_hole = pieces.size() > 1 && booking.span.length() > rules.sample_gap_max;
   std::vector<double> weights = lengths_h(pieces);
   if (is_hole && shape) {
@@ -78,7 +79,7 @@ Reading reading_of(std::span<const CounterBooking> pieces, std::uint32_t meter,
   return reading;
 }
 
-/// Takes out what a booking puts right, so that its intervals are made again.
+/// Withdraws what a booking corrects, so that its intervals are formed again.
 void withdraw(IntervalBook& book, const CounterBooking& booking, seconds interval) {
   std::erase_if(book.pieces, [&](const CounterBooking& piece) {
     return piece.span.begin >= booking.span.begin;
@@ -86,7 +87,7 @@ void withdraw(IntervalBook& book, const CounterBooking& booking, seconds interva
   if (book.next) book.next = std::min(*book.next, interval_start(booking.span.begin, interval));
 }
 
-/// Forgets what is handed out, but for the beginning of an interval that may still be withdrawn.
+/// Forgets completed intervals, except the start of one that may still be withdrawn.
 void forget(IntervalBook& book, const CounterState& counter, seconds interval) {
   const auto may_return = [&](const CounterBooking& piece) {
     if (!counter.previous) return false;
@@ -98,9 +99,9 @@ void forget(IntervalBook& book, const CounterState& counter, seconds interval) {
   });
 }
 
-/// The mean of what was measured at that time of day on the days around; the record's where none
-/// was.
-/// @param record  Without a hole, each one interval after the last. @pre it outlives the shape.
+/// The mean of the measurements at that time of day on the days around, or of the whole record
+/// if there are none.
+/// @param record  Without holes, each one interval after the last. @pre it outlives the shape.
 LoadShape like_days_around(std::span<const Reading> record, seconds interval) {
   double sum_kW = 0.0;
   int measured = 0;
@@ -156,7 +157,7 @@ std::vector<BookedInterval> book_intervals(IntervalBook& book, std::uint32_t met
     if (booking.supersedes) withdraw(book, booking, rules.interval);
     if (!book.next) {
       const Instant start = interval_start(booking.span.begin, rules.interval);
-      // The interval in which the first sample lies cannot become complete.
+      // The interval that contains the first sample can never be complete.
       book.next = start == booking.span.begin ? start : start + rules.interval;
     }
     const std::vector<CounterBooking> pieces = cut(booking, rules, shape);

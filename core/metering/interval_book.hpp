@@ -1,4 +1,4 @@
-/// From energy booked between register samples to intervals on the grid.
+/// Forms intervals on the grid from the energy booked between register samples.
 #pragma once
 
 #include <chrono>
@@ -13,48 +13,50 @@
 
 namespace recald::metering {
 
-/// How a load usually runs: its mean power in the interval that starts then, >= 0, kW. Energy known
-/// only as a sum is spread by it; without one, or where it is nowhere positive, evenly.
+/// The usual load: its mean power in the interval that starts then, >= 0, kW. It distributes energy
+/// of which only the sum is known. Without a shape, or if it is nowhere positive, the energy is
+/// distributed evenly.
 using LoadShape = std::function<double(Instant start)>;
 
 struct BookingRules {
   std::chrono::seconds interval{900};
-  /// Samples further apart than this say nothing about the register between them: intervals that
-  /// they cut are estimates, `scaled` to the difference. Usually two poll periods.
+  /// Samples further apart say nothing about the register between them: intervals with a boundary
+  /// in between are estimates, `scaled` to the difference. Usually two poll periods.
   std::chrono::seconds sample_gap_max{900};
 };
 
 struct BookedInterval {
   Reading reading;
-  bool supersedes;  ///< Takes the place of what was booked before, whatever its validity.
+  bool supersedes;  ///< Replaces what was booked before, whatever its validity.
 };
 
-/// What is known of intervals that are not complete yet. A plain value that must survive a restart
+/// The state of intervals that are not complete yet. A plain value that must survive a restart
 /// together with its counter's state: the two describe the same samples.
 struct IntervalBook {
   std::vector<CounterBooking> pieces;  ///< In order of time, each within one interval.
-  std::optional<Instant> next;         ///< Start of the first interval not handed out.
+  std::optional<Instant> next;         ///< Start of the first interval not yet completed.
 };
 
-/// Enters what one sample settled and hands out the intervals that it completes, in order of time.
+/// Enters the energy that one sample decides, and returns the intervals that it completes,
+/// in order of time.
 ///
-/// An interval is `ok` where its energy is measured: samples on both boundaries, or close enough to
-/// interpolate between them. A hole in the middle of an interval does no harm then. It is `scaled`
-/// where a boundary lies in a hole: the counter knows the sum over the hole, the shape says how it
-/// was spread. The sum over all intervals and the open rest is what was booked, to the last digit
-/// that rounding leaves, so monthly energy is as good as measured through any silence.
-/// An interval is missing where the counter could not be believed.
+/// An interval is `ok` if its energy is measured: there are samples on both boundaries, or close
+/// enough to interpolate between them. A hole in the middle of the interval then does no harm. It
+/// is `scaled` if a boundary lies in a hole: the counter gives the sum over the hole, the shape its
+/// distribution. The sum over all intervals and the open rest equals the booked energy up to
+/// rounding, so monthly energy is as good as measured through any silence. An interval is missing
+/// if the counter could not be trusted.
 ///
-/// @param step  of this book's counter, as `advance` gave it.
+/// @param step  From `advance` for this book's counter.
 [[nodiscard]] std::vector<BookedInterval> book_intervals(IntervalBook& book, std::uint32_t meter,
                                                          const CounterStep& step,
                                                          const BookingRules& rules,
                                                          const LoadShape& shape = {});
 
-/// A recorded register as readings, one for each interval that starts within [first, last) sample.
-/// What the register rose by between samples further apart than an interval is spread as the load
-/// ran at the same time on the fourteen days before and after.
-/// @param samples  in time order, off-grid times allowed. @pre interval divides a day.
+/// Readings from a recorded register, one for each interval that starts within [first, last)
+/// sample. If samples are further apart than an interval, the rise between them is distributed like
+/// the load at the same time on the fourteen days before and after.
+/// @param samples  In time order, off-grid times allowed. @pre interval divides a day.
 [[nodiscard]] std::vector<Reading> readings_from_register(std::uint32_t meter,
                                                           std::span<const RegisterSample> samples,
                                                           std::chrono::seconds interval,

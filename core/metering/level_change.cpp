@@ -50,7 +50,7 @@ class LevelWatch {
   [[nodiscard]] std::vector<LevelChange> take() { return std::move(changes_); }
 
  private:
-  /// A month that has something to be compared with.
+  /// A month that can be compared with others.
   struct Compared {
     const MonthlyFigure* figure;
     double level;
@@ -76,7 +76,7 @@ class LevelWatch {
     return sum / static_cast<double>(n);
   }
 
-  /// A heating meter's July may be a tenth or ten times last year's and mean nothing.
+  /// A heating meter's July may be a tenth of last year's or ten times as much, and mean nothing.
   [[nodiscard]] bool is_small(double level, double reference) const {
     return std::max(level, reference) < largest_level_ + std::log(options_.small_month);
   }
@@ -100,7 +100,7 @@ class LevelWatch {
     month.step = recent_.empty() ? month.log_ratio : month.log_ratio - median_of(recent_);
     if (std::abs(month.step) > std::log(options_.scale_factor_min)) {
       open(LevelChangeKind::scale, month, month.step / expected.scale);
-      recent_.clear();  // the step is told once
+      recent_.clear();  // report the step only once
     } else if (!open_) {
       watch(month);
     }
@@ -109,7 +109,7 @@ class LevelWatch {
     if (open_) count_return(month.figure->month, std::abs(month.z) <= options_.z_max / 2.0);
   }
 
-  /// Nothing is open yet: one month far off, or some in a row off to the same side, opens.
+  /// No change is open: one month far off, or several in a row off to the same side, opens one.
   void watch(const Compared& month) {
     const bool changed = std::abs(std::expm1(month.log_ratio)) > options_.ratio_change_min;
     const bool same_side = doubted_.empty() || (doubted_.back().z > 0.0) == (month.z > 0.0);
@@ -198,8 +198,8 @@ LevelChangeOptions level_change_options(Utility utility) {
   const bool by_weather = utility != Utility::electricity && utility != Utility::water;
   if (by_weather) {
     options.typical_scatter = 0.15;
-    options.small_month = 0.25;      // chilled water in a mild January may well halve
-    options.scale_factor_min = 8.0;  // a cold March after a mild winter steps by 5.5
+    options.small_month = 0.25;      // chilled water in a mild January may be only half
+    options.scale_factor_min = 8.0;  // a cold March after a mild winter is a step of 5.5
   }
   return options;
 }

@@ -13,7 +13,7 @@ using std::chrono::seconds;
 
 constexpr std::size_t kGridsKept = 16;
 
-/// What a source said, in the terms of a month as received.
+/// A source's reading, in the terms of a received month.
 struct Received {
   double value_kW;
   Validity validity;
@@ -118,7 +118,7 @@ void MonthCloser::place(const Reading& reading) {
   }
 }
 
-/// Puts a reading that is later than all before it, and closes what it brings due.
+/// Enters a reading that is later than all before it, and closes the months that become due.
 void MonthCloser::take_newest(MeterState& state, Record& record, std::size_t slot,
                               const Reading& reading) {
   put(state, record, slot, reading);
@@ -129,7 +129,7 @@ void MonthCloser::take_newest(MeterState& state, Record& record, std::size_t slo
   if (*state.newest_end >= state.next_deadline) close_until(reading.meter, *state.newest_end);
 }
 
-/// The first reading of all had a wrong year ahead and the second shows it.
+/// Whether the very first reading was far ahead by mistake, as the second one shows.
 bool MonthCloser::is_lone_stray(const MeterState& state, const Reading& reading) const {
   return state.counts.accepted == 1 && state.newest_end &&
          reading.start + options_.leap_max < *state.newest_end && !options_.period &&
@@ -152,7 +152,7 @@ void MonthCloser::put(MeterState& state, Record& record, std::size_t slot,
   } else {
     ++state.counts.accepted;
     if (reading.reasons != Reason::none) month.reasons[slot] |= reading.reasons;
-    if (std::isnan(now.value_kW)) return;  // a blank changes nothing, in a closed month neither
+    if (std::isnan(now.value_kW)) return;  // a blank changes nothing, not even in a closed month
     month.measured_kW[slot] = now.value_kW;
     month.validity[slot] = now.validity;
   }
@@ -163,7 +163,7 @@ void MonthCloser::put(MeterState& state, Record& record, std::size_t slot,
   if (record.closed || reading.late) month.late[slot] = 1;
 }
 
-/// The record whose month contains `start`; makes the months up to it. Null: no longer kept.
+/// The record whose month contains `start`; creates the months up to it. Null: no longer kept.
 MonthCloser::Record* MonthCloser::record_for(std::uint32_t meter, Instant start) {
   MeterState& state = states_[meter];
   if (state.records.empty()) {
@@ -172,7 +172,7 @@ MonthCloser::Record* MonthCloser::record_for(std::uint32_t meter, Instant start)
     append(meter, month);
   }
   while (start >= state.records.back().slots.grid->month_span().end) {
-    // What is over is closed as the months go by, so a long hole does not fill the memory.
+    // Close finished months on the way, so that a long hole does not fill the memory.
     close_until(meter, start);
     append(meter, next_month(state.records.back().slots.grid->month()));
   }
@@ -182,7 +182,7 @@ MonthCloser::Record* MonthCloser::record_for(std::uint32_t meter, Instant start)
   return prepend_until(meter, start);
 }
 
-/// A record may begin unsorted: as long as nothing was closed, earlier months can still be opened.
+/// A record may begin unsorted: earlier months can be opened as long as nothing was closed.
 MonthCloser::Record* MonthCloser::prepend_until(std::uint32_t meter, Instant start) {
   MeterState& state = states_[meter];
   const Record& front = state.records.front();
@@ -263,7 +263,7 @@ void MonthCloser::hand_out_reopened(std::uint32_t meter) {
 void MonthCloser::forget_old(MeterState& state) const {
   const auto closed = std::count_if(state.records.begin(), state.records.end(),
                                     [](const Record& record) { return record.closed; });
-  // The newest record stays in any case: it says which month comes next.
+  // Always keep the newest record, which tells the next month.
   for (auto extra = closed - options_.months_kept; extra > 0 && state.records.size() > 1; --extra) {
     if (state.next_record == &state.records.front()) state.next_record = nullptr;
     state.records.pop_front();
@@ -279,7 +279,7 @@ void MonthCloser::close_due(Instant now) {
     }
     hand_out_reopened(meter);
     close_until(meter, now);
-    for (;;) {  // a silent meter's months come out too, empty
+    for (;;) {  // a silent meter's months are closed too, empty
       const Month next = next_month(state.records.back().slots.grid->month());
       const bool wanted = !options_.period || next <= options_.period->last;
       if (!wanted || calendar_.month_span(next).end + options_.watermark > now) break;

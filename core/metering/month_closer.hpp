@@ -1,4 +1,5 @@
-/// The pipeline from readings to closed months: many meters, one reading at a time, flat memory.
+/// The pipeline from readings to closed months: many meters, one reading at a time,
+/// constant memory.
 #pragma once
 
 #include <chrono>
@@ -13,17 +14,17 @@
 
 namespace recald::metering {
 
-/// Months that must come out even when a meter has nothing in them. Both ends included.
+/// Months that must be closed even if a meter has no readings in them. Inclusive.
 struct MonthRange {
   Month first;
   Month last;
 };
 
-/// Readings so long after a month judge its last slots.
+/// Readings up to this long after a month are used to check its last slots.
 inline constexpr std::chrono::hours kJudgedAfterwards{48};
 
-/// The readings that have a say in these months: from the month before, which shows what a meter is
-/// like, to two days after, by which the last slots are judged.
+/// The readings that affect these months: from the month before, which shows the meter's behaviour,
+/// to two days after, which are needed to check the last slots.
 [[nodiscard]] TimeSpan span_judged_by(const MonthRange& months, const LocalCalendar& calendar);
 
 struct CloserOptions {
@@ -32,41 +33,41 @@ struct CloserOptions {
   std::chrono::seconds watermark{72 * 3600};
   int months_kept =
       2;  ///< Closed months whose readings are kept, so that late ones can reopen them.
-  /// A single stamp this far ahead of the last one is held until the next reading confirms it:
-  /// one wrong year must not close the record.
+  /// A single stamp this far ahead of the last one is held until the next reading confirms it,
+  /// because one wrong year must not close the record.
   std::chrono::seconds leap_max{62 * 86'400};
   std::optional<MonthRange> period;
 };
 
-/// What happened to the readings that did not simply take their slot.
+/// What happened to a meter's readings.
 struct MeterCounts {
-  std::int64_t accepted = 0;    ///< Took their slot, blanks included.
+  std::int64_t accepted = 0;    ///< Entered in their slot, blanks included.
   std::int64_t duplicates = 0;  ///< Same interval, same value: the first one stays.
   std::int64_t conflicts = 0;   ///< Same interval, other value: first value kept, `suspect`.
   std::int64_t late = 0;        ///< For a closed month that was reopened.
   std::int64_t too_late = 0;    ///< For a month no longer kept: refused.
-  std::int64_t off_grid = 0;    ///< Start is no interval start of the meter: refused.
+  std::int64_t off_grid = 0;    ///< The start is not an interval start of the meter: refused.
   std::int64_t stray = 0;       ///< Far ahead and not confirmed, or beyond 2037: refused.
 };
 
-/// Collects readings per meter and hands out each month once it is complete, again with a higher
-/// revision when late readings change it. Readings of one meter come in event-time order, apart
-/// from late ones; meters may be interleaved or one after the other. Months of a meter come out in
-/// order, those without a reading too.
+/// Collects readings per meter and passes on each month once it is complete, and again with a
+/// higher revision when late readings change it. Readings of one meter come in event-time order,
+/// apart from late ones; meters may be interleaved or one after the other. A meter's months come in
+/// order, including those without readings.
 class MonthCloser {
  public:
   using Sink = std::function<void(ClosedMonth&&)>;
 
   MonthCloser(LocalCalendar calendar, std::vector<Meter> meters, CloserOptions options, Sink sink);
 
-  /// Interval and phase that a file showed. @pre no reading of that meter was added.
+  /// Sets the interval and phase found in a file. @pre no reading of that meter was added.
   void set_grid(std::uint32_t meter, std::chrono::seconds interval, std::chrono::seconds phase);
 
   /// @pre reading.meter is an index into the meters.
   void add(const Reading& reading);
 
-  /// Closes what wall time says is over, for meters that have gone silent, and hands out reopened
-  /// months. Call it now and then from a daemon; a replay calls it with its virtual clock.
+  /// Closes months that are over by wall time, for silent meters, and passes on reopened months. A
+  /// daemon calls it from time to time; a replay calls it with its virtual clock.
   void close_due(Instant now);
 
   /// The record ends here: closes every open month, and the rest of `period`.
@@ -81,7 +82,7 @@ class MonthCloser {
   struct Record {
     MonthSlots slots;  ///< As received.
     bool closed = false;
-    bool changed = false;  ///< Since it was last handed out.
+    bool changed = false;  ///< Since it was last passed on.
     int revision = 0;
   };
   struct MeterState {
@@ -89,7 +90,7 @@ class MonthCloser {
     std::optional<Instant> newest_end;
     Instant next_deadline = Instant::max();  ///< When the first open month closes.
     std::optional<Reading> held;             ///< Far ahead, not yet confirmed.
-    /// Where the next interval goes, as long as it is an ordinary one of an open month.
+    /// The place of the next interval, as long as it is an ordinary one in an open month.
     Record* next_record = nullptr;
     std::size_t next_slot = 0;
     Instant next_start{};

@@ -28,7 +28,8 @@ MonthGrid::MonthGrid(const LocalCalendar& calendar, Month month, seconds interva
   for (Instant t = first_; t < month_span_.end;) {
     const LocalTime local = calendar.local_time(t);
     const auto time_of_day = static_cast<int>(std::chrono::minutes{local.minute_of_day} / interval);
-    // A day that begins here and ends with the same offset is plain: one look at the calendar.
+    // A day that begins here and ends with the same offset is plain: one calendar
+    // look-up is enough.
     const bool plain = time_of_day == 0 && t + kDay <= month_span_.end &&
                        calendar.utc_offset(t) == calendar.utc_offset(t + kDay - interval);
     const int count = plain ? times_of_day() : 1;

@@ -1,4 +1,4 @@
-/// A meter's month in the figures that a building energy model is judged by.
+/// A meter's month as the figures that a building energy model is compared with.
 #pragma once
 
 #include <array>
@@ -13,14 +13,13 @@ namespace recald::metering {
 struct PeakDemand {
   double kW;
   Instant start;
-  bool could_be_exceeded;  ///< Some slots are not measured: the true peak may be higher.
+  bool could_be_exceeded;  ///< Some slots are not measured, so the true peak may be higher.
 };
 
 /// Daily-average consumption and peak demand of one local calendar month (the seed, section 2).
 struct MonthlyFigure {
   Month month;
-  double
-      daily_average_kWh;  ///< Energy of the month / calendar days; NaN where nothing was measured.
+  double daily_average_kWh;  ///< Energy of the month / calendar days; NaN if nothing was measured.
   /// Variance of `daily_average_kWh` from estimated slots, (kWh/day)². Not the meter's own error.
   double daily_average_variance_kWh2;
   std::optional<PeakDemand> peak;
@@ -29,10 +28,10 @@ struct MonthlyFigure {
   double filled_share;  ///< Share of the slots that are filled or scaled.
   std::array<int, 5> slots_by_validity;  ///< Indexed by `Validity`.
   int slots;                             ///< Slots of the local month, clock changes included.
-  bool usable;                           ///< May be calibrated against.
+  bool usable;                           ///< May be used for calibration.
   std::string unusable_because;          ///< Empty when usable.
   Reason reasons = Reason::none;         ///< Union over the month's slots.
-  int revision = 0;                      ///< Counts re-openings by late readings.
+  int revision = 0;                      ///< Number of re-openings by late readings.
 };
 
 }  // namespace recald::metering

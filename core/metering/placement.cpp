@@ -23,7 +23,7 @@ int strength(Validity validity) {
   return 0;
 }
 
-/// The same value, or none in both; text and registers round, so the last digits may differ.
+/// The same value, or no value in both; text and registers round, so the last digits may differ.
 bool same_value(double a_kW, double b_kW) {
   if (std::isnan(a_kW) || std::isnan(b_kW)) return std::isnan(a_kW) && std::isnan(b_kW);
   return std::abs(a_kW - b_kW) <= 1e-9 * std::max(std::abs(a_kW), std::abs(b_kW));
@@ -35,7 +35,7 @@ Placement place(const std::optional<Reading>& known, const Reading& arriving, bo
   if (!known) return Placement::first;
   const bool same = same_value(known->mean_kW, arriving.mean_kW);
   if (same && known->validity == arriving.validity) return Placement::duplicate;
-  // A missing interval corrects nothing, whoever says so.
+  // A missing interval never corrects anything.
   if (supersedes && arriving.validity != Validity::missing) return Placement::replaces;
   const int gain = strength(arriving.validity) - strength(known->validity);
   if (gain > 0) return Placement::replaces;

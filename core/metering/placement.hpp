@@ -1,4 +1,4 @@
-/// Which of two readings of one interval holds.
+/// Decides between two readings of one interval.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace recald::metering {
 
-/// What becomes of a reading whose interval may be known already.
+/// What happens to a reading whose interval may already have one.
 enum class Placement : std::uint8_t {
-  first,      ///< Nothing was known: it is taken.
-  replaces,   ///< Better than what was known, or puts it right: it is taken, as a new revision.
-  duplicate,  ///< Says what is known: nothing changes. Everything may arrive twice.
-  weaker,     ///< Known better already: it is left.
-  conflict,   ///< As good, with another value: the first stays, and people are told.
+  first,      ///< The interval had none: it is stored.
+  replaces,   ///< Better than the stored one, or a correction: it is stored as a new revision.
+  duplicate,  ///< Equal to the stored one: nothing changes. Everything may arrive twice.
+  weaker,     ///< Worse than the stored one: it is dropped.
+  conflict,   ///< Equally good, but another value: the first stays, and an event reports it.
 };
 
-/// ok > scaled > filled > suspect > missing, and never the reverse: an estimate cannot take the
-/// place of a measurement. Only what the meter's own counter puts right replaces anything.
+/// ok > scaled > filled > suspect > missing, and never the reverse: an estimate must not replace a
+/// measurement. Only corrections from the meter's own counter replace anything.
 ///
-/// @param known       what stands for the interval, if anything.
-/// @param supersedes  `arriving` puts right what was booked before (BookedInterval).
+/// @param known       The stored reading of the interval, if any.
+/// @param supersedes  `arriving` corrects what was booked before (BookedInterval).
 [[nodiscard]] Placement place(const std::optional<Reading>& known, const Reading& arriving,
                               bool supersedes = false);
 

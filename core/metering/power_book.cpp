@@ -17,14 +17,14 @@ struct Stretch {
   PowerSample to;
   bool is_measured;
 
-  /// On the straight line between the two.
+  /// On the straight line between the two samples.
   [[nodiscard]] double power_kW(Instant t) const {
     const double share = in_hours(t - from.time) / in_hours(to.time - from.time);
     return from.power_kW + share * (to.power_kW - from.power_kW);
   }
 };
 
-/// Adds [begin, end) of a stretch, which lies in the open interval.
+/// Adds [begin, end) of a stretch that lies in the open interval.
 void account(PowerBook& book, const Stretch& stretch, Instant begin, Instant end, Reason reasons) {
   const seconds length = end - begin;
   if (!stretch.is_measured) {

@@ -25,7 +25,7 @@ void watch_standing(PowerCheck& check, const Reading& counted, double powered_kW
     if (reading.validity == Validity::ok) verdict.frozen.push_back(as_frozen(reading));
   }
   verdict.has_frozen_now = verdict.frozen.size() > 1;
-  // Those are told; what follows is told one by one.
+  // These are reported together; those that follow are reported one by one.
   for (Reading& reading : check.standing) reading.validity = Validity::suspect;
 }
 

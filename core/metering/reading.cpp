@@ -12,7 +12,7 @@ constexpr std::array<std::string_view, 6> kUtilities{"electricity", "chilled_wat
 constexpr std::array<std::string_view, 5> kValidities{"ok", "missing", "filled", "scaled",
                                                       "suspect"};
 
-// In order of the bits; the strings are stable, exports and other programs know them.
+// In order of the bits. The strings are stable: exports and other programs use them.
 constexpr std::array<std::string_view, 22> kReasons{
     "timeout", "exception", "crc",      "mismatch",  "sentinel", "nan",   "range", "spike",
     "stuck",   "negative",  "zero_run", "sum_check", "rollover", "wrap",  "reset", "jump",

@@ -1,4 +1,4 @@
-/// A meter, a reading, and how far to believe it.
+/// A meter, a reading, and how far to trust it.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ enum class Utility : std::uint8_t { electricity, chilled_water, heating, steam, 
 [[nodiscard]] std::string_view to_string(Utility utility);
 [[nodiscard]] Result<Utility> parse_utility(std::string_view text);
 
-/// How far an interval's value may be used; IEEE 2030.5 quality flags carry the same meanings.
+/// How an interval's value may be used; IEEE 2030.5 quality flags have the same meanings.
 enum class Validity : std::uint8_t {
   ok,       ///< Measured, all checks passed: counts in energy and peak.
   missing,  ///< Nothing usable.
@@ -28,8 +28,8 @@ enum class Validity : std::uint8_t {
 [[nodiscard]] std::string_view to_string(Validity validity);
 [[nodiscard]] Result<Validity> parse_validity(std::string_view text);
 
-/// Why an interval is what it is. A set of bits: an interval may have several, or none.
-/// Nothing branches on a reason; they are for people and exports.
+/// Why an interval has its validity. A set of bits: an interval may have several reasons, or none.
+/// They are for people and exports; no code branches on them.
 enum class Reason : std::uint32_t {
   none = 0,
   timeout = 1u << 0,
@@ -68,19 +68,19 @@ constexpr bool has(Reason set, Reason reason) {
 [[nodiscard]] std::string to_string(Reason reasons);
 [[nodiscard]] Result<Reason> parse_reasons(std::string_view text);
 
-/// One interval's mean power as a source delivers it: start-stamped, UTC, already in kW.
+/// One interval's mean power from a source: start-stamped, UTC, already in kW.
 struct Reading {
   std::uint32_t meter;  ///< Index into the site's list of meters.
   Instant start;        ///< Interval start; a multiple of the meter's interval.
   double mean_kW;       ///< NaN when the source lists the interval as blank.
-  /// What the source itself says; `ok` from a meter or a plain file. A `filled` value is taken as
-  /// missing (it is estimated again, with a variance), a `scaled` one counts in energy.
+  /// The source's own flag; `ok` from a meter or a plain file. A `filled` value is treated as
+  /// missing (it is estimated again, with a variance); a `scaled` one counts in energy.
   Validity validity = Validity::ok;
   Reason reasons = Reason::none;
-  bool late = false;  ///< The source had closed the month when this came.
+  bool late = false;  ///< The source had already closed the month.
 };
 
-/// How a month's peak demand is defined. The contract names it, so the result does too.
+/// How a month's peak demand is defined. The contract names the method, so the result does too.
 enum class PeakMethod : std::uint8_t {
   block,  ///< Largest mean over fixed blocks of `window`, from the local hour on.
 };
@@ -90,22 +90,23 @@ struct PeakRule {
   std::chrono::seconds window{900};  ///< A multiple of the meter's interval, else the interval.
 };
 
-/// What recald is told about a meter.
+/// The description of a meter.
 struct Meter {
   std::string id;
   Utility utility = Utility::electricity;
   std::chrono::seconds interval{900};
-  /// Interval starts are this far past a multiple of `interval` since 1970. Not 0 only for meters
+  /// Offset of interval starts from multiples of `interval` since 1970. Not 0 only for meters
   /// coarser than their zone's offset (hourly values on the local hour at UTC+5:30).
   std::chrono::seconds phase{0};
-  std::optional<double>
-      rated_kW;  ///< Largest plausible mean power; absent switches that check off.
-  /// Longest run of exact zeros that is a load and not a dead meter; absent: zeros are a load.
+  std::optional<double> rated_kW;  ///< Largest plausible mean power; absent: no such check.
+  /// Longest run of exact zeros that counts as load; a longer one is a dead meter. Absent:
+  /// any run is load.
   std::optional<std::chrono::seconds> zero_run_max;
-  /// A run of equal non-zero values this long is a frozen meter. Absent: 12 intervals; 0 s: never.
+  /// A run of equal non-zero values this long means a frozen meter. Absent: 12
+  /// intervals; 0 s: never.
   std::optional<std::chrono::seconds> stuck_max;
   bool negative_is_valid = false;
-  bool is_counted = false;  ///< Readings are what a cumulative register rose by.
+  bool is_counted = false;  ///< Readings are differences of a cumulative register.
   PeakRule peak;
 };
 

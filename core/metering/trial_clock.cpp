@@ -21,7 +21,7 @@ std::optional<Number> whole(std::string_view text) {
   return value;
 }
 
-/// Exactly "2026-01-30T00:00:00Z".
+/// Accepts exactly the form "2026-01-30T00:00:00Z".
 std::optional<Instant> parse_instant(std::string_view text) {
   if (text.size() != 20 || text[10] != 'T' || text[13] != ':' || text[16] != ':' ||
       text[19] != 'Z') {
@@ -46,7 +46,7 @@ TrialClock::Milliseconds TrialClock::simulated(Microseconds real) const {
 }
 
 std::chrono::nanoseconds TrialClock::real_wait(std::chrono::milliseconds simulated_wait) const {
-  // Rounded up: who waits for an instant must not wake before it.
+  // Rounded up, so that nobody wakes before the instant they wait for.
   return std::chrono::nanoseconds{
       std::llround(std::ceil(static_cast<double>(simulated_wait.count()) * 1e6 / speed))};
 }

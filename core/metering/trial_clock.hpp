@@ -1,5 +1,5 @@
-/// Time that runs faster than the world's, for trials with simulated meters: a value that two
-/// programs can share, so that a month passes in both of them in the same minute.
+/// Time that runs faster than real time, for trials with simulated meters. Two programs can share
+/// the value, so that a month takes the same real minute in both.
 #pragma once
 
 #include <chrono>
@@ -13,20 +13,20 @@ namespace recald::metering {
 /// Simulated time = start + (real − anchor) × speed.
 struct TrialClock {
   Instant start;
-  Instant anchor;      ///< The real time at which it is `start`.
-  double speed = 1.0;  ///< Simulated seconds in a real one, > 0.
+  Instant anchor;      ///< The real time that corresponds to `start`.
+  double speed = 1.0;  ///< Simulated seconds per real second, > 0.
 
   using Milliseconds = std::chrono::sys_time<std::chrono::milliseconds>;
   /// A real millisecond can be half a simulated minute.
   using Microseconds = std::chrono::sys_time<std::chrono::microseconds>;
 
   [[nodiscard]] Milliseconds simulated(Microseconds real) const;
-  /// How long a wait of simulated time really takes, at least a nanosecond of it when any.
+  /// The real duration of a simulated wait; at least a nanosecond unless it is zero.
   [[nodiscard]] std::chrono::nanoseconds real_wait(std::chrono::milliseconds simulated_wait) const;
 };
 
 /// "2026-01-30T00:00:00Z@1769900000x600": start, anchor in seconds since 1970, speed.
-/// @return or malformed with what is wrong with the text.
+/// @return the clock, or malformed with the mistake in the text.
 [[nodiscard]] Result<TrialClock> parse_trial_clock(std::string_view text);
 
 }  // namespace recald::metering

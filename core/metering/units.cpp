@@ -18,7 +18,7 @@ constexpr double kCalorie_kWh = 4.1868 / 3.6e6;  // International Table
 enum class Measures { energy, mass, gas_volume };
 
 struct KnownUnit {
-  std::string_view spelling;  // as `plain` leaves it
+  std::string_view spelling;  // normalised by `plain`
   double factor;              // kW or kWh; kg(/h); m3(/h)
   bool is_rate;
   Measures measures = Measures::energy;
@@ -83,9 +83,9 @@ constexpr std::array kUnits{
     KnownUnit{"mcf/h", 1e3 * kCubicFoot_m3, true, Measures::gas_volume},
 };
 
-/// Other ways to write one of those.
+/// Other spellings of these units.
 struct Synonym {
-  std::string_view written;  // as `plain` leaves it
+  std::string_view written;  // normalised by `plain`
   std::string_view known;
 };
 
@@ -140,7 +140,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
-/// Lower case, a cube as 3, an hour as h, without blanks, hyphens, dots and the plural's s.
+/// Lower case, cube as 3, hour as h, without blanks, hyphens, dots and plural s.
 std::string plain(std::string_view text) {
   std::string out = lower(text);
   replace_all(out, "\xC2\xB3", "3");  // superscript three
@@ -153,7 +153,7 @@ std::string plain(std::string_view text) {
   replace_all(out, "perhour", "/h");
   const std::size_t slash = out.find('/');
   const std::size_t end = slash == std::string::npos ? out.size() : slash;
-  // "lbs", "tons", "therms", "ton-hours"; what is left of "l/s" has no s of its own.
+  // "lbs", "tons", "therms", "ton-hours"; normalised "l/s" no longer ends in s.
   if (end > 2 && out[end - 1] == 's') out.erase(end - 1, 1);
   return out;
 }
@@ -174,7 +174,7 @@ std::string quoted(std::string_view text) {
   return quoted_text;
 }
 
-/// A small m before a watt or a joule is milli: one slip is nine orders of magnitude.
+/// A small m before a watt or a joule would be milli: such a slip is nine orders of magnitude.
 bool looks_like_milli(std::string_view unit) {
   return unit.size() >= 2 && unit[0] == 'm' &&
          (unit[1] == 'w' || unit[1] == 'W' || unit[1] == 'j' || unit[1] == 'J');

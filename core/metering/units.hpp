@@ -1,4 +1,4 @@
-/// From the unit written beside a value to the interval-mean power that everything else works in.
+/// Converts the unit beside a value to the interval-mean power used everywhere else.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace recald::metering {
 
-/// What a site must say before a mass or a volume becomes energy.
+/// What a site must declare before a mass or a volume can become energy.
 struct UnitFactors {
   /// Steam: energy per mass with condensate returned. The default is 0.305 kWh/lb, low-pressure
   /// saturated steam.
@@ -33,15 +33,15 @@ struct UnitConversion {
 /// Power: W kW MW GW, BTU/h kBtu/h MBtu/h MMBtu/h MBH, kWh/h, GJ/h, ton (of refrigeration), kg/h
 /// lb/h m3/h. Energy: Wh kWh MWh GWh, J kJ MJ GJ, kcal Gcal, BTU kBtu MBtu MMBtu therm Dth,
 /// ton-hour ton-day, kg t lb klb, m3 ft3 CCF MCF.
-/// Case does not matter, but for a leading m, which would be milli; nor do a plural's s, blanks and
-/// hyphens, "hr" for "h", and "m³" for "m3". MBtu is a million BTU as in Portfolio Manager, and the
-/// same as MMBtu; MBH is a thousand BTU an hour; CCF and MCF are a hundred and a thousand cubic
-/// feet. A ton is one of refrigeration, t and tonne are a thousand kilograms.
+/// Ignored: case (except a leading m, which would be milli), plural s, blanks and hyphens, "hr" for
+/// "h", and "m³" for "m3". MBtu is a million BTU as in Portfolio Manager, the same as MMBtu; MBH is
+/// a thousand BTU per hour; CCF and MCF are a hundred and a thousand cubic feet. A ton is one of
+/// refrigeration; t and tonne are a thousand kilograms.
 ///
 /// @return the conversion for a meter of `utility`, or
-///         invalid_value  the unit is not known, or a mass stands on another meter than steam's;
-///         unsupported    understood, but not energy without more than a factor (l/s without a
-///                        temperature difference, m3 without a heating value, water).
+///         invalid_value  the unit is not known, or a mass belongs to a meter other than steam;
+///         unsupported    understood, but it takes more than a factor to make energy of it (l/s
+///                        without a temperature difference, m3 without a heating value, water).
 [[nodiscard]] Result<UnitConversion> find_unit(std::string_view unit, Utility utility,
                                                const UnitFactors& factors);
 

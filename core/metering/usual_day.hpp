@@ -1,4 +1,4 @@
-/// How a meter's load usually runs over the local day, learnt from its readings as they come.
+/// A meter's usual load over the local day, learnt from its readings as they arrive.
 #pragma once
 
 #include <chrono>
@@ -9,21 +9,21 @@
 
 namespace recald::metering {
 
-/// A running mean of each time of day: the same-time rule for gaps (the seed, section 2) as far as
-/// it can be known before the month is over. The last 20 days or so count, all kinds of day alike.
+/// A running mean for each time of day: the same-time rule for gaps (the seed, section 2), as far
+/// as possible before the month is over. About the last 20 days count, all kinds of day alike.
 class UsualDay {
  public:
   /// @pre interval divides a day.
   UsualDay(LocalCalendar calendar, std::chrono::seconds interval);
 
-  /// Only what was measured teaches; anything else is left out.
+  /// Learns only from measured readings.
   void observe(const Reading& reading);
 
-  /// Mean power at this time of the local day, kW, never below 0. A time never measured counts as
-  /// the mean of the others, and 0 where none was.
+  /// Mean power at this time of the local day, kW, never below 0. A time without measurements gets
+  /// the mean of the others, or 0 if there are none.
   [[nodiscard]] double expected_kW(Instant start) const;
 
-  /// As `book_intervals` takes it. @pre this outlives the shape.
+  /// In the form that `book_intervals` takes. @pre this outlives the shape.
   [[nodiscard]] LoadShape shape() const;
 
  private:

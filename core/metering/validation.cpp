@@ -14,17 +14,17 @@ using std::chrono::seconds;
 
 constexpr double kNormalMad = 1.4826;      // MAD of a normal distribution to its sd
 constexpr double kSpikeScaleFloor = 0.01;  // of the month's median
-constexpr std::size_t kSpikeDaysMin = 5;   // fewer days tell nothing about a time of day
+constexpr std::size_t kSpikeDaysMin = 5;   // fewer days say nothing about a time of day
 constexpr double kSameSize = 2.0;          // firings of one boiler differ by less
 constexpr int kFiringsConfirming = 2;      // that a load draws so much now and then
-constexpr double kFewSteps = 8.0;          // of a coarse register, at which a load rests
+constexpr double kFewSteps = 8.0;          // of a coarse register; a load rests below this
 
 void condemn(MonthSlots& month, std::size_t slot, Reason reason) {
   month.validity[slot] = Validity::suspect;
   month.reasons[slot] |= reason;
 }
 
-/// What the meter said, believed or not; NaN where it said nothing or a counter only knew a sum.
+/// The meter's value, accepted or not; NaN if there was none or only a counter's sum.
 double reported_kW(const MonthSlots& month, std::size_t slot) {
   const Validity v = month.validity[slot];
   return v == Validity::ok || v == Validity::suspect ? month.measured_kW[slot] : kAbsent;
@@ -54,7 +54,7 @@ struct Extremes {
   [[nodiscard]] double magnitude_kW() const { return std::max(highest_kW, -lowest_kW); }
 };
 
-/// Of what the source reports.
+/// Extremes of the source's readings.
 Extremes extremes_of(const MonthSlots& month) {
   Extremes extremes;
   for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
@@ -89,8 +89,8 @@ bool is_negative(const MonthSlots& month, std::size_t slot) {
   return reported_kW(month, slot) < 0.0;
 }
 
-/// Slots of `month` that lie within `reach` slots of a negative one, over the month's ends too.
-/// Empty when there is none.
+/// Slots of `month` within `reach` slots of a negative one, also across the month's ends. Empty
+/// when there is none.
 std::vector<bool> beside_negatives(const MonthSlots& month, const ValidationContext& context,
                                    std::ptrdiff_t reach, bool some_inside) {
   const auto n = static_cast<std::ptrdiff_t>(month.measured_kW.size());
@@ -143,7 +143,7 @@ void check_corrections(MonthSlots& month, const ValidationContext& context,
   }
 }
 
-/// Where the highest valid readings of a day stand.
+/// The slots with the highest valid readings of a day.
 struct DayTop {
   std::size_t highest = 0;
   double first_kW = -1.0;
@@ -171,8 +171,7 @@ DayTop top_of_day(const MonthSlots& month, std::size_t begin, std::size_t end) {
   return top;
 }
 
-/// Three readings of this level make a spike impossible that day, for no reading is that much
-/// higher.
+/// Whether three readings of the day are so high that none can be a spike.
 bool has_third_reading_above(const MonthSlots& month, std::size_t begin, std::size_t end,
                              double level_kW) {
   int above = 0;
@@ -184,7 +183,7 @@ bool has_third_reading_above(const MonthSlots& month, std::size_t begin, std::si
   return false;
 }
 
-/// The step of the readings: a coarse register shows 0, 1, 2 … of it. Tiny where they are fine.
+/// The step of the readings: a coarse register shows 0, 1, 2 … times it. Tiny for fine readings.
 double step_of_readings_kW(const MonthSlots& month) {
   std::vector<double> values;
   for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
@@ -215,7 +214,7 @@ class SpikeCheck {
       const auto begin = static_cast<std::size_t>(begins[day]);
       const auto end = static_cast<std::size_t>(begins[day + 1]);
       if (has_third_reading_above(month_, begin, end, ordinary_kW)) continue;
-      // Each turn takes one spike out, so two in one day are both found.
+      // Each pass removes one spike, so two in one day are both found.
       for (;;) {
         const DayTop top = top_of_day(month_, begin, end);
         if (top.third_kW <= 0.0) break;  // a load that ran twice a day has no third to compare with
@@ -247,11 +246,11 @@ class SpikeCheck {
   bool is_confirmed(std::size_t slot) {
     if (meter_.is_counted && register_goes_on(slot)) return true;
     const int others = readings_like(slot);
-    // A load that mostly rests is the same at no time of day: one other firing shows what it draws.
+    // A load that mostly rests has no usual time of day, so one other run shows its power.
     return others >= kFiringsConfirming || (others > 0 && mostly_rests());
   }
 
-  /// A register that counted a spike goes on from there; one that misread falls back.
+  /// A register that counted a spike continues from there; one that was misread falls back.
   [[nodiscard]] bool register_goes_on(std::size_t slot) const {
     const auto goes_on = [](const MonthSlots& month, std::size_t i) {
       return !has(month.reasons[i], Reason::reset) && !has(month.reasons[i], Reason::jump);
@@ -260,7 +259,8 @@ class SpikeCheck {
     return context_.after == nullptr || goes_on(*context_.after, 0);
   }
 
-  /// Others of the same size on the days around, at any time of day, over the month's ends too.
+  /// Readings of the same size on the days around, at any time of day, also across
+  /// the month's ends.
   [[nodiscard]] int readings_like(std::size_t slot) const {
     const double value_kW = month_.measured_kW[slot];
     const auto reach =
@@ -309,7 +309,7 @@ class SpikeCheck {
   std::optional<bool> mostly_rests_;
 };
 
-/// Reported slots equal to `value_kW` next to the month: back from its begin or on from its end.
+/// Reported slots equal to `value_kW` next to the month: back from its start or on from its end.
 int run_outside(const MonthSlots* neighbour, double value_kW, bool from_its_end) {
   if (neighbour == nullptr) return 0;
   const std::size_t n = neighbour->measured_kW.size();
@@ -331,7 +331,7 @@ struct Run {
   int count;
 };
 
-/// Checks runs of equal readings; a run of one needs no more than a comparison.
+/// Checks runs of equal readings; a run of one needs only a comparison.
 class RunCheck {
  public:
   RunCheck(MonthSlots& month, const Meter& meter, const ValidationContext& context,

@@ -15,7 +15,7 @@ namespace recald::model {
 
 enum class SurfaceKind { wall, roof, window, ground };
 
-/// A part of the envelope. Areas are outside dimensions, m².
+/// A part of the envelope. Areas are outer dimensions, m².
 struct Surface {
   std::string name;
   SurfaceKind kind;
@@ -39,14 +39,14 @@ struct Use {
   double latent_W_person = 55.0;
   double lighting_W_m2 = 0.0;    ///< Installed; splits the measured profile, see profile/.
   double plugs_W_m2 = 0.0;       ///< Installed; likewise.
-  double exterior_kW = 0.0;      ///< Electricity that heats no zone.
+  double exterior_kW = 0.0;      ///< Electricity that does not heat a zone.
   double zone_heat_share = 0.9;  ///< Of lights and plugs.
-  // Where gains arise; only the hourly model can tell.
-  double closet_share = 0.0;   ///< Of the plugs' heat: in closets that are never left warm.
+  // Where gains arise; only the hourly model uses these.
+  double closet_share = 0.0;   ///< Of the plugs' heat: in closets that are always kept cool.
   double gains_to_core = 0.0;  ///< Of the perimeter's even share of gains: arises in the core.
 };
 
-/// Indoor temperatures that the controls hold, °C. Occupied hours: workdays from…to.
+/// Indoor temperatures that the controls maintain, °C. Occupied hours: workdays from…to.
 struct SetPoints {
   double cooling_occupied_C = 24.0;
   double cooling_unoccupied_C = 28.0;
@@ -55,22 +55,22 @@ struct SetPoints {
   int occupied_from_hour = 7;
   int occupied_to_hour = 19;
   bool saturday_occupied = false;
-  // How far the plant's day departs from that timetable, whole site files being in whole hours.
-  // Only the hourly model can tell.
+  // How far the plant's day differs from that timetable, since site files give only whole hours.
+  // Only the hourly model uses these.
   double start_early_h = 0.0;   ///< Negative: it starts later.
   double stop_late_h = 0.0;     ///< Negative: it stops earlier.
-  double warm_up_h = 0.0;       ///< In which the heating set-point climbs after the start.
-  double closed_start_h = 0.0;  ///< After the start with outdoor-air dampers shut.
+  double warm_up_h = 0.0;       ///< Time in which the heating set-point rises after the start.
+  double closed_start_h = 0.0;  ///< Time after the start with outdoor-air dampers shut.
 };
 
-/// Days of every year on which the building runs otherwise: a school's summer, a boiler that is
-/// off.
+/// Days of every year on which the building runs differently: a school's summer, a
+/// boiler that is off.
 struct Season {
   std::chrono::month_day first;  ///< May be later in the year than `last`: over New Year.
   std::chrono::month_day last;   ///< Inclusive.
-  std::optional<HourlySchedule> occupied_fraction;  ///< Absent: as all year.
+  std::optional<HourlySchedule> occupied_fraction;  ///< Absent: the same as all year.
   bool closed = false;  ///< Set-points and fans keep their unoccupied values all day.
-  bool heating = true;  ///< False: rooms and supply air are not heated. Taps still are.
+  bool heating = true;  ///< False: rooms and supply air are not heated, but hot water still is.
   bool cooling = true;
 
   [[nodiscard]] bool has_own_use() const { return closed || occupied_fraction; }
@@ -86,24 +86,24 @@ struct Season {
 /// Air handlers with VAV reheat as one system. Absent in a building without one.
 struct AirSystem {
   double outdoor_air_m3_s = 0.0;  ///< Total of all air handlers while occupied.
-  /// Share of the air handlers that runs round the clock (laboratories); 0: fans off when
+  /// Share of the air handlers that runs round the clock (laboratories); 0: fans are off when
   /// unoccupied. The rooms they serve keep their daytime set-points.
   double outdoor_air_unoccupied_fraction = 0.0;
   double supply_flow_design_m3_s = 0.0;
   double supply_flow_min_m3_s = 0.0;  ///< Boxes closed to their minimum, occupied.
   double supply_temperature_C = 13.0;
-  double supply_reset_K = 0.0;  ///< Warmer supply air on cold days, below 5 °C by as much.
+  double supply_reset_K = 0.0;  ///< Supply air is warmer by this on cold days, 5 °C and below.
   double fan_design_kW = 0.0;   ///< Supply and return fans at design flow.
   double pump_design_kW = 0.0;  ///< Chilled and hot water pumps at design flow.
   double heat_recovery = 0.0;   ///< Sensible effectiveness, 0…1.
-  std::optional<double> economiser_lockout_C;  ///< Above it only minimum outdoor air; absent: none.
-  std::optional<double> humidification_kg_kg;  ///< Humidity ratio held by steam; absent: none.
-  /// Of the fans' design power while rooms are heated with the handlers off by schedule; 0: heaters
-  /// in the rooms do it. Only the hourly model can tell.
+  std::optional<double> economiser_lockout_C;  ///< No free cooling above it; absent: none at all.
+  std::optional<double> humidification_kg_kg;  ///< Humidity ratio kept by steam; absent: none.
+  /// Share of the fans' design power used while rooms are heated and the handlers are off by
+  /// schedule; 0: heaters in the rooms do it. Only the hourly model uses it.
   double night_fan_share = 0.0;
 };
 
-/// Warm water at the taps.
+/// Hot water at the taps.
 struct HotWater {
   double volume_m3_day = 0.0;
   double temperature_C = 55.0;
@@ -117,29 +117,29 @@ struct Building {
   int storeys = 1;
   double storey_height_m = 3.0;
   double heat_capacity_J_m2K = 165e3;
-  // How the rooms hold that heat; only the hourly model can tell.
-  double mass_coupling = 1.0;       ///< Between mass and inner surfaces, over the standard's.
-  double core_mass_share = 1.0;     ///< Capacity per floor of rooms without outer walls, over that.
+  // How the rooms store that heat; only the hourly model uses these.
+  double mass_coupling = 1.0;    ///< Between mass and inner surfaces, relative to the standard's.
+  double core_mass_share = 1.0;  ///< Capacity per floor of rooms without outer walls, as a factor.
   double air_capacity_J_m2K = 0.0;  ///< Air and furniture: follow the air at once, not the mass.
   std::vector<Surface> surfaces;
   Use use;
   HourlySchedule occupied_fraction;
-  /// Of those that hold a day the first with a use of its own counts. Plant is off in any that says
-  /// so.
+  /// The first season that contains a day and has its own use applies. The plant is off if any
+  /// of them says so.
   std::vector<Season> seasons;
   SetPoints set_points;
   double leakage_cm2_m2 = 1.0;    ///< Effective leakage area at 4 Pa per exterior area.
-  double ventilation_m3_s = 0.0;  ///< Outdoor air straight to the zone, where no air system is.
+  double ventilation_m3_s = 0.0;  ///< Outdoor air directly to the zone, without an air system.
   std::optional<AirSystem> air;
   double heating_loss_fraction = 0.0;
   double heating_efficiency = 1.0;  ///< Boiler or heat exchanger, metered energy to heat.
   double cooling_loss_fraction = 0.0;
   std::optional<double> chiller_cop;  ///< Absent: district chilled water.
-  /// An own chiller's electricity per cooling: so much more per K of outdoor wet bulb. Only the
-  /// hourly model can tell.
+  /// Increase of the chiller's electricity per cooling for each K of outdoor wet bulb. Only the
+  /// hourly model uses it.
   double chiller_lift_per_K = 0.0;
   HotWater hot_water;
-  double base_heat_kW = 0.0;  ///< Heat drawn at all hours that serves no zone.
+  double base_heat_kW = 0.0;  ///< Heat used at all hours that serves no zone.
   double ground_temperature_C = 12.0;
 };
 

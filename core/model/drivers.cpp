@@ -27,7 +27,7 @@ std::vector<weather::Orientation> orientations_of(const Building& building) {
 constexpr double kAssumedHumidity_pct = 50.0;
 constexpr double kAssumedWind_m_s = 3.0;
 
-/// Name of the first variable the model needs and this hour lacks; empty when complete.
+/// Name of the first variable that the model needs and this hour lacks; empty when complete.
 std::string missing_variable(const weather::WeatherHour* hour, const Drivers& drivers) {
   if (hour == nullptr) return "any value";
   if (!std::isfinite(hour->dry_bulb_C)) return "dry_bulb_C";
@@ -69,7 +69,7 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
   const double relative_humidity = std::clamp(humidity_pct / 100.0, 0.0, 1.0);
   const std::chrono::sys_days date{local.date};
   const std::chrono::sys_days first_of_year{local.date.year() / std::chrono::January / 1};
-  // The lesser offset of two opposite seasons is winter's, in either hemisphere.
+  // Of two opposite seasons, the smaller offset belongs to winter, in either hemisphere.
   const auto winter_offset = std::min(calendar.utc_offset(first_of_year),
                                       calendar.utc_offset(first_of_year + std::chrono::days{182}));
   return {.start = start,
@@ -101,7 +101,7 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
 }
 
 /// Counts days, and the hours from and to the changes between day and night operation. Before the
-/// first change and after the last they count from the ends of the record.
+/// first change and after the last, they count from the ends of the record.
 void add_distances(std::vector<DriverHour>& hours) {
   if (hours.empty()) return;
   const std::chrono::sys_days first{hours.front().date};
@@ -120,8 +120,7 @@ void add_distances(std::vector<DriverHour>& hours) {
   }
 }
 
-/// Sun on each orientation in the middle of the hour; measured beam and diffuse where there are
-/// any.
+/// Sun on each orientation in the middle of the hour, from measured beam and diffuse if available.
 Eigen::ArrayXd irradiance_of_hour(const std::vector<weather::Orientation>& orientations,
                                   const weather::Location& location, Instant start,
                                   const weather::WeatherHour& hour) {
@@ -168,7 +167,8 @@ Result<Drivers> make_drivers(const std::vector<metering::Month>& months,
   std::vector<Instant> starts;
   for (std::size_t month = 0; month < months.size(); ++month) {
     const metering::TimeSpan span = calendar.month_span(months[month]);
-    // Zones half an hour off share their first hour with the month before; it counts here.
+    // In zones with a half-hour offset the first hour is shared with the previous
+    // month; it counts here.
     for (Instant t = std::chrono::ceil<std::chrono::hours>(span.begin); t < span.end; t += kHour) {
       const weather::WeatherHour* hour = weather.find(t);
       if (const std::string lacking = missing_variable(hour, drivers); !lacking.empty()) {

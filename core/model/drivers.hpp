@@ -1,6 +1,6 @@
-/// What drives a building hour by hour: weather, sun on each side, people, lights and plugs.
+/// Hourly inputs of a building model: weather, sun on each side, people, lights and plugs.
 ///
-/// Known inputs x of eq. (3) of the seed: prepared once per weather and schedule revision.
+/// The known inputs x of eq. (3) of the seed, prepared once per revision of weather and schedules.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,11 @@
 
 namespace recald::model {
 
-/// Lights and plugs as fixed by the electricity meter: kW by kind of day and local hour.
+/// Lights and plugs as derived from the electricity meter: kW by kind of day and local hour.
 struct ElectricLoads {
   HourlySchedule lights_kW;
   HourlySchedule plugs_kW;
-  /// Factor of each calendar month on both; all 1 where the profile is constant over the year.
+  /// Factor of each calendar month on both; all 1 if the profile is constant over the year.
   std::array<double, 12> month_factor = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 };
 
@@ -30,7 +30,7 @@ struct DriverHour {
   int day_index;         ///< Local days since the day of the first hour.
   unsigned weekday;      ///< 0 Sunday … 6 Saturday, whether a holiday or not.
   int day_of_year;       ///< 1…366
-  bool daylight_saving;  ///< The local clock is ahead of its own winter.
+  bool daylight_saving;  ///< The local clock is ahead of its winter time.
   int month;             ///< Index into Drivers::months.
   DayType day;
   int local_hour;  ///< 0…23
@@ -40,12 +40,12 @@ struct DriverHour {
   double dry_bulb_C;
   double humidity_ratio;  ///< kg/kg
   double wind_m_s;
-  double wind_direction_deg;    ///< From north, clockwise; NaN where not recorded.
+  double wind_direction_deg;    ///< From north, clockwise; NaN if not recorded.
   double sine_of_sun_altitude;  ///< In the middle of the hour; negative at night.
   double global_horizontal_W_m2;
-  double hours_to_start;     ///< Until set-points and fans next go to daytime values; 0 in them.
-  double hours_since_stop;   ///< Since they last left them; 0 in them.
-  double hours_since_start;  ///< The same inside a day of operation; 0 outside. All four are
+  double hours_to_start;    ///< Until set-points and fans next go to daytime values; 0 during them.
+  double hours_since_stop;  ///< Since they last left them; 0 during them.
+  double hours_since_start;  ///< As above within a day of operation; 0 outside. All four are
   double hours_to_stop;      ///< counted from the middle of the hour.
   double occupied_fraction;
   double lights_W;
@@ -58,20 +58,21 @@ struct Drivers {
   std::vector<weather::Orientation> orientations;  ///< Distinct ones of the building's surfaces.
   Eigen::ArrayXXd irradiance_W_m2;                 ///< (orientations x hours)
   double pressure_Pa = 101325.0;
-  bool has_humidity = true;  ///< False: it was assumed, here as 50 % or in the weather already.
-  bool has_wind = true;      ///< The same; here as 3 m/s.
+  bool has_humidity = true;  ///< False: it was assumed, here as 50 % or already in the weather.
+  bool has_wind = true;      ///< As above; here as 3 m/s.
 };
 
-/// What to do where the whole weather record lacks humidity or wind.
+/// What to do if the whole weather record lacks humidity or wind.
 enum class MissingWeather {
   refuse,  ///< The model needs both.
-  assume,  ///< Take 50 % and 3 m/s and say so in the drivers: nothing may be concluded from them.
+  assume,  ///< Assume 50 % and 3 m/s and flag it in the drivers: nothing may be concluded from
+           ///< them.
 };
 
 /// @param months   Months to model, ascending; they need not be adjacent.
-/// @param weather  Hourly; must be finite in dry bulb, humidity, wind and sun in every hour of
-/// them.
-/// @return not_enough_data naming the first hour that the weather lacks and what it lacks.
+/// @param weather  Hourly; must be finite in dry bulb, humidity, wind and sun in every
+///                 hour of the months.
+/// @return not_enough_data, naming the first hour with missing weather and what is missing.
 [[nodiscard]] Result<Drivers> make_drivers(const std::vector<metering::Month>& months,
                                            const metering::LocalCalendar& calendar,
                                            const Holidays& holidays, const Building& building,
@@ -80,7 +81,7 @@ enum class MissingWeather {
                                            const weather::WeatherSeries& weather,
                                            MissingWeather missing = MissingWeather::refuse);
 
-/// Whether set-points and fans stand at their daytime values.
+/// Whether set-points and fans are at their daytime values.
 [[nodiscard]] bool is_occupied(const SetPoints& set_points, DayType day, int local_hour);
 
 }  // namespace recald::model

@@ -1,4 +1,4 @@
-/// What a building spends energy on, and how meters see sums of it.
+/// The end uses of a building's energy, and how meters sum them.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 
 namespace recald::model {
 
-/// Metered energy by purpose: losses and efficiencies on the way from the meter are included.
+/// Metered energy by purpose; losses and efficiencies between the meter and the use are included.
 enum class EndUse : std::size_t {
   lighting,
   plugs,
   exterior,
   fans,
   pumps,
-  chiller,           ///< Electricity of an own chiller.
+  chiller,           ///< Electricity of the building's own chiller.
   sensible_cooling,  ///< Chilled water: coil, sensible part (zone, reheat, outdoor air, fan heat).
   latent_cooling,    ///< Chilled water: coil, dehumidification.
   zone_heating,
@@ -56,8 +56,8 @@ class MeterMap {
   std::array<double, kEndUses> shares_{};
 };
 
-/// What a main meter of this utility counts in a building of this kind, where the site says
-/// nothing. Fails with unsupported for a utility that no end use draws on (water).
+/// What a main meter of this utility counts in such a building by default. Fails with unsupported
+/// for a utility that no end use draws on (water).
 [[nodiscard]] Result<MeterMap> default_meter_map(metering::Utility utility);
 
 /// Fails with not_found and the list of names.

@@ -1,4 +1,4 @@
-/// A model with some of its parameters held, and two models that share the months between them.
+/// A model with some parameters fixed, and two models that split the months between them.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,11 @@
 
 namespace recald {
 
-/// The model as a function of some of its parameters; the others stay where they are put.
+/// The model as a function of some of its parameters; the others are fixed.
 class FixedParametersModel final : public MonthlyModel {
  public:
-  /// @param theta  (parameters of `model`) values of those that are held; the others are
-  /// overwritten.
-  /// @param free   Indices of the parameters that are left, ascending.
+  /// @param theta  (parameters of `model`) values of the fixed ones; the others are overwritten.
+  /// @param free   Indices of the remaining parameters, ascending.
   FixedParametersModel(std::unique_ptr<MonthlyModel> model, std::vector<double> theta,
                        std::vector<int> free);
 
@@ -37,7 +36,7 @@ class FixedParametersModel final : public MonthlyModel {
   std::vector<double> jacobian_;  ///< Of all parameters.
 };
 
-/// Two models of the same outputs and parameters: the months of the first, then of the second.
+/// Two models with the same outputs and parameters: the months of the first, then of the second.
 class JoinedMonthsModel final : public MonthlyModel {
  public:
   JoinedMonthsModel(std::unique_ptr<MonthlyModel> first, std::unique_ptr<MonthlyModel> second);

@@ -1,5 +1,5 @@
-/// The kinds of model that a building's meters can be held against: one table for the command line,
-/// the site file, results and whoever makes a model.
+/// The kinds of model that can be calibrated: one table for the command line, the site file,
+/// results and the code that creates models.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,15 @@ namespace recald {
 
 enum class ModelKind : std::uint8_t {
   epc,        ///< Monthly quasi-steady state.
-  hourly,     ///< Zones by the hour, with air handlers and plant.
+  hourly,     ///< Zones hour by hour, with air handlers and plant.
   metamodel,  ///< A regression of another model's runs.
 };
 
 struct ModelKindFacts {
   ModelKind kind;
   std::string_view name;  ///< In files and on the command line.
-  bool is_of_building;    ///< Made of a site's [building] alone.
-  bool has_peaks;         ///< Foretells a month's peak beside its daily average.
+  bool is_of_building;    ///< Needs only a site's [building].
+  bool has_peaks;         ///< Predicts a month's peak as well as its daily average.
 };
 
 inline constexpr auto kModelKinds = std::to_array<ModelKindFacts>({
@@ -36,13 +36,13 @@ inline constexpr auto kModelKinds = std::to_array<ModelKindFacts>({
 
 [[nodiscard]] constexpr std::string_view name_of(ModelKind kind) { return facts_of(kind).name; }
 
-/// @return nothing for a name that is none.
+/// @return nothing for an unknown name.
 [[nodiscard]] constexpr std::optional<ModelKind> find_model_kind(std::string_view name) {
   const auto* const found = std::ranges::find(kModelKinds, name, &ModelKindFacts::name);
   return found == kModelKinds.end() ? std::nullopt : std::optional{found->kind};
 }
 
-/// The names of all kinds, or of those that a site's building alone is enough for.
+/// The names of all kinds, or of those that need only a site's building.
 [[nodiscard]] inline std::vector<std::string_view> model_kind_names(bool of_building_alone) {
   std::vector<std::string_view> names;
   for (const ModelKindFacts& facts : kModelKinds) {

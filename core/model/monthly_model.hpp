@@ -1,4 +1,4 @@
-/// What every building model looks like to a calibration.
+/// The interface of every building model for calibration.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@ struct Building;
 /// f(x, θ) of eq. (3) of the seed for all months of the model's period at once.
 ///
 /// The known inputs x (weather, schedules, months) are fixed at construction. An instance owns its
-/// scratch memory, so `evaluate` does not allocate and is not shared between threads: each chain
-/// takes a `clone`.
+/// scratch memory, so `evaluate` does not allocate and an instance must not be shared between
+/// threads: each chain uses a `clone`.
 class MonthlyModel {
  public:
   virtual ~MonthlyModel() = default;
@@ -33,7 +33,7 @@ class MonthlyModel {
   ///                 every theta inside the priors.
   virtual void evaluate(std::span<const double> theta, std::span<double> outputs) = 0;
 
-  /// Whether `evaluate_with_jacobian` may be called: the model knows its derivatives.
+  /// Whether `evaluate_with_jacobian` may be called.
   [[nodiscard]] virtual bool has_jacobian() const { return false; }
 
   /// The same outputs and their derivatives with respect to theta.
@@ -43,7 +43,7 @@ class MonthlyModel {
                                       std::span<double> jacobian);
 };
 
-/// Makes a site's model of some months for a building that differs from the site's in values.
+/// Makes a site's model of some months for a building that differs from the site's only in values.
 using ModelFactory = std::function<std::unique_ptr<MonthlyModel>(const model::Building&)>;
 
 /// One run of the model, outside inner loops. @return (output_count * month_count)

@@ -1,4 +1,4 @@
-/// What is uncertain about a building: named parameters, their units and their priors.
+/// Uncertain properties of a building: named parameters, their units and their priors.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace recald {
 /// A calibration parameter: θ_j of eq. (3) of the seed.
 struct Parameter {
   std::string name;  ///< snake_case, e.g. occupancy_density
-  std::string unit;  ///< as people write it: "person/m2", "degC"
+  std::string unit;  ///< As people write it: "person/m2", "degC".
   Prior prior;
 };
 

@@ -36,8 +36,8 @@ void scale_emissivity(Building& b, double factor) {
   for (Surface& s : b.surfaces) s.emissivity *= factor;
 }
 
-/// A larger floor of the same number of storeys: roof and ground grow with it, walls and windows
-/// with its side.
+/// A larger floor with the same number of storeys: roof and ground grow with it, walls and
+/// windows with its side.
 void set_floor_area(Building& b, double area_m2) {
   const double factor = area_m2 / b.floor_area_m2;
   for (Surface& s : b.surfaces) {
@@ -62,7 +62,7 @@ void set_least_flow(Building& b, double v) {
   if (b.air) b.air->supply_flow_min_m3_s = v;
 }
 void set_cooling_set_point(Building& b, double v) {
-  // The night value moves along: people set a thermostat, not two.
+  // The night value moves with it: people set one thermostat, not two.
   b.set_points.cooling_unoccupied_C += v - b.set_points.cooling_occupied_C;
   b.set_points.cooling_occupied_C = v;
 }
@@ -72,7 +72,7 @@ void set_heating_set_point(Building& b, double v) {
 }
 
 constexpr double kNoLeast = -std::numeric_limits<double>::infinity();
-/// Beyond the design value, of the width of a range that it has left.
+/// How far a widened range extends beyond the design value, as a share of its width.
 constexpr double kWidened = 0.25;
 
 constexpr auto kRelative = RangeKind::relative;

@@ -1,9 +1,9 @@
-/// The library of parameter uncertainties: what may be calibrated, in which range, and how it
-/// enters a building.
+/// The library of parameter uncertainties: what can be calibrated, in which range, and how it
+/// changes a building.
 ///
-/// The ranges are those of Table 1 of the seed where it has the parameter, with the design value
-/// as mode; entries marked ours are for buildings the seed did not have (gas boilers, unknown floor
-/// areas).
+/// The ranges are those of Table 1 of the seed if it has the parameter, with the design value
+/// as mode. Entries marked ours are for buildings that the seed did not have (gas boilers,
+/// unknown floor areas).
 #pragma once
 
 #include <limits>
@@ -30,9 +30,9 @@ struct ParameterDefinition {
   RangeKind range;
   double low;
   double high;
-  double (*get)(const Building&);        ///< Design value; null: no model of ours has it.
+  double (*get)(const Building&);        ///< Design value; null: none of our models has it.
   void (*set)(Building&, double value);  ///< On a copy of the nominal building.
-  double least = 0.0;                    ///< What physics allows, whatever is usual.
+  double least = 0.0;                    ///< The physical minimum, whatever is usual.
   double most = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] bool is_modelled() const { return set != nullptr; }
@@ -44,25 +44,26 @@ struct ParameterDefinition {
 inline constexpr std::string_view kSeedParameters[] = {"occupancy_density", "outdoor_airflow",
                                                        "cooling_setpoint"};
 
-/// @return the entry, not_found with the nearest name, or unsupported for one that only a dynamic
+/// @return the entry; not_found with the nearest name; or unsupported for one that only a dynamic
 ///         simulation has (visible reflectance …).
 [[nodiscard]] Result<const ParameterDefinition*> find_parameter(std::string_view name);
 
-/// A prior that the site gives, with open ends cut where physics ends.
-/// @return or invalid_value, for one that allows what physics does not.
+/// A prior from the site, with open ends cut at the physical limits.
+/// @return the prior, or invalid_value if it allows impossible values.
 [[nodiscard]] Result<Prior> physical_prior(const ParameterDefinition& definition,
                                            const Prior& prior);
 
-/// The parameter with its prior for this building; `prior` overrides the library's range. A design
-/// value outside an absolute range widens it: the library says what is usual, the drawings what is.
-/// @return invalid_value when the design value is not possible, or is 0 where the range is relative
-///         to it; or as `physical_prior`.
+/// The parameter with its prior for this building; `prior` overrides the library's range. A
+/// design value outside an absolute range widens it: the library says what is usual, the
+/// drawings what is there.
+/// @return the parameter; or invalid_value when the design value is not possible, or is 0 and the
+///         range is relative to it; or as `physical_prior`.
 [[nodiscard]] Result<Parameter> make_parameter(const ParameterDefinition& definition,
                                                const Building& nominal,
                                                const std::optional<Prior>& prior = {});
 
-/// After all parameters are set: set-points at least 1 K apart (the heating one gives way), factors
-/// within their physical ends.
+/// Call after setting all parameters: keeps set-points at least 1 K apart (by moving the heating
+/// one) and factors within their physical limits.
 void settle(Building& building);
 
 }  // namespace recald::model

@@ -12,7 +12,7 @@
 namespace recald {
 namespace {
 
-constexpr double kLeastProbability = 1e-12;  // that an end may leave of a normal
+constexpr double kLeastProbability = 1e-12;  // least probability of a normal between its bounds
 
 double normal_density(double x) {
   return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
@@ -21,22 +21,22 @@ double normal_density(double x) {
 double normal_below(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 double normal_above(double x) { return normal_below(-x); }
 
-/// The normal that is cut, in standard units: the prior itself, or its logarithm.
+/// A truncated normal in standard units: the prior itself, or its logarithm.
 struct CutNormal {
   double location;
   double sd;
-  double low;  ///< Ends in standard units, maybe infinite.
+  double low;  ///< Bounds in standard units, may be infinite.
   double high;
 
-  /// Probability between the ends, from the tail in which it does not cancel.
+  /// Probability between the bounds, computed from the tail without cancellation.
   [[nodiscard]] double mass() const {
     return low > 0.0 ? normal_above(low) - normal_above(high)
                      : normal_below(high) - normal_below(low);
   }
 
-  /// Standard score with the shares `below` and `above` of the mass on its two sides.
+  /// The standard score that splits the mass into shares `below` and `above`.
   [[nodiscard]] double score(double below, double above) const {
-    constexpr double tiny = 1e-300;  // erfc_inv knows no 0
+    constexpr double tiny = 1e-300;  // erfc_inv is not defined at 0
     const double all = mass();
     const double lower = std::max(tiny, normal_below(low) + below * all);
     const double upper = std::max(tiny, normal_above(high) + above * all);
@@ -89,7 +89,7 @@ Moments moments(const TruncatedNormalPrior& p) {
 
 Moments moments(const LogNormalPrior& p) {
   const CutNormal c = cut(p);
-  // E[X^k] of exp(normal) is that of the normal moved by k times its variance.
+  // E[X^k] of exp(normal) is that of the normal shifted by k times its variance.
   const auto raw = [&](double k) {
     const CutNormal moved{0.0, 1.0, c.low - k * c.sd, c.high - k * c.sd};
     return std::exp(k * c.location + 0.5 * k * k * c.sd * c.sd) * moved.mass() / c.mass();

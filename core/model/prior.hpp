@@ -29,26 +29,26 @@ struct UniformPrior {
   bool operator==(const UniformPrior&) const = default;
 };
 
-/// Normal(location, sd) cut off outside [min, max]; either end may be infinite.
+/// Normal(location, sd) truncated to [min, max]; either bound may be infinite.
 struct TruncatedNormalPrior {
-  double location;  ///< Mean and mode of the normal before it is cut.
-  double sd;        ///< Of the normal before it is cut, > 0.
+  double location;  ///< Mean and mode of the normal before truncation.
+  double sd;        ///< Of the normal before truncation, > 0.
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool operator==(const TruncatedNormalPrior&) const = default;
 };
 
-/// exp of a normal, cut off outside [min, max]; 0 <= min, and max may be infinite.
+/// exp of a normal, truncated to [min, max]; 0 <= min, and max may be infinite.
 struct LogNormalPrior {
-  double median;  ///< Before it is cut, > 0.
+  double median;  ///< Before truncation, > 0.
   double log_sd;  ///< Standard deviation of the logarithm, > 0.
   double min = 0.0;
   double max = std::numeric_limits<double>::infinity();
   bool operator==(const LogNormalPrior&) const = default;
 };
 
-/// A prior as files give it. What each number means depends on the distribution: see
-/// `Prior::named`.
+/// A prior as given in files. The meaning of each number depends on the distribution:
+/// see `Prior::named`.
 struct PriorNumbers {
   std::optional<double> min;
   std::optional<double> mode;
@@ -56,28 +56,27 @@ struct PriorNumbers {
   std::optional<double> sd;
 };
 
-/// A value and its derivative with respect to the normal score it was asked for.
+/// A value and its derivative with respect to the normal score.
 struct ScoredValue {
   double value;
   double derivative;
 };
 
-/// What is believed about one parameter before any measurement, in the parameter's own unit.
+/// The belief about one parameter before any measurement, in the parameter's own unit.
 class Prior {
  public:
   using Distribution =
       std::variant<TriangularPrior, UniformPrior, TruncatedNormalPrior, LogNormalPrior>;
 
-  /// @return the prior, or invalid_value when the numbers are not finite, not in order, or cut off
-  ///         all but 1e-12 of the probability, so that nobody can sample it.
+  /// @return the prior, or invalid_value when the numbers are not finite, not in order, or truncate
+  ///         all but 1e-12 of the probability, so that it cannot be sampled.
   static Result<Prior> make(Distribution distribution);
 
   /// triangular        min, mode, max;
   /// uniform           min, max; a mode is ignored;
-  /// truncated_normal  mode: centre, sd: of the uncut normal; min, max: cut, absent: none;
-  /// log_normal        mode: median, sd: of the logarithm; min, max: cut, absent: 0, none.
-  /// @return the prior, or invalid_value: unknown name, a number that is needed and absent, or what
-  ///         `make` refuses.
+  /// truncated_normal  mode: centre, sd: before truncation; min, max: bounds, absent: none;
+  /// log_normal        mode: median, sd: of the logarithm; min, max: bounds, absent: 0, none.
+  /// @return the prior, or invalid_value: unknown name, a missing number, or what `make` refuses.
   static Result<Prior> named(std::string_view distribution, const PriorNumbers& numbers);
 
   /// Triangular. @pre min <= mode <= max, min < max, all finite
@@ -109,7 +108,8 @@ class Prior {
   bool operator==(const Prior& other) const { return distribution_ == other.distribution_; }
 
  private:
-  /// Where a probability lies, with the density there. Both tails are given: 1 - p loses the small.
+  /// The position of a probability, with the density there. Both tails are given: 1 - p
+  /// loses the small one.
   struct Located {
     double value;
     double density;

@@ -7,8 +7,8 @@
 namespace recald {
 namespace {
 
-/// A parameter that is known exactly keeps this share of its prior's spread, so that a hypercube
-/// can vary it.
+/// A parameter that is known exactly keeps this share of its prior's spread, so that a
+/// hypercube can vary it.
 constexpr double kLeastShareOfPriorSd = 1e-3;
 constexpr int kMomentRounds = 30;
 struct DrawMoments {
@@ -40,8 +40,8 @@ Prior prior_from_draws(const Prior& original, std::span<const double> draws) {
   if (of_logarithm) {
     return LogNormalPrior{std::exp(target.mean), target.sd, original.min(), original.max()};
   }
-  // Where the support cuts into the normal its moments are not those of the draws: it is moved and
-  // widened until they are, or nearly so.
+  // If the support truncates the normal, its moments differ from those of the draws: shift and
+  // widen it until they agree closely.
   TruncatedNormalPrior normal{target.mean, target.sd, original.min(), original.max()};
   for (int round = 0; round < kMomentRounds; ++round) {
     const auto cut = Prior::make(normal);

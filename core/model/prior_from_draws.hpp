@@ -1,4 +1,4 @@
-/// What earlier data have taught a parameter, as a prior for later data.
+/// Turns what earlier data have shown about a parameter into a prior for later data.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace recald {
 
-/// A posterior of joint draws as a prior for later months: margins alone, each in the support of
-/// the original prior and with mean and spread of the draws.
+/// A posterior of joint draws as a prior for later months: only the margins, each on the support of
+/// the original prior, with mean and spread of the draws.
 /// @param draws  At least one.
 [[nodiscard]] Prior prior_from_draws(const Prior& original, std::span<const double> draws);
 

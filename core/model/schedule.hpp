@@ -1,4 +1,4 @@
-/// Kinds of day and what people do at each hour of them.
+/// Kinds of day, and hourly values for each.
 #pragma once
 
 #include <array>

@@ -12,7 +12,7 @@ constexpr double kNonPerpendicular = 0.9;          // F_w, glazing seen at an an
 constexpr double kSurfaceResistance_m2K_W = 0.04;  // R_se
 constexpr double kSkyDifference_K = 11.0;          // Δθ_er, intermediate climates
 constexpr std::array<double, 3> kWindByStoreys = {1.74e-4, 2.31e-4, 2.71e-4};
-// What is left to the core when façades claim more floor than there is.
+// The core's share if façades claim more floor than there is.
 constexpr double kLeastCoreShare = 0.05;
 
 bool is_facade(const weather::Orientation& orientation) { return orientation.tilt_deg >= 45.0; }
@@ -31,7 +31,7 @@ double sky_loss_W(const Surface& s) {
          kSkyDifference_K;
 }
 
-/// Floor behind one façade on all storeys; neighbours share the corners, each half.
+/// Floor behind one façade on all storeys; neighbouring façades share the corners equally.
 double perimeter_floor_m2(const Building& building, const weather::Orientation& orientation) {
   double facade_m2 = 0.0;
   for (const Surface& s : building.surfaces) {

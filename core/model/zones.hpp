@@ -1,10 +1,10 @@
 /// A building's thermal zones as the few coefficients that monthly balances need.
 ///
-/// Air handlers with boxes heat one part of a building while they cool another: in January the
-/// core needs cooling and the perimeter heat, at night boxes at minimum flow overcool rooms that
-/// then reheat. One zone would let gains and losses cancel that never meet. So a building with an
-/// air system is cut, from its description alone, into a perimeter zone behind each façade and a
-/// core, without heat flow between them. A building without one is a single zone: its doors are
+/// Air handlers with boxes heat one part of a building while they cool another: in January the core
+/// needs cooling and the perimeter heat, and at night boxes at minimum flow overcool rooms that
+/// then reheat. In a single zone, gains and losses that never meet would cancel. So a building with
+/// an air system is split, from its description alone, into a perimeter zone behind each façade and
+/// a core, without heat flow between them. A building without one is a single zone: its doors are
 /// open and its radiators see the same mean.
 /// @see ISO 13790:2008, 6.3 and annex B (zones without coupling); ANSI/ASHRAE/IES 90.1-2010,
 ///      G3.1.1.1, table G3.1 no. 8: perimeter zones 15 ft deep.
@@ -28,7 +28,7 @@ struct Zone {
   std::vector<double> solar_aperture_m2;  ///< By orientation of the drivers.
 };
 
-/// How leaks turn temperature difference and wind into flow.
+/// How leakage turns temperature difference and wind into flow.
 /// @see Sherman and Grimsrud (1980); ASHRAE Handbook Fundamentals (2009), chapter 16, eq. (48),
 ///      coefficients of tables 4 and 6, shelter class 3.
 struct LeakageFlow {
@@ -40,7 +40,8 @@ struct LeakageFlow {
 };
 [[nodiscard]] LeakageFlow leakage_flow(int storeys);
 
-/// How many zones `describe_zones` makes for a building with drivers of these orientations.
+/// The number of zones that `describe_zones` makes for a building with drivers of
+/// these orientations.
 [[nodiscard]] std::size_t zone_count(const Building& building,
                                      std::span<const weather::Orientation> orientations);
 

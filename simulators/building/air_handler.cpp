@@ -9,10 +9,11 @@ namespace {
 
 constexpr double kActuatorLag_s = 420.0;
 constexpr double kWarmestDischarge_C = 33.0;
-/// Share of maximum flow that a box may open to when it heats at full valve.
+/// Share of maximum flow to which a box may open when its heating valve is fully open.
 constexpr double kHeatingFlowShare = 0.5;
 
-/// Where the coil must take the air: to its set-point, or as cold as drying it takes.
+/// The air temperature that the coil must reach: its set-point, or lower if that is
+/// needed for drying.
 double coil_target_C(const AirOperation& operation, const AirState& air, double setpoint_C,
                      double pressure_Pa) {
   if (!operation.dry_to_C) return setpoint_C;
@@ -71,14 +72,14 @@ void AirHandler::position_boxes(const AirHandlerCommand& command,
     heating_signal_[i] += follow * (heating - heating_signal_[i]);
     const double least = std::min(1.0, box.min_share * command.min_flow_share);
     const double heating_flow = std::max(least, kHeatingFlowShare);
-    // The valve opens first; only beyond half of it does the box add air to carry more heat.
+    // The valve opens first; only above half its stroke does the box add air to carry more heat.
     const double for_heating =
         least + (heating_flow - least) * std::clamp(2.0 * heating_signal_[i] - 1.0, 0.0, 1.0);
     const double for_cooling = least + (1.0 - least) * cooling_signal_[i];
     supplies_[i].kg_s = command.run_share * box.max_kg_s * std::max(for_heating, for_cooling);
     total_kg_s += supplies_[i].kg_s;
   }
-  // Boxes never take less than the outdoor air that the space must get.
+  // Boxes never take less than the outdoor air that the space requires.
   const double outdoor_kg_s =
       command.mode == AirHandlerMode::ventilate ? asked_outdoor_kg_s(command) : 0.0;
   const double scale = std::max(1.0, outdoor_kg_s / total_kg_s);
@@ -98,7 +99,7 @@ double AirHandler::outdoor_flow_kg_s(const AirHandlerCommand& command, const Air
       outdoor.temperature_C < *design_.economiser_limit_C + operation.economiser_shift_K &&
       outdoor.temperature_C < returned.temperature_C;
   if (!economise) return least_kg_s;
-  // As much outdoor air as brings the mixture to what the coil would have to deliver.
+  // Enough outdoor air to bring the mixture to the temperature that the coil would have to deliver.
   const double wanted_share =
       (returned.temperature_C - coil_target_C) / (returned.temperature_C - outdoor.temperature_C);
   const double wanted_kg_s =
@@ -124,7 +125,7 @@ void AirHandler::treat(const AirHandlerCommand& command, const AirState& outdoor
       std::clamp(capacity_W_K * (target_C - 1.0 - air.temperature_C), 0.0, design_.preheat_W);
   air.temperature_C += work_.preheat_W / capacity_W_K;
 
-  // Recirculating at night to warm up, the chilled-water valve is shut; to cool down, it is open.
+  // While warming up at night the chilled-water valve is shut; while cooling down it is open.
   const bool warming =
       command.mode == AirHandlerMode::recirculate &&
       *std::ranges::max_element(heating_signal_) > *std::ranges::max_element(cooling_signal_);
@@ -142,12 +143,12 @@ void AirHandler::treat(const AirHandlerCommand& command, const AirState& outdoor
 void AirHandler::humidify(const AirOperation& operation) {
   const double missing = operation.humidify_to_kg_kg - work_.supply.humidity_kg_kg;
   if (missing <= 0.0) return;
-  // Steam brings its own heat of evaporation: the air hardly warms.
+  // Steam carries its own heat of evaporation: the air hardly warms.
   work_.humidifier_W = work_.supply_kg_s * missing * (kEvaporation_J_kg + kWaterHeat_J_kgK * 90.0);
   work_.supply.humidity_kg_kg = operation.humidify_to_kg_kg;
 }
 
-/// Fans push outdoor air through open boxes; nothing is treated.
+/// Fans push outdoor air through open boxes, without heating or cooling it.
 void AirHandler::purge(const AirHandlerCommand& command, const AirState& outdoor) {
   work_.supply_kg_s = 0.0;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {

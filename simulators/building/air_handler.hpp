@@ -12,34 +12,34 @@
 namespace recald::simulators {
 
 struct Fan {
-  double design_W;            ///< Supply, return and exhaust of one air handler at design flow.
-  double idle_share;          ///< Of design power as flow goes to zero (static pressure is held).
-  double exponent;            ///< power = idle + (1 − idle)·flow^exponent.
-  double share_in_airstream;  ///< Of the power, that warms the supply air.
+  double design_W;    ///< Supply, return and exhaust of one air handler at design flow.
+  double idle_share;  ///< Of design power as flow goes to zero (static pressure is maintained).
+  double exponent;    ///< power = idle + (1 − idle)·flow^exponent.
+  double share_in_airstream;  ///< Of the power: the part that warms the supply air.
 
   [[nodiscard]] double power_W(double flow_share) const;
 };
 
 struct AirHandlerDesign {
   double supply_kg_s;
-  double outdoor_kg_s;    ///< Held by an airflow station while ventilating.
+  double outdoor_kg_s;    ///< Kept by an airflow station while ventilating.
   double supply_C;        ///< Leaving the fan.
   double supply_reset_K;  ///< Added when it is cold outside (full at 5 degC, none at 18 degC).
   double preheat_W;       ///< Capacity.
   CoolingCoil coil;
   Fan fan;
-  /// Above this dry bulb no extra outdoor air is taken. Absent: no economiser is fitted, as
-  /// ASHRAE 90.1 allows in climate zone 3A.
+  /// No extra outdoor air is taken above this dry bulb. Absent: there is no economiser, as ASHRAE
+  /// 90.1 allows in climate zone 3A.
   std::optional<double> economiser_limit_C;
 };
 
 struct BoxDesign {
   double max_kg_s;
-  double min_share;  ///< Of max, while ventilating.
+  double min_share;  ///< Of the maximum, while ventilating.
   double reheat_W;   ///< Capacity.
 };
 
-/// What a box's zone tells it.
+/// The state of a box's zone.
 struct BoxDemand {
   AirState air;      ///< Returned to the air handler.
   double felt_C;     ///< At the thermostat.
@@ -52,14 +52,14 @@ enum class AirHandlerMode {
   off,
   ventilate,    ///< Outdoor air as designed, supply air at its set-point.
   recirculate,  ///< Start-up and night cycle: outdoor damper shut.
-  purge,        ///< Outdoor air as it is, boxes open, coils shut.
+  purge,        ///< Untreated outdoor air, boxes open, coils shut.
 };
 
 struct AirHandlerCommand {
   AirHandlerMode mode;
   double outdoor_share = 1.0;   ///< Of the design outdoor air, while ventilating.
   double min_flow_share = 1.0;  ///< Scales the boxes' minimum flow.
-  double run_share = 1.0;       ///< Of the handler: its boxes, outdoor air and fans alike.
+  double run_share = 1.0;  ///< Of the handler: applies equally to its boxes, outdoor air and fans.
   AirOperation operation = {};
 };
 
@@ -76,7 +76,7 @@ struct AirHandlerWork {
   double fan_W = 0.0;
   double fan_to_air_W = 0.0;
   double condensate_kg_s = 0.0;
-  double humidifier_W = 0.0;  ///< Heat of the steam that is added.
+  double humidifier_W = 0.0;  ///< Heat of the added steam.
   double supply_kg_s = 0.0;
   double outdoor_kg_s = 0.0;
   AirState mixed{20.0, 0.008};
@@ -87,8 +87,9 @@ class AirHandler {
  public:
   AirHandler(const AirHandlerDesign& design, std::vector<BoxDesign> boxes);
 
-  /// One step: dampers and valves follow the thermostats with a lag of minutes, then the air is
-  /// treated. `supplies()` has what each box delivers. @pre demands.size() == number of boxes
+  /// Advances one step: dampers and valves follow the thermostats with a lag of minutes,
+  /// then the air is treated. `supplies()` returns what each box delivers. @pre
+  /// demands.size() == number of boxes
   const AirHandlerWork& advance(const AirHandlerCommand& command,
                                 std::span<const BoxDemand> demands, const AirState& outdoor,
                                 double pressure_Pa, double step_s);

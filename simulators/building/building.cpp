@@ -10,7 +10,7 @@ constexpr AirState kInitialAir{22.0, 0.007};
 constexpr double kDesignDensity_kg_m3 = 1.15;
 constexpr RunningHours kNever{24.0, 0.0};
 
-/// Even air handlers serve the perimeter, odd ones the core, two a storey.
+/// Two air handlers per storey: even ones serve the perimeter, odd ones the core.
 bool serves_perimeter(std::size_t air_handler) { return air_handler % 2 == 0; }
 
 std::size_t first_side(std::size_t air_handler) {

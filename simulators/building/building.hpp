@@ -1,4 +1,4 @@
-/// A building at work: people, loads, envelope, air handlers, plant, and what is hidden in it.
+/// A building in operation: people, loads, envelope, air handlers, plant, and its hidden effects.
 #pragma once
 
 #include <memory>
@@ -19,14 +19,14 @@ using HiddenEffects = std::vector<std::unique_ptr<HiddenEffect>>;
 
 class Building {
  public:
-  /// @param effects  asked in their order; may be empty
+  /// @param effects  Applied in this order; may be empty.
   Building(Truth truth, std::chrono::seconds step, std::uint64_t seed, HiddenEffects effects);
 
-  /// One step under this weather. @pre local days come in order
+  /// Advances one step under this weather. @pre local days come in order
   UtilityPower advance(const Outdoors& outdoors, metering::Instant instant,
                        const metering::LocalTime& local);
 
-  // For tests and for people who want to look inside.
+  // For tests and inspection.
   [[nodiscard]] const Truth& truth() const { return truth_; }
   [[nodiscard]] std::chrono::seconds step() const {
     return std::chrono::seconds{static_cast<std::int64_t>(step_s_)};
@@ -34,10 +34,10 @@ class Building {
   [[nodiscard]] const HiddenEffects& effects() const { return effects_; }
   [[nodiscard]] const std::vector<Zone>& zones() const { return envelope_.zones(); }
   [[nodiscard]] const ServiceLoad& load() const { return load_; }
-  /// What a zone took up in the last step from outside, neighbours, gains and supply air, minus
-  /// what its air and constructions stored of it; 0 but for rounding.
+  /// Heat that a zone received in the last step from outside, neighbours, gains and supply air,
+  /// minus what its air and constructions stored; 0 except for rounding.
   [[nodiscard]] double heat_imbalance_J(std::size_t zone) const { return zone_imbalance_J_[zone]; }
-  /// The same for all zones together: heat between rooms must cancel.
+  /// As above for all zones together: heat between rooms must cancel.
   [[nodiscard]] double heat_imbalance_J() const { return heat_imbalance_J_; }
 
  private:
@@ -75,7 +75,7 @@ class Building {
   std::vector<double> zone_imbalance_J_;
   std::optional<metering::Day> today_;
   Timetable timetable_{};
-  DayKind day_kind_ = DayKind::workday;  ///< As the calendar has it.
+  DayKind day_kind_ = DayKind::workday;  ///< From the calendar.
   ServiceLoad load_;
   double heat_imbalance_J_ = 0.0;
 };

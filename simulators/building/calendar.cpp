@@ -18,7 +18,7 @@ Day observed(Day day) {
   return day;
 }
 
-/// Both ends included; weekends too, which are free anyway.
+/// Inclusive; also weekends, which are free anyway.
 void add_span(std::vector<Day>& list, Day first, Day last) {
   for (sys_days day{first}; day <= sys_days{last}; day += days{1}) list.emplace_back(day);
 }
@@ -28,7 +28,8 @@ std::vector<Day> public_holidays(year y) {
   const Day thanksgiving{sys_days{y / November / Thursday[4]}};
   const Day new_year{y / January / 1};
   return {
-      // A New Year's Day on a Saturday is not observed on the Friday, which is another year's.
+      // A New Year's Day on a Saturday is not observed on the Friday, which belongs
+      // to another year.
       weekday{sys_days{new_year}} == Saturday ? new_year : observed(new_year),
       sys_days{y / January / Monday[3]},
       sys_days{y / May / Monday[last]},
@@ -64,7 +65,7 @@ void add_school_breaks(std::vector<Day>& list, year y) {
   add_span(list, y / December / 21, y / December / 31);
 }
 
-/// Trade goes on where others rest, but for the days on which nobody buys.
+/// Shops open on most holidays; these are the days on which they close.
 std::vector<Day> trading_holidays(year y) {
   using namespace std::chrono;
   return {y / January / 1, sys_days{y / November / Thursday[4]}, y / December / 25};
@@ -146,7 +147,7 @@ DayKind Calendar::kind_of(Day day) const {
 }
 
 double Calendar::season_attendance(Day day) const {
-  if (use_ != Use::laboratory && use_ != Use::office) return 1.0;  // what there is are holidays
+  if (use_ != Use::laboratory && use_ != Use::office) return 1.0;  // breaks are holidays
   const auto month = static_cast<unsigned>(day.month());
   const auto date = static_cast<unsigned>(day.day());
   if ((month == 12 && date >= 19) || (month == 1 && date <= 4)) return 0.50;

@@ -1,4 +1,4 @@
-/// Working days, holidays and the year of each kind of building.
+/// Working days, holidays and the seasons of each kind of building.
 #pragma once
 
 #include <vector>
@@ -16,14 +16,14 @@ class Calendar {
  public:
   explicit Calendar(Use use) : use_(use) {}
 
-  /// Observed holidays of one year, in order: these days run like Sundays. A school's include its
-  /// breaks but for the summer, a restaurant's all Mondays. A hotel has none.
+  /// Observed holidays of one year, in order; these days run like Sundays. For a school they
+  /// include its breaks except the summer, for a restaurant all Mondays. A hotel has none.
   [[nodiscard]] std::vector<metering::Day> holidays_of(std::chrono::year year) const;
 
-  /// A holiday counts as a Sunday.
+  /// Holidays count as Sundays.
   [[nodiscard]] DayKind kind_of(metering::Day day) const;
 
-  /// Share of people who come at all because of semester, break or season; nobody tells the user.
+  /// Share of people who come on account of semester, breaks and season; hidden from the user.
   [[nodiscard]] double season_attendance(metering::Day day) const;
 
  private:

@@ -13,7 +13,7 @@ double bypass_factor(const CoolingCoil& coil, double flow_kg_s) {
 
 CoilWork work_between(const AirState& entering, const AirState& leaving, double flow_kg_s) {
   const double condensate_kg_s = flow_kg_s * (entering.humidity_kg_kg - leaving.humidity_kg_kg);
-  // The condensate leaves at the leaving air's temperature and takes its own heat along.
+  // The condensate leaves at the temperature of the leaving air and carries its own heat.
   const double drained_W = condensate_kg_s * kWaterHeat_J_kgK * leaving.temperature_C;
   const double total_W = flow_kg_s * (enthalpy_J_kg(entering) - enthalpy_J_kg(leaving)) - drained_W;
   const double sensible_W =
@@ -36,8 +36,8 @@ CoilWork cool(const CoolingCoil& coil, const AirState& entering, double flow_kg_
                          bypass * entering.humidity_kg_kg + (1.0 - bypass) * fins_humidity};
   const CoilWork full = work_between(entering, leaving, flow_kg_s);
   if (full.total_W <= coil.capacity_W) return full;
-  // Out of capacity: stay on the same coil line, short of its end. Enthalpy is linear along it
-  // but for products of second order.
+  // At full capacity: stay on the same coil line, short of its end. Enthalpy is linear along it
+  // except for terms of second order.
   const double reach = coil.capacity_W / full.total_W;
   const AirState short_of{
       entering.temperature_C + reach * (leaving.temperature_C - entering.temperature_C),

@@ -9,7 +9,8 @@ struct CoolingCoil {
   double capacity_W;                    ///< Largest total heat, set by the valve and the pipe.
   double design_flow_kg_s;              ///< Dry air.
   double design_bypass_factor;          ///< Share of air that leaves untreated at design flow.
-  double lowest_apparatus_dew_point_C;  ///< What the chilled water can hold the fins at.
+  double lowest_apparatus_dew_point_C;  ///< The lowest fin temperature that the chilled water can
+                                        ///< maintain.
 };
 
 struct CoilWork {
@@ -19,8 +20,8 @@ struct CoilWork {
   double condensate_kg_s;
 };
 
-/// Cools `entering` towards `target_C`. Leaves warmer where the water is not cold enough or the
-/// capacity is used up; does nothing when the air is cold already.
+/// Cools `entering` towards `target_C`. The air leaves warmer if the water is not cold enough or
+/// capacity runs out; nothing happens if the air is already cold enough.
 ///
 /// The air leaves on the straight line from its entering state to saturated air at the fins; below
 /// its dew point the fins are wet, above them nothing condenses. The bypass factor falls with flow

@@ -9,17 +9,17 @@ namespace {
 
 constexpr double kOutdoorRadiation_W_m2K = 5.0;  ///< Linearised long-wave exchange outdoors.
 constexpr double kGroundReflectance = 0.2;
-constexpr double kIndoorFilm_W_m2K = 8.1;  ///< As the zones have it: convection plus radiation.
-constexpr double kTerrainFactor = 0.55;    ///< Wind at the building against the open station.
-constexpr double kSpecialWall_m = 60.0;    ///< Walls around special rooms of
+constexpr double kIndoorFilm_W_m2K = 8.1;  ///< As in the zones: convection plus radiation.
+constexpr double kTerrainFactor = 0.55;  ///< Wind at the building relative to the weather station.
+constexpr double kSpecialWall_m = 60.0;  ///< Walls around special rooms of
 constexpr double kSpecialWallFor_m2 = 0.3 * (53.0 * 28.0);  ///< this area: two blocks.
 constexpr double kDischarge = 0.6;                          ///< Of a sharp-edged opening.
 
-/// Every zone's first two surfaces are its floor and its ceiling.
+/// The first two surfaces of every zone are its floor and its ceiling.
 constexpr std::size_t kFloor = 0;
 constexpr std::size_t kCeiling = 1;
-/// Then comes the first partition: the perimeter and the special rooms have one, to the core; the
-/// core has five, to them, in `kAroundCore` order.
+/// Partitions follow: the perimeter and the special rooms have one, to the core; the core has five,
+/// to them, in `kAroundCore` order.
 constexpr std::size_t kPartition = 2;
 constexpr std::array<std::size_t, 5> kAroundCore{south, north, east, west, special};
 
@@ -54,11 +54,11 @@ std::vector<Layer> flat_roof(const Truth& truth) {
 }
 
 std::vector<Layer> slab_on_ground(const Truth& truth) {
-  std::vector<Layer> layers{{1.00, 1.30, 1.8e6, 4},   // soil that takes part within the year
+  std::vector<Layer> layers{{1.00, 1.30, 1.8e6, 4},   // soil that responds within the year
                             {0.05, 0.035, 4.0e4, 1},  // insulation
                             {0.18, 1.60, 2.1e6, 4}};
   set_u_value(layers, 1, truth.ground_u_W_m2K);
-  layers[2].heat_capacity_J_m3K *= truth.mass_scale;  // the soil is what it is
+  layers[2].heat_capacity_J_m3K *= truth.mass_scale;  // the soil does not scale
   return layers;
 }
 
@@ -71,7 +71,7 @@ std::vector<Layer> half_partition(const Truth& truth) {
   return with_mass({{0.025, 0.25, 0.9e6, 2}}, truth.mass_scale);
 }
 
-/// Seen per m² of floor: desks, shelves, inner partitions.
+/// Per m² of floor: desks, shelves, inner partitions.
 std::vector<Layer> furniture(const Truth& truth) {
   return with_mass({{0.03, 0.16, 0.9e6, 2}}, truth.mass_scale);
 }
@@ -82,7 +82,7 @@ double storey_facade_m2(const Drawings& drawings, std::size_t side) {
 
 double partition_m2(const Drawings& drawings, std::size_t side) {
   const double clear_height_m = drawings.storey_height_m - 0.6;
-  if (side == special) {  // two blocks of rooms, their walls as their area
+  if (side == special) {  // two blocks of rooms, walls in proportion to area
     return kSpecialWall_m * std::sqrt(drawings.zone_m2(special) / kSpecialWallFor_m2) *
            clear_height_m;
   }
@@ -98,7 +98,7 @@ double wind_pressure_coefficient(double wind_from_deg, double facade_azimuth) {
   return facing > 0.0 ? -0.35 + 0.95 * facing : -0.35 + 0.10 * facing;
 }
 
-/// Leakage area is defined at 4 Pa with discharge coefficient 1; cracks follow a power of 0.65.
+/// Leakage area is defined at 4 Pa with discharge coefficient 1; cracks follow a power law of 0.65.
 double through_cracks_kg_s(double area_m2, double inward_Pa, double density) {
   if (inward_Pa <= 0.0) return 0.0;
   const double flow_at_4_Pa_m3_s = area_m2 * std::sqrt(2.0 * 4.0 / density);
@@ -145,7 +145,7 @@ void Envelope::build_zone(std::size_t zone, AirState initial) {
     exposed_.push_back({zone, surfaces.size(), Face::skylight, 0, skylight_m2});
     surfaces.push_back({Wall::massless(start_C), skylight_m2, 0.0});
   }
-  // The floor takes half of what comes in, the rest spreads by area.
+  // The floor takes half of the gains, the other surfaces share the rest by area.
   double others_m2 = 0.0;
   for (std::size_t i = 1; i < surfaces.size(); ++i) others_m2 += surfaces[i].area_m2;
   for (ZoneSurface& surface : surfaces) surface.solar_share = 0.5 * surface.area_m2 / others_m2;
@@ -194,7 +194,7 @@ void Envelope::join_halves() {
 
 OuterSide Envelope::expose_window(const Exposed& face, const OuterSide& film, const Irradiance& sun,
                                   double sun_factor) {
-  constexpr double absorbed_share = 0.2;         // of SHGC: heat that panes and blinds pass on
+  constexpr double absorbed_share = 0.2;         // of SHGC: absorbed and passed on by panes, blinds
   constexpr double diffuse_angle_factor = 0.84;  // hemispherical mean
   const double pane_m2K_W = 1.0 / truth_.window_u_W_m2K - 1.0 / 7.7 - 1.0 / 25.0;
   const double through_W_m2 = sun.beam_W_m2 * glazing_angle_factor(sun.cosine_incidence) +
@@ -207,7 +207,7 @@ OuterSide Envelope::expose_window(const Exposed& face, const OuterSide& film, co
   effects_[face.zone].transmitted_sun_W += (1.0 - absorbed_share) * gain_W_m2 * face.area_m2;
   OuterSide outer = film;
   outer.conductance_W_m2K = 1.0 / (pane_m2K_W + 1.0 / film.conductance_W_m2K);
-  // Of what the pane absorbs only the part that flows inward counts in the SHGC.
+  // Of what the pane absorbs, only the part that flows inward counts in the SHGC.
   outer.source_W_m2 = absorbed_share * gain_W_m2 * (kIndoorFilm_W_m2K + outer.conductance_W_m2K) /
                       kIndoorFilm_W_m2K;
   return outer;
@@ -218,7 +218,7 @@ void Envelope::expose_faces(const Outdoors& outdoors, const std::array<Irradianc
   const Drawings& drawings = truth_.drawings;
   const double convection = outdoor_convection_W_m2K(outdoors.wind_speed_m_s);
   const double air_C = outdoors.air.temperature_C;
-  // A wall sees half sky, half surroundings at air temperature; a roof sees the sky.
+  // A wall sees half sky, half surroundings at air temperature; a roof sees only sky.
   const auto film = [&](double sky_view) {
     return OuterSide{
         convection + kOutdoorRadiation_W_m2K,
@@ -260,11 +260,11 @@ double Envelope::exposed_heat_W() const {
   return sum_W;
 }
 
-/// Exterior area whose cracks open into a facade's zone.
+/// Exterior area whose cracks open into the zone of a facade.
 double Envelope::leaking_m2(std::size_t side, bool top) const {
   const Drawings& drawings = truth_.drawings;
   double roof_m2 = top ? drawings.zone_m2(side) : 0.0;
-  if (drawings.hall) roof_m2 /= drawings.perimeter_floor_share();  // the core's part as well
+  if (drawings.hall) roof_m2 /= drawings.perimeter_floor_share();  // includes the core's part
   return storey_facade_m2(drawings, side) + roof_m2;
 }
 
@@ -272,7 +272,7 @@ double Envelope::infiltration_kg_s(std::size_t zone, const Outdoors& outdoors, d
                                    const EnvelopeOperation& operation) const {
   const Drawings& drawings = truth_.drawings;
   const std::size_t side = zone % kZonesPerStorey;
-  if (side > west) return 0.0;  // reaches the core only through the perimeter
+  if (side > west) return 0.0;  // the air reaches the core only through the perimeter
   const std::size_t storey = zone / kZonesPerStorey;
   const bool top = storey + 1 == drawings.storeys_simulated();
   const auto storeys = static_cast<double>(drawings.storeys);
@@ -319,7 +319,7 @@ double Envelope::shaft_kg_s(std::size_t storey, double warmer_inside_K, double d
       0.5 * static_cast<double>(drawings.storeys) * drawings.storey_height_m;
   const double drawing_Pa = density * 9.81 * half_height_m * std::abs(warmer_inside_K) /
                             (outdoors.air.temperature_C + 273.15);
-  constexpr double sides = 4.0;  // each takes its part of the inlet
+  constexpr double sides = 4.0;  // each takes its share of the inlet
   return kDischarge * shaft_m2 / sides * std::sqrt(2.0 * density * drawing_Pa);
 }
 

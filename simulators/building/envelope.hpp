@@ -1,4 +1,4 @@
-/// The building's constructions: makes the zones and sets what acts on their outer faces.
+/// The building's constructions: creates the zones and sets the conditions on their outer faces.
 #pragma once
 
 #include <array>
@@ -21,13 +21,14 @@ class Envelope {
  public:
   Envelope(const Truth& truth, AirState initial);
 
-  /// Sets every outer face for the next step and finds sun and infiltration of each zone.
-  /// @param pressurised per storey, 0…1: how far the perimeter's air handler brings in outdoor air.
+  /// Sets every outer face for the next step and computes sun and infiltration of each zone.
+  /// @param pressurised  Per storey, 0…1: how much outdoor air the perimeter's air
+  ///                     handler supplies.
   const std::vector<EnvelopeEffect>& expose(const Outdoors& outdoors,
                                             const std::vector<double>& pressurised,
                                             const EnvelopeOperation& operation);
 
-  /// Heat into all faces that see weather or ground, during the zones' last step.
+  /// Heat into all faces towards weather or ground, during the zones' last step.
   [[nodiscard]] double exposed_heat_W() const;
 
   [[nodiscard]] std::vector<Zone>& zones() { return zones_; }
@@ -54,7 +55,7 @@ class Envelope {
   void join_neighbours();
   void expose_faces(const Outdoors& outdoors, const std::array<Irradiance, 5>& irradiance,
                     const EnvelopeOperation& operation);
-  /// Outer side of a pane; what passes straight through goes to the zone's effect.
+  /// Outer side of a pane; directly transmitted sun goes to the zone's effect.
   [[nodiscard]] OuterSide expose_window(const Exposed& face, const OuterSide& film,
                                         const Irradiance& sun, double sun_factor);
   void join_halves();

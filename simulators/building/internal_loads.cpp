@@ -8,7 +8,7 @@ namespace {
 
 std::size_t side_of(std::size_t zone) { return zone % kZonesPerStorey; }
 
-/// A room's light is on whether one or five people are in it.
+/// A room's light is on whether one person or five are in it.
 double lit_share(double occupied) { return 1.0 - std::exp(-3.4 * occupied); }
 
 /// Share of the way to a new value in one step, given the share in five minutes.
@@ -46,7 +46,7 @@ void InternalLoads::begin_day() {
 
 double InternalLoads::occupied_share(const People& people, std::size_t zone,
                                      int minute_of_day) const {
-  // Nobody sits in the special rooms: the core's people go in and out.
+  // Nobody sits in the special rooms; people from the core go in and out.
   if (side_of(zone) == special) --zone;
   const int assigned = people.assigned(zone);
   if (assigned <= 0) return 0.0;

@@ -1,4 +1,4 @@
-/// Lights, plugs and laboratory equipment: they follow people, and have habits of their own.
+/// Lights, plugs and laboratory equipment: they follow people, plus daily variations of their own.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ class InternalLoads {
   void begin_day();
 
   /// Power of all zones in one step.
-  /// @param open  whether people work in the building on this day
+  /// @param open  Whether people work in the building on this day.
   const std::vector<ZonePower>& advance(const People& people, int minute_of_day, bool open);
 
  private:
@@ -34,7 +34,7 @@ class InternalLoads {
     double lights_on = 0.1;        ///< Share, falls slowly: switches have delays.
     double lights_habit = 1.0;     ///< Of the day.
     double equipment_habit = 1.0;  ///< Of the day.
-    std::vector<Run> runs;         ///< Appliances that were started and will end.
+    std::vector<Run> runs;         ///< Appliances that are running.
   };
   [[nodiscard]] const RoomUse& use_of(std::size_t zone) const;
   [[nodiscard]] double occupied_share(const People& people, std::size_t zone,
@@ -50,7 +50,7 @@ class InternalLoads {
   double lights_off_follow_;
   Rng rng_;
   std::vector<ZoneState> zones_;
-  std::vector<Persistence> day_habit_;  ///< A zone's good and bad weeks.
+  std::vector<Persistence> day_habit_;  ///< Good and bad weeks of a zone.
   std::vector<Persistence> flicker_;    ///< Minutes to an hour.
   std::vector<ZonePower> power_;
 };

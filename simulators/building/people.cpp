@@ -7,10 +7,10 @@
 namespace recald::simulators {
 namespace {
 
-/// Monday to Sunday; working days only matter from Monday to Friday.
+/// Monday to Sunday; for working days only Monday to Friday matter.
 constexpr std::array<double, 7> kWeekdayAttendance{0.95, 1.0, 1.0, 0.97, 0.86, 1.0, 1.0};
 
-/// Some place is always free, however good the day.
+/// Some place is always free, even on the best day.
 constexpr double kFullest = 0.97;
 
 bool has_visits(const Drawings& drawings) {
@@ -56,7 +56,7 @@ std::size_t People::draw_zone(const Drawings& drawings) {
   return first + side;
 }
 
-/// In 0…1, the same whatever else was drawn.
+/// A number in 0…1, the same whatever else was drawn.
 double People::number_of(std::size_t person, metering::Day day) const {
   const auto date = std::chrono::sys_days{day}.time_since_epoch().count();
   Rng own{numbers_ + static_cast<std::uint64_t>(date), static_cast<std::uint64_t>(person)};
@@ -65,7 +65,7 @@ double People::number_of(std::size_t person, metering::Day day) const {
 
 void People::attend(std::size_t zone, double from_h, double to_h, bool kept_away) {
   if (kept_away) return;
-  // Whoever stays past midnight goes home at midnight: no one is counted twice.
+  // People who stay past midnight go home at midnight, so no one is counted twice.
   const int first = std::clamp(static_cast<int>(std::lround(from_h * 12.0)), 0, 288);
   const int last = std::clamp(static_cast<int>(std::lround(to_h * 12.0)), 0, 288);
   for (int slot = first; slot < last; ++slot) {
@@ -126,7 +126,7 @@ std::optional<VisitDay> People::visit_day(const RoomUse& rooms, std::size_t room
   return day;
 }
 
-/// Good and bad days are those of the whole building, and come in weeks.
+/// Good and bad days apply to the whole building, and come in weeks.
 People::VisitDays People::draw_visit_days(DayKind kind) {
   if (!trade_) return {};
   const double busy =
@@ -146,7 +146,7 @@ void People::plan_visits(Person& person, const VisitDay& day, bool kept_away) {
 void People::begin_day(metering::Day day, DayKind kind, double season, double attendance) {
   std::ranges::fill(present_, 0);
   const unsigned weekday = std::chrono::weekday{std::chrono::sys_days{day}}.iso_encoding() - 1;
-  // Some days most people are elsewhere together (a conference, ice on the roads).
+  // On some days most people are away together (a conference, ice on the roads).
   const double common = 1.0 - 0.04 * std::abs(rng_.normal()) - (rng_.uniform() < 0.01 ? 0.3 : 0.0);
   const double willing = std::clamp(0.95 * kWeekdayAttendance[weekday] * season * common, 0.0, 1.0);
   const VisitDays visits = draw_visit_days(kind);

@@ -9,7 +9,7 @@ namespace recald::simulators {
 namespace {
 
 constexpr double kKelvin = 273.15;
-constexpr double kChilledWaterPumps = 0.65;  ///< Of all pumps' power, where there is chilled water.
+constexpr double kChilledWaterPumps = 0.65;  ///< Of all pumps' power, if there is chilled water.
 
 double variable_speed(double part_load) {
   return 0.18 + 0.82 * std::pow(std::min(1.0, part_load), 2.2);
@@ -22,7 +22,7 @@ Plant::Plant(const Truth& truth, double step_s, Rng rng)
 
 double Plant::hot_water_W(double awake_share, const PlantOperation& operation) {
   const Drawings& drawings = truth_.drawings;
-  // Glass washers and hand basins: most of the day's water while people are in.
+  // Glass washers and hand basins: most of the day's water is used while people are in.
   const double daily_shape = 0.25 + drawings.hot_water_with_people * awake_share;
   const double taps = std::max(0.0, 1.0 + 0.45 * taps_.advance(rng_));
   const double flow_kg_s =
@@ -49,7 +49,8 @@ double Plant::pumps_W(const ServiceLoad& load, const PlantOperation& operation) 
   return 1000.0 * truth_.pump_kW * both + operation.pumps_always_W;
 }
 
-/// A chiller's condenser follows the tower's wet bulb, that of packaged units the outdoor air.
+/// A chiller's condenser follows the tower's wet bulb, the condenser of packaged units
+/// the outdoor air.
 Plant::Lift Plant::lift_of(const Outdoors& outdoors) const {
   if (truth_.drawings.cooling == CoolingPlant::packaged) {
     // Rated at 35 degC outdoors (AHRI 340/360); two to four compressors in stages.
@@ -60,9 +61,9 @@ Plant::Lift Plant::lift_of(const Outdoors& outdoors) const {
   return {12.0 + kKelvin, 29.4 + kKelvin, std::max(18.0, tower_C) + kKelvin, 0.12};
 }
 
-/// Compressor and what cools it by the universal chiller model,
+/// Compressor and condenser cooling by the universal chiller model,
 /// (Te/Tc)·x = 1 + a/q + b/q·(Tc − Te) + c·q·x with x = 1 + 1/COP and load share q; internal losses
-/// weigh at part load, heat exchangers at full.
+/// dominate at part load, heat exchangers at full load.
 /// @see Gordon, Ng (2000), "Cool Thermodynamics", ch. 4.
 double Plant::compressor_W(double cooling_W, double cop_factor, const Lift& at) const {
   if (cooling_W <= 0.0) return 0.0;
@@ -79,7 +80,7 @@ double Plant::compressor_W(double cooling_W, double cop_factor, const Lift& at) 
   return cooling_W * (x - 1.0) / cop_factor;
 }
 
-/// Air to water: a share of Carnot's efficiency, resistance heat joins in below −5 degC.
+/// Air to water: a share of Carnot's efficiency; resistance heat is added below −5 degC.
 double Plant::heat_pump_W(double heating_W, double cop_factor, double outdoor_C) const {
   constexpr double water_C = 45.0;
   const auto carnot = [&](double air_C) {
@@ -91,10 +92,10 @@ double Plant::heat_pump_W(double heating_W, double cop_factor, double outdoor_C)
   return heating_W * ((1.0 - resistance_share) / cop + resistance_share);
 }
 
-/// Chilled water with the losses of its pipes, or what packaged units take from the air.
+/// Chilled water with pipe losses, or the heat that packaged units take from the air.
 double Plant::cooling_kW(const ServiceLoad& load, double pumps_W,
                          const PlantOperation& operation) const {
-  // A store that gives more than is needed keeps the rest.
+  // If a store could give more than is needed, it keeps the rest.
   if (truth_.drawings.cooling == CoolingPlant::packaged) {
     return std::max(0.0, load.cooling_W + operation.cooling_shift_W) / 1000.0;
   }
@@ -134,7 +135,7 @@ UtilityPower Plant::advance(const ServiceLoad& load, const PlantOperation& opera
 
 double Plant::heating_efficiency(double heating_W) const {
   if (truth_.drawings.heating != HeatingPlant::boiler) return truth_.heating_efficiency;
-  // Little load: burners start and stop, and purge their heat up the chimney.
+  // At low load burners start and stop, and purging loses their heat up the chimney.
   const double idle = 1.0 - std::min(1.0, heating_W / (1000.0 * truth_.drawings.heating_design_kW));
   return truth_.heating_efficiency * (1.0 - 0.06 * idle * idle * idle);
 }

@@ -1,4 +1,5 @@
-/// From coil loads to what the meters see: pumps, chillers, converters, boilers, pipes, hot water.
+/// From coil loads to what the meters measure: pumps, chillers, converters, boilers,
+/// pipes, hot water.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,8 @@
 
 namespace recald::simulators {
 
-/// What can be metered, in the order of files. Heat is steam, hot water or fuel, as the plant has
-/// it.
+/// What can be metered, in the order of files. Heat is steam, hot water or fuel,
+/// depending on the plant.
 enum class Utility : std::size_t { cooling, electricity, heat };
 inline constexpr std::size_t kUtilities = 3;
 
@@ -31,21 +32,21 @@ struct UtilityPower {
   }
 };
 
-/// What the building asks of its services in one step.
+/// The demand of the building on its services in one step.
 struct ServiceLoad {
   double cooling_W = 0.0;
   double heating_W = 0.0;  ///< Preheat, reheat and humidifiers.
   double lights_and_plugs_W = 0.0;
   double fans_W = 0.0;
   double other_electricity_W = 0.0;  ///< Outside the rooms.
-  double other_fuel_W = 0.0;         ///< Burnt or condensed, outside the heating system.
+  double other_fuel_W = 0.0;         ///< Burnt or condensed outside the heating system.
   double people_share = 0.0;         ///< Present / assigned.
-  double awake_share = 0.0;          ///< Of them, who is up: drives hot-water use.
+  double awake_share = 0.0;          ///< Of the people present, those awake: drives hot-water use.
   bool dark = false;                 ///< Exterior lights on.
 };
 
-/// A building's services. With an own chiller, packaged units or a heat pump their electricity
-/// joins the meter's; chilled water is metered wherever there is any.
+/// A building's services. A chiller, packaged units or a heat pump of its own add to the
+/// electricity meter; chilled water is metered wherever there is any.
 class Plant {
  public:
   Plant(const Truth& truth, double step_s, Rng rng);
@@ -54,12 +55,12 @@ class Plant {
                                      const Outdoors& outdoors);
 
  private:
-  /// What a compressor works between: at its rating, and now.
+  /// Temperatures between which a compressor works: rated and current.
   struct Lift {
     double evaporator_K;
     double rated_condenser_K;
     double condenser_K;
-    double least_share;  ///< Of the rated load; below, it cycles at this share.
+    double least_share;  ///< Of the rated load; below it, the compressor cycles at this share.
   };
   [[nodiscard]] Lift lift_of(const Outdoors& outdoors) const;
   [[nodiscard]] double hot_water_W(double awake_share, const PlantOperation& operation);

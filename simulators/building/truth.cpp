@@ -7,8 +7,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Below 21 degC the boxes cannot hold the set-point in summer, above 27.2 degC nobody would stay:
-/// draws beyond are drawn again. The band keeps 93 % of the prior.
+/// Below 21 degC the boxes cannot hold the set-point in summer; above 27.2 degC nobody would stay.
+/// Draws outside this band are repeated. The band keeps 93 % of the prior.
 double draw_cooling_setpoint_C(const Drawings& drawn, Rng& rng) {
   const Triangular prior{20.0, drawn.cooling_setpoint_C, 27.8};
   for (;;) {
@@ -58,7 +58,8 @@ void draw_setpoints(Truth& truth, Rng& rng) {
     return Triangular{nominal - below, nominal, nominal + above}.draw(rng);
   };
   truth.thermostat_band_K = Triangular{1.0, 1.4, 2.0}.draw(rng);
-  // Controllers refuse overlapping bands: the heating set-point gives way to a low cooling one.
+  // Controllers refuse overlapping bands, so a low cooling set-point pushes the
+  // heating set-point down.
   const Triangular heating{drawn.heating_setpoint_min_C, drawn.heating_setpoint_C,
                            drawn.heating_setpoint_max_C};
   truth.heating_setpoint_C =
@@ -96,7 +97,7 @@ void draw_air_system(Truth& truth, Rng& rng) {
   const double night = drawn.core_night_share / 0.9;
   const double night_share =
       Triangular{0.82 * night, drawn.core_night_share, 0.97 * night}.draw(rng);
-  truth.core_night_share = drawn.core_night_share < 1.0 ? night_share : 1.0;  // nothing to set back
+  truth.core_night_share = drawn.core_night_share < 1.0 ? night_share : 1.0;  // no set-back
   truth.box_minimum_scale = draw_around(rng, 1.0, 0.12);
   truth.fan_scale = draw_around(rng, 1.0, 0.10);
   truth.fan_exponent = Triangular{1.9, 2.3, 2.8}.draw(rng);
@@ -109,12 +110,12 @@ void draw_loads(Truth& truth, Rng& rng) {
   truth.perimeter_plugs_scale = draw_around(rng, 1.0, 0.15);
   truth.core_plugs_scale = draw_around(rng, 1.0, 0.15);
   truth.special_plugs_scale = draw_around(rng, 1.0, 0.12);
-  const double hoods = drawn.zone_heat_share - 0.9;  // below 0 where they take more away
+  const double hoods = drawn.zone_heat_share - 0.9;  // below 0 if hoods remove more
   truth.zone_heat_share = Triangular{0.83 + hoods, drawn.zone_heat_share, 0.97 + hoods}.draw(rng);
   truth.exterior_kW = draw_around(rng, drawn.exterior_kW, 0.10);
 }
 
-/// Around what the drawings say; where they say nothing, by the size of the plant.
+/// Scatters around the drawings' value; without one, it follows the size of the plant.
 double draw_standing_kW(const std::optional<double>& drawn_kW, double size, const Triangular& usual,
                         Rng& rng) {
   if (drawn_kW) return draw_around(rng, *drawn_kW, 0.25);

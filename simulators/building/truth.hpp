@@ -1,4 +1,5 @@
-/// How one built instance differs from its drawings. The seed decides; the site file never knows.
+/// How a built instance differs from its drawings. The seed decides it; the site file
+/// does not show it.
 #pragma once
 
 #include <array>
@@ -12,12 +13,12 @@ namespace recald::simulators {
 struct Truth {
   Drawings drawings;
 
-  // What a calibrated model would also call by these names, drawn from the user's own priors.
+  // Parameters that a calibrated model also has, drawn from the user's own priors.
   double occupancy_density_person_m2;  ///< People assigned to the building / floor area.
   double outdoor_airflow_m3_s;         ///< All air handlers ventilating, occupied hours.
   double cooling_setpoint_C;  ///< Occupied, floor-area mean, centre of the throttling band.
 
-  // What differs besides.
+  // Other differences.
   double heating_setpoint_C;
   double night_heating_C;
   double night_cooling_C;
@@ -28,14 +29,14 @@ struct Truth {
   double ground_u_W_m2K;
   double window_u_W_m2K;
   double window_shgc;
-  double blind_transmittance;  ///< Of a drawn blind.
+  double blind_transmittance;  ///< Of a lowered blind.
   double leakage_cm2_m2;
   double ground_C;
-  double mass_scale = 1.0;  ///< On the heat capacity of slabs, partitions, walls and furniture.
+  double mass_scale = 1.0;  ///< On the heat capacity of slabs, partitions, walls, furniture.
   double occupied_from_h;
   double occupied_to_h;
-  bool saturday_operation;           ///< Air handlers with a timetable run 8-14 h on Saturdays.
-  std::vector<double> outdoor_m3_s;  ///< By air handler; storeys weighed, the sum is the above.
+  bool saturday_operation;  ///< Air handlers with a timetable run from 8 to 14 h on Saturdays.
+  std::vector<double> outdoor_m3_s;  ///< By air handler; weighted by storey, they sum to the above.
   std::vector<double> supply_C;      ///< By air handler.
   double supply_reset_K;             ///< Of air handlers with a timetable, in cold weather.
   double core_night_share;
@@ -51,7 +52,7 @@ struct Truth {
   double exterior_kW;
   double hot_water_m3_day;
   double chilled_water_loss_share;   ///< Of the load.
-  double chilled_water_standing_kW;  ///< Heat that pipes pick up whatever the load.
+  double chilled_water_standing_kW;  ///< Heat that pipes gain, whatever the load.
   double heating_efficiency;         ///< Converter, heat exchanger or boiler at full load.
   double heating_standing_kW;        ///< Traps and pipes.
   double pump_kW;

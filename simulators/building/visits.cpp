@@ -10,7 +10,8 @@ constexpr std::size_t kSlotsPerHour = kSlotsPerDay / 24;
 
 double hazard_of(double chance) { return -std::log1p(-std::clamp(chance, 0.0, 1.0 - 1e-12)); }
 
-/// First slot from `slot` on at which the summed hazard has used up an exponential waiting time.
+/// First slot, from `slot` on, at which the summed hazard exceeds an exponentially
+/// distributed waiting time.
 std::size_t next_event(const SlotShares& hazard, std::size_t slot, Rng& rng) {
   if (slot >= kSlotsPerDay) return kSlotsPerDay;
   const double used = slot == 0 ? 0.0 : hazard[slot - 1];

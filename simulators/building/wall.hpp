@@ -1,9 +1,10 @@
 /// Heat conduction through a layered construction by finite volumes in one dimension.
 ///
-/// Nodes stand at the layers' boundaries and inside them, half a slice of mass on either side, so
-/// both surfaces are nodes. Time is implicit. The room-side node is left open: `eliminate` folds
-/// all other nodes into d·T = r for it, the room closes the equation together with its air (no
-/// lag between wall and air, so energy is conserved exactly), and `substitute` fills in the rest.
+/// Nodes lie on the layers' boundaries and inside them, with half a slice of mass on either
+/// side, so both surfaces are nodes. Time is implicit. The room-side node stays open:
+/// `eliminate` folds all other nodes into d·T = r for it, the room solves this equation together
+/// with its air (no lag between wall and air, so energy is conserved exactly), and `substitute`
+/// computes the other nodes.
 #pragma once
 
 #include <span>
@@ -67,7 +68,7 @@ class Wall {
 /// Thermal resistance of the layers alone, m²K/W.
 [[nodiscard]] double resistance_m2K_W(std::span<const Layer> layers);
 
-/// Makes layer `insulation` as thick as the U-value (films 1/25 and 1/7.7 included) demands.
+/// Sets the thickness of layer `insulation` to reach the U-value (films 1/25 and 1/7.7 included).
 /// @pre the other layers insulate less than 1/u_W_m2K.
 void set_u_value(std::span<Layer> layers, std::size_t insulation, double u_W_m2K);
 

@@ -28,7 +28,7 @@ struct ZoneLoads {
   double exchange_moisture_kg_s = 0.0;
 };
 
-/// Heat that crossed the zone's boundary in the last step, J; they sum to the change of storage.
+/// Heat that crossed the zone's boundary in the last step, J; the sum is the change of storage.
 struct ZoneHeat {
   double gains_J;
   double supply_J;
@@ -43,10 +43,10 @@ struct ZoneHeat {
 
 class Zone {
  public:
-  /// @param air_volume_m3       also sets the heat held by air and furniture (six times the air's).
+  /// @param air_volume_m3  Also sets the heat stored by air and furniture (six times the air's).
   Zone(std::vector<ZoneSurface> surfaces, double air_volume_m3, AirState initial);
 
-  /// Boundary of surface i for the next step; stays until set again.
+  /// Sets the boundary of surface i for the following steps.
   void set_outer_side(std::size_t surface, const OuterSide& outer) { outer_[surface] = outer; }
 
   /// Advances by `step_s`: all surfaces, the radiant node and the air in one implicit system.
@@ -54,7 +54,7 @@ class Zone {
 
   [[nodiscard]] const AirState& air() const { return air_; }
   [[nodiscard]] double radiant_C() const { return radiant_C_; }
-  /// What a wall thermostat feels.
+  /// The temperature that a wall thermostat senses.
   [[nodiscard]] double operative_C() const { return 0.65 * air_.temperature_C + 0.35 * radiant_C_; }
   [[nodiscard]] const ZoneSurface& surface(std::size_t i) const { return surfaces_[i]; }
   [[nodiscard]] std::size_t surface_count() const { return surfaces_.size(); }

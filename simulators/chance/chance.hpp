@@ -1,4 +1,4 @@
-/// Random building blocks of the simulated world: triangular draws and values that persist.
+/// Random building blocks of the simulation: triangular draws and persistent values.
 #pragma once
 
 #include "core/random/rng.hpp"
@@ -7,7 +7,7 @@ namespace recald::simulators {
 
 inline constexpr double kDay_s = 86'400.0;
 
-/// One stream of `Rng` a concern, so that a new draw in one leaves all others as they were.
+/// One `Rng` stream per purpose, so that a new draw in one does not change the others.
 enum class Stream : std::uint64_t {
   weather = 1,
   building = 2,
@@ -39,7 +39,7 @@ struct Triangular {
 /// Nominal times Triangular(1 − spread, 1, 1 + spread).
 [[nodiscard]] double draw_around(Rng& rng, double nominal, double spread);
 
-/// A standard normal value that forgets itself with a time constant (Ornstein-Uhlenbeck, exact).
+/// A standard normal value that persists over a time constant (Ornstein-Uhlenbeck, exact).
 class Persistence {
  public:
   Persistence(double time_constant_s, double step_s, Rng& rng);

@@ -50,10 +50,10 @@ double enthalpy_J_kg(const AirState& air) {
 }
 
 double wet_bulb_C(const AirState& air, double pressure_Pa) {
-  // Air that takes up water of the wet-bulb temperature until it is saturated there keeps its
-  // enthalpy but for what that water brings:
+  // Air that takes up water at the wet-bulb temperature until it is saturated keeps its enthalpy,
+  // except for that of the added water:
   // f(t) = h(t, ws(t)) − h(air) − (ws(t) − w) cw t = 0.
-  // f rises with t and is curved upwards, so Newton's steps from the dry bulb fall on the root.
+  // f rises with t and is convex, so Newton's steps from the dry bulb descend to the root.
   constexpr int steps_max = 30;
   constexpr double difference_K = 1e-3;
   const double enthalpy = enthalpy_J_kg(air);
@@ -65,7 +65,7 @@ double wet_bulb_C(const AirState& air, double pressure_Pa) {
   double wet_C = air.temperature_C;
   for (int step = 0; step < steps_max; ++step) {
     const double excess = excess_J_kg(wet_C);
-    if (excess <= 0.0) break;  // saturated from the start, or on the root
+    if (excess <= 0.0) break;  // saturated from the start, or at the root
     const double slope = (excess - excess_J_kg(wet_C - difference_K)) / difference_K;
     wet_C -= excess / slope;
     if (excess / slope < 1e-6) break;

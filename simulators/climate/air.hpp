@@ -1,4 +1,4 @@
-/// Moist air for the simulated world, written for it alone.
+/// Moist air for the simulators alone.
 #pragma once
 
 namespace recald::simulators {
@@ -28,8 +28,8 @@ struct AirState {
 /// 0…1, capped at 1.
 [[nodiscard]] double relative_humidity(const AirState& air, double pressure_Pa);
 
-/// Thermodynamic (adiabatic saturation) wet bulb, over liquid water below 0 degC too. The air's own
-/// temperature if it is saturated or beyond. @see ASHRAE Handbook Fundamentals, chapter 1
+/// Thermodynamic (adiabatic saturation) wet bulb, over liquid water also below 0 degC. For
+/// saturated air, its own temperature. @see ASHRAE Handbook Fundamentals, chapter 1
 [[nodiscard]] double wet_bulb_C(const AirState& air, double pressure_Pa);
 
 /// Per kg of dry air, zero for dry air at 0 degC.
@@ -44,7 +44,7 @@ struct AirState {
 /// Standard atmosphere.
 [[nodiscard]] double pressure_at_altitude_Pa(double altitude_m);
 
-/// Adiabatic mixing; `share` of the first stream by dry mass, 0…1.
+/// Adiabatic mixing; `share` is that of the first stream by dry mass, 0…1.
 [[nodiscard]] AirState mix(const AirState& first, const AirState& second, double share);
 
 }  // namespace recald::simulators

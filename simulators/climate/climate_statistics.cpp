@@ -156,7 +156,7 @@ constexpr std::array kRows{
     Row{"snowfall as water, mm a year", 0, [](const Normals& n) { return n.snowfall_mm; }},
 };
 
-/// Without the sign of a zero.
+/// Rounded, with no sign on a zero.
 std::string rounded(double value, int decimals) {
   const std::string text = fmt::format("{:.{}f}", value, decimals);
   return text.find_first_of("123456789") == std::string::npos && text[0] == '-' ? text.substr(1)

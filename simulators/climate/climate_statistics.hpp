@@ -1,4 +1,4 @@
-/// What a generated climate comes to, in the terms in which climates are published.
+/// Statistics of a generated climate, in the terms used for published climates.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace recald::simulators {
 
-/// Gathers steps into the quantities of `Normals`. Days are those of the mean sun at the place, so
-/// that a day has one minimum and one maximum and no time zone is needed.
+/// Collects steps into the quantities of `Normals`. Days follow the mean sun at the place, so a day
+/// has one minimum and one maximum and needs no time zone.
 class ClimateStatistics {
  public:
-  /// @param first_day  by the mean sun; the first step begins at its midnight.
+  /// @param first_day  By the mean sun; the first step begins at its midnight.
   /// @pre the step divides a day
   ClimateStatistics(std::chrono::sys_days first_day, std::chrono::seconds step);
 
@@ -62,7 +62,7 @@ class ClimateStatistics {
 [[nodiscard]] Normals simulated_normals(ClimateKind kind, int years, std::uint64_t seed,
                                         std::chrono::seconds step = kStep);
 
-/// Simulated against published, all climates, as a Markdown table.
+/// Simulated and published values of all climates, as a Markdown table.
 [[nodiscard]] std::string climate_table(int years, std::uint64_t seed);
 
 }  // namespace recald::simulators

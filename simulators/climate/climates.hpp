@@ -1,9 +1,9 @@
 /// Five climates for the weather generator, each made to resemble one city (see `normals.hpp`).
 ///
-/// A `Climate` is what the generator turns into weather. Its curves are what the generator aims at,
-/// not what comes out: fronts, clouds, the saturation limit and the monsoon shift the monthly
-/// means, and the curves allow for that. The members below name causes, so that two climates differ
-/// by how their weather comes about and not by their means alone.
+/// A `Climate` is the input of the weather generator. Its curves are targets, not results:
+/// fronts, clouds, the saturation limit and the monsoon shift the monthly means, and the curves
+/// allow for that. The members describe causes, so climates differ in how their weather arises
+/// and not only in their means.
 #pragma once
 
 #include <array>
@@ -24,31 +24,31 @@ inline constexpr std::array<ClimateKind, 5> kClimateKinds{ClimateKind::hot_humid
 /// As written in a scenario: "hot-humid", "hot-dry", "mixed", "cold", "marine".
 [[nodiscard]] std::string_view name_of(ClimateKind kind);
 
-/// How a day runs.
+/// The course of a day.
 struct DailyCycle {
   SeasonalCurve swing_K;        ///< Half the range of a clear day.
-  double cloud_damping_K;       ///< Of that half range, lost under a full cover.
+  double cloud_damping_K;       ///< Of that half range, lost under full cloud cover.
   SummerRise overcast_shift_K;  ///< Overcast minus clear daily mean.
-  double dew_swing_K;           ///< The afternoon's dew point above (+) the mean; mixing dries it.
+  double dew_swing_K;  ///< Dew point in the afternoon above (+) the mean; mixing dries the air.
 };
 
-/// How far the air strays from the season; standard deviations.
+/// Deviations of the air from the season; standard deviations.
 struct Variability {
-  WinterRise spell_K;       ///< Weeks warmer or cooler than the season, dew point alike.
-  WinterRise synoptic_K;    ///< Air masses that no front marks.
+  WinterRise spell_K;       ///< Weeks warmer or cooler than the season; the dew point follows.
+  WinterRise synoptic_K;    ///< Air masses without a marked front.
   double synoptic_days;     ///< Time constant of these.
   double dew_per_synoptic;  ///< Dew point's share in these, K/K.
   WinterRise moisture_K;    ///< Of the dew point alone.
-  double cloud_moisture_K;  ///< Dew point under a full cover minus under none.
+  double cloud_moisture_K;  ///< Dew point under full cloud cover minus under a clear sky.
   double dew_per_anomaly;   ///< Dew point's share in the warming and cooling about a front, K/K.
 };
 
-/// What a front brings besides its temperature.
+/// The effects of a front besides its temperature.
 struct FrontHabit {
   double full_strength_K;  ///< A front of this size clouds, clears and blows in full.
   double cloud_ahead;      ///< Logits of cloud cover.
   double cloud_behind;
-  double clearing;  ///< In the days after.
+  double clearing;  ///< In the following days.
 };
 
 struct CloudHabit {
@@ -56,7 +56,8 @@ struct CloudHabit {
   SummerRise morning_stratus;  ///< Low cloud that burns off before noon, logits.
 };
 
-/// A wind that turns with the sun on clear days: from `day_from_deg` at 15 h, opposite at 3 h.
+/// A wind that turns with the sun on clear days: from `day_from_deg` at 15 h, the
+/// opposite way at 3 h.
 struct ThermalBreeze {
   SummerRise speed_m_s;
   double day_from_deg;
@@ -66,11 +67,11 @@ struct WindHabit {
   double behind_front_from_deg;
   double veer_deg;  ///< Clockwise turn from there until the next front.
   double veer_days;
-  double daily_share;  ///< Afternoon above the mean.
+  double daily_share;  ///< Afternoon, above the mean.
   ThermalBreeze breeze;
 };
 
-/// A season of moist tropical air that sets in and ends within days; none where `dew_rise_K` is 0.
+/// A season of moist tropical air that starts and ends within days; none if `dew_rise_K` is 0.
 struct Monsoon {
   double begin_year_share;
   double end_year_share;
@@ -78,7 +79,7 @@ struct Monsoon {
   double convection;  ///< Added to the afternoon's cumulus, logits.
 };
 
-/// What the generator needs to know of a place.
+/// Everything that the generator needs about a place.
 struct Climate {
   Place place;
   SeasonalCurve dry_bulb_C;
@@ -94,12 +95,12 @@ struct Climate {
   WindHabit wind;
   Monsoon monsoon;
   SummerRise haze;                    ///< See `Veil`.
-  SummerRise overcast_transmittance;  ///< See `Veil`; high over snow, whose light comes back.
+  SummerRise overcast_transmittance;  ///< See `Veil`; high over snow, which reflects light back.
   RainHabit rain;
 };
 
-/// @param place  northern hemisphere; gives the sun and the air pressure. The weather stays that of
-///               the comparable city.
+/// @param place  In the northern hemisphere; sets the sun and the air pressure. The weather is
+///               still that of the comparable city.
 [[nodiscard]] Climate climate_of(ClimateKind kind, const Place& place);
 
 [[nodiscard]] inline Climate hot_humid_climate(const Place& place) {

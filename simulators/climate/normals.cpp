@@ -12,8 +12,7 @@ namespace {
 // Radiation Data Manual (Marion, Wilcox 1994) for Baltimore and Minneapolis.
 // Design temperatures and extremes: ASHRAE Handbook Fundamentals, 2009 (Phoenix, Baltimore,
 // Minneapolis), 2013 (Seattle), 2017 (Atlanta).
-// Compiled by hand, to judge a generator by: who needs the last tenth should take it from the
-// source.
+// Compiled by hand, to judge the generator; take exact values from the sources.
 
 constexpr City kAtlanta{"Atlanta", {33.63, -84.44, 308.0}, "America/New_York"};
 constexpr City kPhoenix{"Phoenix", {33.45, -111.98, 337.0}, "America/Phoenix"};

@@ -1,5 +1,5 @@
-/// Published climate of the five cities that the generated climates resemble: the yardstick, never
-/// an input of the generator.
+/// Published climate of the five cities that the generated climates resemble: used for comparison,
+/// never as input of the generator.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ struct Normals {
   Monthly wind_m_s;
   Monthly global_kWh_m2_day;
   Monthly precipitation_mm;
-  double wet_days;          ///< A year, with 0.25 mm and more.
-  double snowfall_mm;       ///< A year, as water; a tenth of the depth.
-  double heating_K_days;    ///< A year, below 18.3 degC.
-  double cooling_K_days;    ///< A year, above 18.3 degC.
+  double wet_days;          ///< Per year, with 0.25 mm or more.
+  double snowfall_mm;       ///< Per year, as water; a tenth of the depth.
+  double heating_K_days;    ///< Per year, below 18.3 degC.
+  double cooling_K_days;    ///< Per year, above 18.3 degC.
   double heating_design_C;  ///< Exceeded in 99.6 % of hours.
   double cooling_design_C;  ///< Exceeded in 0.4 % of hours.
   double annual_minimum_C;  ///< Mean over years.
@@ -38,7 +38,7 @@ struct Normals {
 [[nodiscard]] const City& comparable_city(ClimateKind kind);
 [[nodiscard]] const Normals& normals_of(ClimateKind kind);
 
-/// Average over the months by their length.
+/// Mean over the months, weighted by their length.
 [[nodiscard]] double annual_mean(const Monthly& monthly);
 
 }  // namespace recald::simulators

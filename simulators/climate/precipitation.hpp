@@ -1,7 +1,7 @@
-/// Rain and snow that the clouds of the generator bring, and the snow that stays on the ground.
+/// Rain and snow from the generator's clouds, and the snow that stays on the ground.
 ///
-/// Cloud, fronts and convection decide when it falls and the month how much; nothing here acts back
-/// on them. Draws come from a stream of their own.
+/// Cloud, fronts and convection decide when it falls, and the month how much; nothing here affects
+/// them. Uses its own random stream.
 #pragma once
 
 #include "simulators/chance/chance.hpp"
@@ -9,22 +9,23 @@
 
 namespace recald::simulators {
 
-/// How a climate's clouds yield. Wetness is dimensionless; it precipitates while it is positive.
+/// How readily a climate's clouds rain. Wetness is dimensionless; it rains or snows
+/// while it is positive.
 struct RainHabit {
-  SeasonalCurve dryness;        ///< What wetness has to overcome: decides how often.
+  SeasonalCurve dryness;        ///< Subtracted from the wetness: decides how often.
   SeasonalCurve log_intensity;  ///< Logarithm of mm/h at a wetness of 1: decides how much.
-  double per_moisture_K;        ///< Wetness by the dew point above the season's.
-  SummerRise showers;           ///< Wetness that comes and goes within half an hour, one sigma.
+  double per_moisture_K;        ///< Wetness per dew point above the season's.
+  SummerRise showers;           ///< Wetness that changes within half an hour, one sigma.
 };
 
-/// What the atmosphere offers in one step.
+/// The state of the atmosphere in one step.
 struct RainCause {
   double year_share;
   double cloud;       ///< Share of the sky, 0…1.
-  double lift;        ///< By a front: 0 far from one, 1 and more at its passage.
+  double lift;        ///< From a front: 0 far away, 1 and more at its passage.
   double convection;  ///< Afternoon cumulus, logits of cloud cover.
-  double dryness_K;   ///< Air minus dew point: rain evaporates in the air it falls through.
-  double moisture_K;  ///< Dew point above the season's: moist air has more to give.
+  double dryness_K;   ///< Air minus dew point: rain evaporates in dry air.
+  double moisture_K;  ///< Dew point above the season's: moist air yields more.
 };
 
 class Precipitation {
@@ -41,13 +42,13 @@ class Precipitation {
   Persistence cell_;
 };
 
-/// Share of the precipitation that falls as snow: all at 0 degC wet bulb and below, none from 1.6,
-/// half at 0.8.
-/// @see Wang, Broxton, Fang, Behrangi, Barlage, Zeng, Niu (2019), Geophys. Res. Lett. 46, where the
-///      same half-way point belongs to a logistic curve.
+/// Share of the precipitation that falls as snow: all at a wet bulb of 0 degC and below, none from
+/// 1.6, half at 0.8.
+/// @see Wang, Broxton, Fang, Behrangi, Barlage, Zeng, Niu (2019), Geophys. Res. Lett. 46, where a
+///      logistic curve has the same half-way point.
 [[nodiscard]] double snow_share(double wet_bulb_C);
 
-/// What the air does to a snow cover during a step.
+/// The weather that acts on a snow cover during a step.
 struct MeltWeather {
   double air_C;
   double sky_C;  ///< See `sky_temperature_C`.
@@ -55,18 +56,18 @@ struct MeltWeather {
   double global_horizontal_W_m2;
 };
 
-/// Snow on flat unheated surfaces as millimetres of water.
+/// Snow on flat unheated surfaces, as millimetres of water.
 ///
-/// It melts by the energy that reaches a surface at 0 degC: sunshine that is not reflected,
-/// convection and long-wave radiation. Rain runs through. Left out: the cold stored in the snow,
-/// sublimation and condensation, drift.
+/// It melts by the energy that reaches a surface at 0 degC: absorbed sunshine, convection and
+/// long-wave radiation. Rain runs through. Left out: the cold stored in the snow, sublimation and
+/// condensation, drift.
 class SnowCover {
  public:
   void advance(double snowfall_mm, const MeltWeather& weather, double step_s);
 
   [[nodiscard]] double water_mm() const { return water_mm_; }
 
-  /// Of sunshine by the ground: 0.2 without snow, 0.7 under 10 mm of water and more.
+  /// Reflectance of the ground for sunshine: 0.2 without snow, 0.7 under 10 mm of water or more.
   [[nodiscard]] double ground_reflectance() const;
 
  private:

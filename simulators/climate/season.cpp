@@ -25,7 +25,7 @@ SeasonalCurve::SeasonalCurve(const std::array<double, 12>& monthly_means)
     mean_ += monthly_means[month] / 12.0;
     for (std::size_t k = 0; k < 2; ++k) {
       const double order = static_cast<double>(k + 1);
-      // A monthly mean flattens a harmonic by sin(x)/x, x = pi k / 12; undo that.
+      // Monthly means flatten a harmonic by sin(x)/x, x = pi k / 12; this corrects it.
       const double x = std::numbers::pi * order / 12.0;
       const double weight = x / std::sin(x) / 6.0;
       cosine_[k] += weight * monthly_means[month] * std::cos(order * angle);

@@ -1,4 +1,4 @@
-/// The course of the year: smooth curves through monthly means, and how much of a season it is.
+/// The course of the year: smooth curves through monthly means, and the strength of a season.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ class SeasonalCurve {
  public:
   explicit SeasonalCurve(const std::array<double, 12>& monthly_means);
 
-  /// The same all year, exactly.
+  /// Constant all year, exactly.
   explicit SeasonalCurve(double constant);
 
-  /// @param year_share 0 at the start of January, 1 at the end of December.
+  /// @param year_share  0 at the start of January, 1 at the end of December.
   [[nodiscard]] double at(double year_share) const;
 
  private:
@@ -27,7 +27,7 @@ class SeasonalCurve {
   std::array<double, 2> sine_;
 };
 
-/// How wintry the date is: 1 in mid-winter, 0 in mid-summer of the northern hemisphere.
+/// 1 in mid-winter, 0 in mid-summer of the northern hemisphere.
 [[nodiscard]] double winter_at(double year_share);
 
 /// A quantity that grows towards winter.

@@ -14,7 +14,7 @@ SkyRadiation sky_radiation(double outside_W_m2, double up, const Veil& veil) {
       outside_W_m2 * std::pow(0.7, std::pow(air_mass, 0.678)) * std::exp(-veil.haze * air_mass);
   const double clear_diffuse = (0.085 + 0.5 * veil.haze) * outside_W_m2 * std::pow(up, 0.7);
   const double overcast = veil.overcast_transmittance * outside_W_m2 * up;
-  // Broken cloud scatters: more light than the two shares of the sky alone would give.
+  // Broken cloud scatters light, so there is more than the two shares of the sky alone would give.
   const double bright_edges = 0.22 * veil.cloud * (1.0 - veil.cloud) * outside_W_m2 * up;
   return {clear_beam * (1.0 - veil.cloud),
           (1.0 - veil.cloud) * clear_diffuse + veil.cloud * overcast + bright_edges, outside_W_m2};

@@ -35,7 +35,7 @@ SunPosition sun_position(metering::Instant t, const Place& place) {
       (mean_longitude_deg + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2.0 * anomaly)) * kRadian;
   const double obliquity = (23.439 - 4e-7 * days) * kRadian;
 
-  // Right ascension and declination stay as vector components: no quadrant to get wrong.
+  // Keep right ascension and declination as vector components, which avoids quadrant errors.
   const double x = std::cos(ecliptic_longitude);
   const double y = std::cos(obliquity) * std::sin(ecliptic_longitude);
   const double z = std::sin(obliquity) * std::sin(ecliptic_longitude);
@@ -69,7 +69,7 @@ Irradiance irradiance_on(const Orientation& plane, const SunPosition& sun, const
                std::cos(tilt) * sun.up);
   const double sine_elevation = std::max(0.0, sun.up);
 
-  // Near the horizon the ratio of cosines explodes although the energy does not: floor it at 3 deg.
+  // Near the horizon the ratio of cosines diverges although the energy does not: limit it at 3 deg.
   const double anisotropy = sky.extraterrestrial_normal_W_m2 > 0.0
                                 ? sky.beam_normal_W_m2 / sky.extraterrestrial_normal_W_m2
                                 : 0.0;

@@ -1,4 +1,4 @@
-/// Where the sun stands and what falls on a tilted surface, for the simulated world alone.
+/// The sun's position and the radiation on tilted surfaces, for the simulators alone.
 #pragma once
 
 #include "core/metering/civil_time.hpp"
@@ -34,7 +34,7 @@ struct Orientation {
   double tilt_deg;
 };
 
-/// Radiation on a plane by the way it came.
+/// Radiation on a plane by its path.
 struct Irradiance {
   double beam_W_m2;
   double diffuse_W_m2;      ///< From sky and ground.

@@ -27,20 +27,20 @@ double daily_shape(double solar_hour) {
   return 0.92 * std::cos(angle) + 0.16 * std::cos(2.0 * angle + 0.6);
 }
 
-/// 1 when low cloud is thickest, about sunrise; it has burnt off by noon.
+/// 1 when low cloud is thickest, around sunrise; it has burnt off by noon.
 double stratus_shape(double solar_hour) {
   const double from_sunrise_h = std::remainder(solar_hour - 5.5, 24.0);
   return std::exp(-0.5 * std::pow(from_sunrise_h / 3.0, 2.0));
 }
 
-/// 0…1, in and out within about a week.
+/// 0…1, starting and ending within about a week.
 double monsoon_at(const Monsoon& monsoon, double year_share) {
   constexpr double onset = 0.007;  // of a year
   return logistic((year_share - monsoon.begin_year_share) / onset) *
          logistic((monsoon.end_year_share - year_share) / onset);
 }
 
-/// A stream of its own that leaves `weather` where it was.
+/// A separate stream, without advancing `weather`.
 Rng rain_stream(Rng weather) { return Rng{weather.next(), 1}; }
 
 }  // namespace
@@ -72,7 +72,7 @@ WeatherGenerator::Moment WeatherGenerator::moment(metering::Instant t) const {
   const double solar_hour = solar_hour_of(t, climate_.place);
   const double winter = winter_at(year_share);
   const double monsoon = monsoon_at(climate_.monsoon, year_share);
-  // Summer afternoons build cumulus; winter stratus does not follow the clock.
+  // Cumulus builds on summer afternoons; winter stratus does not follow the time of day.
   const double convection =
       (climate_.cloud.convection.at(winter) + climate_.monsoon.convection * monsoon) *
       std::exp(-0.5 * std::pow((solar_hour - 15.5) / 2.5, 2.0));
@@ -80,15 +80,15 @@ WeatherGenerator::Moment WeatherGenerator::moment(metering::Instant t) const {
 }
 
 void WeatherGenerator::schedule_next_front(double year_share) {
-  // At least two days apart: a second front into air that has just been replaced is no front.
+  // At least two days apart: a front needs time to bring other air.
   const double mean_days = climate_.front_interval_days.at(year_share);
   days_to_front_ = 2.0 + draw_waiting_time(rng_, mean_days - 2.0);
   next_front_K_ = climate_.front_amplitude_K.at(year_share) * rng_.uniform(0.3, 1.7);
 }
 
 WeatherGenerator::AirMass WeatherGenerator::air_mass() const {
-  // Behind a front cold dry air warms up within days; ahead of the next, southerly air is drawn in.
-  // The passage itself takes some hours, hence the blend with the air before it.
+  // Behind a front, cold dry air warms up within days; ahead of the next, southerly air flows in.
+  // The passage itself takes some hours, so the two are blended.
   const double behind = -0.75 * last_front_K_ * std::exp(-days_since_front_ / 2.8);
   const double ahead = 0.80 * next_front_K_ * std::exp(-days_to_front_ / 2.4);
   const double passage = 1.0 - std::exp(-days_since_front_ / 0.12);
@@ -123,7 +123,7 @@ double WeatherGenerator::cloud_cover(const AirMass& mass, const Moment& when) {
 }
 
 double WeatherGenerator::dry_bulb_C(const AirMass& mass, const Moment& when, double spell_K) {
-  // Clouds flatten the day; they also cool summer days and keep winter nights from cooling.
+  // Clouds flatten the day; they also cool summer days and keep winter nights warm.
   const DailyCycle& day = climate_.day;
   const double swing_K =
       std::max(0.0, day.swing_K.at(when.year_share) - day.cloud_damping_K * smooth_cloud_);
@@ -170,7 +170,7 @@ WeatherGenerator::Wind WeatherGenerator::wind(const AirMass& mass, const Moment&
 }
 
 void WeatherGenerator::precipitate(const RainCause& cause, Outdoors& outdoors) {
-  constexpr double too_warm_for_snow_C = 15.0;  // dry bulb; spares the wet bulb in summer
+  constexpr double too_warm_for_snow_C = 15.0;  // dry bulb; saves computing the wet bulb in summer
   outdoors.precipitation_mm_h = precipitation_.advance_mm_h(cause);
   const double air_C = outdoors.air.temperature_C;
   if (outdoors.precipitation_mm_h > 0.0 && air_C < too_warm_for_snow_C) {

@@ -1,8 +1,8 @@
-/// Invented weather: fronts, air masses that persist, clouds, sun, rain and snow.
+/// Synthetic weather: fronts, persistent air masses, clouds, sun, rain and snow.
 ///
-/// The generator steps air masses rather than marginal distributions: a front arrives, cools and
-/// dries the air, turns the wind and clears the sky behind it. Temperature, humidity, cloud, wind
-/// and rain are correlated because they share that cause. What kind of place it is, `Climate` says.
+/// The generator simulates air masses rather than marginal distributions: a front arrives, cools
+/// and dries the air, turns the wind and clears the sky behind it. Temperature, humidity, cloud,
+/// wind and rain are correlated because they share that cause. `Climate` describes the place.
 #pragma once
 
 #include "simulators/chance/chance.hpp"
@@ -12,41 +12,41 @@
 
 namespace recald::simulators {
 
-/// The step of those who do not choose one.
+/// The default step.
 inline constexpr std::chrono::seconds kStep{300};
 inline constexpr double kStep_s = 300.0;
 
-/// The outdoors, constant over one step.
+/// Outdoor conditions, constant over one step.
 struct Outdoors {
   AirState air;
   double pressure_Pa;
   double relative_humidity;  ///< 0…1.
   double wind_speed_m_s;     ///< 10 m above open ground.
   double wind_from_deg;
-  double sky_temperature_C;  ///< Of a black sky that radiates as the real one does.
+  double sky_temperature_C;  ///< Of a black sky with the same radiation as the real one.
   double global_horizontal_W_m2;
   SkyRadiation sky;
   SunPosition sun;
-  double precipitation_mm_h;  ///< Water, rain and melted snow alike.
+  double precipitation_mm_h;  ///< As water, from rain and snow.
   double snow_share;          ///< Of the precipitation, 0…1; 0 when dry.
-  double snow_cover_mm;       ///< Water lying as snow on flat unheated surfaces.
+  double snow_cover_mm;       ///< Snow on flat unheated surfaces, as water.
   double ground_reflectance;  ///< 0.2 without snow.
 };
 
 /// Steps the atmosphere. The same rng state and step give the same weather; another step gives
-/// other weather of the same statistics.
+/// different weather with the same statistics.
 class WeatherGenerator {
  public:
   /// @pre step is 1 to 60 minutes
   WeatherGenerator(const Climate& climate, metering::Instant begin, Rng rng,
                    std::chrono::seconds step = kStep);
 
-  /// The next step, beginning at `begin` on the first call.
+  /// Computes the next step; the first call starts at `begin`.
   Outdoors advance();
 
  private:
   struct AirMass {
-    double anomaly_K;    ///< Of the daily mean against the season.
+    double anomaly_K;    ///< Of the daily mean, relative to the season.
     double dryness_K;    ///< Added to the dew point.
     double cloud_logit;  ///< Added to the tendency.
     double lift;         ///< See `RainCause`.
@@ -54,7 +54,7 @@ class WeatherGenerator {
     double wind_from_deg;
   };
 
-  /// One instant of the calendar as the generator needs it.
+  /// One instant of the year, as used by the generator.
   struct Moment {
     double year_share;
     double solar_hour;
@@ -88,7 +88,7 @@ class WeatherGenerator {
   double last_front_K_ = 0.0;
   double next_front_K_ = 0.0;
   double anomaly_at_passage_K_ = 0.0;  ///< The last front replaces this within hours.
-  double smooth_cloud_ = 0.5;  ///< Cloud cover of about the last half day: damps the daily swing.
+  double smooth_cloud_ = 0.5;  ///< Mean cloud cover of about half a day: damps the daily swing.
   Persistence spell_;          ///< Weeks that are warmer or cooler than the season.
   Persistence synoptic_;
   Persistence moisture_;

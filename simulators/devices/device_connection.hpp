@@ -1,4 +1,4 @@
-/// One client of an endpoint: requests in, replies out, one after the other as a device works.
+/// One client of an endpoint: takes requests and replies, one after the other, as a device would.
 #pragma once
 
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it
@@ -17,7 +17,7 @@
 
 namespace recald::simulators {
 
-/// Now, in the time of the simulation.
+/// The current time of the simulation.
 [[nodiscard]] inline SimulatedTime simulated_now(const metering::TrialClock& clock) {
   return clock.simulated(
       std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now()));
@@ -28,7 +28,7 @@ template <class Stream>
 class DeviceConnection : public std::enable_shared_from_this<DeviceConnection<Stream>> {
  public:
   /// @param endpoint  Outlives the connection, as does `clock`.
-  /// @param closed    Is called once, when the client is gone.
+  /// @param closed    Called once, when the client has gone.
   DeviceConnection(Stream stream, DeviceEndpoint& endpoint, const metering::TrialClock& clock,
                    std::function<void()> closed)
       : stream_(std::move(stream)),
@@ -63,7 +63,7 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection<St
   }
 
   void take(std::size_t count) {
-    // On a line silence ends a frame: what was cut short before it is forgotten.
+    // On a serial line silence ends a frame: an incomplete one before it is dropped.
     constexpr std::chrono::milliseconds kSilence{50};
     const auto now = Monotonic::now();
     if (endpoint_.transport() == Transport::rtu && now - last_arrival_ > kSilence) {
@@ -111,7 +111,7 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection<St
   Bytes received_;
   Monotonic::time_point last_arrival_{};
   std::deque<ReplyPiece> outgoing_;
-  Bytes written_;  ///< Must stay while it is being written.
+  Bytes written_;  ///< Must live until it is written.
   bool is_sending_ = false;
 };
 

@@ -34,7 +34,7 @@ Bytes exception_pdu(std::uint8_t function, ExceptionCode code) {
 
 std::uint8_t byte_of(double amount) { return static_cast<std::uint8_t>(static_cast<int>(amount)); }
 
-/// What is falsified before the frame is closed, so that its check sum is right.
+/// Applies faults before the frame is closed, so that its checksum is right.
 void falsify_pdu(std::span<const ScriptedFault> faults, std::uint8_t& unit, Bytes& pdu) {
   for (const ScriptedFault& fault : faults) {
     if (fault.kind == DeviceFaultKind::wrong_unit) unit = byte_of(fault.amount);
@@ -59,7 +59,7 @@ void falsify_frame(std::span<const ScriptedFault> faults, Transport transport, B
   }
 }
 
-/// One piece, or three of them: up to the byte count, half of the data, the rest.
+/// One piece, or three: up to the byte count, half of the data, the rest.
 std::vector<ReplyPiece> in_pieces(std::span<const ScriptedFault> faults, Transport transport,
                                   const Bytes& frame) {
   milliseconds late{0};

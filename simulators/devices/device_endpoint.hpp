@@ -1,4 +1,4 @@
-/// The devices behind one TCP endpoint or serial line, and what they answer: a function of the
+/// The devices behind one TCP endpoint or serial line, and their replies: a function of the
 /// request, the time and the script, without sockets.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace recald::simulators {
 
-/// Bytes that leave after a wait of real time, which counts from the piece before.
+/// Bytes sent after a wait in real time, counted from the previous piece.
 struct ReplyPiece {
   std::chrono::milliseconds wait{0};
   Bytes bytes;
@@ -19,26 +19,26 @@ struct ReplyPiece {
 
 class DeviceEndpoint {
  public:
-  /// @param begin  Of the simulation; the script's times count from it.
+  /// @param begin  Start of the simulation; the script's times count from it.
   DeviceEndpoint(Transport transport, std::vector<SimulatedDevice> devices, FaultScript faults,
                  SimulatedTime begin);
 
-  /// What comes back; nothing where the request stays without an answer.
+  /// The reply, or nothing if the request gets none.
   ///
-  /// Only reads of a device's own function are carried out. Another function is answered with
-  /// exception 1, registers outside the layout with 2, a count outside 1…125 with 3; a unit that
-  /// is not there with 11 on TCP, as a gateway would, and not at all on a line.
+  /// Only reads with a device's own function succeed. Another function gets exception 1, registers
+  /// outside the layout 2, a count outside 1…125 gets 3; a missing unit gets 11 on TCP, as from a
+  /// gateway, and no reply on a serial line.
   [[nodiscard]] std::vector<ReplyPiece> answer(const DeviceRequest& request, SimulatedTime t);
 
-  /// Whether the endpoint itself is away.
+  /// Whether the endpoint itself is down.
   [[nodiscard]] bool refuses(SimulatedTime t) const;
-  /// When that changes next after `t`.
+  /// Time of the next change after `t`.
   [[nodiscard]] std::optional<SimulatedTime> next_refusal_change(SimulatedTime t) const;
 
   [[nodiscard]] Transport transport() const { return transport_; }
   [[nodiscard]] const std::vector<SimulatedDevice>& devices() const { return devices_; }
   [[nodiscard]] long requests() const { return requests_; }
-  /// Requests that would have changed a register: recald sends none.
+  /// Requests to write a register: recald must send none.
   [[nodiscard]] long writes() const { return writes_; }
 
  private:

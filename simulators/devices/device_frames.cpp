@@ -13,7 +13,7 @@ std::uint16_t big_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
 }
 
-/// Bit by bit as the specification draws it; the daemon's has a table.
+/// Bit by bit as in the specification; the daemon uses a table.
 std::uint16_t check_sum(std::span<const std::uint8_t> bytes) {
   unsigned sum = 0xFFFF;
   for (const std::uint8_t byte : bytes) {
@@ -23,8 +23,8 @@ std::uint16_t check_sum(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint16_t>(sum);
 }
 
-/// Bytes of an RTU request up to its check sum, which only its function tells; nothing while too
-/// few have come to say so. Functions unknown to us are taken to end where the bytes do.
+/// Length of an RTU request without its checksum, which follows from its function; nothing if there
+/// are too few bytes yet. Unknown functions are assumed to end where the bytes do.
 std::optional<std::size_t> rtu_body_size(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 4) return {};
   const auto with_bytes = [&](std::size_t count_at) -> std::optional<std::size_t> {

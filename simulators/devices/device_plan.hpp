@@ -1,4 +1,4 @@
-/// Which devices are simulated and where they are reached: a TOML file.
+/// The simulated devices and their addresses, from a TOML file.
 ///
 ///     [[endpoint]]
 ///     type = "tcp"               # or "rtu"
@@ -14,8 +14,8 @@
 ///
 ///     [[endpoint]]
 ///     type = "rtu"
-///     link = "/tmp/ttyMETERS"    # made to lead to the pseudo-terminal
-///     repeat = 8                 # /tmp/ttyMETERS0 to 7; of a TCP endpoint as many ports in a row
+///     link = "/tmp/ttyMETERS"    # becomes a link to the pseudo-terminal
+///     repeat = 8                 # /tmp/ttyMETERS0 to 7; for TCP, as many consecutive ports
 ///
 ///     [[endpoint.device]]
 ///     unit = 1
@@ -24,8 +24,8 @@
 ///     recording = "readings.csv" # as recald-sim building writes it
 ///     meter = "electricity"
 ///
-/// Each copy that `repeat` makes starts 1 000 kWh above the one before, so that no two of them can
-/// be taken for one another. Paths are relative to the plan.
+/// Each copy made by `repeat` starts 1 000 kWh above the one before, so that no two can be
+/// confused. Paths are relative to the plan.
 #pragma once
 
 #include <filesystem>
@@ -47,9 +47,9 @@ struct EndpointPlan {
   std::vector<SimulatedDevice> devices;
 };
 
-/// @param faults  For endpoints that have no script of their own.
-/// @return the endpoints, at least one with at least one device each; otherwise not_found or the
-///         first mistake with file and line.
+/// @param faults  For endpoints without a script of their own.
+/// @return the endpoints, at least one with at least one device each; or not_found, or the first
+///         mistake with file and line.
 [[nodiscard]] Result<std::vector<EndpointPlan>> read_device_plan(const std::filesystem::path& file,
                                                                  const FaultScript& faults);
 

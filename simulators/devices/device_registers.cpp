@@ -39,7 +39,7 @@ double value_of(What what, const MeterReadout& readout) {
   return 0.0;
 }
 
-/// The value as the device holds it, its highest word first.
+/// The value as stored in the device, highest word first.
 std::vector<std::uint16_t> words(Encoding encoding, double raw) {
   std::uint64_t bits = 0;
   switch (encoding) {

@@ -1,7 +1,7 @@
-/// What stands in a device's registers: its makers' layouts, written down a second time.
+/// The contents of a device's registers: the manufacturers' layouts, written down a second time.
 ///
-/// The daemon's maps and decoders are not used here: a wrong address or a swapped word must not
-/// meet its mirror image.
+/// The daemon's maps and decoders are not used here, so that a wrong address or a swapped word is
+/// not repeated on both sides.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace recald::simulators {
 
-/// What a meter counts and measures at one moment.
+/// What a meter has counted and measures at one moment.
 struct MeterReadout {
   double energy_kWh;
   double power_kW;
@@ -27,14 +27,14 @@ struct LayoutValue {
   What what;
   std::uint16_t address;  ///< On the wire.
   Encoding encoding;
-  double per_unit;  ///< Raw steps a kWh or a kW; rounded down where it is an integer.
+  double per_unit;  ///< Raw steps per kWh or kW; rounded down for an integer.
   bool low_word_first = false;
 };
 
-/// A kind of device that can be played.
+/// A kind of device that can be simulated.
 struct DeviceLayout {
   std::string_view name;
-  std::uint8_t function;  ///< 3 or 4: what it answers to.
+  std::uint8_t function;  ///< 3 or 4: the function it answers.
   std::vector<LayoutValue> values;
 };
 
@@ -44,7 +44,7 @@ struct DeviceLayout {
 [[nodiscard]] std::span<const DeviceLayout> layouts();
 
 /// The contents of `count` registers from `address` on; registers between values are 0.
-/// @return nothing when some of them lie outside the device's, as exception 2 says.
+/// @return nothing if some of them are outside the device's layout, which is exception 2.
 [[nodiscard]] std::optional<std::vector<std::uint16_t>> registers_of(const DeviceLayout& layout,
                                                                      const MeterReadout& readout,
                                                                      int address, int count);

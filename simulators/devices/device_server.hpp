@@ -1,4 +1,4 @@
-/// An endpoint that is reached from outside: a TCP port on 127.0.0.1 or a pseudo-terminal.
+/// An endpoint that clients can connect to: a TCP port on 127.0.0.1 or a pseudo-terminal.
 #pragma once
 
 #include <memory>
@@ -19,20 +19,20 @@ class DeviceServer {
  public:
   virtual ~DeviceServer() = default;
 
-  /// Where it is reached: "127.0.0.1:1502", "/tmp/ttyMETERS".
+  /// Its address: "127.0.0.1:1502", "/tmp/ttyMETERS".
   [[nodiscard]] virtual std::string address() const = 0;
   [[nodiscard]] virtual const DeviceEndpoint& endpoint() const = 0;
 };
 
-/// Listens, and is away while the script says so.
+/// Listens, except while the script says that the endpoint is down.
 /// @param loop, clock  Outlive the server; the server outlives the loop's run.
-/// @return or io_failed when the port cannot be had.
+/// @return the server, or io_failed when the port is not available.
 [[nodiscard]] Result<std::unique_ptr<DeviceServer>> open_tcp_server(
     boost::asio::io_context& loop, EndpointPlan plan, const metering::TrialClock& clock);
 
-/// Makes a pseudo-terminal and the link to it; the link goes with the server. A link of the same
-/// name from before is replaced, another file is not.
-/// @return or io_failed.
+/// Creates a pseudo-terminal and a link to it, which is removed with the server. Replaces an old
+/// link of that name, but no other file.
+/// @return the server, or io_failed.
 [[nodiscard]] Result<std::unique_ptr<DeviceServer>> open_serial_server(
     boost::asio::io_context& loop, EndpointPlan plan, const metering::TrialClock& clock);
 

@@ -17,9 +17,9 @@ struct DeviceTotals {
 
 /// Serves until SIGTERM or SIGINT.
 ///
-/// @param told  One line an endpoint as soon as all listen, "listening on 127.0.0.1:1502: units 1
-///              2", and "ready: 3 endpoints, 8 devices" after them.
-/// @return what was asked until then, or io_failed when an endpoint cannot be opened.
+/// @param told  Receives one line per endpoint once all are listening, "listening on
+///              127.0.0.1:1502: units 1 2", and then "ready: 3 endpoints, 8 devices".
+/// @return the totals, or io_failed when an endpoint cannot be opened.
 [[nodiscard]] Result<DeviceTotals> serve_devices(std::vector<EndpointPlan> plans,
                                                  const metering::TrialClock& clock,
                                                  std::ostream& told);

@@ -19,10 +19,10 @@ struct KindName {
   std::string_view name;
   DeviceFaultKind kind;
   std::string_view amount_unit;  ///< "ms": a wait; "#": a number; empty: none.
-  double amount_max = 0.0;       ///< Of a number: what the frame has room for, or kWh.
+  double amount_max = 0.0;       ///< For a number: the room in the frame, or kWh.
 };
 
-constexpr double kAmountMax = 1e12;  ///< Of any number: more kWh than a meter counts.
+constexpr double kAmountMax = 1e12;  ///< For any number: more kWh than a meter counts.
 constexpr double kFrameBits = 8.0 * 260.0;
 
 constexpr std::array<KindName, 11> kKinds{
@@ -61,7 +61,7 @@ std::optional<milliseconds> parse_time(std::string_view text) {
   return {};
 }
 
-/// The words of one line, taken one after the other.
+/// Takes the words of one line one after the other.
 class Words {
  public:
   explicit Words(const std::string& line) : in_(line) {}

@@ -1,4 +1,4 @@
-/// What goes wrong with simulated meters, and when: a short text file that names its disturbance.
+/// Faults of simulated meters and when they occur: a short text file that names its disturbance.
 ///
 ///     # gateway_one_unit_dead
 ///     1m..5m   unit 2  silent            # no answer
@@ -6,12 +6,12 @@
 ///     6m..7m   unit 1  split 30ms        # after the header, and once more in the data
 ///     7m..8m   unit 1  wrong_unit 9
 ///     8m..9m   unit 1  wrong_length 40   # in the header
-///     9m..10m  unit 1  wrong_count 8     # of bytes
+///     9m..10m  unit 1  wrong_count 8     # number of bytes
 ///     10m..11m unit 1  exception 11
 ///     11m..12m unit 1  flip 75           # this bit of each reply
-///     at 12m   unit 1  reset 0           # the register goes on from 0 kWh
+///     at 12m   unit 1  reset 0           # the register continues from 0 kWh
 ///     13m..14m unit 1  register 0        # reads 0 kWh for a while: a bounce
-///     15m..16m all     refuse            # the endpoint is away
+///     15m..16m all     refuse            # the endpoint is down
 #pragma once
 
 #include <chrono>
@@ -40,21 +40,21 @@ enum class DeviceFaultKind : std::uint8_t {
 };
 
 struct ScriptedFault {
-  std::chrono::milliseconds begin;  ///< Since the simulation began.
-  std::chrono::milliseconds end;    ///< Not included; of a reset the end of time.
-  std::optional<int> unit;          ///< None: all of them.
+  std::chrono::milliseconds begin;  ///< Since the simulation started.
+  std::chrono::milliseconds end;    ///< Exclusive; for a reset, the end of time.
+  std::optional<int> unit;          ///< Absent: all units.
   DeviceFaultKind kind;
-  double amount;  ///< Milliseconds, unit, bytes, code, bit or kWh; 0 where there is none.
+  double amount;  ///< Milliseconds, unit, bytes, code, bit or kWh; 0 if there is none.
 };
 
 struct FaultScript {
   std::vector<ScriptedFault> faults;
 
-  /// The faults of a unit in force then, in order of the file.
+  /// The active faults of a unit, in order of the file.
   [[nodiscard]] std::vector<ScriptedFault> at(std::chrono::milliseconds t, int unit) const;
 };
 
-/// @return the script, or malformed with every line that is wrong.
+/// @return the script, or malformed with every wrong line.
 [[nodiscard]] Result<FaultScript> parse_fault_script(std::string_view text);
 
 }  // namespace recald::simulators

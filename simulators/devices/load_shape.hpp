@@ -1,5 +1,4 @@
-/// The load that a simulated meter measures, over time: steps of constant power, so that the energy
-/// it counts is exact.
+/// The load of a simulated meter over time: steps of constant power, so that its energy is exact.
 #pragma once
 
 #include <chrono>
@@ -14,20 +13,20 @@ using SimulatedTime = metering::TrialClock::Milliseconds;  ///< UTC.
 class LoadShape {
  public:
   [[nodiscard]] static LoadShape constant(double kW);
-  /// The same every day. @param hours_kW  24 means from 00:00 UTC on.
+  /// Repeats every day. @param hours_kW  24 means from 00:00 UTC on.
   [[nodiscard]] static LoadShape daily(std::vector<double> hours_kW);
-  /// Once; before and after it there is no load. @param kW  Mean of each step, one or more.
+  /// Runs once, with no load before and after. @param kW  Mean of each step, one or more.
   [[nodiscard]] static LoadShape recorded(metering::Instant begin, std::chrono::seconds step,
                                           std::vector<double> kW);
 
   [[nodiscard]] double power_kW(SimulatedTime t) const;
-  /// The integral of the power, negative where `to` is earlier.
+  /// The integral of the power, negative if `to` is earlier.
   [[nodiscard]] double energy_kWh(SimulatedTime from, SimulatedTime to) const {
     return counted_kWh(to) - counted_kWh(from);
   }
 
  private:
-  /// A moment as whole rounds of the shape, a step of it, and the time since that step began.
+  /// A moment as full cycles of the shape, a step in it, and the time since that step began.
   struct Place {
     std::int64_t rounds;
     std::size_t step;  ///< power_kW_.size() after the end.
@@ -42,7 +41,7 @@ class LoadShape {
   SimulatedTime begin_;
   std::chrono::milliseconds step_;
   std::vector<double> power_kW_;
-  std::vector<double> before_kWh_;  ///< Energy of all steps before each, and at last of all.
+  std::vector<double> before_kWh_;  ///< Energy of all steps before each one, and finally of all.
   bool repeats_;
 };
 

@@ -19,7 +19,7 @@ constexpr std::string_view kReadingsHeader = "timestamp,meter,value,unit";
 
 struct RecordedValue {
   metering::Instant begin;
-  std::optional<double> value;  ///< None: blank.
+  std::optional<double> value;  ///< Absent: blank.
   std::string unit;
 };
 
@@ -30,7 +30,7 @@ std::optional<int> two_digits(std::string_view text, int end) {
   return value >= 0 && value < end ? std::optional{value} : std::nullopt;
 }
 
-/// Exactly "2021-01-31T05:15:00Z".
+/// Accepts exactly the form "2021-01-31T05:15:00Z".
 std::optional<metering::Instant> parse_stamp(std::string_view text) {
   if (text.size() != 20 || text[10] != 'T' || text[13] != ':' || text[16] != ':' ||
       text[19] != 'Z') {
@@ -57,7 +57,7 @@ std::optional<std::array<std::string_view, 4>> four_fields(std::string_view line
   return fields;
 }
 
-/// Nothing for a line that is no reading.
+/// Nothing for a line that is not a reading.
 std::optional<RecordedValue> parse_value(const std::array<std::string_view, 4>& fields) {
   const auto begin = parse_stamp(fields[0]);
   if (!begin) return {};
@@ -129,7 +129,7 @@ Result<LoadShape> read_recorded_load(const std::filesystem::path& file, std::str
   for (const RecordedValue& reading : *values) {
     const auto index = static_cast<std::size_t>((reading.begin - values->front().begin) / step);
     power_kW.resize(index, last_kW);
-    // Steam is the utility whose readings may also be a mass.
+    // Steam readings may also be a mass, so look among its units.
     const auto unit = metering::find_unit(reading.unit, metering::Utility::steam, {});
     if (!unit)
       return failure(ErrorCode::invalid_value, file.string() + ": " + unit.error().message);

@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using Connection = DeviceConnection<boost::asio::posix::stream_descriptor>;
 
-/// A pseudo-terminal without line editing. Its far end stays open here as well: the near one would
-/// report an error whenever no client has it open.
+/// A pseudo-terminal without line editing. Its far end stays open here too, because the near end
+/// reports an error while no client has it open.
 class Pseudoterminal {
  public:
   static Result<std::unique_ptr<Pseudoterminal>> open() {
@@ -48,7 +48,7 @@ class Pseudoterminal {
   Pseudoterminal& operator=(const Pseudoterminal&) = delete;
 
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// The caller's from now on.
+  /// Hands the descriptor over to the caller.
   [[nodiscard]] int release_near() { return std::exchange(near_, -1); }
 
  private:
@@ -59,7 +59,7 @@ class Pseudoterminal {
   std::string device_;
 };
 
-/// @return what is wrong, or nothing.
+/// @return the error, or none.
 std::error_code make_link(const fs::path& link, const std::string& device) {
   std::error_code error;
   if (fs::is_symlink(link, error)) fs::remove(link, error);
@@ -81,7 +81,7 @@ class SerialServer final : public DeviceServer {
   }
   ~SerialServer() override {
     std::error_code ignored;
-    // A later server may have put its own link there.
+    // A later server may have set its own link there.
     if (fs::read_symlink(link_, ignored) == terminal_->device()) fs::remove(link_, ignored);
   }
   SerialServer(const SerialServer&) = delete;

@@ -1,4 +1,4 @@
-/// One meter on an endpoint: which registers it has and what it counts.
+/// One meter on an endpoint: its registers and its load.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ namespace recald::simulators {
 struct SimulatedDevice {
   std::uint8_t unit = 1;
   const DeviceLayout* layout = nullptr;
-  std::shared_ptr<const LoadShape> load;  ///< Shared by those that read the same recording.
-  double start_kWh = 0.0;                 ///< The counter when the simulation begins.
+  std::shared_ptr<const LoadShape> load;  ///< Shared by devices that use the same recording.
+  double start_kWh = 0.0;                 ///< The counter at the start of the simulation.
 };
 
-/// What the device shows at `t`: its start and what the load drew since, or since it was reset.
+/// The readout at `t`: the start value plus the load's energy since then, or since a reset.
 ///
-/// @param begin   Of the simulation.
-/// @param faults  Those in force then, in order of the script; the last of a kind counts.
+/// @param begin   Start of the simulation.
+/// @param faults  The active ones, in order of the script; the last of a kind counts.
 [[nodiscard]] MeterReadout readout_of(const SimulatedDevice& device, SimulatedTime begin,
                                       SimulatedTime t, std::span<const ScriptedFault> faults);
 

@@ -26,7 +26,7 @@ class TcpServer final : public DeviceServer {
         single_connection_(plan.single_connection),
         endpoint_(Transport::tcp, std::move(plan.devices), std::move(plan.faults), clock.start) {}
 
-  /// The port is taken even when the script begins with a refusal: its number must be known.
+  /// Takes the port even if the script starts with a refusal, because its number must be known.
   Error open() {
     if (const Error error = listen()) return error;
     follow_script();
@@ -60,25 +60,25 @@ class TcpServer final : public DeviceServer {
   }
 
   void serve(tcp::socket socket) {
-    if (endpoint_.refuses(simulated_now(clock_))) return;  // it knocked just before
+    if (endpoint_.refuses(simulated_now(clock_))) return;  // the client connected just before
     Error ignored;
     socket.set_option(tcp::no_delay{true}, ignored);
     auto connection = std::make_shared<Connection>(std::move(socket), endpoint_, clock_, [this] {
-      // Runs while the connection is closing itself; what is over is dropped on the way.
+      // Runs while a connection is closing; expired ones are dropped on the way.
       std::erase_if(connections_, [](const auto& each) { return each.expired(); });
       --clients_;
       listen_again();
     });
     connections_.push_back(connection);
     ++clients_;
-    // A port that nobody listens on refuses, which is what such devices do.
+    // A port without a listener refuses connections, as such devices do.
     if (single_connection_) acceptor_.close();
     connection->start();
   }
 
   void listen_again() {
     const bool is_free = !single_connection_ || clients_ == 0;
-    // Should another program have taken the port meanwhile, the device stays away.
+    // If another program has taken the port meanwhile, the device stays down.
     if (is_free && !acceptor_.is_open() && !endpoint_.refuses(simulated_now(clock_))) {
       (void)listen();
     }

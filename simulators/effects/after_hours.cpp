@@ -6,8 +6,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Air handlers run on into the evening: cleaners and overtime press the override button, and now
-/// and then nobody resets it.
+/// Air handlers run into the evening: cleaners and people working overtime press the override
+/// button, and sometimes nobody resets it.
 class AfterHours final : public HiddenEffect {
  public:
   AfterHours(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}

@@ -7,8 +7,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Once a month the building runs on its own generator for some hours. What hangs on it vanishes
-/// from the meter; the generator burns oil that nobody meters.
+/// Once a month the building runs on its own generator for some hours. The load on it disappears
+/// from the meter; the generator burns oil that is not metered.
 class BackupGeneratorTest final : public HiddenEffect {
  public:
   BackupGeneratorTest(const EffectSettings& settings, const Drawings& /*drawings*/)
@@ -37,7 +37,7 @@ class BackupGeneratorTest final : public HiddenEffect {
   }
 
   EffectSettings settings_;
-  double carried_share_;  ///< Of the building's use.
+  double carried_share_;  ///< Of the building's electricity.
   std::chrono::year_month month_{};
   std::optional<metering::Day> due_;  ///< The test of `month_`, on the first working day from then.
   double start_h_ = 0.0;

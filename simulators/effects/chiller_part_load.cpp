@@ -6,11 +6,11 @@
 namespace recald::simulators {
 namespace {
 
-/// The chiller starts above the one and stops below the other share of its capacity.
+/// Shares of capacity above which the chiller starts and below which it stops.
 constexpr double kStart = 0.04;
 constexpr double kStop = 0.015;
 
-/// The compressor hardly unloads: hot gas goes round in a circle instead, and drives cost the same.
+/// The compressor hardly unloads: it recirculates hot gas, and the drives use the same power.
 class ChillerPartLoad final : public HiddenEffect {
  public:
   ChillerPartLoad(const EffectSettings& settings, const Drawings& drawings)

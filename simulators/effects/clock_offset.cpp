@@ -6,7 +6,7 @@
 namespace recald::simulators {
 namespace {
 
-/// The meter's clock is fast: what it stamps ten o'clock is over before ten. Or slow.
+/// The meter's clock is fast, so that it stamps ten o'clock too early, or slow.
 class ClockOffset final : public HiddenEffect {
  public:
   ClockOffset(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}

@@ -5,7 +5,7 @@
 namespace recald::simulators {
 namespace {
 
-/// Drives stand in bypass: the boxes throttle, the fans go on at full speed.
+/// Drives are in bypass: the boxes throttle, but the fans keep running at full speed.
 class ConstantSpeedFans final : public HiddenEffect {
  public:
   ConstantSpeedFans(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -6,8 +6,8 @@
 namespace recald::simulators {
 namespace {
 
-/// A canteen kitchen: cooks from the morning on, serves at noon, washes up. It cooks with gas where
-/// the building has any. The hood takes the heat away, and air out of the rooms with it.
+/// A canteen kitchen: cooks in the morning, serves at noon, then washes up. It uses gas if the
+/// building has any. The hood removes the heat, and air from the rooms with it.
 class Cooking final : public HiddenEffect {
  public:
   Cooking(const EffectSettings& settings, const Drawings& drawings)
@@ -40,7 +40,7 @@ class Cooking final : public HiddenEffect {
   }
 
  private:
-  static constexpr double kMeal_J = 2.0 * 3600e3;   ///< 2 kWh for a cooked lunch, all in all.
+  static constexpr double kMeal_J = 2.0 * 3600e3;   ///< 2 kWh in total for a cooked lunch.
   static constexpr double kFlameShare = 0.7;        ///< The rest: dishwashers, ovens, warm plates.
   static constexpr double kHood_m3_s_meal = 0.008;  ///< 30 m³/h for each lunch.
   static constexpr double kCook_h = 8.0;
@@ -48,15 +48,15 @@ class Cooking final : public HiddenEffect {
   static constexpr double kLastGuest_h = 13.5;
   static constexpr double kCleaned_h = 15.0;
 
-  /// Flames grow from 8 to 11 h, stay until the last guest and go down: 1.5 + 2.5 + 0.5 hours'
-  /// worth.
+  /// Flames rise from 8 to 11 h, stay until the last guest and then go down: worth 1.5 +
+  /// 2.5 + 0.5 hours.
   [[nodiscard]] static double cooking_per_s(double hour) {
     constexpr double full_hours = 4.5;
     const double shape =
         ramp(hour, kCook_h, kServe_h) * ramp(hour, kLastGuest_h + 1.0, kLastGuest_h);
     return shape / (full_hours * 3600.0);
   }
-  /// Machines start with the first plates: 0.5 + 2.5 + 0.25 hours' worth.
+  /// Machines start with the first plates: worth 0.5 + 2.5 + 0.25 hours.
   [[nodiscard]] static double washing_per_s(double hour) {
     constexpr double full_hours = 3.25;
     const double shape =
@@ -66,7 +66,7 @@ class Cooking final : public HiddenEffect {
 
   EffectSettings settings_;
   bool with_gas_;
-  double full_house_;          ///< People, when everybody is there.
+  double full_house_;          ///< Number of people when everybody is there.
   double guests_share_ = 0.0;  ///< Today.
 };
 

@@ -5,8 +5,8 @@
 namespace recald::simulators {
 namespace {
 
-/// The outdoor-air damper's linkage slips: however the actuator stands, the blades stay open. They
-/// stick a little elsewhere whenever somebody has worked on them.
+/// The outdoor-air damper's linkage slips: the blades stay open wherever the actuator is. After
+/// each repair they stick in a slightly different position.
 class DamperStuckOpen final : public HiddenEffect {
  public:
   DamperStuckOpen(const EffectSettings& settings, const Drawings& /*drawings*/)
@@ -30,7 +30,7 @@ class DamperStuckOpen final : public HiddenEffect {
   static constexpr double kDaysBetweenVisits = 90.0;
 
   EffectSettings settings_;
-  double position_;  ///< Against the strength.
+  double position_;  ///< Relative to the strength.
 };
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace {
 constexpr unsigned kNightsBefore = 3;  ///< The last nights of a month.
 constexpr unsigned kNightsAfter = 2;   ///< The first ones of the next.
 
-/// At the turn of the month the servers compute all night: closing of accounts, full backups.
+/// At the turn of the month the servers compute all night: month-end accounts, full backups.
 class DataBackupNights final : public HiddenEffect {
  public:
   DataBackupNights(const EffectSettings& settings, const Drawings& drawings)
@@ -28,7 +28,7 @@ class DataBackupNights final : public HiddenEffect {
   }
 
  private:
-  /// Hours count from the midnight before and may pass 24.
+  /// Hours count from the previous midnight and may exceed 24.
   struct Night {
     double from_h = 24.0;
     double to_h = 24.0;

@@ -7,8 +7,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Some rooms must be dry (archives, instruments): on humid days the coils are driven colder than
-/// the supply set-point asks for.
+/// Some rooms must be dry (archives, instruments): on humid days the coils run colder than the
+/// supply set-point requires.
 class DeepDrying final : public HiddenEffect {
  public:
   DeepDrying(const EffectSettings& settings, const Drawings& drawings)

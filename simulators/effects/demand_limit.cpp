@@ -6,17 +6,17 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kFullCutExcess = 0.06;  ///< Share above the cap at which everything is cut.
+constexpr double kFullCutExcess = 0.06;  ///< Excess over the cap at which everything is cut.
 constexpr double kCutting_s = 600.0;     ///< From nothing to everything.
 constexpr double kRestoring_s = 2400.0;  ///< And back.
-// At a full cut.
+// At full cut.
 constexpr double kSetpointRise_K = 2.5;
 constexpr double kLightsCut = 0.35;
 constexpr double kPlugsCut = 0.12;
-constexpr double kCatchUp = 0.10;  ///< Of the plugs, after a cut, until all is caught up with.
+constexpr double kCatchUp = 0.10;  ///< Of the plugs, after a cut, until they have caught up.
 
-/// Keeps electricity below a cap on hot afternoons: raises set-points, dims lights, holds back
-/// machines. Afterwards rooms are pulled down again and machines catch up. The cap lies below the
+/// Keeps electricity below a cap on hot afternoons: raises set-points, dims lights, delays
+/// machines. Afterwards rooms are cooled down again and machines catch up. The cap is below the
 /// highest demand that the controller has seen so far.
 class DemandLimit final : public HiddenEffect {
  public:
@@ -54,7 +54,7 @@ class DemandLimit final : public HiddenEffect {
     held_back_s_ += kPlugsCut * cut_ * step_s;
   }
 
-  /// What machines take more in this step, as a share of the plugs.
+  /// Additional use of the machines in this step, as a share of the plugs.
   double catch_up(double step_s) {
     if (cut_ > 0.0) return 0.0;
     const double share = std::min(kCatchUp, held_back_s_ / step_s);
@@ -63,7 +63,7 @@ class DemandLimit final : public HiddenEffect {
   }
 
   EffectSettings settings_;
-  SlowValue demand_kW_;  ///< Over about a quarter of an hour, as utilities charge it.
+  SlowValue demand_kW_;  ///< Mean of about a quarter of an hour, as utilities charge it.
   double highest_kW_ = 0.0;
   double cut_ = 0.0;          ///< 1: everything.
   double held_back_s_ = 0.0;  ///< Seconds of all plugs.

@@ -6,8 +6,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Carbon-dioxide sensors throttle the outdoor air to what the people present need. The gas builds
-/// up and goes down with the room air, so the dampers lag behind the people.
+/// Carbon-dioxide sensors throttle the outdoor air to the number of people present. The gas builds
+/// up and decays with the room air, so the dampers lag behind the people.
 class DemandVentilation final : public HiddenEffect {
  public:
   DemandVentilation(const EffectSettings& settings, const Drawings& /*drawings*/)
@@ -23,7 +23,7 @@ class DemandVentilation final : public HiddenEffect {
  private:
   static constexpr double kRoomAirChange_s = 2400.0;
   static constexpr double kFullHouse = 0.75;   ///< Present / assigned at full outdoor air.
-  static constexpr double kFloorShare = 0.25;  ///< For what floors and furniture give off.
+  static constexpr double kFloorShare = 0.25;  ///< For emissions of floors and furniture.
 
   EffectSettings settings_;
   SlowValue measured_people_;

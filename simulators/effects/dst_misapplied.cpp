@@ -11,14 +11,14 @@ namespace {
 using std::chrono::January, std::chrono::July, std::chrono::March, std::chrono::November,
     std::chrono::Sunday;
 
-/// Between the second Sunday of March and the first of November, as the United States' clocks.
+/// Between the second Sunday of March and the first of November, as in the United States.
 bool in_american_summer(metering::Day day) {
   const std::chrono::sys_days date{day};
   return date >= std::chrono::sys_days{day.year() / March / Sunday[2]} &&
          date < std::chrono::sys_days{day.year() / November / Sunday[1]};
 }
 
-/// How far the logger's clock runs ahead of the wall's at this instant, in hours.
+/// How far the logger's clock is ahead of local time at this instant, in hours.
 double fast_h(metering::Instant t, const metering::LocalCalendar& calendar) {
   const metering::Day day = calendar.local_time(t).date;
   const auto january = calendar.utc_offset(std::chrono::sys_days{day.year() / January / 1});
@@ -27,7 +27,7 @@ double fast_h(metering::Instant t, const metering::LocalCalendar& calendar) {
   return calendar.utc_offset(t) > std::min(january, july) ? -1.0 : 0.0;
 }
 
-/// The logger ignores summer time where clocks change, and changes where they do not.
+/// The logger ignores summer time where it is used, and applies it where it is not.
 class DstMisapplied final : public HiddenEffect {
  public:
   DstMisapplied(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -6,8 +6,8 @@
 namespace recald::simulators {
 namespace {
 
-/// A start programme set by cautious people: the colder the evening before, the earlier, and
-/// earlier again after a day on which the building has cooled out.
+/// A cautiously set start programme: the colder the evening before, the earlier the start, and
+/// earlier still after a day on which the building has cooled down.
 class EarlyStart final : public HiddenEffect {
  public:
   EarlyStart(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -4,7 +4,7 @@ namespace recald::simulators {
 namespace {
 
 /// The limit above which no extra outdoor air is taken was entered wrongly, or the outdoor sensor
-/// reads wrongly. Too high: warm, humid air is let in. Too low: free cooling ends early.
+/// reads wrongly. Too high: warm, humid air enters. Too low: free cooling ends early.
 class EconomiserChangeover final : public HiddenEffect {
  public:
   EconomiserChangeover(const EffectSettings& settings, const Drawings& /*drawings*/)

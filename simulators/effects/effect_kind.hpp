@@ -1,4 +1,4 @@
-/// The kinds of hidden effects: what each is called, what it needs, how strong it can be.
+/// The kinds of hidden effects: their names, needs and strengths.
 #pragma once
 
 #include <memory>
@@ -21,13 +21,13 @@ enum class EffectClass {
   plant,
   electrical,
   meters,
-  operators,          ///< What a calibration parameter stands for: a drift, not a missing effect.
-  outside_catalogue,  ///< Real, but no diagnosis is told that it exists.
+  operators,          ///< Equivalent to a calibration parameter: a drift, not a missing effect.
+  outside_catalogue,  ///< Real, but unknown to the diagnosis.
 };
 
 [[nodiscard]] std::string_view to_string(EffectClass group);
 
-/// Strength 0 is "not there". `typical` is what an engineer would call plain to see.
+/// Strength 0 means absent. At `typical`, an engineer would call the effect obvious.
 struct StrengthRange {
   double min;
   double typical;
@@ -35,7 +35,7 @@ struct StrengthRange {
   std::string_view unit;
 };
 
-/// What a building must have for the effect to exist and to show.
+/// What a building must have for the effect to exist and to be visible.
 struct EffectNeeds {
   bool cooling_meter = false;
   bool heat_meter = false;
@@ -54,43 +54,43 @@ struct EffectSettings {
   std::optional<metering::Day> to;    ///< Last local day; absent: to the end.
   std::optional<Utility> meter;       ///< For effects of one meter.
   const metering::LocalCalendar* calendar = nullptr;
-  Rng rng{0, 0};  ///< The effect's own chance.
+  Rng rng{0, 0};  ///< The effect's own random stream.
 
-  /// Whether the effect is there on this day.
+  /// Whether the effect is active on this day.
   [[nodiscard]] bool covers(metering::Day day) const {
     return (!from || day >= *from) && (!to || day <= *to);
   }
 };
 
-/// Filled in with designated initialisers in the effect's own file.
+/// Defined with designated initialisers in the effect's own file.
 struct EffectKind {
-  std::string_view id;     ///< snake_case, as scenario files and answers name it.
+  std::string_view id;     ///< snake_case, as in scenario files and answers.
   std::string_view title;  ///< "Night set-back missing".
   EffectClass group;
-  std::string_view sentence;  ///< For the people who run the building: what happens and what shows.
+  std::string_view sentence;  ///< For people who run the building: what happens and what shows.
   StrengthRange strength;
   EffectNeeds needs = {};
-  /// What it turns; two effects that turn the same thing contradict each other.
+  /// What it changes; two effects that change the same thing contradict each other.
   std::string_view turns;
-  bool dated = false;           ///< Begins (or is confined) at a date: scenarios give `from`.
+  bool dated = false;           ///< Starts (or is confined) at a date: scenarios give `from`.
   bool of_one_meter = false;    ///< Scenarios give `meter`.
-  bool all_or_nothing = false;  ///< There or not: populations do not scale it.
+  bool all_or_nothing = false;  ///< Present or absent: populations do not scale it.
   std::unique_ptr<HiddenEffect> (*make)(const EffectSettings&, const Drawings&);
 };
 
-/// What `EffectKind::make` is for an effect constructed from its settings and the drawings.
+/// Makes `EffectKind::make` for an effect constructed from its settings and the drawings.
 template <class Effect>
 std::unique_ptr<HiddenEffect> make_effect(const EffectSettings& settings,
                                           const Drawings& drawings) {
   return std::make_unique<Effect>(settings, drawings);
 }
 
-/// What `--list-effects` says of one: name, class, sentence, strengths, needs.
+/// The text of `--list-effects` for one kind: name, class, sentence, strengths, needs.
 [[nodiscard]] std::string explain(const EffectKind& kind);
 
 /// All kinds, by class and then by id. Each is defined in the file of its name.
 [[nodiscard]] std::span<const EffectKind> effect_kinds();
-/// @return nullptr where no effect has this id.
+/// @return nullptr if no effect has this id.
 [[nodiscard]] const EffectKind* find_effect_kind(std::string_view id);
 
 }  // namespace recald::simulators

@@ -6,11 +6,11 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kStandingShare = 0.55;  ///< Of new equipment: runs day and night.
-constexpr double kLampsMin = 0.1;        ///< Of the lamps' power, however thorough the retrofit.
+constexpr double kStandingShare = 0.55;  ///< Of new equipment: the part that runs day and night.
+constexpr double kLampsMin = 0.1;        ///< Of the lamps' power, even after a thorough retrofit.
 
-/// From one date on there is more: a laboratory or computers moved in. Or less: lamps were changed
-/// for better ones. Either is put in over some days.
+/// From one date on there is more equipment (a laboratory or computers moved in) or less (better
+/// lamps). The change takes some days.
 class EquipmentStep final : public HiddenEffect {
  public:
   EquipmentStep(const EffectSettings& settings, const Drawings& drawings)

@@ -7,13 +7,13 @@
 namespace recald::simulators {
 namespace {
 
-constexpr std::size_t kPoints = 12;   ///< Charging points, two cars a day each at most.
-constexpr double kMorningUse = 0.75;  ///< Share of working days on which a point is taken.
+constexpr std::size_t kPoints = 12;   ///< Charging points, each for at most two cars a day.
+constexpr double kMorningUse = 0.75;  ///< Share of working days on which a point is used.
 constexpr double kAfternoonUse = 0.5;
 constexpr double kWeekendUse = 0.06;
 constexpr double kMeanCharge_h = 2.2;
 
-/// Cars charge where people park: from arrival until full, and others after lunch.
+/// Cars charge where people park: some from arrival until full, others after lunch.
 class EvCharging final : public HiddenEffect {
  public:
   EvCharging(const EffectSettings& settings, const Drawings& drawings)

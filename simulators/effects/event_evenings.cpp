@@ -9,7 +9,7 @@ namespace recald::simulators {
 namespace {
 
 /// Receptions, lectures, sports: on some thirty evenings a year, mostly late in the week and never
-/// in the dead seasons, many people come when the building is usually empty.
+/// in quiet seasons, many people come when the building is usually empty.
 class EventEvenings final : public HiddenEffect {
  public:
   EventEvenings(const EffectSettings& settings, const Drawings& drawings)
@@ -24,7 +24,7 @@ class EventEvenings final : public HiddenEffect {
     event_.reset();
     if (!booked || !settings_.covers(day)) return;
     event_ = {from_h, to_h};
-    // A bigger event gets air for all of its evening, a small one for part of it.
+    // A big event has ventilation for its whole evening, a small one for part of it.
     const double air_share = std::min(1.0, settings_.strength / kFullAir);
     const double with_air_h = air_share * (to_h - from_h);
     RunningHours& air = timetable.air;
@@ -48,7 +48,7 @@ class EventEvenings final : public HiddenEffect {
   }
 
  private:
-  static constexpr double kFullAir = 0.5;          ///< Strength at which all evening has air.
+  static constexpr double kFullAir = 0.5;  ///< Strength from which the whole evening is ventilated.
   static constexpr double kLights_W_guest = 60.0;  ///< Halls and corridors lit for the event.
   static constexpr double kStage_W_guest = 25.0;   ///< Stage, sound, buffet.
 
@@ -67,7 +67,7 @@ class EventEvenings final : public HiddenEffect {
   EffectSettings settings_;
   Drawings drawings_;
   std::optional<RunningHours> event_;  ///< Of this evening.
-  double crowd_share_ = 1.0;           ///< Of this evening, against the strength.
+  double crowd_share_ = 1.0;           ///< Of this evening, relative to the strength.
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace recald::simulators {
 namespace {
 
-/// More lamps outside than drawn. A photocell lights them in the dusk, a little earlier under
+/// More lamps outside than drawn. A photocell switches them on at dusk, a little earlier under
 /// clouds; some lamps are always broken.
 class ExteriorLighting final : public HiddenEffect {
  public:

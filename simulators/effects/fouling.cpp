@@ -10,9 +10,10 @@ namespace {
 
 constexpr double kColdestDay = 20.0;
 constexpr double kMissedYears = 0.25;  ///< Share of years in which nobody cleans.
-constexpr double kDirtMax = 1.6;       ///< Then water still finds its way.
+constexpr double kDirtMax = 1.6;       ///< Beyond this, water still flows.
 
-/// Scale and slime in the condenser, from one yearly cleaning to the next; some are forgotten.
+/// Scale and slime in the condenser, from one yearly cleaning to the next; some
+/// cleanings are forgotten.
 class Fouling final : public HiddenEffect {
  public:
   Fouling(const EffectSettings& settings, const Drawings& drawings)
@@ -22,7 +23,7 @@ class Fouling final : public HiddenEffect {
 
   void plan(metering::Day day, Timetable& /*timetable*/) override {
     if (day.year() != year_) plan_year(day.year());
-    // Warm water grows more than cold.
+    // Fouling grows faster in warm water.
     const double growth = 1.0 + 0.6 * yearly_wave(day, kColdestDay, latitude_deg_);
     dirt_ = day == cleaning_ ? 0.0 : std::min(kDirtMax, dirt_ + growth / 365.0);
   }
@@ -33,7 +34,7 @@ class Fouling final : public HiddenEffect {
   }
 
  private:
-  /// Before the season of cooling, when the contractor has time.
+  /// Before the cooling season, when the contractor has time.
   void plan_year(std::chrono::year year) {
     year_ = year;
     const auto late_days = static_cast<int>(settings_.rng.below(75));

@@ -6,14 +6,14 @@
 namespace recald::simulators {
 namespace {
 
-/// Two sluggish layers, one after the other: what lies beside the building is a month late. The
-/// soil beneath it delays by three weeks more.
+/// Two slow layers in series: the ground beside the building lags by a month, the soil beneath it
+/// by three more weeks.
 constexpr double kSoilLayer_s = 15.0 * 86'400.0;
 constexpr double kBareFloor_W_m2K = 0.9;  ///< Slab and soil without any insulation.
 constexpr double kCoupledShare = 0.7;     ///< Of the soil's swing, under a bare floor.
 
-/// A slab or basement whose insulation is missing. Underneath it the ground follows the outdoors,
-/// late and damped.
+/// A slab or basement without insulation. The ground below it follows the outdoors,
+/// delayed and damped.
 class GroundCoupling final : public HiddenEffect {
  public:
   GroundCoupling(const EffectSettings& settings, const Drawings& drawings)
@@ -39,7 +39,8 @@ class GroundCoupling final : public HiddenEffect {
   }
 
  private:
-  /// Nobody knows the weather before the record: the soil starts between the year's mean and today.
+  /// The weather before the record is unknown: the soil starts between the year's mean
+  /// and today's value.
   void start(const Moment& now) {
     const double air_C = now.outdoors.air.temperature_C;
     upper_.follow(0.5 * (mean_C_ + air_C), now.step_s);

@@ -8,18 +8,18 @@ namespace recald::simulators {
 namespace {
 
 constexpr double kCoilBelowAir_K = 7.0;
-/// In the cold the machine gives less, and its coil is nearer to the air.
+/// In the cold the heat pump gives less, and its coil is closer to the air temperature.
 constexpr double kCoilFollows_K_K = 0.15;
 constexpr double kCoilLeastBelowAir_K = 4.0;
 constexpr double kWorstFrosting_kg_kg = 0.0017;  ///< At about 3 degC in fog.
-constexpr double kCycle_s = 3600.0;              ///< From clear to iced up at the worst.
-/// Ice takes this much at its thickest, and a defrost as much as so many seconds of full penalty:
-/// together a penalty of 1 on average over a cycle at the worst.
+constexpr double kCycle_s = 3600.0;              ///< From clear to fully iced, at worst.
+/// Penalty at full ice; and a defrost costs this many seconds of full penalty. Together they
+/// average a penalty of 1 over a cycle at worst.
 constexpr double kIcedUp = 0.4;
 constexpr double kDefrost_s = 0.8 * kCycle_s;
 
-/// Outdoors the heat pump's coil ices up in damp air near freezing, and is thawed with its own
-/// heat.
+/// The outdoor coil of the heat pump ices up in damp air near freezing, and is defrosted
+/// with its own heat.
 class HeatPumpDefrost final : public HiddenEffect {
  public:
   HeatPumpDefrost(const EffectSettings& settings, const Drawings& /*drawings*/)
@@ -41,7 +41,8 @@ class HeatPumpDefrost final : public HiddenEffect {
   void load(const Moment& /*now*/, ServiceLoad& load) override { runs_ = load.heating_W > 0.0; }
 
  private:
-  /// About 1 at the worst: water that settles where the coil is below freezing and the dew point.
+  /// About 1 at worst: water that settles on the coil when it is below freezing and
+  /// below the dew point.
   [[nodiscard]] static double frosting(const Outdoors& outdoors) {
     const double air_C = outdoors.air.temperature_C;
     const double coil_C = air_C - std::clamp(kCoilBelowAir_K + kCoilFollows_K_K * (air_C - 3.0),

@@ -8,7 +8,7 @@ namespace recald::simulators {
 namespace {
 
 /// Steam keeps the rooms from getting dry in the heating season. It is switched on and off with the
-/// season, and stands still on days when its cylinders are descaled.
+/// season, and is off on days when its cylinders are descaled.
 class Humidifier final : public HiddenEffect {
  public:
   Humidifier(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -6,7 +6,7 @@
 namespace recald::simulators {
 namespace {
 
-/// People choose their days at home, and choose alike.
+/// People choose their days at home, and choose similar ones.
 class HybridWork final : public HiddenEffect {
  public:
   HybridWork(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}

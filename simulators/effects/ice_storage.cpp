@@ -5,7 +5,8 @@
 namespace recald::simulators {
 namespace {
 
-/// A tank that the chilled water freezes at night and that carries the coils in the afternoon.
+/// A tank of ice that the chilled water charges at night and that serves the coils
+/// in the afternoon.
 class IceStorage final : public HiddenEffect {
  public:
   IceStorage(const EffectSettings& settings, const Drawings& drawings)
@@ -23,7 +24,7 @@ class IceStorage final : public HiddenEffect {
     if (melting_hours && now.day_kind == DayKind::workday) into_W = -melt_W(now);
     stored_J_ += into_W * now.step_s;
     operation.plant.cooling_shift_W += into_W;
-    // Ice needs brine well below freezing: a chiller lifts the heat further.
+    // Ice needs brine well below freezing, so the chiller has a larger lift.
     const double for_ice = into_W > 0.0 ? into_W / (into_W + last_load_W_ + least_plant_W_) : 0.0;
     operation.plant.chiller_cop_factor *= 1.0 - kIcePenalty * for_ice;
   }
@@ -36,7 +37,7 @@ class IceStorage final : public HiddenEffect {
   static constexpr double kMeltFrom_h = 12.0;
   static constexpr double kMeltTo_h = 18.0;
   static constexpr double kFastestCharge_h = 7.0;  ///< From empty to full.
-  static constexpr double kCarriedShare = 0.85;    ///< Of the coils' load at most.
+  static constexpr double kCarriedShare = 0.85;    ///< Of the coils' load, at most.
   static constexpr double kIcePenalty = 0.2;       ///< Of the chiller's performance.
   static constexpr double kLeastPlant = 0.05;      ///< Of the design load: pipes and cycling.
   static constexpr double kThroughWalls_per_day = 0.015;
@@ -44,12 +45,12 @@ class IceStorage final : public HiddenEffect {
   void melt_away(const Moment& now) {
     stored_J_ -= stored_J_ * kThroughWalls_per_day * now.step_s / 86'400.0;
   }
-  /// As fast as the tank freezes, slower as it fills up.
+  /// At full rate, slower as the tank fills up.
   [[nodiscard]] double charge_W(const Moment& now) const {
     const double fastest_W = capacity_J_ / (kFastestCharge_h * 3600.0);
     return std::min(fastest_W, (capacity_J_ - stored_J_) / std::max(1800.0, now.step_s));
   }
-  /// Spread over the hours that are left, as far as the coils take it.
+  /// Spread over the remaining hours, as far as the coils can use it.
   [[nodiscard]] double melt_W(const Moment& now) const {
     const double left_s = std::max((kMeltTo_h - now.hour()) * 3600.0, now.step_s);
     return std::min(stored_J_ / left_s, kCarriedShare * last_load_W_);
@@ -59,7 +60,7 @@ class IceStorage final : public HiddenEffect {
   double capacity_J_;
   double least_plant_W_;
   double stored_J_ = 0.0;
-  double last_load_W_ = 0.0;  ///< Of the coils, in the step before.
+  double last_load_W_ = 0.0;  ///< Of the coils, in the previous step.
 };
 
 }  // namespace

@@ -11,12 +11,12 @@ namespace {
 constexpr double kStart_h = 22.0;
 constexpr double kEnd_h = 5.0;
 constexpr double kThirst_mm = 8.0;   ///< Water missing in the soil before pumps are wanted.
-constexpr double kDriest_mm = 50.0;  ///< Plants take no more than the soil gives.
+constexpr double kDriest_mm = 50.0;  ///< Dry soil gives plants no more water than this.
 constexpr double kWatering_mm_h = 2.0;
-constexpr double kGrowing_C = 12.0;      ///< Mean air below which nothing grows.
-constexpr std::size_t kValveSlots = 14;  ///< Half hours of a night.
+constexpr double kGrowing_C = 12.0;      ///< Mean air temperature below which nothing grows.
+constexpr std::size_t kValveSlots = 14;  ///< Half hours per night.
 
-/// Pumps water the grounds at night when warm weeks went by without rain.
+/// Pumps water the grounds at night after warm weeks without rain.
 class IrrigationPumps final : public HiddenEffect {
  public:
   IrrigationPumps(const EffectSettings& settings, const Drawings& drawings)
@@ -44,7 +44,7 @@ class IrrigationPumps final : public HiddenEffect {
   }
 
  private:
-  /// Lawns evaporate two thirds of what the sun could, and less in the cold.
+  /// Lawns evaporate two thirds of the potential for the sunshine, and less in the cold.
   /// @see Makkink (1957), J. Inst. Water Eng. 11, 277-288, with the factor 0.65.
   void dry_out(const Outdoors& outdoors, double hours) {
     const double air_C = outdoors.air.temperature_C;

@@ -30,8 +30,8 @@ struct SlotRange {
       settings.to ? slot_at(record.calendar.day_span(*settings.to).end) : record.shown_kW.size()};
 }
 
-/// What a meter shows whose intervals lie between two others: `position` 2.25 takes three quarters
-/// of interval 2 and one of interval 3. Past the ends of the record its end values go on.
+/// The value of an interval that lies between two others: `position` 2.25 takes three quarters of
+/// interval 2 and one quarter of interval 3. Beyond the ends of the record its end values continue.
 /// @pre the record is not empty
 [[nodiscard]] inline double shown_between(std::span<const double> shown_kW, double position) {
   const auto at = [shown_kW](double slot) {

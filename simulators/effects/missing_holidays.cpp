@@ -5,8 +5,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Days that are working days on paper: bridges between free days, the week after Christmas,
-/// closing days that the house decides on, days when snow keeps people at home.
+/// Days that are working days only on paper: bridge days, the week after Christmas, closing days
+/// that the house decides on, days when snow keeps people at home.
 class MissingHolidays final : public HiddenEffect {
  public:
   MissingHolidays(const EffectSettings& settings, const Drawings& drawings)
@@ -23,7 +23,7 @@ class MissingHolidays final : public HiddenEffect {
     const bool planned = house_day || after_christmas(day) || bridges(day);
     if (!planned && !stays_home) return;
     timetable.attendance *= 1.0 - settings_.strength * away_share;
-    // On a planned day somebody may send the plant home early; snow comes unannounced.
+    // On a planned day someone may switch the plant off early; snow comes without notice.
     if (planned && caretaker_told && timetable.air.to_h > early_closing_h) {
       timetable.air.to_h -= settings_.strength * (timetable.air.to_h - early_closing_h);
     }
@@ -42,7 +42,7 @@ class MissingHolidays final : public HiddenEffect {
  private:
   static constexpr double kHouseDaysAYear = 4.0;
   static constexpr double kRoadsCleared_h = 8.0;
-  static constexpr double kClosingSnow_mm = 4.0;  ///< Water of the fresh snow; ten times as deep.
+  static constexpr double kClosingSnow_mm = 4.0;  ///< Fresh snow as water; ten times as deep.
 
   [[nodiscard]] static bool after_christmas(metering::Day day) {
     return day.month() == std::chrono::December && day.day() > std::chrono::day{25};

@@ -7,8 +7,8 @@
 namespace recald::simulators {
 namespace {
 
-/// In warm spells the fans flush the building with cool night air, so that slabs start the day
-/// cold.
+/// In warm spells the fans flush the building with cool night air, so that the slabs are
+/// cold in the morning.
 class NightPurge final : public HiddenEffect {
  public:
   NightPurge(const EffectSettings& settings, const Drawings& /*drawings*/)
@@ -19,7 +19,7 @@ class NightPurge final : public HiddenEffect {
     const double outdoor_C = outdoors.air.temperature_C;
     const bool warm_spell = warm_spell_.update(warmth_C_.follow(outdoor_C, now.step_s));
     const bool cool_night = cool_.update(-outdoor_C);
-    // Whoever purges must not bring in the moisture that the coils take out the next day.
+    // Do not bring in moisture that the coils must remove the next day.
     const double dew_C =
         dew_point_C(vapour_pressure_Pa(outdoors.air.humidity_kg_kg, outdoors.pressure_Pa));
     const bool night = now.hour() >= kFrom_h || now.hour() < kTo_h;

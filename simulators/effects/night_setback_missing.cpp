@@ -3,7 +3,7 @@
 namespace recald::simulators {
 namespace {
 
-/// The clock that should let rooms float at night does not reach the thermostats.
+/// The clock that should let rooms float at night has no effect on the thermostats.
 class NightSetbackMissing final : public HiddenEffect {
  public:
   NightSetbackMissing(const EffectSettings& settings, const Drawings& /*drawings*/)

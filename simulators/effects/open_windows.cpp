@@ -11,8 +11,8 @@ double window_m2(const Drawings& drawings) {
   return static_cast<double>(drawings.storeys) * drawings.window_share * facade_m2;
 }
 
-/// People open windows when it is pleasant outside, shut them in wind, cold and heat, and forget
-/// some when they go home. The weather decides how many are open more than the rooms do.
+/// People open windows when it is pleasant outside, close them in wind, cold and heat, and forget
+/// some when they go home. The weather matters more than the rooms.
 /// @see Haldi, Robinson (2009), Building and Environment 44(12), 2378-2395.
 class OpenWindows final : public HiddenEffect {
  public:
@@ -31,7 +31,7 @@ class OpenWindows final : public HiddenEffect {
     const double dry = now.outdoors.precipitation_mm_h > 0.5 ? 0.4 : 1.0;
     const double wanted_share = mood_ * pleasant * calm * dry;
     const bool someone_in = now.people_share > 0.05;
-    // Who goes home shuts the window, most times; the caretaker sees to those that bang.
+    // People who go home usually close the window; the caretaker closes those that bang.
     const double target =
         someone_in ? wanted_share : std::min(open_share_.value(), forgotten_share_ * calm);
     const double share = open_share_.follow(target, now.step_s);
@@ -44,7 +44,7 @@ class OpenWindows final : public HiddenEffect {
 
   EffectSettings settings_;
   double window_m2_;
-  SlowValue open_share_;  ///< Against a pleasant day with nobody in a special mood.
+  SlowValue open_share_;  ///< Relative to a pleasant day, without variation between days.
   double mood_ = 1.0;
   double forgotten_share_ = 0.0;
 };

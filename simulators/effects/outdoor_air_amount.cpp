@@ -3,7 +3,7 @@
 namespace recald::simulators {
 namespace {
 
-/// Somebody turned the minimum position: for fresher air, or to save.
+/// Someone changed the minimum damper position: for fresher air, or to save energy.
 class OutdoorAirAmount final : public HiddenEffect {
  public:
   OutdoorAirAmount(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -7,8 +7,8 @@
 namespace recald::simulators {
 namespace {
 
-/// One of three current transformers reads nothing. Its phase carries about a third, by day a
-/// little more than by night or the reverse, as it happens to be wired.
+/// One of three current transformers reads zero. Its phase carries about a third, slightly more by
+/// day than by night or the reverse, depending on the wiring.
 class PhaseLost final : public HiddenEffect {
  public:
   PhaseLost(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {
@@ -30,7 +30,7 @@ class PhaseLost final : public HiddenEffect {
 
  private:
   EffectSettings settings_;
-  double tilt_ = 0.0;  ///< How far the phase's share follows the load.
+  double tilt_ = 0.0;  ///< How strongly the phase's share depends on the load.
 };
 
 }  // namespace

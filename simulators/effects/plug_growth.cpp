@@ -7,10 +7,10 @@ namespace recald::simulators {
 namespace {
 
 constexpr double kDaysPerYear = 365.25;
-constexpr double kBatchShare = 0.3;  ///< Of what is bought: at once, not one by one.
+constexpr double kBatchShare = 0.3;  ///< Of purchases: made all at once instead of one by one.
 constexpr double kBatchEvery_days = 15.0;
 
-/// Screens, computers, instruments: every year some more than the year before, or some less.
+/// Screens, computers, instruments: each year somewhat more than the year before, or less.
 class PlugGrowth final : public HiddenEffect {
  public:
   PlugGrowth(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}

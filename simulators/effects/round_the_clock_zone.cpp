@@ -6,7 +6,7 @@ namespace recald::simulators {
 namespace {
 
 /// Part of the floor (a call centre, a control room, a laboratory) works in three shifts. By day it
-/// is like the rest; what is hidden is that it goes on when the others have left.
+/// is like the rest; hidden is that it continues when the others have left.
 class RoundTheClockZone final : public HiddenEffect {
  public:
   RoundTheClockZone(const EffectSettings& settings, const Drawings& drawings)
@@ -27,7 +27,7 @@ class RoundTheClockZone final : public HiddenEffect {
     rooms.extra_plugs_W +=
         zone_m2 * desks.plugs_W_m2 * desks.plugs_people_share * crew_share_ * others_gone;
     rooms.extra_people += zone_m2 * drawings_.occupancy_person_m2 * crew_share_ * others_gone;
-    // The zone's air is kept up and at daytime temperature; its neighbours float as before.
+    // The zone keeps its ventilation and daytime temperature; its neighbours float as before.
     rooms.night_heating_C += settings_.strength * (rooms.heating_C - rooms.night_heating_C);
     rooms.night_cooling_C += settings_.strength * (rooms.cooling_C - rooms.night_cooling_C);
     AirOperation& air = operation.air;
@@ -36,11 +36,11 @@ class RoundTheClockZone final : public HiddenEffect {
 
  private:
   static constexpr double kUsualPresence = 0.6;  ///< Present / assigned in the middle of a day.
-  static constexpr double kLit = 0.85;           ///< Of the lights in rooms where a crew works.
+  static constexpr double kLit = 0.85;           ///< Of the lights in rooms with a crew.
 
   EffectSettings settings_;
   Drawings drawings_;
-  double crew_share_ = 0.0;  ///< Desks taken in the shifts that the others do not see.
+  double crew_share_ = 0.0;  ///< Occupied desks in the additional shifts.
 };
 
 }  // namespace

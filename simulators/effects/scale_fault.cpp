@@ -4,7 +4,8 @@
 namespace recald::simulators {
 namespace {
 
-/// A wrong pulse weight or transformer ratio, since somebody exchanged the meter or its settings.
+/// A wrong pulse weight or transformer ratio, since someone replaced the meter or
+/// changed its settings.
 class ScaleFault final : public HiddenEffect {
  public:
   ScaleFault(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}

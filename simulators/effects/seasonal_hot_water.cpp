@@ -7,11 +7,11 @@
 namespace recald::simulators {
 namespace {
 
-/// Of the heat that the drawings' hot water takes on average; pipes of the added taps lose it.
+/// Of the mean heat of the drawings' hot water, lost by the pipes of the added taps.
 constexpr double kCirculationShare = 0.3;
 
-/// More hot water than drawn (showers, a canteen, dish washers), from mains that come in cold in
-/// late winter and mild in late summer, kept warm in a circulation pipe day and night.
+/// More hot water than drawn (showers, a canteen, dishwashers). Mains water is cold in late winter
+/// and mild in late summer, and a circulation pipe stays warm day and night.
 class SeasonalHotWater final : public HiddenEffect {
  public:
   SeasonalHotWater(const EffectSettings& settings, const Drawings& drawings)

@@ -12,8 +12,8 @@ double days_from(metering::Day from, metering::Day to) {
   return static_cast<double>((std::chrono::sys_days{to} - std::chrono::sys_days{from}).count());
 }
 
-/// People of a teaching institution leave between terms. The dates move a little from year to year,
-/// and people trickle away and back over some days.
+/// People of a teaching institution leave between terms. The dates vary a little from year to year,
+/// and people leave and return over several days.
 class SemesterCalendar final : public HiddenEffect {
  public:
   SemesterCalendar(const EffectSettings& settings, const Drawings& /*drawings*/)
@@ -35,7 +35,7 @@ class SemesterCalendar final : public HiddenEffect {
     december_shift_d_ = rng.uniform(-4.0, 4.0);
   }
 
-  /// Of the people who follow the terms, on this day.
+  /// Of the people who follow the terms, the share that is away on this day.
   [[nodiscard]] double away_share(metering::Day day) const {
     using namespace std::chrono;
     const double date_d = days_from(day.year() / January / 1, day);

@@ -6,7 +6,7 @@
 namespace recald::simulators {
 namespace {
 
-/// Servers that no drawing shows. They hardly notice day, night or holidays.
+/// Servers that are not in the drawings. Their load hardly depends on day, night or holidays.
 class ServerRoom final : public HiddenEffect {
  public:
   ServerRoom(const EffectSettings& settings, const Drawings& drawings)

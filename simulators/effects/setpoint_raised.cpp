@@ -3,7 +3,7 @@
 namespace recald::simulators {
 namespace {
 
-/// From one date rooms are kept warmer in summer: to save, or because people asked for it.
+/// From one date on, rooms are kept warmer in summer: to save energy, or on request.
 class SetpointRaised final : public HiddenEffect {
  public:
   SetpointRaised(const EffectSettings& settings, const Drawings& /*drawings*/)

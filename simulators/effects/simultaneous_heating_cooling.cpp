@@ -5,8 +5,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Reheat valves that do not shut: dirt keeps some open, a flushing or a new actuator closes
-/// others, so that the leak wanders about its mean over the months.
+/// Reheat valves that do not shut: dirt keeps some open, while flushing or a new actuator closes
+/// others, so the leak varies around its mean over the months.
 class SimultaneousHeatingCooling final : public HiddenEffect {
  public:
   SimultaneousHeatingCooling(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -1,16 +1,16 @@
-/// Sluggish things: what a room, a sensor or a habit makes of a quantity that moves fast.
+/// Slow responses: how a room, a sensor or a habit follows a quantity that changes fast.
 #pragma once
 
 #include <cmath>
 
 namespace recald::simulators {
 
-/// Follows another value with a time constant, at whatever step the building runs.
+/// Follows another value with a time constant, for any step length.
 class SlowValue {
  public:
   explicit SlowValue(double time_constant_s) : time_constant_s_(time_constant_s) {}
 
-  /// Over one step in which the target stands still; the first call takes it as it is.
+  /// Advances one step with a constant target; the first call starts at the target.
   double follow(double target, double step_s) {
     if (!begun_) value_ = target;
     begun_ = true;
@@ -25,7 +25,7 @@ class SlowValue {
   bool begun_ = false;
 };
 
-/// A two-point controller: on above one limit, off below a lower one, as it was in between.
+/// A two-point controller: on above one limit, off below a lower one, unchanged in between.
 class Hysteresis {
  public:
   Hysteresis(double off_below, double on_above) : off_below_(off_below), on_above_(on_above) {}
@@ -42,7 +42,7 @@ class Hysteresis {
   bool on_ = false;
 };
 
-/// 0 up to `from`, 1 from `to` on, straight between; falls where `to` is below `from`.
+/// 0 up to `from`, 1 from `to` on, linear in between; falling if `to` is below `from`.
 [[nodiscard]] inline double ramp(double x, double from, double to) {
   const double share = (x - from) / (to - from);
   return share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;

@@ -8,10 +8,10 @@ namespace {
 
 constexpr double kAfterRun_s = 3.0 * 3600.0;  ///< Until the last puddle has dried.
 constexpr double kKeepWarm = 0.25;            ///< Of full power, in dry frost.
-constexpr double kRampShare = 0.75;           ///< Of the power; gutters and drains take the rest.
+constexpr double kRampShare = 0.75;           ///< Of the power; gutters and drains use the rest.
 
-/// A ramp to the garage, gutters and drains that are kept free of ice: fully heated in snow, gently
-/// in dry frost. Where the plant has hot water or steam it heats the ramp; gutters are electric.
+/// A garage ramp, gutters and drains that are kept free of ice: full heating in snow, low heating
+/// in dry frost. Hot water or steam heats the ramp if the plant has it; gutters are electric.
 class SnowMelting final : public HiddenEffect {
  public:
   SnowMelting(const EffectSettings& settings, const Drawings& drawings)

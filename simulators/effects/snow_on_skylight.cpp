@@ -6,13 +6,13 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kOpaque_mm = 3.0;  ///< Water equivalent of snow that lets little light through.
+constexpr double kOpaque_mm = 3.0;  ///< Water equivalent of snow that blocks most light.
 constexpr double kDaylight_lm_W = 110.0;
 constexpr double kLamps_lm_W = 85.0;
-constexpr double kUseful = 0.25;           ///< Of daylight on the skylight: reaches a desk.
+constexpr double kUseful = 0.25;  ///< Of daylight on the skylight: the part that reaches a desk.
 constexpr double kReplaceableShare = 0.4;  ///< Of the core's lamps: dimmed under a bright skylight.
 
-/// Snow lies on the skylight: the core is dark and cool, and its lamps come back on.
+/// Snow covers the skylight: the core is dark and cool, and its lamps come back on.
 class SnowOnSkylight final : public HiddenEffect {
  public:
   SnowOnSkylight(const EffectSettings& settings, const Drawings& drawings)

@@ -7,15 +7,14 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kTestSun_W_m2 = 1000.0;      ///< At which panels are rated, at 25 degC.
-constexpr double kPanelHeating_Km2_W = 0.03;  ///< Above the air, by the sun on the panel.
+constexpr double kTestSun_W_m2 = 1000.0;      ///< Panels are rated at this irradiance and 25 degC.
+constexpr double kPanelHeating_Km2_W = 0.03;  ///< Panel above air temperature, per irradiance.
 constexpr double kLossPerKelvin = 0.004;
 constexpr double kSystemShare = 0.86;    ///< Cables, dirt, mismatch, inverter.
-constexpr double kInverterShare = 0.85;  ///< Of the rated power: the inverter gives no more.
+constexpr double kInverterShare = 0.85;  ///< Of the rated power: the limit of the inverter.
 constexpr double kSnowCovers_mm = 3.0;
 
-/// Photovoltaic panels behind the building's meter. What they give beyond the building's use flows
-/// out and is not counted.
+/// Photovoltaic panels behind the building's meter. Surplus power is exported and not counted.
 class SolarPanels final : public HiddenEffect {
  public:
   SolarPanels(const EffectSettings& settings, const Drawings& drawings)

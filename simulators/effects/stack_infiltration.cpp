@@ -3,9 +3,9 @@
 namespace recald::simulators {
 namespace {
 
-/// With the landing doors closed, the shaft draws so much of what it does with them open.
+/// Flow in the shaft with closed landing doors, relative to open ones.
 constexpr double kDoorsClosedShare = 0.75;
-constexpr double kWedgedDays = 0.6;  ///< Share of working days on which somebody wedges doors open.
+constexpr double kWedgedDays = 0.6;  ///< Share of working days on which the doors are wedged open.
 
 /// A stairwell whose smoke vent at the top does not close: a chimney in cold weather.
 class StackInfiltration final : public HiddenEffect {

@@ -6,8 +6,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Traps that blow through and bare pipes: heat goes away whatever the weather, in amounts that
-/// wander with the pressure in the pipe.
+/// Leaking steam traps and uninsulated pipes: heat is lost in any weather, in amounts that vary
+/// with the pipe pressure.
 class SteamTrapLeak final : public HiddenEffect {
  public:
   SteamTrapLeak(const EffectSettings& settings, const Drawings& drawings)

@@ -21,8 +21,8 @@ class StuckMeter final : public HiddenEffect {
     if (settings_.meter != record.utility) return;
     const SlotRange covered = covered_slots(record, settings_);
     Rng rng = settings_.rng;
-    // Each spell has a stretch of its own to grow in, so that a stronger effect lengthens spells
-    // and moves none.
+    // Each spell has its own stretch to grow in, so a stronger effect lengthens spells
+    // without moving them.
     double stretch_begin = static_cast<double>(covered.first);
     for (const double stretch : stretches(static_cast<double>(covered.count()), rng)) {
       const double begin = stretch_begin + rng.uniform(0.0, 1.0 - kShareMax) * stretch;
@@ -35,7 +35,7 @@ class StuckMeter final : public HiddenEffect {
   }
 
  private:
-  /// About a month and a half each, uneven.
+  /// About a month and a half each, of uneven length.
   [[nodiscard]] static std::vector<double> stretches(double slots, Rng& rng) {
     std::vector<double> lengths(
         static_cast<std::size_t>(std::max(1.0, std::round(slots / kSpellEvery_slots))));

@@ -6,8 +6,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Supply air should be warmer in winter. Instead somebody fixed it for the one warm room: first
-/// the reset is lost, and the fixed value is colder still.
+/// Supply air should be warmer in winter. Instead someone fixed its set-point for one warm room:
+/// first the reset is lost, and then the fixed value is even colder.
 class SupplyResetMissing final : public HiddenEffect {
  public:
   SupplyResetMissing(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kPool_C = 28.0;
 constexpr double kMains_C = 12.0;
-constexpr AirState kHall{30.0, 0.0145};  ///< Kept above the water's temperature, 54 % humid.
+constexpr AirState kHall{30.0, 0.0145};  ///< Above the water's temperature, at 54 % humidity.
 constexpr double kOpenEvaporation_kg_m2h = 0.20;
 constexpr double kCoveredEvaporation_kg_m2h = 0.03;
-constexpr double kMostAir_kg_s_m2 = 0.012;  ///< What the hall's fans can bring, per pool area.
+constexpr double kMostAir_kg_s_m2 = 0.012;  ///< Capacity of the hall's fans, per pool area.
 constexpr double kLeastDrying_kg_kg = 0.003;
 constexpr double kHeatRecovered = 0.5;
 constexpr double kDryerLift_J_J = 3.0;   ///< Evaporation heat removed per electricity of the dryer.
@@ -24,8 +24,8 @@ constexpr double kFansAndLamps_W_m2 = 30.0;
 constexpr double kRefilled_m = 0.06;  ///< Of the water's depth, after Monday's filter washing.
 constexpr RunningHours kRefill{6.0, 18.0};
 
-/// A pool: closed on Mondays for washing filters and new water, open on the other days, covered at
-/// night. Its hall is dried with outdoor air as long as that is dry, else with a machine.
+/// A pool: closed on Mondays for filter washing and new water, open on other days, covered at
+/// night. Its hall is dried with outdoor air while that is dry, otherwise with a dehumidifier.
 class SwimmingPool final : public HiddenEffect {
  public:
   SwimmingPool(const EffectSettings& settings, const Drawings& drawings)
@@ -53,7 +53,7 @@ class SwimmingPool final : public HiddenEffect {
   }
 
  private:
-  /// Per area of water.
+  /// Per water area.
   struct Demand {
     double heat_W_m2 = 0.0;
     double electricity_W_m2 = 0.0;
@@ -82,7 +82,7 @@ class SwimmingPool final : public HiddenEffect {
                                                (kPool_C - kMains_C) /
                                                (3600.0 * (kRefill.to_h - kRefill.from_h))
                                          : 0.0;
-    // What the machine takes out of the air goes back into the water as heat.
+    // Heat from the dryer goes back into the water.
     const double dryer_W_m2 = (evaporated_kg_s_m2 - carried_kg_s_m2) * kEvaporation_J_kg;
     return {carried_kg_s_m2 * kEvaporation_J_kg + hall_W_m2 + showers_W_m2 + refill_W_m2,
             kPumps_W_m2 + (open ? kFansAndLamps_W_m2 : 0.0) + dryer_W_m2 / kDryerLift_J_J};
@@ -92,7 +92,7 @@ class SwimmingPool final : public HiddenEffect {
   double pool_m2_;
   bool monday_ = false;
   RunningHours open_{24.0, 0.0};
-  double crowd_ = 1.0;  ///< Today, against the average.
+  double crowd_ = 1.0;  ///< Today, relative to the average.
   Demand demand_;
 };
 

@@ -5,8 +5,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Electricity is dear on summer afternoons and winter mornings of working days. Set-points are
-/// relaxed then, and rooms are cooled or heated ahead in the hours before.
+/// Electricity is expensive on summer afternoons and winter mornings of working days. Set-points
+/// are relaxed then, and rooms are cooled or heated in advance.
 class TariffLoadShift final : public HiddenEffect {
  public:
   TariffLoadShift(const EffectSettings& settings, const Drawings& /*drawings*/)
@@ -18,7 +18,7 @@ class TariffLoadShift final : public HiddenEffect {
     const auto between = [&](double from_h, double to_h) {
       return now.hour() >= from_h && now.hour() < to_h;
     };
-    // Rooms are never asked to be colder and warmer at once.
+    // Rooms must not be pre-cooled and preheated at once.
     const double ahead_K = std::min(kAhead * settings_.strength,
                                     std::max(0.0, rooms.cooling_C - rooms.heating_C - kApart_K));
     if (summer(now.local.date)) {
@@ -31,8 +31,8 @@ class TariffLoadShift final : public HiddenEffect {
   }
 
  private:
-  static constexpr double kAhead = 0.6;    ///< Cooled ahead by this share of what is relaxed.
-  static constexpr double kApart_K = 1.8;  ///< Least distance of the set-points.
+  static constexpr double kAhead = 0.6;    ///< Cooled in advance by this share of the relaxation.
+  static constexpr double kApart_K = 1.8;  ///< Least distance between the set-points.
 
   [[nodiscard]] static bool summer(metering::Day day) {
     return day.month() >= std::chrono::June && day.month() <= std::chrono::September;

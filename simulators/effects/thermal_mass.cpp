@@ -3,8 +3,8 @@
 namespace recald::simulators {
 namespace {
 
-/// Raised floors and hung ceilings hide the slabs from the rooms, or bare concrete was left
-/// visible.
+/// Raised floors and suspended ceilings separate the slabs from the rooms, or concrete
+/// was left exposed.
 class ThermalMass final : public HiddenEffect {
  public:
   ThermalMass(const EffectSettings& settings, const Drawings& /*drawings*/)

@@ -7,7 +7,7 @@
 namespace recald::simulators {
 namespace {
 
-/// Everybody is sent home within a week, and comes back team by team, Monday by Monday.
+/// Everyone is sent home within a week, and returns team by team, Monday by Monday.
 class Vacancy final : public HiddenEffect {
  public:
   Vacancy(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {
@@ -32,14 +32,14 @@ class Vacancy final : public HiddenEffect {
   }
 
  private:
-  /// Of standing loads too: who leaves for months pulls plugs.
+  /// Of standing loads as well: people who leave for months pull plugs.
   static constexpr double kUnplugged = 0.12;
 
-  /// 1 while everybody who can be away is.
+  /// 1 while all who can be away are away.
   [[nodiscard]] double depth(std::chrono::sys_days today, double length_d) const {
     const auto since_d = static_cast<double>((today - *begin_).count());
     const auto since_monday =
-        std::chrono::weekday{today} - std::chrono::Monday;  // a week's teams come on its Monday
+        std::chrono::weekday{today} - std::chrono::Monday;  // a week's teams return on its Monday
     const double monday_d = since_d - static_cast<double>(since_monday.count());
     const double empty_d = empty_share_ * length_d;
     const double leaving = std::min(1.0, (since_d + 1.0) / 5.0);
@@ -49,7 +49,7 @@ class Vacancy final : public HiddenEffect {
   }
 
   EffectSettings settings_;
-  double length_d_;     ///< From the first day to the last return, unless the settings say.
+  double length_d_;     ///< From the first day to the last return, unless set in the scenario.
   double empty_share_;  ///< Of the length, before the first team returns.
   std::optional<std::chrono::sys_days> begin_;
   double away_share_ = 0.0;  ///< Today.

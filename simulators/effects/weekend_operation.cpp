@@ -5,8 +5,8 @@
 namespace recald::simulators {
 namespace {
 
-/// A week programme that somebody copied to Saturday, then to Sunday too. Holidays within the week
-/// are a list of exceptions of their own, so they stay as they are.
+/// A weekly programme that someone copied to Saturday, and then to Sunday too. Holidays in the week
+/// are a separate list of exceptions, so they do not change.
 class WeekendOperation final : public HiddenEffect {
  public:
   WeekendOperation(const EffectSettings& settings, const Drawings& drawings)
@@ -23,7 +23,7 @@ class WeekendOperation final : public HiddenEffect {
       timetable.warm_up_h *= share;
       return;
     }
-    RunningHours& air = timetable.air;  // a Saturday with hours of its own
+    RunningHours& air = timetable.air;  // a Saturday has its own hours
     air.from_h -= share * std::max(0.0, air.from_h - workday_air_.from_h);
     air.to_h += share * std::max(0.0, workday_air_.to_h - air.to_h);
   }

@@ -5,11 +5,11 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kOpenDoor = 2.5;  ///< Its opening during a delivery / the gap that always stays.
-constexpr std::size_t kDeliveries = 6;  ///< On a working day.
+constexpr double kOpenDoor = 2.5;  ///< Opening during a delivery relative to the permanent gap.
+constexpr std::size_t kDeliveries = 6;  ///< Per working day.
 
-/// A loading door whose seals are worn, and a facade that is not much better. During deliveries the
-/// door stands open.
+/// A loading door with worn seals, and a facade that is not much tighter. The door is open
+/// during deliveries.
 class WindInfiltration final : public HiddenEffect {
  public:
   WindInfiltration(const EffectSettings& settings, const Drawings& drawings) : settings_(settings) {

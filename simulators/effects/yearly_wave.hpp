@@ -1,4 +1,4 @@
-/// The year as things that follow the seasons see it.
+/// The course of the year for effects that follow the seasons.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,8 @@
 
 namespace recald::simulators {
 
-/// -1 on the coldest day, +1 half a year later. South of the equator the year is turned round.
-/// @param coldest_day Of the year, 0 for 1 January, as counted north of the equator.
+/// −1 on the coldest day, +1 half a year later; shifted by half a year south of the equator.
+/// @param coldest_day  Day of the year, 0 for 1 January, for the northern hemisphere.
 [[nodiscard]] inline double yearly_wave(metering::Day day, double coldest_day,
                                         double latitude_deg) {
   constexpr double year_days = 365.25;

@@ -10,15 +10,14 @@ constexpr double kSlotsPerHour = 4.0;
 constexpr double kSlotsPerYear = 365.25 * 24.0 * kSlotsPerHour;
 constexpr std::size_t kFirstPossible = 48;
 
-/// Keeps faults apart, with a good reading between any two, so that each stays what it was
-/// declared.
+/// Keeps faults apart, with a good reading between any two, so that each remains as declared.
 class Agenda {
  public:
   explicit Agenda(std::size_t slots) : taken_(slots, false) {}
 
   void place(FaultKind kind, std::size_t count, Rng& rng) {
     if (count + kFirstPossible + 2 > taken_.size()) return;
-    // A crowded year may refuse a fault; a bounded number of tries is honest enough.
+    // In a year full of faults there may be no room; a bounded number of tries is enough.
     for (int attempt = 0; attempt < 50; ++attempt) {
       const std::size_t first =
           kFirstPossible + rng.below(taken_.size() - count - kFirstPossible - 1);

@@ -1,4 +1,4 @@
-/// What goes wrong between a meter and its file, planned ahead so that it can be declared.
+/// Faults between a meter and its file, planned in advance so that they can be declared.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,25 @@
 namespace recald::simulators {
 
 enum class FaultKind : std::uint8_t {
-  gap,       ///< Rows are absent.
-  blank,     ///< Rows are there, the value is empty.
+  gap,       ///< Rows are missing.
+  blank,     ///< Rows are there, but the value is empty.
   stuck,     ///< The last good value repeats.
   zero,      ///< A dead transmitter reports 0.
-  spike,     ///< Far beyond anything the meter's pipe or cable can carry.
+  spike,     ///< Far beyond the capacity of the meter's pipe or cable.
   negative,  ///< Below zero.
 };
 
 [[nodiscard]] std::string_view to_string(FaultKind kind);
 
-/// Slots [first, first + count) of a recording are hit.
+/// A fault in slots [first, first + count) of a recording.
 struct Fault {
   FaultKind kind;
   std::size_t first;
   std::size_t count;
 };
 
-/// How often and how long. Lengths are drawn between `shortest` and `longest`, short ones likelier.
+/// How often and how long. Lengths are drawn between `shortest` and `longest`, short
+/// ones more often.
 struct FaultHabit {
   FaultKind kind;
   double per_year;
@@ -35,16 +36,16 @@ struct FaultHabit {
   double longest_h;
 };
 
-/// A meter that is looked after.
+/// A well-maintained meter.
 [[nodiscard]] std::vector<FaultHabit> healthy_habits();
 /// The condensate meter in the steam pit.
 [[nodiscard]] std::vector<FaultHabit> steam_pit_habits();
-/// A logger that loses its connection, and nothing worse.
+/// A logger that only loses its connection.
 [[nodiscard]] std::vector<FaultHabit> gap_habits();
 [[nodiscard]] std::vector<FaultHabit> weather_station_habits();
 
-/// Draws faults that do not touch each other, ordered by slot. The first half day stays whole.
-/// @param lost_months  this many times, 17 to 27 days in a row are missing altogether.
+/// Draws faults that do not touch each other, ordered by slot. The first half day has none.
+/// @param lost_months  Number of times that 17 to 27 days in a row are missing.
 [[nodiscard]] std::vector<Fault> plan_faults(const std::vector<FaultHabit>& habits, int lost_months,
                                              std::size_t slots, Rng& rng);
 

@@ -1,4 +1,4 @@
-/// The text of a feed: readings, weather, and what an effect adds.
+/// The text of a feed: readings, weather, and the additions of effects.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace recald::simulators {
 /// `timestamp,dry_bulb_C,rel_humidity_pct,wind_speed_m_s,wind_dir_deg,ghi_W_m2`, start stamps.
 [[nodiscard]] std::string weather_csv(const Recording& recording, const WeatherFeed& feed);
 
-/// Writes `footprint_kW` (by meter, then interval) as readings do: `timestamp,meter,value,unit`,
-/// kW.
+/// Writes `footprint_kW` (by meter, then interval) in the format of readings:
+/// `timestamp,meter,value,unit`, kW.
 [[nodiscard]] std::string footprint_csv(const Recording& recording,
                                         const std::vector<MeterPlate>& plates,
                                         const std::vector<std::vector<double>>& footprint_kW);

@@ -98,7 +98,7 @@ MeterPlate gas_plate(double rated_kW) {
   return plate;
 }
 
-/// Turns true power into what the display shows, without faults.
+/// Turns the true power into the meter's display, without faults.
 class Register {
  public:
   Register(const MeterPlate& plate, Rng& rng) : plate_(plate), rng_(rng) {}
@@ -183,7 +183,7 @@ MeterPlate neighbour_plate() {
 
 namespace {
 
-/// Effects in the meter see what its display shows, and the file keeps its digits.
+/// Effects in the meter change what its display shows; the file keeps the display's digits.
 void distort(MeterFeed& feed, const Recording& recording, const HiddenEffects& effects,
              const metering::LocalCalendar& calendar) {
   const MeterPlate& plate = feed.plate;

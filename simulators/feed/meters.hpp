@@ -9,36 +9,36 @@
 
 namespace recald::simulators {
 
-/// What is written on the meter.
+/// The nameplate of a meter.
 struct MeterPlate {
   Utility utility;
   std::string_view id;
-  std::string_view kind;  ///< As site files call the utility.
+  std::string_view kind;  ///< The utility, as in site files.
   std::string_view unit;
-  double unit_kW;     ///< Mean power over an interval that reads as 1.
+  double unit_kW;     ///< Mean power over an interval with a reading of 1.
   double resolution;  ///< In its unit.
   int decimals;
   double noise_share;       ///< One standard deviation of the reading.
-  double noise_floor;       ///< Besides, in its unit.
+  double noise_floor;       ///< In addition, in its unit.
   double gain_error_share;  ///< One standard deviation of the constant gain error.
-  bool counts;              ///< Carries the unread remainder over, as pulses do.
+  bool counts;              ///< Carries the unread remainder over, like a pulse counter.
   double spike_min;         ///< In its unit; beyond 1.2 times the rating in the site file.
   double spike_max;
-  double rated_kW;    ///< What the site file calls rated.
-  bool in_steam_pit;  ///< Suffers accordingly.
+  double rated_kW;    ///< `rated_kW` in the site file.
+  bool in_steam_pit;  ///< Has more faults.
 };
 
-/// The building's meters in the order of files: chilled water but of packaged units, electricity,
-/// and heat where it does not come from a heat pump (steam, hot water or gas).
+/// The building's meters in the order of files: chilled water (except with packaged units),
+/// electricity, and heat (steam, hot water or gas; not with a heat pump).
 [[nodiscard]] std::vector<MeterPlate> plates_of(const Drawings& drawings);
 
-/// The meter of the building next door, in the same file by mistake.
+/// The meter of the building next door, which is in the file by mistake.
 [[nodiscard]] MeterPlate neighbour_plate();
 
-/// What is wrong with meters besides noise and resolution.
+/// Faults of meters besides noise and resolution.
 enum class MeterCare {
-  perfect,  ///< Nothing.
-  usual,    ///< One or two per cent lost; of a steam meter a fifth.
+  perfect,  ///< None.
+  usual,    ///< One or two per cent lost; for a steam meter a fifth.
   gaps,     ///< About five per cent lost in gaps of hours to days, and nothing else.
 };
 
@@ -57,7 +57,7 @@ struct MeterFeed {
   std::vector<Cell> cells;
 };
 
-/// @param effects  those in the meters act between display and file
+/// @param effects  Those in the meters act between display and file.
 [[nodiscard]] MeterFeed read_meter(const Recording& recording, const MeterPlate& plate,
                                    MeterCare care, std::uint64_t seed, const HiddenEffects& effects,
                                    const metering::LocalCalendar& calendar);
@@ -65,7 +65,7 @@ struct MeterFeed {
 struct WeatherCell {
   WeatherMean reading;
   bool absent;
-  bool humidity_blank;  ///< The humidity probe alone is out.
+  bool humidity_blank;  ///< Only the humidity probe has failed.
 };
 
 struct WeatherFeed {

@@ -1,4 +1,4 @@
-/// Runs weather and building over whole local years and keeps their 15-minute means.
+/// Simulates weather and building over whole local years and keeps 15-minute means.
 #pragma once
 
 #include <cstdint>
@@ -36,14 +36,15 @@ struct Recording {
   }
 };
 
-/// Runs the building through the period after a month that lets walls and rooms forget their start.
-/// The weather is that of the drawings' climate; `seed` decides how it turns out.
-/// @return not_found if the system has no zone files.
+/// Simulates the building through the period, after a month in which walls and rooms settle. The
+/// weather follows the drawings' climate and the `seed`.
+/// @return the recording, or not_found if the system has no zone files.
 /// @pre period.years >= 1, the period lies in 1971…2037, the building's step divides `kInterval`
 [[nodiscard]] Result<Recording> record(Building& building, const Period& period,
                                        std::uint64_t seed);
 
-/// What the meters would show without noise: `recording.power`, but for effects in the meters.
+/// What the meters would show without noise: `recording.power`, changed only by
+/// effects in the meters.
 [[nodiscard]] std::vector<double> metered_kW(const Recording& recording, Utility utility,
                                              const HiddenEffects& effects,
                                              const metering::LocalCalendar& calendar);

@@ -8,10 +8,10 @@
 
 namespace recald::simulators {
 
-/// Creates the folder and what is above it. @return io_failed with the path and the reason.
+/// Creates the folder and its parents. @return io_failed with the path and the reason.
 [[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
 
-/// Replaces the file. @return io_failed with the path and what the system said.
+/// Replaces the file. @return io_failed with the path and the system's reason.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace recald::simulators

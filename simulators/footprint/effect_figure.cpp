@@ -17,7 +17,7 @@ constexpr double kMargin = 22.0;
 constexpr double kPlotHeight = 170.0;
 constexpr int kIntervals = 6;  ///< Of a scale, at most.
 
-/// Below this a meter is called unchanged: no meter of a building resolves a watt.
+/// A meter with less than this is called unchanged: no building's meter resolves a watt.
 constexpr double kNothing_kW = 0.001;
 
 bool changed(const MeterFootprint& meter) {
@@ -50,7 +50,7 @@ std::vector<DayCurve> day_curves(const Footprint& footprint, HalfYear half_year,
   return curves;
 }
 
-/// % of the meter's mean month, so that the mean of the bars is its share of the year.
+/// In % of the meter's mean month, so that the mean of the bars is its share of the year.
 MonthlySum monthly_percent(const Footprint& footprint, const MeterFootprint& meter,
                            const metering::LocalCalendar& calendar) {
   const MonthlySum plain_kWh = monthly_kWh({footprint.begin, meter.plain_kW}, calendar);
@@ -75,7 +75,7 @@ void draw_day(Svg& svg, const Box& frame, const Scale& scale, std::string_view c
   }
 }
 
-/// Both half-years to one scale.
+/// Draws both half-years to one scale.
 void draw_days(Svg& svg, double top, const Footprint& footprint,
                const metering::LocalCalendar& calendar) {
   const auto winter = day_curves(footprint, HalfYear::winter, calendar);
@@ -114,7 +114,7 @@ void draw_months(Svg& svg, double top, const Footprint& footprint,
   plot.zero_line();
 }
 
-/// Below the diagrams: how to read the curves, and which building it is.
+/// Below the diagrams: how to read the curves, and which building is shown.
 void draw_foot(Svg& svg, double y, const Footprint& footprint) {
   constexpr TextStyle style{.size = 11.0, .colour = kFaintInk};
   constexpr Stroke sample{.colour = kFaintInk, .width = 1.8};

@@ -9,14 +9,14 @@
 
 namespace recald::simulators {
 
-/// One meter over the same intervals twice.
+/// One meter over the same intervals, without and with the effect.
 struct MeterFootprint {
   Utility utility;
   std::string name;  ///< "chilled water"
   std::vector<double> plain_kW;
-  std::vector<double> added_kW;  ///< By the effect; what the meter shows with it is the sum.
+  std::vector<double> added_kW;  ///< By the effect; with it, the meter shows the sum.
 
-  /// Added / plain; 0 where the meter shows nothing.
+  /// Added / plain; 0 if the meter shows nothing.
   [[nodiscard]] double share() const;
 };
 
@@ -27,15 +27,16 @@ struct Footprint {
   std::vector<MeterFootprint> meters;
 };
 
-/// "electricity +1.2 %", or "electricity unchanged" where nothing was ever added.
+/// "electricity +1.2 %", or "electricity unchanged" if nothing was added.
 [[nodiscard]] std::string share_text(const MeterFootprint& meter);
-/// Of all meters, with commas.
+/// For all meters, separated by commas.
 [[nodiscard]] std::string share_text(const Footprint& footprint);
 /// "Strength 3 hours later than planned …, from 2022-04-01."
 [[nodiscard]] std::string strength_text(const HiddenChoice& effect);
 
-/// Left the mean day in the winter and in the summer half-year, working days and weekends apart,
-/// over the days on which the effect is there; right each month against the meter's mean month.
+/// Left: the mean day in the winter and in the summer half-year, working days and weekends
+/// apart, over the days on which the effect is active. Right: each month relative to the
+/// meter's mean month.
 /// @return an SVG file
 [[nodiscard]] std::string effect_figure(const Footprint& footprint,
                                         const metering::LocalCalendar& calendar);

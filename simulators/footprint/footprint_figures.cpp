@@ -15,14 +15,14 @@
 namespace recald::simulators {
 namespace {
 
-/// A building without effects and its year.
+/// A building without effects and its simulated year.
 struct Shown {
   Scenario scenario;
   metering::LocalCalendar calendar;
   Simulated plain;
 };
 
-/// Every building is simulated once without effects, whatever the number of effects shown in it.
+/// Simulates each building once without effects, however many effects are shown in it.
 class ShownBuildings {
  public:
   Result<const Shown*> get(ShowBuilding building) {
@@ -61,7 +61,7 @@ Result<Footprint> footprint_of(const EffectKind& kind, const Shown& shown) {
   return footprint;
 }
 
-/// Draws into one folder and remembers what stands there.
+/// Draws into one folder and records its contents.
 class Gallery {
  public:
   explicit Gallery(std::filesystem::path folder) : folder_(std::move(folder)) {}

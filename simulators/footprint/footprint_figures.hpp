@@ -1,5 +1,4 @@
-/// Figures of what every hidden effect does to the meters, for people who want to see before they
-/// believe.
+/// Figures of what each hidden effect does to the meters.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +10,10 @@
 
 namespace recald::simulators {
 
-/// Simulates each kind of effect at its typical strength, with and without, and writes to the
-/// folder, which is made if absent: `<effect id>.svg` for each kind, `week_<use>.svg` for each use
-/// of building without effects, and a `README.md` that shows them all. Same build, same bytes.
-/// Takes the time of one simulated year for each figure.
+/// Simulates each kind of effect at its typical strength, with and without it, and writes to the
+/// folder (created if absent): `<effect id>.svg` for each kind, `week_<use>.svg` for each use of
+/// building without effects, and a `README.md` that shows them all. Same build, same bytes. Each
+/// figure takes one simulated year.
 ///
 /// @return number of figures, or
 ///         io_failed  the folder or a file in it cannot be written.

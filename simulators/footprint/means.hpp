@@ -1,4 +1,4 @@
-/// What a year of quarter hours looks like: mean days by local hour, sums by local month.
+/// Summaries of a year of quarter hours: mean days by local hour, sums by local month.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct IntervalSeries {
 };
 
 enum class HalfYear { winter, summer };           ///< October to March, April to September.
-enum class PartOfWeek { working_days, weekend };  ///< Monday to Friday; holidays are not looked up.
+enum class PartOfWeek { working_days, weekend };  ///< Monday to Friday; holidays are ignored.
 
 struct DayGroup {
   HalfYear half_year;
@@ -31,19 +31,18 @@ struct DayGroup {
 using MeanDay = std::array<double, 24>;  ///< By the hour on the local clock.
 using MonthlySum = std::array<double, 12>;
 
-/// The mean in each local hour over the days of the group. Where the clock skips an hour that day
-/// says nothing of it; where the clock repeats one, that day counts twice in it.
+/// The mean in each local hour over the days of the group. A day on which the clock skips an hour
+/// does not count in that hour; a day on which it repeats one counts twice.
 /// @return nothing if the series holds no such day
 [[nodiscard]] std::optional<MeanDay> mean_day(const IntervalSeries& series, const DayGroup& group,
                                               const metering::LocalCalendar& calendar);
 
-/// kWh by calendar month of the local clock, January first; those of several years are added up.
-/// @param series_kW  mean powers
+/// kWh by calendar month in local time, January first; several years are added up.
+/// @param series_kW  Mean powers.
 [[nodiscard]] MonthlySum monthly_kWh(const IntervalSeries& series_kW,
                                      const metering::LocalCalendar& calendar);
 
-/// The means of hour after hour, from the local midnight that begins `first` to that which ends the
-/// last of `days`.
+/// Hourly means from the local midnight at the start of `first` to the end of the last of `days`.
 /// @pre the series holds these days
 [[nodiscard]] std::vector<double> hourly_means(const IntervalSeries& series, metering::Day first,
                                                int days, const metering::LocalCalendar& calendar);

@@ -11,7 +11,7 @@ std::string in_words(std::string_view snake_case) {
 }
 
 std::string_view colour_of(Utility utility) {
-  // Told apart by everybody: Okabe, Ito (2008), Color Universal Design.
+  // Distinguishable with colour blindness: Okabe, Ito (2008), Color Universal Design.
   switch (utility) {
     case Utility::electricity:
       return "#4d4d4d";

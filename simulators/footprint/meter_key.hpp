@@ -1,4 +1,4 @@
-/// How all figures name meters and tell them apart.
+/// The names and colours of meters in all figures.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace recald::simulators {
 
-/// "chilled_water" as people write it.
+/// "chilled_water" in words.
 [[nodiscard]] std::string in_words(std::string_view snake_case);
 
 [[nodiscard]] std::string_view colour_of(Utility utility);
@@ -21,8 +21,8 @@ struct KeyEntry {
 };
 
 /// One line of coloured squares with their texts.
-/// @param at  where its base line begins
-/// @return where the next text could follow
+/// @param at  Start of its base line.
+/// @return where more text could follow
 Point draw_key(Svg& svg, Point at, std::span<const KeyEntry> entries);
 
 }  // namespace recald::simulators

@@ -11,7 +11,7 @@ namespace {
 
 constexpr TextStyle kSmall{.size = 11.0, .colour = kFaintInk};
 
-/// A quotient this near to a whole number is one: 0.3 / 0.1 is not 2.9999999999999996.
+/// A quotient this close to a whole number counts as whole: 0.3 / 0.1 is 2.9999999999999996.
 constexpr double kRounding = 1e-9;
 
 /// Multiples of the step from `low` to `high`.
@@ -32,7 +32,7 @@ std::string Ticks::label(int i) const {
 
 Ticks nice_ticks(double low, double high, int intervals) {
   assert(low < high && std::isfinite(high - low) && intervals >= 4);
-  // No finer step can do: half of this makes twice as many intervals.
+  // No finer step is possible: half of this makes twice as many intervals.
   double power = std::pow(10.0, std::floor(std::log10((high - low) / intervals)));
   for (;; power *= 10.0) {
     for (const double factor : {1.0, 2.0, 5.0}) {

@@ -10,7 +10,7 @@
 
 namespace recald::simulators {
 
-/// Round numbers along an axis, `step` apart, from `first` on.
+/// Round numbers along an axis, `step` apart, starting at `first`.
 struct Ticks {
   double first;
   double step;
@@ -18,30 +18,30 @@ struct Ticks {
 
   [[nodiscard]] double at(int i) const { return first + step * i; }
   [[nodiscard]] double last() const { return at(count - 1); }
-  /// As many decimals as the step has.
+  /// With as many decimals as the step has.
   [[nodiscard]] std::string label(int i) const;
 };
 
-/// The finest ticks of 1, 2 or 5 times a power of ten of which at most `intervals + 1` lie from
-/// `low` to `high`; at least two do.
+/// The finest ticks of 1, 2 or 5 times a power of ten with at most `intervals + 1`, and at least
+/// two, from `low` to `high`.
 /// @pre low < high, both finite; intervals >= 4
 [[nodiscard]] Ticks nice_ticks(double low, double high, int intervals);
 
-/// What the height of a diagram stands for.
+/// The meaning of a diagram's height.
 struct Scale {
   double low;
   double high;
   Ticks ticks;
 };
 
-/// Of all values seen, and zero, with a little air beyond the extremes but not beyond zero.
+/// The range of all values seen, and zero, with a margin beyond the extremes but not beyond zero.
 class ValueRange {
  public:
   void include(std::span<const double> values);
-  /// Spreads a range below this to half of it on both sides of zero, so that nothing does not look
-  /// like something.
+  /// Widens a smaller range to half of this on both sides of zero, so that tiny values
+  /// do not look large.
   void widen_to(double span_min);
-  /// From 0 to 1 where no value differs from zero.
+  /// From 0 to 1 if all values are zero.
   [[nodiscard]] Scale scale(int intervals) const;
 
  private:
@@ -63,14 +63,14 @@ class Plot {
   /// Above the top left corner.
   void caption(std::string_view what);
   void x_marks(std::span<const Mark> marks);
-  /// Upright lines of the grid, evenly over the x axis, both ends included.
+  /// Vertical grid lines, evenly spaced over the x axis, including both ends.
   void x_rules(int parts);
-  /// One value for each of equal parts of the x axis, drawn at their middles.
+  /// One value per equal part of the x axis, drawn at its middle.
   void curve(std::span<const double> values, const Stroke& stroke);
-  /// One value a part of the x axis, in the `place`-th of `places` columns of it.
+  /// One value per part of the x axis, in the `place`-th of `places` columns of it.
   void bars(std::span<const double> values, std::string_view colour, std::size_t place,
             std::size_t places);
-  /// The line of zero over all that was drawn, for curves and bars that hang from it.
+  /// The zero line over everything drawn, as the base of curves and bars.
   void zero_line();
 
  private:

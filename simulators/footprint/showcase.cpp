@@ -14,7 +14,7 @@ struct Exhibit {
   ShowBuilding building;
 };
 
-/// Effects that need weather or people which the plain office in the mixed climate does not have.
+/// Effects that need weather or people that the plain office in the mixed climate does not have.
 constexpr std::array kExhibits{
     Exhibit{"cooking", ShowBuilding::office_with_boiler},  // gas
     Exhibit{"deep_drying", ShowBuilding::office_in_hot_humid},

@@ -1,5 +1,5 @@
-/// In which building an effect is shown: one that has what it needs, where the weather brings it
-/// out.
+/// The building in which an effect is shown: one that has what it needs, in weather that
+/// makes it visible.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ inline constexpr std::uint64_t kShowSeed = 1;
 inline constexpr int kShowYear = 2022;
 
 enum class ShowBuilding : std::size_t {
-  office,  ///< Mixed climate, all services from the district; where nothing speaks for another.
+  office,  ///< Mixed climate, all services from the district; used unless another fits better.
   office_with_chiller,
   office_with_heat_pump,
   office_with_boiler,
@@ -38,7 +38,7 @@ inline constexpr std::size_t kShowBuildings = 17;
 /// One year of 15-minute steps, nothing hidden.
 [[nodiscard]] Scenario show_scenario(ShowBuilding building);
 
-/// Typical strength; dates and a meter where the kind asks for them.
+/// Typical strength, with dates and a meter if the kind needs them.
 [[nodiscard]] HiddenChoice show_choice(const EffectKind& kind);
 
 /// "Office, 7200 m², mixed climate, district cooling, district hot water, 2022".

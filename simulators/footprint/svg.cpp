@@ -8,7 +8,7 @@
 namespace recald::simulators {
 namespace {
 
-/// To a tenth, as short as it can be written, and never "-0".
+/// Rounded to a tenth, as short as possible, and never "-0".
 std::string px(double value) { return fmt::format("{}", std::round(value * 10.0) / 10.0 + 0.0); }
 
 /// In tenths of a pixel.
@@ -19,7 +19,7 @@ struct Tenths {
 
 Tenths tenths(Point point) { return {std::lround(point.x * 10.0), std::lround(point.y * 10.0)}; }
 
-/// Of the letter size.
+/// Relative to the letter size.
 double letter_width(char letter) {
   constexpr std::string_view narrow = " .,:;'|!iljtfrI()[]/";
   constexpr std::string_view wide = "mwMW%@";
@@ -130,7 +130,7 @@ void Svg::curve(std::span<const Point> points, const Stroke& stroke) {
   if (points.size() < 2) return;
   Tenths before = tenths(points.front());
   std::string path = fmt::format("M{} {}l", before.x, before.y);
-  // A minus tells numbers apart as well as a blank does.
+  // A minus separates numbers as well as a blank does.
   const auto append = [&path](long step) {
     if (step >= 0 && path.back() != 'l') path += ' ';
     path += std::to_string(step);

@@ -1,5 +1,5 @@
-/// Drawing primitives that write plain SVG: rectangles, lines, curves and text, no scripts and no
-/// fonts to fetch. Coordinates are pixels, x to the right and y downwards.
+/// Drawing primitives that write plain SVG: rectangles, lines, curves and text, without scripts or
+/// external fonts. Coordinates are pixels, x to the right and y downwards.
 #pragma once
 
 #include <cstddef>
@@ -49,36 +49,36 @@ struct TextStyle {
   bool bold = false;
 };
 
-/// For text and attributes of XML.
+/// Escapes text and attributes for XML.
 [[nodiscard]] std::string escape_xml(std::string_view text);
 
-/// How wide the text can get, about: widths by class of letter of DejaVu Sans, the widest font that
-/// stands in for Helvetica where that is missing. UTF-8 is understood.
+/// Approximate largest width of a text: widths by class of letter of DejaVu Sans, the widest font
+/// that replaces Helvetica if that is missing. Handles UTF-8.
 [[nodiscard]] double text_width(std::string_view text, double size);
 
-/// Lines no wider than `width` where words allow it; a word that is wider has a line of its own.
-/// Empty text has no lines.
+/// Lines no wider than `width` if words allow it; a wider word has its own line. Empty
+/// text has no lines.
 [[nodiscard]] std::vector<std::string> wrap_text(std::string_view text, double size, double width);
 
-/// "+1.2", "−0.4", "0"; the minus is the typographic one. Rounded to `decimals`.
+/// "+1.2", "−0.4", "0", with a typographic minus. Rounded to `decimals`.
 [[nodiscard]] std::string signed_number(double value, int decimals);
 
-/// A figure on a white rounded ground of its own, so that it can be read on any page.
+/// A figure on its own white background with rounded corners, so that it is readable on any page.
 class Svg {
  public:
-  /// @param title  what a reader hears who cannot see the figure
+  /// @param title  Read aloud to people who cannot see the figure.
   Svg(double width, double height, std::string_view title);
 
   void rectangle(const Box& box, std::string_view fill);
   void line(Point from, Point to, const Stroke& stroke);
-  /// All of one kind, as one path.
+  /// All lines of one kind, as one path.
   void lines(std::span<const Segment> segments, const Stroke& stroke);
-  /// Points are kept to a tenth of a pixel and written as steps from one to the next, which is
+  /// Points are rounded to a tenth of a pixel and written as steps from one to the next, which is
   /// short. Fewer than two points draw nothing.
   void curve(std::span<const Point> points, const Stroke& stroke);
-  /// All of one colour, as one path.
+  /// All boxes of one colour, as one path.
   void boxes(std::span<const Box> boxes, std::string_view fill);
-  /// @param at  start, middle or end of the base line, as the style has it
+  /// @param at  Start, middle or end of the base line, depending on the style.
   void text(Point at, std::string_view text, const TextStyle& style = {});
 
   [[nodiscard]] std::string finished() const;

@@ -18,13 +18,13 @@ constexpr int kDays = 7;
 constexpr double kWeekWidth = 900.0;
 constexpr double kWeekMargin = 22.0;
 
-/// Mondays of weeks without holidays in which all uses are at work, schools too.
+/// Mondays of weeks without holidays in which all uses operate, including schools.
 constexpr metering::Day kWinterMonday{std::chrono::year{kShowYear}, std::chrono::January,
                                       std::chrono::day{24}};
 constexpr metering::Day kSummerMonday{std::chrono::year{kShowYear}, std::chrono::August,
                                       std::chrono::day{22}};
 
-/// Columns of one week: temperature above, loads below.
+/// The columns of one week: temperature above, loads below.
 struct Week {
   std::string caption;
   std::vector<double> outdoor_C;

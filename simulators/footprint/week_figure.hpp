@@ -1,5 +1,5 @@
-/// A week in winter and one in late summer of a building without hidden effects, for an engineer
-/// to judge whether such a building could stand somewhere.
+/// A winter week and a late-summer week of a building without hidden effects, from which an
+/// engineer can judge whether the building is realistic.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace recald::simulators {
 
-/// Loads in W/m² of floor and outdoor temperature, hour by hour; above them each meter's year in
-/// kWh/m².
+/// Loads in W/m² of floor area and outdoor temperature, hour by hour; above them each
+/// meter's year in kWh/m².
 /// @pre the simulated period includes the year `kShowYear`
 /// @return an SVG file
 [[nodiscard]] std::string week_figure(const Scenario& scenario, const Simulated& simulated,

@@ -17,7 +17,7 @@ struct Constructions {
   std::optional<double> economiser_limit_C;
 };
 
-/// What codes of the 2000s ask for; economisers where ASHRAE 90.1 wants them.
+/// As codes of the 2000s require; economisers where ASHRAE 90.1 requires them.
 Constructions constructions_for(ClimateKind climate) {
   switch (climate) {
     case ClimateKind::hot_humid:
@@ -51,7 +51,7 @@ void place_in(Drawings& drawings, ClimateKind climate) {
   drawings.ground_C = in_steps(std::clamp(mean_C + 2.0, 9.0, 24.0), 0.5);
 }
 
-/// What is built otherwise than in the 2000s, as factors.
+/// Differences from the 2000s, as factors.
 struct Epoch {
   double wall_u, roof_u, window_u, ground_u, shgc, leakage, lighting, cop;
   double boiler_efficiency;
@@ -186,11 +186,12 @@ Drawings draw_up(const Brief& brief) {
   drawings.heavy = brief.heavy;
   drawings.cooling = brief.cooling;
   drawings.heating = brief.heating;
-  // What runs, loses heat or keeps people away unknown to the drawings would be a hidden effect.
+  // Anything that runs, loses heat or keeps people away unknown to the drawings would be
+  // a hidden effect.
   drawings.saturday_operation = false;
   drawings.attendance_follows_season = false;
   drawings.heating_efficiency = brief.heating == HeatingPlant::boiler ? 0.86 : 0.97;
-  // Small units in the open do not reach what a chiller and a tower do.
+  // Small outdoor units are less efficient than a chiller with a tower.
   if (brief.cooling == CoolingPlant::packaged) drawings.chiller_cop = 3.3;
   furnish(drawings);
   place_in(drawings, brief.climate);

@@ -1,14 +1,14 @@
-/// Plain buildings of each use in each climate: where every scenario begins.
+/// Standard buildings of each use in each climate, the starting point of every scenario.
 #pragma once
 
 #include "simulators/building/drawings.hpp"
 
 namespace recald::simulators {
 
-/// When it was built: constructions, lights and machines follow the codes of their time.
+/// When the building was built: constructions, lights and machines follow the codes of that time.
 enum class Vintage { of_1980s, of_2000s, of_2010s };
 
-/// What an owner asks an architect for; engineers size the rest from it.
+/// The owner's requirements, from which the rest is sized.
 struct Brief {
   Use use = Use::office;
   ClimateKind climate = ClimateKind::mixed;
@@ -23,7 +23,7 @@ struct Brief {
   Vintage vintage = Vintage::of_2000s;
 };
 
-/// Size and plant that are common for the use.
+/// The size and plant common for the use.
 [[nodiscard]] Brief typical_brief(Use use);
 
 /// The building's drawings: rooms and hours by use, constructions by climate, air system and plant

@@ -28,7 +28,7 @@ Result<std::size_t> write_building_feed(const BuildingFeedOptions& options) {
   const Scenario& scenario = options.scenario;
   const auto calendar = metering::LocalCalendar::open(scenario.drawings.time_zone);
   if (!calendar) return tl::unexpected(calendar.error());
-  // The smallest file first: an unwritable folder is found before seconds of simulation.
+  // The smallest file first, so that an unwritable folder is found before the simulation.
   if (const auto written = write_file(options.out / "site.toml", site_toml(scenario)); !written) {
     return tl::unexpected(written.error());
   }

@@ -1,4 +1,4 @@
-/// `recald-sim building`: one invented building, written as the files a gateway would record.
+/// `recald-sim building`: one simulated building, written as the files that a gateway would record.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ struct BuildingFeedOptions {
   std::filesystem::path out;  ///< Created if absent; files of the same name are replaced.
   Scenario scenario;
   std::uint64_t seed = 1;
-  /// Also writes what the same building shows without its hidden effects (twin_readings.csv) and
+  /// Also writes what the building would show without its hidden effects (twin_readings.csv), and
   /// what the effects add to each meter, free of noise (footprint.csv).
   bool twin = false;
 };
 
 /// Writes readings.csv, weather.csv, site.toml and truth.json. Same options, same bytes.
 /// @return the number of 15-minute intervals, or
-///         io_failed  the folder cannot be made or a file cannot be written;
+///         io_failed  the folder cannot be created or a file cannot be written;
 ///         not_found  the system has no zone files.
 [[nodiscard]] Result<std::size_t> write_building_feed(const BuildingFeedOptions& options);
 

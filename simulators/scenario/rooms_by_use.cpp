@@ -53,7 +53,7 @@ void furnish_school(Drawings& drawings) {
   drawings.presence_sunday = drawings.presence_saturday;
 }
 
-/// Rooms of which the figures say all: who is there is told by `visits`.
+/// Rooms described fully by these numbers: `visits` gives the people.
 RoomUse rooms_with(double lighting_W_m2, double plugs_W_m2, double standing, double people,
                    double working) {
   RoomUse rooms{};
@@ -76,8 +76,8 @@ void open_from(Drawings& drawings, OpenDays days, double from_h, double to_h) {
   drawings.cleaning_to_h = std::min(to_h + 1.5, 24.0);
 }
 
-/// A sales floor on which customers stay for the better part of an hour, with stores and staff
-/// rooms inside it. Closed on Sundays: a site file has no hours for them.
+/// A sales floor on which customers stay for most of an hour, with stores and staff rooms inside
+/// it. Closed on Sundays, because a site file has no Sunday hours.
 void furnish_shop(Drawings& drawings) {
   const Visits customers{
       .stay_h = 0.9,
@@ -107,7 +107,7 @@ void furnish_shop(Drawings& drawings) {
 }
 
 /// Guest rooms along the facades, corridors, lobby and dining in the core, kitchen and laundry
-/// inside it. Nobody sets anything back, and no day is like a Sunday elsewhere.
+/// inside it. There is no set-back, and every day is alike.
 void furnish_hotel(Drawings& drawings) {
   const Visits guests{
       .stay_h = 8.0,
@@ -177,8 +177,8 @@ void furnish_clinic(Drawings& drawings) {
   drawings.night_heating_C = 18.0;
 }
 
-/// High racks in the core, docks and a few desks along the facades, a charging station. Held
-/// between 16 and 27 degC, doors that open all day, two shifts.
+/// High racks in the core, docks and a few desks along the facades, a charging station. Kept
+/// between 16 and 27 degC, doors open all day, two shifts.
 void furnish_warehouse(Drawings& drawings) {
   const Visits shifts{
       .stay_h = 6.0,
@@ -214,9 +214,8 @@ void furnish_warehouse(Drawings& drawings) {
   drawings.night_heating_C = 11.0;
 }
 
-/// Dining rooms along the facades and a bar in the core, the rest of which is a kitchen that cooks
-/// with electricity under hoods: part of the plugs, whose heat they take away. Closed on Sundays
-/// and Mondays.
+/// Dining rooms along the facades, and in the core a bar and a kitchen that cooks with electricity
+/// under hoods: it counts as plugs, whose heat the hoods remove. Closed on Sundays and Mondays.
 void furnish_restaurant(Drawings& drawings) {
   const Visits diners{
       .stay_h = 1.1,
@@ -241,7 +240,7 @@ void furnish_restaurant(Drawings& drawings) {
   drawings.between_rooms_kg_s = 0.3;
   drawings.hall = true;
   drawings.occupancy_person_m2 = 0.35;
-  drawings.sensible_W_person = 80.0;  // the meal's heat among it
+  drawings.sensible_W_person = 80.0;  // includes the heat of the meal
   drawings.latent_W_person = 80.0;
   open_from(drawings, OpenDays::workdays_and_saturdays, 9.0, 23.0);
   drawings.core_min_share = 0.45;
@@ -250,8 +249,8 @@ void furnish_restaurant(Drawings& drawings) {
   drawings.night_heating_C = 16.0;
 }
 
-/// Halls along the facades and in the core, changing rooms and showers inside it. Mornings,
-/// evenings.
+/// Halls along the facades and in the core, changing rooms and showers inside it. Busy
+/// mornings and evenings.
 void furnish_gym(Drawings& drawings) {
   const Visits members{
       .stay_h = 1.2,
@@ -287,8 +286,8 @@ HourlyShares mixed(const HourlyShares& perimeter, const HourlyShares& in_core, d
   return both;
 }
 
-/// What the site file quotes of people who come and go, and how warm water follows them: over an
-/// ordinary week it comes to what is drawn a day.
+/// Sets the site file's presence from the visits, and the hot water that follows it: over an
+/// ordinary week it equals the daily amount drawn.
 void quote_presence(Drawings& drawings) {
   if (!drawings.perimeter_rooms.visits || !drawings.core_rooms.visits) return;
   const Visits& outer = *drawings.perimeter_rooms.visits;
@@ -342,7 +341,7 @@ void furnish(Drawings& drawings) {
       furnish_gym(drawings);
       break;
   }
-  // Even where the core is thin, somebody is there.
+  // There are people in the perimeter even where the core is thin.
   drawings.perimeter_rooms.crowding =
       std::min(drawings.perimeter_rooms.crowding, 0.9 / drawings.perimeter_floor_share());
   quote_presence(drawings);

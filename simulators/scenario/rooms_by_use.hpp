@@ -1,11 +1,12 @@
-/// What happens in a building of each use: rooms, people, hours, set-points.
+/// The use of a building: rooms, people, hours, set-points.
 #pragma once
 
 #include "simulators/building/drawings.hpp"
 
 namespace recald::simulators {
 
-/// Fills in rooms, people and hours for `drawings.use`; a laboratory is what drawings are without.
+/// Fills in rooms, people and hours for `drawings.use`; the defaults of `Drawings`
+/// are a laboratory.
 /// @pre the floor's length and width are set
 ///
 /// Figures: people, lights and schedules after ASHRAE 90.1 User's Manual (2004, tables G-B and G-E

@@ -19,8 +19,7 @@ bool has_chilled_water_meter(const Drawings& drawings) {
   return drawings.cooling != CoolingPlant::packaged;
 }
 
-/// What the building lacks for the effect, as the end of a sentence; empty where nothing is
-/// missing.
+/// What the building lacks for the effect, as the end of a sentence; empty if nothing is missing.
 std::string missing_for(const EffectNeeds& needs, const Drawings& drawings) {
   const auto lacks = [](bool needed, bool there) { return needed && !there; };
   if (lacks(needs.heat_meter, has_heat_meter(drawings))) {
@@ -95,13 +94,13 @@ Result<void> check_alone(const HiddenChoice& choice, const Drawings& drawings) {
   return {};
 }
 
-/// The same thing cannot be turned twice, unless it is that of two different meters.
+/// Two effects must not change the same thing, unless on two different meters.
 bool contradict(const HiddenChoice& one, const HiddenChoice& other) {
   const bool of_other_meters = one.meter && other.meter && *one.meter != *other.meter;
   return one.kind->turns == other.kind->turns && !of_other_meters;
 }
 
-/// FNV-1a of the name: whatever else is hidden or ever listed, this effect's chance stays the same.
+/// FNV-1a of the name, so that this effect's random stream does not depend on other effects.
 std::uint64_t number_of(const EffectKind& kind) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char c : kind.id) {

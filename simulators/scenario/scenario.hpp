@@ -1,4 +1,4 @@
-/// One building as a scenario asks for it: what stands there, where, for how long, what is hidden.
+/// One building as described by a scenario: its design, place, period and hidden effects.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct HiddenChoice {
   std::optional<Utility> meter;
 };
 
-/// Columns that look as if they mattered and do not.
+/// Columns that look relevant and are not.
 enum class Decoy {
   wind_of_another_year,  ///< The weather file's wind is that of another year of the same climate.
   neighbour_meter,       ///< The readings hold a meter of the building next door.
@@ -33,13 +33,13 @@ struct Scenario {
   std::vector<Decoy> decoys;
 };
 
-/// Whether the effects can be there at all and together.
-/// @return invalid_input: a strength out of range, something the effect needs that the building
-///         lacks, a date that is missing, two effects that contradict each other.
+/// Checks that the effects are possible, alone and together.
+/// @return invalid_input: a strength out of range, something that an effect needs and the building
+///         lacks, a missing date, two effects that contradict each other.
 [[nodiscard]] Result<void> check_effects(const Scenario& scenario);
 
-/// The effects at work, each with a stream of chance of its own.
-/// @param calendar must outlive them
+/// Creates the effects, each with its own random stream.
+/// @param calendar  Must outlive them.
 [[nodiscard]] HiddenEffects make_effects(const Scenario& scenario, std::uint64_t seed,
                                          const metering::LocalCalendar& calendar);
 

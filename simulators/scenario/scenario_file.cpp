@@ -44,7 +44,7 @@ std::array<Word<ClimateKind>, kClimateKinds.size()> climate_words() {
   return words;
 }
 
-/// What decides the sizes of everything else comes first.
+/// First come the keys that decide the sizes of everything else.
 Drawings read_brief(TomlTable& building, TomlTable& climate, TomlTable& plant) {
   Brief brief;
   building.word("use", use_words(), brief.use);
@@ -100,7 +100,7 @@ void read_period(TomlTable& period, Scenario& scenario) {
   scenario.period = {static_cast<int>(start), static_cast<int>(years)};
 }
 
-/// The meter must be there under the name it has in the readings.
+/// The meter must exist under the name it has in the readings.
 std::optional<Utility> meter_named(const std::string& name, const Drawings& drawings) {
   for (const MeterPlate& plate : plates_of(drawings)) {
     if (plate.id == name) return plate.utility;

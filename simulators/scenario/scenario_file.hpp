@@ -1,16 +1,16 @@
-/// Reads a scenario: one TOML file a building.
+/// Reads a scenario: one TOML file per building.
 #pragma once
 
 #include "simulators/scenario/scenario.hpp"
 
 namespace recald::simulators {
 
-/// Every key may be absent; `README.md` lists them. Without a file the scenario is the campus
-/// laboratory.
+/// All keys are optional; `README.md` lists them. Without a file the scenario is the
+/// campus laboratory.
 /// @return not_found      the file does not exist or cannot be read;
 ///         malformed      not TOML (file, line);
 ///         invalid_value  an unknown key, word or effect (with the nearest name), a value out of
-///                        range, effects that cannot be there; the sentence names file and line.
+///                        range, impossible effects; the sentence names file and line.
 [[nodiscard]] Result<Scenario> read_scenario(const std::filesystem::path& path);
 
 }  // namespace recald::simulators

@@ -1,4 +1,4 @@
-/// What goes with a scenario's feed: the user's site file, and the truth for scoring.
+/// Files that accompany a scenario's feed: the user's site file, and the truth for scoring.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace recald::simulators {
 
-/// What an engineer with the drawings would write. Depends on drawings, period and the meters that
-/// are there, never on the seed or on what is hidden.
+/// What an engineer with the drawings would write. Depends on drawings, period and the existing
+/// meters, never on the seed or on hidden effects.
 [[nodiscard]] std::string site_toml(const Scenario& scenario);
 
-/// Everything the site file hides, as JSON: the true parameters with notes on their meaning, the
-/// faults that were injected, the effects, and clean monthly figures by local month.
+/// Everything that the site file does not show, as JSON: the true parameters with notes on their
+/// meaning, the injected faults, the effects, and clean monthly figures by local month.
 [[nodiscard]] std::string truth_json(const Scenario& scenario, std::uint64_t seed,
                                      const Simulated& simulated,
                                      const std::vector<MeterFeed>& feeds,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kColumns = 100;
 
-/// A comment of as many lines as it takes.
+/// A comment wrapped over several lines.
 std::string as_comment(std::string_view text) {
   std::string out = "#";
   std::size_t column = 1;
@@ -83,7 +83,7 @@ rated_kW = {:.0f}
 }
 
 std::string meters(const Scenario& scenario) {
-  // Electricity first, as people name them.
+  // Electricity first, the usual order.
   std::vector<MeterPlate> plates = plates_of(scenario.drawings);
   if (has_decoy(scenario, Decoy::neighbour_meter)) plates.push_back(neighbour_plate());
   std::ranges::stable_partition(
@@ -105,7 +105,7 @@ std::string outputs(const Drawings& drawings) {
       poor ? "weights = { steam = 0.5 }   # the steam meter is known to be poor\n" : "");
 }
 
-/// The last year validates; a single year keeps its last four months for that.
+/// The last year is for validation; of a single year, the last four months.
 std::string periods_and_model(const Drawings& drawings, const Period& period) {
   const int last_year = period.start_year + period.years - 1;
   const bool single = period.years == 1;
@@ -207,7 +207,7 @@ sunday = [{}]
                      by_hour(drawings.presence_saturday), by_hour(drawings.presence_sunday));
 }
 
-/// Of the outdoor air, what runs while nobody is expected.
+/// Share of the outdoor air that runs while nobody is expected.
 double night_outdoor_share(const Drawings& drawings) {
   const auto storeys = static_cast<double>(drawings.storeys);
   double share = 0.0;
@@ -226,7 +226,7 @@ std::string_view at_night_in_words(const Drawings& drawings) {
 }
 
 std::string operation(const Drawings& drawings) {
-  // Rooms that are never left to float hold their set-points at night: the floor-area means.
+  // Rooms that never float keep their set-points at night: the floor-area means.
   const auto storeys = static_cast<double>(drawings.storeys);
   const double core_share = storeys * drawings.core_and_special_m2() / drawings.floor_area_m2();
   const double held_share = drawings.never_stops()      ? 1.0

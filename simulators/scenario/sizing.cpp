@@ -38,8 +38,8 @@ double outdoor_air_l_s_m2(const Drawings& drawings, bool perimeter) {
   return 0.0;
 }
 
-/// A day and a person, or a place where people come and go. ASHRAE Applications ch. 50: 3.8 litres
-/// in offices, 9 a meal; CIBSE Guide G: about 100 a hotel bed, 25 and more a shower.
+/// Per day and person, or per place where people come and go. ASHRAE Applications ch. 50: 3.8
+/// litres in offices, 9 per meal; CIBSE Guide G: about 100 per hotel bed, 25 and more per shower.
 double hot_water_m3_person(Use use) {
   switch (use) {
     case Use::laboratory:
@@ -63,7 +63,7 @@ double hot_water_m3_person(Use use) {
   return 0.0;
 }
 
-/// Peak sensible load of a zone by rule of thumb: people and machines, sun at its height, walls.
+/// Peak sensible load of a zone by rule of thumb: people and machines, full sun, walls.
 double peak_load_W(const Drawings& drawings, std::size_t side, double design_C) {
   constexpr std::array<double, 4> sun_W_m2{450.0, 180.0, 650.0, 700.0};
   const RoomUse& rooms = drawings.rooms(side);
@@ -93,7 +93,7 @@ double peak_load_W(const Drawings& drawings, std::size_t side, double design_C) 
   return load_W;
 }
 
-/// The air that carries a hall's heat in winter: boxes open half way and give 33 degC.
+/// The air that heats a hall in winter: boxes open half way and supply 33 degC.
 double heating_flow_m3_s(const Drawings& drawings, std::size_t side, double design_C) {
   constexpr double warmest_C = 33.0;
   constexpr double open_share = 0.5;
@@ -134,7 +134,7 @@ AirHandlerPlate air_handler_for(const Drawings& drawings, bool perimeter, double
   const double outdoor_m3_s =
       std::min(0.9 * flow_m3_s, outdoor_air_l_s_m2(drawings, perimeter) * area_m2 / 1000.0);
   const bool exhausts = drawings.use == Use::laboratory && !perimeter;
-  // Humid outdoor air asks for more of the coil than returned air.
+  // Humid outdoor air loads the coil more than return air.
   const double moisture =
       drawings.climate == ClimateKind::hot_humid || drawings.climate == ClimateKind::mixed ? 46.0
                                                                                            : 28.0;
@@ -147,8 +147,8 @@ AirHandlerPlate air_handler_for(const Drawings& drawings, bool perimeter, double
               5.0, in_steps(1.5 * kAirHeat_kJ_m3K * outdoor_m3_s * (14.0 - design_winter_C), 1.0))};
 }
 
-/// Half of the outdoor air presses outwards through a hall's cracks, the rest leaves by ducts; of a
-/// kitchen's nothing is left over.
+/// In a hall, half of the outdoor air leaves through cracks and the rest through ducts; in a
+/// kitchen the hoods take all of it.
 double pressurised_Pa(const Drawings& drawings) {
   constexpr double tight_Pa = 3.0;
   if (!drawings.hall) return tight_Pa;

@@ -1,4 +1,4 @@
-/// What engineers size for a building as drawn.
+/// Sizes the services of a building as drawn.
 #pragma once
 
 #include "simulators/building/drawings.hpp"
@@ -9,7 +9,7 @@ namespace recald::simulators {
 /// geometry, constructions, rooms or outdoor air.
 void size_services(Drawings& drawings);
 
-/// The nearest multiple of the step, as people round.
+/// The nearest multiple of the step, as in ordinary rounding.
 [[nodiscard]] double in_steps(double value, double step);
 
 }  // namespace recald::simulators

@@ -111,7 +111,7 @@ double lost_share(const MeterFeed& feed) {
   return static_cast<double>(lost) / static_cast<double>(feed.cells.size());
 }
 
-/// Clean figures of one meter: what a perfect meter without gaps would have given.
+/// Clean figures of one meter: what a perfect meter without gaps would have measured.
 Json monthly_figures(const Recording& recording, const metering::LocalCalendar& calendar,
                      Utility utility) {
   Json list = Json::array();
@@ -162,7 +162,7 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed, const Simul
   const double floor_m2 = truth.drawings.floor_area_m2();
   Json meters = Json::object();
   for (const MeterFeed& feed : feeds) {
-    if (feed.plate.id == neighbour_plate().id) continue;  // nothing of it is ours to know
+    if (feed.plate.id == neighbour_plate().id) continue;  // not part of this building
     meters[std::string(feed.plate.id)] = meter_truth(recording, calendar, feed, floor_m2);
   }
   const Json json = {

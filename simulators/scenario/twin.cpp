@@ -6,7 +6,7 @@
 namespace recald::simulators {
 namespace {
 
-/// Wind of the same climate and season that never blew here.
+/// Replaces the wind by that of another year in the same climate.
 void replace_wind(Recording& recording, const Drawings& drawings, std::uint64_t seed) {
   WeatherGenerator elsewhere(climate_of(drawings.climate, drawings.place), recording.begin,
                              stream_of(seed, Stream::decoys), kInterval);
@@ -17,7 +17,7 @@ void replace_wind(Recording& recording, const Drawings& drawings, std::uint64_t 
   }
 }
 
-/// A shop next door: its hours, its cooling, nothing of ours.
+/// A shop next door, with its own hours and cooling.
 Recording neighbour_of(const Recording& recording, const metering::LocalCalendar& calendar,
                        std::uint64_t seed) {
   Recording neighbour{recording.begin, {}, {}};

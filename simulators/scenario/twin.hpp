@@ -1,4 +1,4 @@
-/// Runs a scenario's building, with and without what is hidden in it.
+/// Simulates a scenario's building, with and without its hidden effects.
 #pragma once
 
 #include "simulators/scenario/scenario.hpp"
@@ -6,7 +6,7 @@
 namespace recald::simulators {
 
 struct Simulated {
-  Building building;  ///< As it stands at the end of the period.
+  Building building;  ///< In its state at the end of the period.
   Recording recording;
 };
 
@@ -15,7 +15,7 @@ struct Simulated {
 [[nodiscard]] Result<Simulated> simulate(const Scenario& scenario, std::uint64_t seed,
                                          const metering::LocalCalendar& calendar);
 
-/// The same building, weather, people and meters; nothing hidden.
+/// The same building, weather, people and meters, without hidden effects.
 [[nodiscard]] Scenario twin_of(Scenario scenario);
 
 /// What the effects add to each meter of `plates_of`, kW by interval, free of noise and gaps.

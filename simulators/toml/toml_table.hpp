@@ -1,11 +1,11 @@
-/// Strict reading of the TOML files that describe a simulated world: a wrong value and a key that
-/// nobody knows are named with file and line.
+/// Strict reader for the simulators' TOML files: wrong values and unknown keys are reported
+/// with file and line.
 #pragma once
 
 #include <fmt/format.h>
 
-// toml++ asserts what a file may well break ("[{" does), which would end a program whose assertions
-// are on; without it the same parser answers with an error.
+// toml++ has assertions that a bad file can break ("[{" does), which would abort a program with
+// assertions on. Without them the same parser returns an error.
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace recald::simulators {
 
-/// Keeps the first thing that is wrong, so that reading need not stop at every key.
+/// Keeps the first mistake, so that reading need not stop at every key.
 class Complaint {
  public:
   explicit Complaint(std::string file) : file_(std::move(file)) {}
@@ -44,19 +44,19 @@ struct Word {
 
 using Names = std::set<std::string, std::less<>>;
 
-/// " (did you mean storeys?)", or nothing where no name comes near.
+/// " (did you mean storeys?)", or nothing if no name is close.
 [[nodiscard]] std::string did_you_mean(std::string_view text, const Names& names);
 
-/// @param what  "scenario": what a reader would call the file.
+/// @param what  "scenario": the reader's word for the file.
 /// @return the file's tables; not_found, or malformed with file and line.
 [[nodiscard]] Result<toml::table> read_toml(const std::filesystem::path& path,
                                             std::string_view what);
 
-/// One table; remembers which keys were asked for, so that the rest are unknown. A value is left
-/// as it is where its key is absent or wrong.
+/// One table. It remembers which keys were read, so that the others are unknown. A value stays
+/// unchanged if its key is absent or wrong.
 class TomlTable {
  public:
-  /// @param table  Null: an absent one, which has no keys.
+  /// @param table  Null: an absent table without keys.
   TomlTable(const toml::table* table, std::string_view name, Complaint& complaint)
       : table_(table), name_(name), complaint_(complaint) {}
 
@@ -66,10 +66,10 @@ class TomlTable {
   void flag(std::string_view key, bool& value);
   template <class T, std::size_t N>
   void word(std::string_view key, const std::array<Word<T>, N>& words, T& value);
-  /// Empty where it is absent.
+  /// Empty if absent.
   [[nodiscard]] std::string text(std::string_view key);
   [[nodiscard]] std::optional<metering::Day> day(std::string_view key);
-  /// So many numbers, or one; empty where the key is absent.
+  /// `count` numbers, or one; empty if the key is absent.
   [[nodiscard]] std::vector<double> one_or_numbers(std::string_view key, std::size_t count,
                                                    double least, double most);
   /// [[NAME]]: all tables of that name.

@@ -1,4 +1,4 @@
-/// The plant stops later than its timetable says.
+/// The plant stops later than in its timetable.
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/half_normal.hpp"
 #include "core/diagnosis/effects/support/plant_hours.hpp"
@@ -6,7 +6,7 @@
 namespace recald::diagnosis::effects {
 namespace {
 
-/// Counts from the last stop, so a late stop may reach past midnight, and Friday's into Saturday.
+/// Counts from the last stop, so a late stop may extend past midnight, on Fridays into Saturday.
 class AfterHours final : public model::hourly::Alteration {
  public:
   explicit AfterHours(double late_h) : late_h_(late_h) {}

@@ -14,7 +14,7 @@ using model::hourly::StepLoads;
 using model::hourly::StepOperation;
 
 constexpr double kLatentAllowance = 1.3;  // of a sensible design load, usual in offices
-constexpr double kDesign_W_m2 = 100.0;    // where no air system tells the design load
+constexpr double kDesign_W_m2 = 100.0;    // used without an air system that gives the design load
 constexpr double kLeastLoad = 0.1;        // below, the chiller cycles at this load
 constexpr double kReferenceCondenser_C = 30.0;
 constexpr double kTowerApproach_K = 5.0;
@@ -28,8 +28,8 @@ double design_cooling_W(const SiteFacts& facts) {
          building.air->supply_flow_design_m3_s * std::max(drop_K, 5.0);
 }
 
-/// The entry's quadratic curve with its two separable habits left: a part of the power that does
-/// not follow the load, and dearer cooling where the condenser is warm. Its overall gain is the
+/// Two separable parts of the entry's quadratic curve: a share of the power that does not follow
+/// the load, and more expensive cooling when the condenser is warm. Its overall factor is the
 /// nominal COP, a calibration parameter.
 class ChillerPartLoad final : public model::hourly::Alteration {
  public:
@@ -40,7 +40,7 @@ class ChillerPartLoad final : public model::hourly::Alteration {
               StepLoads& loads) const override {
     const double load_W = loads.sensible_cooling_W + loads.latent_cooling_W;
     const double ratio = std::clamp(load_W / design_W_, kLeastLoad, 1.0);
-    // Outdoor air stands for the tower's water, which follows it from some 15 C up.
+    // Outdoor air stands for the tower's water, which follows it from about 15 C up.
     const double condenser_C = std::max(operation.dry_bulb_C + kTowerApproach_K, kLeastCondenser_C);
     loads.cooling_cost_factor *= 1.0 + idle_share_ * (1.0 / ratio - 1.0);
     loads.cooling_cost_factor *= 1.0 + per_K_ * (condenser_C - kReferenceCondenser_C);

@@ -1,4 +1,4 @@
-/// A meter whose clock is wrong, or whose time zone was misread.
+/// A meter whose clock is wrong, or whose time zone was misinterpreted.
 #include <algorithm>
 
 #include "core/diagnosis/effect.hpp"

@@ -1,4 +1,4 @@
-/// Pumps run at full speed whether anybody needs water or not.
+/// Pumps run at full speed whether water is needed or not.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -18,8 +18,8 @@ std::size_t calendar_month(const model::DriverHour& hour) {
   return static_cast<unsigned>(hour.date.month()) - 1;
 }
 
-/// Months warmer than the middle between the warmest and the coldest month of the drivers; none
-/// that the drivers lack.
+/// Months warmer than the midpoint between the warmest and the coldest month of the drivers; only
+/// months that the drivers have.
 Months warm_months(const model::Drivers& drivers) {
   std::array<double, 12> mean_C{};
   std::array<int, 12> hours{};
@@ -52,7 +52,7 @@ Months enabled_months(const model::Drivers& drivers, double season) {
   return enabled;
 }
 
-/// Heat that the pumps leave in the water is a few per cent of their power and left out.
+/// Leaves out the heat of the pumps in the water, a few per cent of their power.
 class ConstantFlowPumps final : public model::hourly::Alteration {
  public:
   ConstantFlowPumps(const Months& enabled, double extra_kW)
@@ -68,7 +68,7 @@ class ConstantFlowPumps final : public model::hourly::Alteration {
   double extra_kW_;
 };
 
-/// Mean of the electricity meter; 10 W/m² where there is none.
+/// Mean of the electricity meter; 10 W/m² if there is none.
 double reference_kW(const SiteFacts& facts) {
   const double electricity_kW = facts.mean_of_kW(metering::Utility::electricity);
   return electricity_kW > 0.0 ? electricity_kW : 0.01 * facts.building.floor_area_m2;

@@ -1,11 +1,11 @@
-/// Outdoor air comes in through handlers that stand still.
+/// Outdoor air enters through stopped handlers.
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
 
-/// Only idle handlers change: while they run, the draught of the fans sets the outdoor air. The
-/// model itself leaves out the rooms that are being served.
+/// Only stopped handlers change: while they run, the fans' suction sets the outdoor air. The model
+/// itself leaves out rooms that are being served.
 class DamperStuckOpen final : public model::hourly::Alteration {
  public:
   explicit DamperStuckOpen(double open_share) : open_share_(open_share) {}

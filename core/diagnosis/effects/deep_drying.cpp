@@ -1,4 +1,4 @@
-/// The coil dries the air deeper than drawn.
+/// The coil dries the air further than drawn.
 #include <algorithm>
 
 #include "core/diagnosis/effect.hpp"
@@ -7,11 +7,11 @@
 namespace recald::diagnosis::effects {
 namespace {
 
-constexpr double kDriest_kg_kg = 0.003;  // Near that of saturated air on freezing coils.
+constexpr double kDriest_kg_kg = 0.003;  // Close to saturated air on freezing coils.
 
-/// The catalogue's entry 19 is a latent load that the model lacks. This model has one
-/// (latent_share 1), so what can lack is depth: w_s lies lower than that of air at 95 % and supply
-/// temperature, because the coil is colder than the air that leaves it.
+/// The catalogue's entry 19 is a latent load missing from the model. This model has a latent load
+/// (latent_share 1), so only its depth can be missing: w_s is lower than that of air at 95 % and
+/// supply temperature, because the coil is colder than the leaving air.
 class DeepDrying final : public model::hourly::Alteration {
  public:
   explicit DeepDrying(double deeper_kg_kg) : deeper_kg_kg_(deeper_kg_kg) {}

@@ -1,4 +1,4 @@
-/// Loads shed on the hottest afternoons.
+/// Loads are shed on the hottest afternoons.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -24,8 +24,8 @@ bool is_afternoon(const DriverHour& hour) {
   return kFromHour <= hour.local_hour && hour.local_hour < kToHour;
 }
 
-/// Warmest afternoon hour of each local day, by `DriverHour::day_index`; days without working
-/// afternoon keep a frost that calls nothing off.
+/// Warmest afternoon hour of each local day, by `DriverHour::day_index`; days without a working
+/// afternoon get a very low value, so that no event is called.
 std::vector<double> warmest_afternoons_C(const model::Drivers& drivers) {
   constexpr double never_C = -273.15;
   const int days = drivers.hours.empty() ? 0 : drivers.hours.back().day_index + 1;
@@ -55,14 +55,14 @@ class DemandLimit final : public model::hourly::Alteration {
   }
 
  private:
-  /// Of the load, less than zero while it is shed.
+  /// Of the load; negative while it is shed.
   double change(const DriverHour& hour) const {
     const bool rebounds = kToHour <= hour.local_hour && hour.local_hour < kReboundToHour;
     if (!rebounds && !is_afternoon(hour)) return 0.0;
     return (rebounds ? rebound_ : -1.0) * shed_ * calling(hour.day_index);
   }
 
-  /// 1 on an event day, 0 on others, between within half a kelvin of the threshold.
+  /// 1 on an event day, 0 on others, in between within half a kelvin of the threshold.
   double calling(int day_index) const {
     const double excess_K = warmest_C_[static_cast<std::size_t>(day_index)] - above_C_;
     return std::clamp(0.5 + excess_K, 0.0, 1.0);
@@ -74,7 +74,7 @@ class DemandLimit final : public model::hourly::Alteration {
   std::vector<double> warmest_C_;
 };
 
-/// Temperature that this share of the days with a working afternoon stays below.
+/// Temperature below which this share of the days with a working afternoon stays.
 double quantile_C(const std::vector<double>& sorted_C, double share) {
   return sorted_C[static_cast<std::size_t>(share * static_cast<double>(sorted_C.size() - 1))];
 }

@@ -1,4 +1,4 @@
-/// Outdoor air follows the people.
+/// Outdoor air follows the number of people.
 #include <algorithm>
 
 #include "core/diagnosis/effect.hpp"
@@ -6,7 +6,7 @@
 namespace recald::diagnosis::effects {
 namespace {
 
-/// Rooms that are served round the clock beside others are laboratories, whose hoods do not count
+/// If only some rooms are served round the clock, these are laboratories, whose hoods do not count
 /// people: only the share of the running handlers that serves daytime rooms is throttled.
 class DemandVentilation final : public model::hourly::Alteration {
  public:
@@ -26,7 +26,7 @@ class DemandVentilation final : public model::hourly::Alteration {
   double always_share_;
 };
 
-/// All handlers together if every one runs round the clock: then they serve ordinary rooms.
+/// All handlers together if all run round the clock: then they serve ordinary rooms.
 double always_share(const model::Building& building) {
   const double share = building.air ? building.air->outdoor_air_unoccupied_fraction : 0.0;
   return share < 1.0 ? share : 0.0;

@@ -1,4 +1,4 @@
-/// A logger that changes its clock when the building does not, or the other way round.
+/// A logger that changes its clock when the building does not, or the reverse.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -14,9 +14,9 @@ namespace {
 
 using metering::Day;
 
-/// The usual summer time of the place's half of the world, for a site whose own clock never
-/// changes: the second Sunday of March to the first of November west of the Atlantic, the last ones
-/// of March and October elsewhere.
+/// The usual summer time on that side of the Atlantic, for a site whose own clock never changes:
+/// the second Sunday of March to the first of November on the western side, the last ones of March
+/// and October elsewhere.
 bool is_summer_elsewhere(Day date, bool western) {
   using namespace std::chrono;  // NOLINT: calendar literals
   const year y = date.year();
@@ -27,7 +27,7 @@ bool is_summer_elsewhere(Day date, bool western) {
   return date >= begin && date < end;
 }
 
-/// Local noon comes late in the UTC day there.
+/// In the west, local noon is late in the UTC day.
 bool is_western(const model::DriverHour& hour) {
   const auto utc_hour =
       std::chrono::hh_mm_ss{hour.start.time_since_epoch() -
@@ -38,7 +38,7 @@ bool is_western(const model::DriverHour& hour) {
   return ahead <= -3;
 }
 
-/// All meters of a logger share its clock, so `record` does not ask which one it has.
+/// All meters of a logger share its clock, so `record` does not depend on the meter.
 class DstMisapplied final : public model::hourly::Alteration {
  public:
   DstMisapplied(const model::Drivers& drivers, double offset_hours)
@@ -69,7 +69,7 @@ class DstMisapplied final : public model::hourly::Alteration {
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "summer_offset",
            .unit = "h",
-           // Half an hour of summer time exists nowhere but on Lord Howe Island.
+           // Only Lord Howe Island has half an hour of summer time.
            .prior = UniformPrior{.min = -1.5, .max = 1.5},
            .neutral = 0.0,
            .scan = {-1.0, 1.0},

@@ -1,4 +1,4 @@
-/// The plant starts earlier than its timetable says, the more so in the cold.
+/// The plant starts earlier than in its timetable, and earlier still in the cold.
 #include <algorithm>
 
 #include "core/diagnosis/effect.hpp"

@@ -1,4 +1,4 @@
-/// Free cooling ends at another outdoor temperature than drawn.
+/// Free cooling ends at a different outdoor temperature than drawn.
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {

@@ -1,4 +1,4 @@
-/// Free cooling does not come.
+/// Free cooling does not work.
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {

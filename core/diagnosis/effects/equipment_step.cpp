@@ -1,4 +1,4 @@
-/// New equipment, or old taken out, on one day.
+/// Equipment is added or removed on one day.
 #include <algorithm>
 
 #include "core/diagnosis/effects/support/meter_priors.hpp"

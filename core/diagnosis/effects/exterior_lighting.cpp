@@ -1,4 +1,4 @@
-/// Lamps outdoors that the drawings do not know.
+/// Outdoor lamps that are not in the drawings.
 #include <algorithm>
 #include <array>
 
@@ -27,8 +27,8 @@ SharesByHour mean_dark_shares(const model::Drivers& drivers) {
   return sums;
 }
 
-/// A plug profile from the electricity meter may hold the lamps' mean of each hour already, as heat
-/// in the rooms; that share of it is taken out.
+/// A plug profile derived from the electricity meter may already contain the lamps' mean of each
+/// hour, as heat in the rooms; that share is subtracted.
 class ExteriorLighting final : public model::hourly::Alteration {
  public:
   ExteriorLighting(double power_kW, double share_in_plugs, const SharesByHour& mean_dark_shares)

@@ -1,4 +1,4 @@
-/// Cooling costs more from month to month, until somebody cleans.
+/// Cooling costs more from month to month, until the condenser is cleaned.
 #include <algorithm>
 
 #include "core/absent.hpp"
@@ -14,8 +14,8 @@ namespace {
 using model::hourly::StepLoads;
 using model::hourly::StepOperation;
 
-/// Its dates are its physics (growth counts from one and restarts at the other), so they are
-/// parameters here and not left to the wrapper, which could only switch the effect on and off.
+/// Its dates are part of its physics (growth counts from one and restarts at the other), so they
+/// are parameters here. The wrapper could only switch the effect on and off.
 class Fouling final : public model::hourly::Alteration {
  public:
   Fouling(double per_year, double from_day, double cleaned_day)

@@ -1,4 +1,4 @@
-/// Basement walls and slab lose heat to a ground that lags the seasons.
+/// Basement walls and slab lose heat to ground whose temperature lags the seasons.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using model::hourly::StepOperation;
 
 constexpr double kPerDay = 2.0 * std::numbers::pi / 365.0;  // rad
-constexpr double kLongEnough_hours = 300.0 * 24.0;          // to tell mean and swing apart
+constexpr double kLongEnough_hours = 300.0 * 24.0;          // to separate mean and swing
 
 /// The yearly wave of the outdoor air: mean - swing cos(2 pi (day - coldest) / 365).
 struct YearlyWave {
@@ -25,7 +25,7 @@ struct YearlyWave {
   double coldest_day;
 };
 
-/// Least squares over the record; a record too short to show the wave gets a usual one.
+/// Least squares over the record; a record too short to show the wave gets a typical one.
 YearlyWave wave_of(const SiteFacts& facts) {
   const auto& hours = facts.drivers.hours;
   if (static_cast<double>(hours.size()) < kLongEnough_hours) {
@@ -57,8 +57,8 @@ double footprint_m2(const model::Building& building) {
   return building.floor_area_m2 / std::max(building.storeys, 1);
 }
 
-/// Widens the model's own path to the ground, so that the exchange follows the rooms. That path
-/// then leads to the mean of both ground temperatures, weighted by their conductances.
+/// Widens the model's own path to the ground, so that the exchange follows the rooms. The path then
+/// leads to the mean of both ground temperatures, weighted by their conductances.
 class GroundCoupling final : public model::hourly::Alteration {
  public:
   GroundCoupling(const SiteFacts& facts, double conductance_W_K, double lag_days)
@@ -80,14 +80,14 @@ class GroundCoupling final : public model::hourly::Alteration {
   }
 
   void operate(const model::DriverHour& hour, StepOperation& operation) const override {
-    if (conductance_W_K_ == 0.0) return;  // without any path to the ground 0/0 would follow
+    if (conductance_W_K_ == 0.0) return;  // without any path to the ground this would be 0/0
     const double weight = conductance_W_K_ / (drawn_W_K_ + conductance_W_K_);
     operation.ground_C += weight * (ground_C(hour.day_of_year) - operation.ground_C);
   }
 
  private:
-  /// In a half-infinite solid a wave that lags by an angle is damped by exp(-angle): the entry's
-  /// free amplitude follows from its lag.
+  /// In a half-infinite solid a wave that lags by an angle is damped by exp(-angle), so the
+  /// amplitude, free in the entry, follows from its lag.
   double ground_C(int day_of_year) const {
     const double damped_K = wave_.swing_K * std::exp(-kPerDay * lag_days_);
     return wave_.mean_C -

@@ -1,4 +1,4 @@
-/// A heat pump that thaws its outdoor coil heats with less.
+/// A heat pump heats less efficiently while it defrosts its outdoor coil.
 #include <algorithm>
 #include <cmath>
 
@@ -14,10 +14,10 @@ namespace {
 using model::hourly::StepLoads;
 using model::hourly::StepOperation;
 
-// Coils frost most near 1 C: colder air holds less water, warmer air does not freeze on them.
+// Coils frost most near 1 C: colder air holds less water, and warmer air does not freeze on them.
 constexpr double kWorst_C = 1.0;
 constexpr double kTwiceVariance_K2 = 18.0;  // 3 K wide
-// No frost in air drier than this, all of it from 90 % on.
+// No frost in air drier than this; full frosting from 90 % on.
 constexpr double kDry = 0.5;
 constexpr double kDryToMoist = 0.4;
 

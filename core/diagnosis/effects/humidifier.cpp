@@ -1,4 +1,4 @@
-/// Steam moistens dry outdoor air.
+/// Steam humidifies dry outdoor air.
 #include <algorithm>
 
 #include "core/absent.hpp"
@@ -7,8 +7,9 @@
 namespace recald::diagnosis::effects {
 namespace {
 
-/// The model pays for what the humidifier holds above outdoor air, so a share of the air handlers
-/// that has one is held that much lower. Drawn humidifiers count: the larger of the two is paid.
+/// The model charges for the humidity above outdoor air, so if only a share of the air handlers has
+/// a humidifier, the humidity ratio is lowered accordingly. The larger of this and the drawn
+/// humidifier is charged.
 class Humidifier final : public model::hourly::Alteration {
  public:
   Humidifier(double served_share, double held_kg_kg)

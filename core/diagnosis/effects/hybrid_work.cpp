@@ -7,7 +7,7 @@
 namespace recald::diagnosis::effects {
 namespace {
 
-/// The profile of the meter is the mean of all workdays, so the changes of a week sum to zero.
+/// The meter's profile is the mean of all workdays, so the changes of a week sum to zero.
 class HybridWork final : public model::hourly::Alteration {
  public:
   HybridWork(const model::Drivers& drivers, double midweek, double monday_over_friday)
@@ -24,8 +24,8 @@ class HybridWork final : public model::hourly::Alteration {
   std::array<double, 7> change_;  // Sunday first.
 };
 
-/// The widths give each single weekday a standard deviation of 0.10…0.18 about the catalogue's
-/// 0.15; the bounds keep the number of people from falling below none.
+/// The widths give each single weekday a standard deviation of 0.10…0.18, around the catalogue's
+/// 0.15; the bounds keep the number of people from becoming negative.
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   const TruncatedNormalPrior prior{.location = 0.0, .sd = 0.10, .min = -0.4, .max = 0.4};
   return {{.name = "midweek", .unit = "share of mean presence", .prior = prior, .neutral = 0.0},

@@ -1,4 +1,4 @@
-/// The building is shut on public holidays that its calendar does not have.
+/// The building is closed on public holidays that are not in its calendar.
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 using metering::Day;
 
-/// A holiday on a weekend is kept on the nearest weekday.
+/// A holiday on a weekend is observed on the nearest weekday.
 Day observed(std::chrono::sys_days day) {
   const std::chrono::weekday weekday{day};
   if (weekday == std::chrono::Saturday) return day - std::chrono::days{1};
@@ -26,7 +26,7 @@ void mark_year_end(std::chrono::year year, DateTable& table) {
   table.mark(year / 12 / 31);
 }
 
-/// Days on which most offices in the United States are shut.
+/// Days on which most offices in the United States are closed.
 DateTable north_american_holidays() {
   using namespace std::chrono;  // NOLINT: calendar literals
   DateTable table;
@@ -63,7 +63,7 @@ DateTable european_holidays() {
   return table;
 }
 
-/// A British holiday on a weekend is made up for on the next working day.
+/// A British holiday on a weekend moves to the next working day.
 Day made_up(std::chrono::sys_days day) {
   const std::chrono::weekday weekday{day};
   if (weekday == std::chrono::Saturday) return day + std::chrono::days{2};
@@ -71,7 +71,7 @@ Day made_up(std::chrono::sys_days day) {
   return day;
 }
 
-/// Bank holidays of England and Wales, and the days to New Year, when offices mostly stay shut.
+/// Bank holidays of England and Wales, and the days to New Year, when most offices are closed.
 DateTable british_holidays() {
   using namespace std::chrono;  // NOLINT: calendar literals
   DateTable table;
@@ -97,7 +97,7 @@ const DateTable& holidays_of(double calendar) {
   return calendar < 2.5 ? european : british;
 }
 
-/// The building's own Sundays, by calendar month and local hour: what a holiday looks like.
+/// The building's own Sundays, by calendar month and local hour, as a model of a holiday.
 class Sundays {
  public:
   struct Loads {
@@ -113,7 +113,7 @@ class Sundays {
     }
   }
 
-  /// Nothing where the drivers have no Sunday in this calendar month.
+  /// Nothing if the drivers have no Sunday in this calendar month.
   [[nodiscard]] std::optional<Loads> at(const model::DriverHour& hour) const {
     const Loads& loads = loads_[month(hour)][local_hour(hour)];
     return std::isnan(loads.people_share) ? std::nullopt : std::optional(loads);
@@ -129,8 +129,8 @@ class Sundays {
   std::array<std::array<Loads, 24>, 12> loads_;
 };
 
-/// Lights and plugs go to the meter's own Sunday values, not to a guessed share of the workday's:
-/// holidays look like Sundays in real meters.
+/// Lights and plugs get the meter's own Sunday values, not an assumed share of the workday's: in
+/// real meters holidays look like Sundays.
 class MissingHolidays final : public model::hourly::Alteration {
  public:
   MissingHolidays(const model::Drivers& drivers, double shut_share, double plant_share,

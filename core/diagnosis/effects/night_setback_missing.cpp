@@ -1,4 +1,4 @@
-/// Set-points are not relaxed when the rooms are empty.
+/// Set-points are not relaxed when the rooms are unoccupied.
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {

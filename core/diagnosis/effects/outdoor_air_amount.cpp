@@ -1,4 +1,4 @@
-/// More or less least outdoor air than drawn.
+/// More or less minimum outdoor air than drawn.
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {

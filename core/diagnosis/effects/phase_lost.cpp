@@ -22,10 +22,10 @@ class PhaseLost final : public model::hourly::Alteration {
   int meter_;
 };
 
-/// One factor 1 - a serves both faults of three even phases, which the sum cannot tell apart:
-/// a = 1/3 one phase lost; 2/3 two lost, or one transformer reversed (1 - 2/3 = 1 - 2 x 1/3);
-/// 1 all lost. Phases are rarely even, so values between are open to the fit; much less than a
-/// third is no phase but a change of load, and the prior says so.
+/// One factor 1 - a covers both faults of three even phases, which the sum cannot distinguish: a =
+/// 1/3 one phase lost; 2/3 two lost, or one transformer reversed (1 - 2/3 = 1 - 2 x 1/3); 1 all
+/// lost. Phases are rarely even, so values in between are possible; much less than a third is not a
+/// phase but a change of load, and the prior excludes it.
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "lost_share",
            .unit = "-",

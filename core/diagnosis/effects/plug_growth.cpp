@@ -1,4 +1,4 @@
-/// People bring more devices every year, or fewer.
+/// The number of plugged-in devices grows or shrinks every year.
 #include "core/diagnosis/elapsed_days.hpp"
 
 namespace recald::diagnosis::effects {
@@ -9,8 +9,8 @@ namespace {
 
 using model::hourly::StepOperation;
 
-/// Turns about the middle of the record: the plug profile is a mean over it, and growth from its
-/// first day would also raise that mean.
+/// Pivots at the middle of the record, because the plug profile is a mean over the record and
+/// growth from its first day would also raise that mean.
 class PlugGrowth final : public model::hourly::Alteration {
  public:
   PlugGrowth(double per_year, double middle_day) : per_year_(per_year), middle_day_(middle_day) {}
@@ -25,7 +25,7 @@ class PlugGrowth final : public model::hourly::Alteration {
   double middle_day_;
 };
 
-/// Ends of the prior keep plugs positive over records of up to six years.
+/// Bounds of the prior keep plugs positive over records of up to six years.
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "growth",
            .unit = "1/a",

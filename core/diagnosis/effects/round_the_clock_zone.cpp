@@ -5,8 +5,7 @@
 namespace recald::diagnosis::effects {
 namespace {
 
-/// The rooms' own electricity is in the profile that the meter gave; what is new is air and
-/// set-points.
+/// The rooms' own electricity is already in the meter's profile; only air and set-points change.
 class RoundTheClockZone final : public model::hourly::Alteration {
  public:
   explicit RoundTheClockZone(double floor_share) : floor_share_(floor_share) {}

@@ -1,4 +1,4 @@
-/// A meter that counts too much or too little of everything.
+/// A meter that counts everything too high or too low.
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {
@@ -22,7 +22,7 @@ class ScaleFault final : public model::hourly::Alteration {
   int meter_;
 };
 
-/// Tenfold slips and wrong units are found as the data come in; this is what remains.
+/// Tenfold slips and wrong units are found on arrival of the data; this covers the rest.
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "scale",
            .unit = "-",

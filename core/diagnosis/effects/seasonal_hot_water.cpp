@@ -13,7 +13,7 @@ namespace {
 using model::hourly::StepLoads;
 using model::hourly::StepOperation;
 
-constexpr double kWarmestWaterDay = 230.0;              // as the models' own cold water has it
+constexpr double kWarmestWaterDay = 230.0;              // as in the models' own cold water
 constexpr double kWater_W_per_m3_dayK = 1163.0 / 24.0;  // rho c of a steady draw
 
 class SeasonalHotWater final : public model::hourly::Alteration {
@@ -36,7 +36,7 @@ class SeasonalHotWater final : public model::hourly::Alteration {
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
-  // A tenth of the summer's heat, of which the mean over the year has some two and a half times.
+  // A tenth of the summer's heat, which is about 1/2.5 of the mean over the year.
   const double loop_loss_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.04);
   return {
       {.name = "mains_swing", .unit = "K", .prior = half_normal_below(8.0, 20.0), .neutral = 0.0},

@@ -14,8 +14,8 @@ using model::hourly::StepLoads;
 using model::hourly::StepOperation;
 
 /// Its cooled heat bypasses the rooms and the air handlers. The plug profile comes from the
-/// electricity meter, so part of the load may stand in it already, as heat in the rooms: that part
-/// is taken out of them here and put back as electricity behind the zones.
+/// electricity meter, so it may already contain part of the load, as heat in the rooms: that part
+/// is subtracted from them here and added again as electricity behind the zones.
 class ServerRoom final : public model::hourly::Alteration {
  public:
   ServerRoom(double power_kW, double cooled_share, double share_in_plugs)

@@ -20,7 +20,7 @@ class SimultaneousHeatingCooling final : public model::hourly::Alteration {
   double wasted_kW_;
 };
 
-/// Mean of chilled water; where an own chiller hides it, that of heat; else 10 W/m².
+/// Mean of chilled water; with an own chiller, that of heat; else 10 W/m².
 double reference_kW(const SiteFacts& facts) {
   const double cooling_kW = facts.mean_of_kW(metering::Utility::chilled_water);
   if (cooling_kW > 0.0) return cooling_kW;

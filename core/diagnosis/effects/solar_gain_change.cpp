@@ -1,4 +1,4 @@
-/// More or less sun comes in than windows, blinds and neighbours on the drawings let.
+/// More or less sun enters than with the windows, blinds and neighbours of the drawings.
 #include <algorithm>
 
 #include "core/absent.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 using model::hourly::StepOperation;
 
-// Blinds go down room by room: over this much sun below the threshold the change comes in.
+// Blinds go down room by room: the change sets in over this much sun below the threshold.
 constexpr double kComingIn_W_m2 = 100.0;
 
 class SolarGainChange final : public model::hourly::Alteration {

@@ -1,4 +1,4 @@
-/// Warm air rises out of shafts and stairs and draws cold air in below.
+/// Warm air rises through shafts and stairs and draws in cold air below.
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +12,8 @@ namespace {
 
 using model::hourly::StepOperation;
 
-// 10 m high and 10 K apart. The factor is given there, since per square root of a metre and a
-// kelvin its size would tell nobody anything.
+// 10 m high and 10 K difference. The factor is given for this reference, because its value per
+// square root of a metre and a kelvin would be meaningless to readers.
 constexpr double kReference_mK = 100.0;
 
 class StackInfiltration final : public model::hourly::Alteration {
@@ -26,7 +26,7 @@ class StackInfiltration final : public model::hourly::Alteration {
   }
 
  private:
-  /// Between outdoors and the nearer set-point in force; none within the dead band.
+  /// Between outdoors and the nearer current set-point; zero within the dead band.
   static double difference_K(const StepOperation& op) {
     const double heating_C =
         std::lerp(op.heating_unoccupied_C, op.heating_occupied_C, op.daytime_share);

@@ -1,4 +1,4 @@
-/// Steam that is paid for and warms nobody.
+/// Steam that is paid for but heats no room.
 #include "core/diagnosis/effects/support/meter_priors.hpp"
 
 namespace recald::diagnosis::effects {

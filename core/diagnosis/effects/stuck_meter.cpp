@@ -9,7 +9,7 @@ Effect stuck_meter();
 
 namespace {
 
-/// Within its window. The share stands between a live and a dead meter for the search's sake: real
+/// Applies within its window. The share between a live and a dead meter only helps the search: real
 /// meters are at 1.
 class StuckMeter final : public model::hourly::Alteration {
  public:

@@ -1,4 +1,4 @@
-/// Supply air is colder in mild weather than it need be.
+/// Supply air is colder in mild weather than necessary.
 #include <algorithm>
 
 #include "core/absent.hpp"
@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kDeepestReset_K = 5.0;  // Usual span of reset controls: 13…18 °C.
 
-/// The catalogue adds r·on·(θ_r − θ_e)₊ to chilled water and heat as output. Here the supply air is
-/// made colder and the model does the rest: extra reheat is limited at least flow, free cooling
-/// does not charge chilled water, and fans move less air. ρ c V_min times this slope is the
-/// catalogue's r.
+/// The catalogue adds r·on·(θ_r − θ_e)₊ to the output for chilled water and heat. Here the
+/// supply air is made colder and the model does the rest: extra reheat is limited at least flow,
+/// free cooling does not use chilled water, and fans move less air. ρ c V_min times this slope
+/// is the catalogue's r.
 class SupplyResetMissing final : public model::hourly::Alteration {
  public:
   SupplyResetMissing(double reset_K_K, double balance_C)

@@ -1,4 +1,4 @@
-/// The building stores more or less heat than its class of construction.
+/// The building stores more or less heat than typical for its construction.
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {

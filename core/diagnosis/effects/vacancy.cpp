@@ -1,11 +1,11 @@
-/// One long absence of people.
+/// One long absence of the people.
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
 
-/// The plant runs on by its timetable, as it mostly did in 2020; the window is added from outside.
+/// The plant keeps its timetable, as mostly in 2020; the wrapper adds the window.
 class Vacancy final : public model::hourly::Alteration {
  public:
   Vacancy(const model::Drivers& drivers, double absent_share)

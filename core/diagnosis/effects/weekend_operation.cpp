@@ -7,7 +7,7 @@
 namespace recald::diagnosis::effects {
 namespace {
 
-/// People, lights and plugs stay as they are: the last two come from the meter's own profile of
+/// People, lights and plugs do not change: the last two come from the meter's own profile of
 /// Saturdays and Sundays.
 class WeekendOperation final : public model::hourly::Alteration {
  public:

@@ -1,4 +1,4 @@
-/// Wind presses air through the envelope, more than the drawings' leakage area lets in.
+/// Wind presses more air through the envelope than the drawings' leakage area allows.
 #include <cmath>
 
 #include "core/absent.hpp"

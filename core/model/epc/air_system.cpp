@@ -5,8 +5,8 @@
 namespace recald::model::epc {
 namespace {
 
-/// Outdoor air's share of the supply. Below the lock-out an economiser opens as far as the supply
-/// temperature asks for.
+/// Share of outdoor air in the supply. Below the lock-out, an economiser opens as far as the supply
+/// temperature requires.
 double outdoor_air_share(const AirSystem& system, double minimum_share, double return_C,
                          double outdoor_C) {
   if (!system.economiser_lockout_C || outdoor_C >= *system.economiser_lockout_C ||
@@ -29,7 +29,7 @@ BoxRates box_rates(const BoxLimits& limits, double heat_capacity_J_m3K, const Zo
                                limits.least_m3_s, limits.most_m3_s);
   const double flow_W_K = heat_capacity_J_m3K * rates.flow_m3_s;
 
-  // Cooling beyond the load; negative where even design flow is not enough.
+  // Cooling beyond the load; negative if even design flow is not enough.
   const double surplus_W = flow_W_K * lift_K - demand.cooling_load_W + demand.shortage_W;
   const double total_W_K = demand.conductance_W_K + flow_W_K;
   const double drop_K = std::clamp(surplus_W / total_W_K, 0.0, dead_band_K);
@@ -53,7 +53,7 @@ HandlerRates handler_rates(const AirSystem& system, double heat_capacity_J_m3K,
   rates.fan_W = 1000.0 * system.fan_design_kW * power_share;
   rates.pump_W = 1000.0 * system.pump_design_kW * power_share;
 
-  // The fan's heat is in the air stream: the coil removes it, or it saves preheat.
+  // The fan's heat enters the air stream: the coil removes it, or it saves preheat.
   const double to_supply_W =
       heat_capacity_J_m3K * running_share * supply_m3_s * (mixed_C - supply_C) + rates.fan_W;
   rates.coil_W = std::max(to_supply_W, 0.0);

@@ -7,7 +7,7 @@
 namespace recald::model::epc {
 namespace {
 
-/// Longer than any night of a building that works five days: a weekend or holiday.
+/// Longer than any night of a building with a five-day week: a weekend or holiday.
 constexpr double kLongStretch_h = 24.0;
 constexpr std::size_t kStretchClasses = 4;
 constexpr int kHoursOfPart = 4;
@@ -34,7 +34,7 @@ void append_class(const Drivers& drivers, std::span<const std::size_t> members,
   for (const double sum : irradiance) out.irradiance_W_m2.push_back(sum / n);
 }
 
-/// Equal-count classes of hours that are in order.
+/// Splits sorted hours into classes of equal count.
 void append_classes(const Drivers& drivers, std::span<const std::size_t> members,
                     std::size_t classes, ClimateClasses& out) {
   const std::size_t n = members.size();
@@ -45,7 +45,7 @@ void append_classes(const Drivers& drivers, std::span<const std::size_t> members
   }
 }
 
-/// A part of the day gets its share of the state's classes.
+/// Gives a part of the day its share of the state's classes.
 std::size_t classes_in(std::ptrdiff_t part_hours, std::size_t state_hours, int classes_per_state) {
   const auto n = static_cast<std::size_t>(part_hours);
   if (classes_per_state == 0) return n;
@@ -86,7 +86,7 @@ ClimateState make_state(const Drivers& drivers, HourIndices members, int classes
   return state;
 }
 
-/// Runs of unoccupied hours of one month: one (length, mean temperature) each.
+/// Runs of unoccupied hours in one month, each with its length and mean temperature.
 std::vector<StretchClass> find_stretches(const Drivers& drivers, std::size_t from, std::size_t to) {
   std::vector<StretchClass> stretches;
   double hours = 0.0;

@@ -1,10 +1,10 @@
-/// A month reduced to a few classes of like hours, so that the model need not visit each hour.
+/// A month reduced to a few classes of similar hours, so that the model need not visit each hour.
 ///
 /// Anything with a max(), a root or a product of schedule and weather must be evaluated before it
-/// is averaged. Hours of one month and state (occupied or not) are parted by the time of day,
-/// because the sun stands on another side then, sorted by outdoor temperature within each part and
-/// cut into classes of equal count; within a class everything is a mean. Humidity does not follow
-/// temperature closely enough, so the latent terms have prefix sums of their own.
+/// is averaged. Hours of one month and state (occupied or not) are separated by time of day,
+/// because the sun's position differs, sorted by outdoor temperature within each part and cut into
+/// classes of equal count; within a class all values are means. Humidity does not follow
+/// temperature closely enough, so the latent terms have their own prefix sums.
 #pragma once
 
 #include <span>
@@ -24,7 +24,7 @@ struct ClimateClass {
   double humidity_ratio;  ///< kg/kg
 };
 
-/// Unoccupied stretches of like length and outdoor temperature.
+/// Unoccupied stretches of similar length and outdoor temperature.
 struct StretchClass {
   double hours;     ///< All stretches of the class together.
   double length_h;  ///< Mean length of one.
@@ -51,7 +51,7 @@ struct ClimateMonth {
   ClimateState occupied;
   ClimateState unoccupied;
   std::vector<StretchClass> stretches;
-  double heating_share = 1.0;  ///< Of the hours, those in which the plant runs.
+  double heating_share = 1.0;  ///< Share of the hours in which the plant runs.
   double cooling_share = 1.0;
 };
 
@@ -65,8 +65,8 @@ struct ClimateClasses {
   [[nodiscard]] std::span<const double> irradiance(int class_index) const;
 };
 
-/// @param classes_per_state  Equal-count classes of a month and state; 0 makes every hour its own
-///                           class, which is the plain hourly sum that the classes approximate.
+/// @param classes_per_state  Equal-count classes per month and state; 0 makes every hour its own
+///                           class, which gives the plain hourly sum that the classes approximate.
 [[nodiscard]] ClimateClasses make_climate_classes(const Drivers& drivers, int classes_per_state);
 
 }  // namespace recald::model::epc

@@ -16,7 +16,7 @@ namespace {
 using weather::kVaporisationHeat_J_kg;
 
 constexpr double kCoilRelativeHumidity = 0.95;  // of air that leaves a wet coil
-// More than this and the hours' own pattern no longer says where the month's cooling falls.
+// Beyond this, the hours' own pattern no longer shows when the month's cooling occurs.
 constexpr double kLargestCoolingScale = 4.0;
 constexpr double kWarmestWaterDay = 230.0;  // day of year, cold-water mains lag the air
 constexpr double kWaterHeat_kWh_m3K = 1.163;
@@ -126,7 +126,7 @@ Epc::HeldTemperatures Epc::unoccupied_temperatures(const Building& building, con
   const double total_W_K = outdoor_W_K + zone.ground_W_K;
   const double capacity_J_K =
       zone.floor_share * building.floor_area_m2 * building.heat_capacity_J_m2K;
-  // A core without any envelope drifts by its gains alone, at a rate that the limit soon ends.
+  // A core without envelope drifts by its gains alone, at a rate that soon reaches the limit.
   const double conductance_W_K = std::max(total_W_K, 1e-3 * capacity_J_K / 3600.0);
   const double tau_h = capacity_J_K / 3600.0 / conductance_W_K;
   const double inward_W = gains_Wh / state.hours + zone.ground_W_K * building.ground_temperature_C;
@@ -198,7 +198,7 @@ void Epc::evaluate_zone(const Building& building, std::size_t index, const Clima
   const HeldTemperatures unoccupied{
       running * occupied.cooling_C + (1.0 - running) * drifting.cooling_C,
       running * occupied.heating_C + (1.0 - running) * drifting.heating_C};
-  // With air handlers outdoor air meets the coils first; without, it meets the zone.
+  // With air handlers, outdoor air meets the coils first; without, it meets the zone.
   const double ventilation_m3_s = building.air ? 0.0 : building.ventilation_m3_s;
   balance_state(building, zone, month.occupied, occupied, ventilation_m3_s, balance);
   balance_state(building, zone, month.unoccupied, unoccupied, 0.0, balance);
@@ -236,7 +236,7 @@ void Epc::evaluate_month(const Building& building, const ClimateMonth& month,
   energy[EndUse::hot_water] = hot_water_kWh(building, month);
   if (building.air) add_air_side(building, month, energy);
 
-  // Of a month in which the plant is switched off, its part of the need.
+  // If the plant is off for part of a month, that part of the need is dropped.
   const double heating_factor =
       month.heating_share * (1.0 + building.heating_loss_fraction) / building.heating_efficiency;
   for (const EndUse use :
@@ -266,7 +266,7 @@ Epc::CoolingSpread Epc::spread_cooling(const Building& building, const ClimateMo
   const double need_Wh = 1e3 * cooling_need_kWh;
   const double scale = load_Wh > 0.0 ? std::min(need_Wh / load_Wh, kLargestCoolingScale) : 0.0;
 
-  // The rest, where the hours' own loads cannot carry it, evenly over the hours with fans.
+  // The rest, which the hours' own loads cannot carry, is spread evenly over the hours with fans.
   const double running_hours =
       month.occupied.hours + building.air->outdoor_air_unoccupied_fraction * month.unoccupied.hours;
   return {scale, std::max(need_Wh - scale * load_Wh, 0.0) / std::max(running_hours, 1.0)};
@@ -305,7 +305,7 @@ Epc::AirDemand Epc::boxes_of_class(const Building& building, int class_index) {
          .conductance_W_K = b.conductance_W_K + zone.ground_W_K,
          .cooling_set_point_C = building.set_points.cooling_occupied_C,
          .heating_set_point_C = building.set_points.heating_occupied_C});
-    // What the zone itself lacks is the monthly need; the rest of the boxes' heat is reheat.
+    // The zone's own shortage is the monthly need; the rest of the boxes' heat is reheat.
     sum.reheat_W += std::max(box.heating_W - std::max(b.running_heating_W, 0.0), 0.0);
     sum.supply_m3_s += box.flow_m3_s;
     sum.return_C += box.flow_m3_s * box.zone_C;
@@ -334,7 +334,8 @@ void Epc::add_air_state(const Building& building, const ClimateState& state, dou
     people_sum += c.hours * c.occupied_fraction;
   }
 
-  // Moisture: outdoor air above the coil's own, and the recirculated share of what people give off.
+  // Moisture: outdoor air more humid than the coil's, and the recirculated share of
+  // people's moisture.
   const double people =
       building.floor_area_m2 * building.use.occupancy_person_m2 * people_sum / state.hours;
   const double people_W =

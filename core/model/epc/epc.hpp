@@ -1,14 +1,14 @@
 /// The EPC model: a monthly quasi-steady energy balance of a building with a VAV air system.
 ///
-/// Heating and cooling need of each zone come from the utilisation of gains and losses (ISO
-/// 13790:2008), and are spread over classes of like hours for the air side, where flow limits,
-/// reheat, outdoor air and dehumidification are not linear. Departures from the plain monthly
+/// Heating and cooling need of each zone follow from the utilisation of gains and losses (ISO
+/// 13790:2008). They are spread over classes of similar hours for the air side, where flow limits,
+/// reheat, outdoor air and dehumidification are not linear. Differences from the plain monthly
 /// method, each with its reason:
-/// - perimeter and core are zones of their own where boxes can heat one and cool the other (see
-///   zones.hpp);
+/// - perimeter and core are separate zones if boxes can heat one and cool the other
+///   (see zones.hpp);
 /// - rooms whose air runs round the clock keep their set-points; the others drift when unoccupied;
 /// - set-back by the mean of a first-order drift, so that a set-back can be calibrated;
-/// - the dead band between the set-points is used by the air system before it reheats;
+/// - the air system uses the dead band between the set-points before it reheats;
 /// - all sums over hours are taken before averaging (see climate_classes.hpp).
 #pragma once
 
@@ -23,16 +23,17 @@
 
 namespace recald::model::epc {
 
-/// Against the plain hourly sum of a building with five zones this errs by at most 0.4 % of a mean
-/// month's cooling and 2.2 % of a month's heating (0.8 % of a year's), at a fifteenth of the cost.
+/// Compared with the plain hourly sum of a building with five zones, the error is at most 0.4
+/// % of a mean month's cooling and 2.2 % of a month's heating (0.8 % of a year's), at a
+/// fifteenth of the cost.
 inline constexpr int kClassesPerState = 24;
 
-/// Evaluates buildings over one period. Holds scratch memory: one instance a thread.
+/// Evaluates buildings over one period. Holds scratch memory: use one instance per thread.
 class Epc {
  public:
   explicit Epc(std::shared_ptr<const ClimateClasses> climate);
 
-  /// @param building  The building; surfaces face only orientations of the drivers.
+  /// @param building  Its surfaces face only orientations of the drivers.
   /// @param months    (months of the period) metered energies, overwritten. Does not allocate.
   void evaluate(const Building& building, std::span<EndUseEnergy> months);
 
@@ -46,21 +47,21 @@ class Epc {
     double
         cooling_balance_W;  ///< To remove at the cooling set-point; negative: the zone lacks heat.
     double heating_balance_W;  ///< To supply at the heating set-point; negative: gains suffice.
-    double running_cooling_W;  ///< The two above, in rooms that keep their daytime set-points.
+    double running_cooling_W;  ///< As above, in rooms that keep their daytime set-points.
     double running_heating_W;
   };
-  /// Temperatures that the controls hold in a state of a month, mean over the zone.
+  /// Temperatures that the controls maintain in a state of a month, mean over the zone.
   struct HeldTemperatures {
     double cooling_C;
     double heating_C;
   };
-  /// Where a zone's monthly need of cooling falls: each class takes its own load times `scale`, and
-  /// `extra_W` more.
+  /// When a zone's monthly cooling need occurs: each class takes its own load times
+  /// `scale`, plus `extra_W`.
   struct CoolingSpread {
     double scale;
     double extra_W;
   };
-  /// What all boxes together ask of the air handlers in one class of hours.
+  /// Total demand of all boxes on the air handlers in one class of hours.
   struct AirDemand {
     double supply_m3_s;
     double return_C;
@@ -97,7 +98,7 @@ class Epc {
   double heat_capacity_J_m3K_;  ///< ρ c_p of outdoor air at the site.
   double coil_humidity_ratio_ = 0.0;
   std::vector<Zone> zones_;
-  std::vector<CoolingSpread> spreads_;        ///< By zone, of the month at hand.
+  std::vector<CoolingSpread> spreads_;        ///< By zone, for the current month.
   std::vector<ClassBalance> balance_;         ///< [zone * classes + class]
   std::vector<double> leakage_m3_s_per_cm2_;  ///< By class.
 };

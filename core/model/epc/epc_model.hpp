@@ -1,4 +1,4 @@
-/// The EPC as a calibration sees it: parameters in, metered daily averages out.
+/// The EPC as a model to calibrate: parameters in, metered daily averages out.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,10 @@
 
 namespace recald::model::epc {
 
-/// Outputs are daily-average consumption in kWh/day, one a meter map.
+/// Outputs are daily-average consumption in kWh/day, one per meter map.
 class EpcModel final : public MonthlyModel {
  public:
-  /// @param parameters  Each `is_modelled`; order of theta.
+  /// @param parameters  Each `is_modelled`; sets the order of theta.
   EpcModel(Building nominal, std::vector<const ParameterDefinition*> parameters,
            std::vector<MeterMap> outputs, std::shared_ptr<const ClimateClasses> climate);
 

@@ -6,8 +6,8 @@
 namespace recald::model::epc {
 namespace {
 
-/// Fan and pump power by kind of day and hour whose yearly energy is what the EPC expects; at night
-/// the share of the air handlers that runs.
+/// Fan and pump power by kind of day and hour with the yearly energy that the EPC expects; at
+/// night, for the share of the air handlers that runs.
 HourlySchedule spread_fans_and_pumps(const Building& building, const Drivers& drivers,
                                      double energy_kWh) {
   HourlySchedule schedule;

@@ -1,4 +1,4 @@
-/// From a site's description, weather and electricity record to an EPC ready to calibrate.
+/// Prepares an EPC for calibration from a site's description, weather and electricity record.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace recald::model::epc {
 
-/// What the model is told about the place; references live as long as the call.
+/// What the model needs to know about the place; references live as long as the call.
 struct Place {
   const metering::LocalCalendar& calendar;
   const Holidays& holidays;
@@ -24,9 +24,9 @@ struct Place {
 };
 
 /// Fits the electricity profile with the fans and pumps that the EPC itself expects at its design
-/// values, so that what the profile leaves out is what the model puts back. Fans need loads and
-/// loads need fans: two rounds settle it to well under a per cent.
-/// @param months  Those the loads come from; the weather must cover them.
+/// values, so that the model adds back exactly what the profile leaves out. Fans depend on loads
+/// and loads on fans: two rounds converge to well below one per cent.
+/// @param months  The months of the loads; the weather must cover them.
 [[nodiscard]] Result<profile::ElectricityProfile> fit_profile_with_fans(
     std::span<const profile::HourlyLoad> loads, const Building& building, const Place& place,
     const std::vector<metering::Month>& months);

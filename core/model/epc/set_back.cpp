@@ -9,7 +9,7 @@ double mean_drift_temperature_C(double start_C, double limit_C, double free_C,
   const double tau = time_constant_h;
   const double to_free = start_C - free_C;
   const double left_at_limit = limit_C - free_C;
-  // The limit lies between start and free exactly when the drift shrinks to_free down to it.
+  // The limit can be reached exactly if it lies between the start and the free temperature.
   const bool on_the_way =
       to_free * left_at_limit > 0.0 && std::abs(left_at_limit) <= std::abs(to_free);
   const double contact_h = on_the_way ? tau * std::log(to_free / left_at_limit) : length_h;

@@ -18,13 +18,13 @@ double heating_need_kWh(double transfer_kWh, double gains_kWh, double a) {
   }
   if (transfer_kWh > 0.0) return transfer_kWh - gains_kWh;
   if (gains_kWh >= 0.0) return 0.0;
-  // Roles swapped: −gains are the losses, −transfer the gains.
+  // Roles are swapped: −gains are the losses, −transfer the gains.
   if (transfer_kWh == 0.0) return -gains_kWh;
   return -gains_kWh * need_share(std::log(transfer_kWh / gains_kWh), a);
 }
 
 double cooling_need_kWh(double transfer_kWh, double gains_kWh, double a) {
-  // Cooling is heating seen from the other side: losses are its gains.
+  // Cooling mirrors heating: the losses are its gains.
   return heating_need_kWh(gains_kWh, transfer_kWh, a);
 }
 

@@ -13,8 +13,8 @@ using weather::kVaporisationHeat_J_kg;
 
 constexpr double kNightLift_K = 1.0;
 
-/// Outdoor air's share of the supply. Below the lock-out an economiser opens as far as the supply
-/// temperature asks for, which the fan's heat is still to reach.
+/// Share of outdoor air in the supply. Below the lock-out, an economiser opens as far as the supply
+/// temperature, before the fan's heat, requires.
 double outdoor_air_share(const StepOperation& operation, double least_share, double return_C,
                          double fan_rise_K) {
   const double outdoor_C = operation.dry_bulb_C;
@@ -24,8 +24,8 @@ double outdoor_air_share(const StepOperation& operation, double least_share, dou
   return least_share + operation.economiser_share * extra;
 }
 
-/// Fans that carry heat to rooms whose handlers stand by schedule. They run the whole hour once the
-/// rooms ask for what the least flow brings by one kelvin.
+/// Fans that bring heat to rooms whose handlers are off by schedule. They run the whole hour once
+/// the rooms need what the least flow carries at a difference of one kelvin.
 double night_fan_W(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
                    double heating_W) {
   const double whole_W = heat_capacity_J_m3K * air.supply_flow_min_m3_s * kNightLift_K;
@@ -33,7 +33,7 @@ double night_fan_W(const AirSystem& air, double heat_capacity_J_m3K, double runn
   return 1000.0 * air.fan_design_kW * air.night_fan_share * (1.0 - running_share) * hour_share;
 }
 
-/// Handlers that stand by schedule and are called to hold a night set-point.
+/// Handlers that are off by schedule and are called to maintain a night set-point.
 void add_on_call(const AirSystem& air, const ZoneTotals& zones, double heat_capacity_J_m3K,
                  const StepOperation& operation, StepLoads& loads) {
   const double flow_m3_s = zones.on_call_W_K / heat_capacity_J_m3K;
@@ -78,13 +78,13 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
   loads.pumps_W += 1000.0 * air.pump_design_kW * running_share * variable;
   loads.supply_m3_s += supply_m3_s;
 
-  // The fan's heat is in the air stream: the coil removes it, or it saves preheat.
+  // The fan's heat enters the air stream: the coil removes it, or it saves preheat.
   const double to_supply_W = zones.scheduled_W_K * (mixed_C - operation.supply_C) + fan_W;
   loads.sensible_cooling_W += std::max(to_supply_W, 0.0);
   loads.preheat_W = std::max(-to_supply_W, 0.0);
 
-  // Of the people's moisture only what is recirculated meets the coil; a coil without a sensible
-  // load is dry.
+  // Only the recirculated part of the people's moisture meets the coil; a coil without a
+  // sensible load is dry.
   const double outdoor_W = heat_capacity_J_m3K / kAirHeatCapacity_J_kgK * kVaporisationHeat_J_kg *
                            outdoor_share * supply_m3_s;
   if (to_supply_W > 0.0) {

@@ -9,8 +9,8 @@ namespace recald::model::hourly {
 
 /// Writes the loads of the air side, the flow and the running share into `loads`.
 ///
-/// Handlers that run by schedule mix outdoor air; those on call at night recirculate and draw
-/// power in proportion to their flow.
+/// Scheduled handlers mix in outdoor air; those on call at night recirculate, and their power is
+/// proportional to their flow.
 ///
 /// @param heat_capacity_J_m3K  ρ c_p of air.
 /// @param running_share        Of all handlers, by schedule.

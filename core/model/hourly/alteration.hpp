@@ -1,7 +1,7 @@
-/// What an effect that the drawings do not know changes in a run of the hourly model.
+/// Changes of an effect, unknown to the drawings, to a run of the hourly model.
 ///
-/// The model calls an alteration at four places and knows nothing else of it. At its neutral values
-/// an alteration changes no bit of the result.
+/// The model calls an alteration at four places and knows nothing else about it. At its neutral
+/// values an alteration does not change a single bit of the result.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@
 
 namespace recald::model::hourly {
 
-/// How the building is run in one step, as the drawings, schedules and weather have it; everything
-/// may be altered before the zones are solved.
+/// The operation of the building in one step, according to drawings, schedules and weather; an
+/// alteration may change anything before the zones are solved.
 struct StepOperation {
-  // Weather that the building meets.
+  // Weather at the building.
   double dry_bulb_C;
   double humidity_ratio;  ///< kg/kg
   double wind_m_s;
@@ -23,8 +23,8 @@ struct StepOperation {
   double people_share;  ///< Of full occupancy, 0…1.
   double lights_W;
   double plugs_W;
-  double exterior_W;  ///< Electricity that heats no zone.
-  // Controls. "Daytime" rooms are those that are not served round the clock.
+  double exterior_W;  ///< Electricity that does not heat a zone.
+  // Controls. "Daytime" rooms are those not served round the clock.
   double daytime_share;  ///< 0: daytime rooms at their night set-points with fans off, 1: at their
                          ///< occupied ones with fans on; between: that share of the rooms.
   double cooling_occupied_C;
@@ -32,23 +32,23 @@ struct StepOperation {
   double heating_occupied_C;
   double heating_unoccupied_C;
   // Air handlers.
-  double outdoor_air_m3_s;       ///< Least outdoor air with all handlers running.
-  double idle_outdoor_air_m3_s;  ///< Drawn in through handlers that stand still; meets zone; 0.
+  double outdoor_air_m3_s;       ///< Least outdoor air while all handlers run.
+  double idle_outdoor_air_m3_s;  ///< Drawn in through stopped handlers, into the zone; 0.
   double supply_C;               ///< Supply air temperature.
-  double least_flow_m3_s;        ///< Boxes at minimum, all handlers running.
+  double least_flow_m3_s;        ///< Boxes at minimum, with all handlers running.
   double economiser_lockout_C;   ///< -infinity: no economiser.
-  double economiser_share;       ///< Of the extra free-cooling flow that really comes; 1.
-  double constant_fan_share;     ///< Of the fans that do not follow the flow; 0.
-  double coil_humidity_ratio;    ///< Of air leaving a wet cooling coil, kg/kg.
-  double humidifier_kg_kg;       ///< Humidity ratio held by steam; 0: none.
-  double latent_share;           ///< Of the moisture on the coil that costs chilled water; 1.
+  double economiser_share;     ///< Of the extra free-cooling flow: the part actually delivered; 1.
+  double constant_fan_share;   ///< Of the fans that do not follow the flow; 0.
+  double coil_humidity_ratio;  ///< Of air leaving a wet cooling coil, kg/kg.
+  double humidifier_kg_kg;     ///< Humidity ratio maintained by steam; 0: none.
+  double latent_share;  ///< Of the moisture on the coil: the part that costs chilled water; 1.
   // Envelope.
   double infiltration_factor;  ///< On the leakage flow; 1.
   double zone_gain_W;          ///< Extra sensible heat into the zones, shared by floor area; 0.
   double ground_C;
 };
 
-/// What the step costs before losses and efficiencies, W, and what the plant does with it.
+/// The loads of the step before losses and efficiencies, W, and the plant's cost factors.
 struct StepLoads {
   double lights_W;
   double plugs_W;
@@ -63,30 +63,30 @@ struct StepLoads {
   double humidification_W;
   double hot_water_W;
   double base_heat_W;
-  // For alterations to read.
+  // For alterations to read:
   double running_share;           ///< Of all air handlers, 0…1.
   double supply_m3_s;             ///< Of all handlers that run.
   double mean_zone_C;             ///< By floor area.
-  double hot_water_litres_share;  ///< Draw of this hour over its daily mean, 0…; 1 where even.
+  double hot_water_litres_share;  ///< Draw of this hour relative to its daily mean, 0…; 1 if even.
   // Plant; factors on the drawings' values.
   double cooling_cost_factor;  ///< On chilled water, or on the chiller's electricity; 1.
   double heating_cost_factor;  ///< On metered heat, or on the heat pump's electricity; 1.
 };
 
 /// One effect bound to values. Stateless between steps: a run may be repeated, and copies on other
-/// threads may run at once.
+/// threads may run at the same time.
 class Alteration {
  public:
   virtual ~Alteration() = default;
 
-  /// Once, before the period: constructions and nameplates.
+  /// Called once, before the period: constructions and nameplates.
   virtual void rebuild(Building&) const {}
-  /// Each step, before the zones are solved.
+  /// Called in each step, before the zones are solved.
   virtual void operate(const DriverHour&, StepOperation&) const {}
-  /// Each step, after zones and air handlers, before losses and efficiencies.
+  /// Called in each step, after zones and air handlers, before losses and efficiencies.
   virtual void supply(const Building&, const DriverHour&, const StepOperation&, StepLoads&) const {}
-  /// At the end: one meter's hourly power as it is recorded. @param meter  Index among the model's
-  /// meters.
+  /// Called at the end with one meter's hourly power as recorded. @param meter  Index among
+  /// the model's meters.
   virtual void record(std::span<const DriverHour> /*hours*/, int /*meter*/,
                       std::span<double> /*power_kW*/) const {}
 };

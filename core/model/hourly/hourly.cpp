@@ -14,27 +14,27 @@ namespace {
 
 constexpr std::size_t kWarmUp_h = 14 * 24;
 constexpr double kCoilRelativeHumidity = 0.95;  // of air that leaves a wet coil
-// A reset of supply air begins at the one outdoor temperature and is whole so much below it.
+// The reset of supply air begins at this outdoor temperature and is complete this far below it.
 constexpr double kResetFrom_C = 18.0;
 constexpr double kResetOver_K = 13.0;
 constexpr double kLeastLift_K = 1.0;  // between supply air and a closet
-// Where chillers meet their nameplates (median of the training buildings), and the least that cold
-// weather leaves of their electricity.
+// Wet bulb at which chillers meet their nameplates (median of the training buildings), and the
+// least share of their electricity in cold weather.
 constexpr double kRatedWetBulb_C = 22.0;
 constexpr double kLeastChillerCost = 0.4;
 
-/// Set-points of rooms that stand for this share of them at daytime values.
+/// Set-points of rooms of which this share is at daytime values.
 double between(double share, double daytime, double night) {
   return share * daytime + (1.0 - share) * night;
 }
 
-/// Share of an hour that lies within `reach_h` of a change, the change `distance_h` from its
-/// middle.
+/// Share of an hour that lies within `reach_h` of a change, which is `distance_h` from its middle.
 double covered(double reach_h, double distance_h) {
   return std::clamp(reach_h - (distance_h - 0.5), 0.0, 1.0);
 }
 
-/// Electricity per cooling of an own chiller, over the nameplate's: a warmer tower, a higher lift.
+/// Electricity per cooling of the building's own chiller, relative to the nameplate:
+/// rises with wet bulb.
 double chiller_cost(const Building& building, double wet_bulb_C) {
   if (!building.chiller_cop) return 1.0;
   return std::max(1.0 + building.chiller_lift_per_K * (wet_bulb_C - kRatedWetBulb_C),
@@ -52,8 +52,8 @@ double weekly_mean(const HourlySchedule& schedule) {
   return sum / (7.0 * 24.0);
 }
 
-/// Share of the running part of an hour, its middle `since_start_h` after the start, that lies in
-/// the first `closed_h` hours.
+/// Share of the running part of an hour that lies in the first `closed_h` hours; its middle is
+/// `since_start_h` after the start.
 double closed_share(double closed_h, double since_start_h) {
   const double from_h = std::max(since_start_h - 0.5, 0.0);
   const double running_h = since_start_h + 0.5 - from_h;
@@ -140,7 +140,8 @@ void Hourly::prepare(const Building& building, std::span<const Alteration* const
   if (air.humidification_kg_kg) standing_.humidifier_kg_kg = *air.humidification_kg_kg;
 }
 
-/// The plant's day: its timetable, begun early and ended late; supply air is warmer on cold days.
+/// The plant's day: its timetable, with early start and late stop; supply air is
+/// warmer on cold days.
 void Hourly::follow_timetable(const Hour& hour, StepOperation& operation) const {
   const SetPoints& set = building_.set_points;
   operation.daytime_share =
@@ -155,7 +156,7 @@ void Hourly::follow_timetable(const Hour& hour, StepOperation& operation) const 
   }
 }
 
-/// Plant that is switched off for a season: set-points out of reach, and air as it comes in.
+/// Plant that is off for a season: set-points out of reach, outdoor air untreated.
 void Hourly::switch_off(const Hour& hour, StepOperation& operation) {
   constexpr double kOutOfReach_K = 100.0;
   if (!hour.heating) {
@@ -174,7 +175,7 @@ void Hourly::switch_off(const Hour& hour, StepLoads& loads) {
   if (!hour.cooling) loads.sensible_cooling_W = loads.latent_cooling_W = 0.0;
 }
 
-/// Rooms that are left at night warm up slowly, and their handlers begin with shut dampers.
+/// Rooms that float at night warm up slowly, and their handlers start with shut dampers.
 Hourly::Morning Hourly::morning_of(const Hour& hour) const {
   const SetPoints& set = building_.set_points;
   const bool before_start = !hour.occupied && hour.hours_to_start < hour.hours_since_stop;
@@ -203,7 +204,7 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
   switch_off(h, operation);
   if (options_.steps_per_hour == 1) return operation;
 
-  // Weather between the middles of hours; at the ends of a stretch the last value stands.
+  // Interpolates the weather between the middles of hours; constant at the ends of a stretch.
   const double from_middle_h = (step + 0.5) / options_.steps_per_hour - 0.5;
   const bool earlier = from_middle_h < 0.0;
   const bool alone = earlier ? h.begins : hour + 1 == hours_.size() || hours_[hour + 1].begins;
@@ -249,7 +250,7 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
     const double heating_C = between(served, daytime_heating_C, operation.heating_unoccupied_C);
     const double cooling_C =
         between(served, operation.cooling_occupied_C, operation.cooling_unoccupied_C);
-    // Without air handlers outdoor air meets the zone.
+    // Without air handlers, outdoor air meets the zone.
     const double direct_m3_s = (building_.air ? 0.0 : served * operation.outdoor_air_m3_s) +
                                (1.0 - served) * operation.idle_outdoor_air_m3_s;
     const ZoneService service{.leakage_W_K_cm2 = leakage_W_K_cm2,
@@ -268,7 +269,7 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
   return totals;
 }
 
-/// Closets get the supply air that holds them at the daytime set-point, at night on call.
+/// Closets get the supply air that keeps them at the daytime set-point, at night on call.
 void Hourly::serve_closets(double heat_W, const StepOperation& operation,
                            ZoneTotals& totals) const {
   const double flow_W_K =
@@ -295,7 +296,7 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
     hot_water_W_ = hot_water_W(building_.hot_water, hot_water_day_);
   }
 
-  // Taps run when people are there.
+  // Hot water is drawn when people are there.
   const double draw_share =
       mean_people_share_ > 0.0 ? operation.people_share / mean_people_share_ : 1.0;
   StepLoads loads{.lights_W = operation.lights_W,
@@ -339,7 +340,8 @@ void Hourly::run_hours(std::size_t from, std::size_t to,
   }
 }
 
-/// Each stretch without a jump in time: run in from the middle set-point, then for good.
+/// Runs each stretch without a jump in time: first a warm-up from the middle
+/// set-point, then for real.
 template <class Sink>
 void Hourly::simulate(const Building& building, std::span<const Alteration* const> alterations,
                       Sink sink) {

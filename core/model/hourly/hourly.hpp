@@ -1,10 +1,10 @@
 /// The hourly model: zones of five resistances and one capacity, air handlers and plant, step by
 /// step.
 ///
-/// Each zone of `describe_zones`, its core cut below the top storey, is a network after ISO
-/// 13790:2008 annex C; a building whose
-/// handlers run partly round the clock has each zone twice, served by day and served always. The
-/// air system follows EN 15241:2007 as in the EPC. Power is summed to meters at the end.
+/// Each zone of `describe_zones`, with its core split below the top storey, is a network after ISO
+/// 13790:2008 annex C. A building whose handlers run partly round the clock has each zone twice:
+/// served by day, and served always. The air system follows EN 15241:2007 as in the EPC. Power is
+/// summed to meters at the end.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,14 +26,14 @@ struct HourlyOptions {
   int steps_per_hour = 1;  ///< 1 or 4.
 };
 
-/// Evaluates buildings over one period. Holds scratch memory: one instance a thread.
+/// Evaluates buildings over one period. Holds scratch memory: use one instance per thread.
 class Hourly {
  public:
   /// @pre options.steps_per_hour is 1 or 4
   explicit Hourly(std::shared_ptr<const Drivers> drivers, const HourlyOptions& options = {});
 
-  /// Runs the whole period after a warm-up of its first 14 days; after a jump in time the days
-  /// behind the jump are run in likewise.
+  /// Runs the whole period after a warm-up of its first 14 days; after a jump in time, the days
+  /// behind the jump are warmed up likewise.
   ///
   /// @param alterations  Applied in order; empty: the building as described.
   /// @param meters       (m) share of each end use that a meter counts.
@@ -41,7 +41,7 @@ class Hourly {
   void run(const Building& building, std::span<const Alteration* const> alterations,
            std::span<const MeterMap> meters, Eigen::Ref<Eigen::ArrayXXd> power_kW);
 
-  /// The same run as energies by end use.
+  /// As above, with energies by end use.
   /// @param months  (months of the drivers) overwritten.
   void run_end_uses(const Building& building, std::span<const Alteration* const> alterations,
                     std::span<EndUseEnergy> months);
@@ -50,7 +50,7 @@ class Hourly {
   [[nodiscard]] Eigen::Index step_count() const;
 
  private:
-  /// What an hour of the drivers brings, in few bytes.
+  /// The drivers of an hour, in few bytes.
   struct Hour {
     double dry_bulb_C;
     double humidity_ratio;
@@ -66,7 +66,7 @@ class Hourly {
     float hours_to_stop;
     int day_of_year;
     bool occupied;
-    bool heating;  ///< The plant runs.
+    bool heating;  ///< The plant is on.
     bool cooling;
     bool sunlit;  ///< Any sun on any side.
     bool begins;  ///< First hour, or first after a jump in time.
@@ -80,7 +80,7 @@ class Hourly {
   void read_meters(std::span<const MeterMap> meters);
   void prepare(const Building& building, std::span<const Alteration* const> alterations);
   [[nodiscard]] StepOperation operation_of(std::size_t hour, int step) const;
-  /// How far a day of operation has begun; all 1 later in the day and at night.
+  /// Progress of the start of a day; all 1 later in the day and at night.
   struct Morning {
     double climbed = 1.0;  ///< Of the heating set-point, from its night value.
     double open = 1.0;     ///< Share of the hour's running part with outdoor-air dampers open.
@@ -107,19 +107,19 @@ class Hourly {
   std::vector<Hour> hours_;
   std::vector<double> irradiance_W_m2_;  ///< [hour * orientations + orientation]
 
-  // Of the run at hand.
+  // Of the current run.
   Building building_;
   ZoneNetworks zones_;
   Plant plant_;
   std::vector<EndUsePower_W> meters_kW_W_;  ///< (m) by EndUse: kW counted per W.
   LeakageFlow leakage_{};
-  StepOperation standing_{};  ///< What does not change from step to step.
+  StepOperation standing_{};  ///< The part that does not change from step to step.
   std::array<Part, 2> parts_{};
   int part_count_ = 1;
   double mean_people_share_ = 0.0;  ///< Of full occupancy, over a week.
   double middle_C_ = 0.0;           ///< Between the occupied set-points, for infiltration.
   double most_flow_m3_s_ = 0.0;
-  double hot_water_W_ = 0.0;  ///< Of the day at hand.
+  double hot_water_W_ = 0.0;  ///< Of the current day.
   int hot_water_day_ = 0;     ///< Its day of the year.
 };
 

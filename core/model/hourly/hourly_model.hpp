@@ -1,4 +1,4 @@
-/// The hourly model as a calibration sees it: parameters in, monthly daily averages and peaks out.
+/// The hourly model as a model to calibrate: parameters in, monthly daily averages and peaks out.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ struct OutputDefinition {
 /// Outputs are daily-average consumption, kWh/day, and monthly peak demand, kW, of meters.
 class HourlyModel final : public MonthlyModel {
  public:
-  /// @param parameters   Each `is_modelled`; order of theta.
+  /// @param parameters   Each `is_modelled`; sets the order of theta.
   /// @param alterations  Fixed effects of the model version; shared with clones.
   HourlyModel(Building nominal, std::vector<const ParameterDefinition*> parameters,
               std::vector<MeterMap> meters, std::vector<OutputDefinition> outputs,
@@ -43,7 +43,7 @@ class HourlyModel final : public MonthlyModel {
   std::vector<MeterMap> meters_;
   std::vector<OutputDefinition> outputs_;
   std::vector<std::shared_ptr<const Alteration>> alterations_;
-  std::vector<const Alteration*> in_order_;  ///< The same, as a run takes them.
+  std::vector<const Alteration*> in_order_;  ///< As above, in the form a run takes.
   HourlyOptions options_;
   Hourly hourly_;
   Eigen::ArrayXXd power_kW_;

@@ -18,8 +18,8 @@ class Plant {
   Plant() = default;
   explicit Plant(const Building& building);
 
-  /// The cost factors of `loads` act on what the plant buys: on district chilled water, or on the
-  /// electricity of an own chiller; on all metered heat but the base heat.
+  /// The cost factors of `loads` apply to what the plant buys: district chilled water, or
+  /// electricity of its own chiller; and all metered heat except the base heat.
   [[nodiscard]] EndUsePower_W metered_W(const StepLoads& loads) const;
 
  private:
@@ -29,7 +29,7 @@ class Plant {
   double chiller_ = 0.0;
 };
 
-/// Heat of the warm water that is drawn on average over this day, W, without losses.
+/// Mean heat of the hot water drawn on this day, W, without losses.
 [[nodiscard]] double hot_water_W(const HotWater& water, int day_of_year);
 
 }  // namespace recald::model::hourly

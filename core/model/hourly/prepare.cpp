@@ -13,8 +13,8 @@ constexpr int kRounds = 4;
 
 using LocalHour = std::pair<metering::Day, int>;
 
-/// A value by local date and hour; the two of the hour that a clock change repeats are averaged, as
-/// the recorded loads are.
+/// A value by local date and hour. The two values of an hour that a clock change repeats are
+/// averaged, like the recorded loads.
 class HourlyMeans {
  public:
   void add(const LocalHour& hour, double kW) {
@@ -22,7 +22,7 @@ class HourlyMeans {
     sum.kW += kW;
     sum.n += 1.0;
   }
-  /// 0 where nothing was added.
+  /// 0 if nothing was added.
   [[nodiscard]] double at(const LocalHour& hour) const {
     const auto found = sums_.find(hour);
     return found == sums_.end() ? 0.0 : found->second.kW / found->second.n;
@@ -53,7 +53,7 @@ HourlyMeans plant_electricity(const Building& building, Drivers drivers) {
   return means;
 }
 
-/// Mean of what was taken off, by kind of day and hour.
+/// Mean of the subtracted loads, by kind of day and hour.
 HourlySchedule mean_schedule(std::span<const profile::HourlyLoad> loads, const Holidays& holidays,
                              const HourlyMeans& taken) {
   HourlySchedule sum_kW;
@@ -84,7 +84,7 @@ void add_to(HourlySchedule& schedule, const HourlySchedule& other) {
 Result<profile::ElectricityProfile> fit_profile_without_plant(
     std::span<const profile::HourlyLoad> loads, const Building& building, const epc::Place& place,
     const std::vector<metering::Month>& months) {
-  // Lamps outdoors follow the sun, not the clock: they go with the plant.
+  // Outdoor lamps follow the sun, not the clock, so they are subtracted with the plant.
   const profile::KnownLoads known{.exterior_kW = 0.0,
                                   .fans_and_pumps_kW = {},
                                   .lighting_W_m2 = building.use.lighting_W_m2,

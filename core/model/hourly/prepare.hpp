@@ -1,4 +1,4 @@
-/// From a site's electricity record to the loads of the hourly model.
+/// Derives the loads of the hourly model from a site's electricity record.
 #pragma once
 
 #include <span>
@@ -9,13 +9,13 @@
 
 namespace recald::model::hourly {
 
-/// Fits the electricity profile to what the meter reads without the building's own fans, pumps and
-/// chiller, taken off hour by hour as the hourly model expects them at its design values, so that
-/// the profile does not count them once more. They need loads and loads need them: each round
-/// leaves about a third of the error before it.
-/// @param months  Those the loads come from; the weather must cover them.
-/// @return the profile with the mean of what was taken off among the known loads and in
-///         `measured_kW`; its check is of the months without it.
+/// Fits the electricity profile to the meter without the building's own fans, pumps and chiller.
+/// These are subtracted hour by hour, as the hourly model expects them at its design values, so
+/// that the profile does not count them again. They depend on the loads and the loads on them: each
+/// round leaves about a third of the error.
+/// @param months  The months of the loads; the weather must cover them.
+/// @return the profile, with the mean of the subtracted loads among the known loads and in
+///         `measured_kW`; its check is for the months without them.
 [[nodiscard]] Result<profile::ElectricityProfile> fit_profile_without_plant(
     std::span<const profile::HourlyLoad> loads, const Building& building, const epc::Place& place,
     const std::vector<metering::Month>& months);

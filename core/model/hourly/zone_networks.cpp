@@ -11,10 +11,10 @@ constexpr double kAirToSurface_W_m2K = 3.45;   // h_is
 constexpr double kSurfaceToMass_W_m2K = 9.1;   // h_ms
 constexpr double kInnerSurfacePerFloor = 4.5;  // A_t / A_f
 constexpr double kLeastCooling_K = 0.1;        // between supply air and the cooling set-point
-// The most that an envelope may take of the inner surfaces' own conductance.
+// The largest share of the inner surfaces' own conductance that an envelope may use.
 constexpr double kMostOfSurfaces = 0.9;
 
-/// A_m / A_f: the table's classes, joined by lines so that a capacity can be calibrated.
+/// A_m / A_f: the table's classes, interpolated so that a capacity can be calibrated.
 /// @see ISO 13790:2008, table 12
 double mass_surface_per_floor(double capacity_J_m2K) {
   const double medium = heat_capacity_J_m2K(MassClass::medium);
@@ -24,8 +24,8 @@ double mass_surface_per_floor(double capacity_J_m2K) {
          0.5 * std::clamp((capacity_J_m2K - heavy) / (very_heavy - heavy), 0.0, 1.0);
 }
 
-/// Takes the storeys below the top one out of the core, as a zone of their own: rooms without an
-/// outer surface keep their heat all night and are cooled in winter, under a roof they are not.
+/// Separates the storeys below the top one from the core, as their own zone: rooms without an outer
+/// surface keep their heat all night and are cooled in winter, rooms under a roof are not.
 /// @param zones  The last but one is the core, the last is overwritten.
 void cut_core(int storeys, std::span<Zone> zones) {
   Zone& top = zones[zones.size() - 2];
@@ -53,7 +53,7 @@ ZoneConductances zone_conductances(const Building& building, const Zone& zone, d
   const double mass_m2 = mass_per_floor * floor_m2;
   const double surface_m2 = kInnerSurfacePerFloor * floor_m2;
   const double to_mass_W_K = coupling_W_m2K * mass_m2;
-  // H_em = 1 / (1/H_op - 1/H_ms), in a form that stays finite without an envelope; the ground takes
+  // H_em = 1 / (1/H_op - 1/H_ms), in a form that stays finite without an envelope; the ground has
   // its share of the same path.
   const double stretch = 1.0 / (1.0 - heavy_W_K / to_mass_W_K);
   return {.air_to_surface_W_K = kAirToSurface_W_m2K * surface_m2,
@@ -128,7 +128,7 @@ void ZoneNetworks::describe(const Building& building,
   to_mass_K_.resize(count);
   aperture_m2_.assign(count * orientations.size(), ZonePair::Zero());
   for (std::size_t z = 0; z < 2 * count; ++z) {
-    // Beside an odd last zone stands a copy of it that counts for nothing and has no sun.
+    // An odd last zone is paired with a copy of it that has no weight and no sun.
     const bool real = z < n;
     const std::size_t like = std::min(z, n - 1);
     const int place = static_cast<int>(z % 2);

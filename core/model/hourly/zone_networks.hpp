@@ -1,15 +1,15 @@
 /// A building's zones as networks of five resistances and one capacity, solved two at a time.
 ///
 /// With the mean of the mass temperature over the step as unknown, Crank-Nicolson turns the
-/// capacity into a conductance 2 C / Δt to the mass temperature before the step. Mass and surface
-/// nodes then drop out with coefficients that no step changes; only the air node, where
-/// ventilation, boxes and controls act, is left to solve:
+/// capacity into a conductance 2 C / Δt to the mass temperature before the step. The mass and
+/// surface nodes are then eliminated with coefficients that are the same in every step. Only the
+/// air node, where ventilation, boxes and controls act, remains to be solved:
 ///
 ///     (Y + H_ve) θ_air = J + H_ve θ_e + Φ_HC,   θ_m⁺ = linear in θ_m⁻, θ_e, θ_g, gains, θ_air
 ///
-/// This is annex C of the standard to rounding, without its probe for the demand. A heat capacity
-/// of air and furniture, which the standard has not, is a conductance C / Δt to the air before the
-/// step.
+/// This equals annex C of the standard up to rounding, without its probe for the demand. A heat
+/// capacity of air and furniture, which the standard lacks, is a conductance C / Δt to the air
+/// before the step.
 /// @see ISO 13790:2008, annex C, eqs. (C.1) to (C.11), and 12.2.2
 #pragma once
 
@@ -24,7 +24,7 @@ namespace recald::model::hourly {
 
 using ZonePair = Eigen::Array2d;  ///< One value of two zones side by side.
 
-/// The five conductances of one zone and how it shares gains out.
+/// The five conductances of one zone, and its shares of gains.
 struct ZoneConductances {
   double air_to_surface_W_K;      ///< H_tr,is
   double surface_to_mass_W_K;     ///< H_tr,ms
@@ -37,13 +37,13 @@ struct ZoneConductances {
 };
 
 /// @param zone         All its surfaces.
-/// @param window_W_K   Part of its transmission that is windows.
-/// A zone whose envelope is more than its floor's inner surfaces can carry gets the surfaces it
-/// needs, so that all conductances are positive.
+/// @param window_W_K   Part of its transmission through windows.
+/// A zone with more envelope than its floor's inner surfaces can carry gets the surfaces it needs,
+/// so that all conductances are positive.
 [[nodiscard]] ZoneConductances zone_conductances(const Building& building, const Zone& zone,
                                                  double window_W_K);
 
-/// What all rooms meet in a step.
+/// Surroundings of all rooms in a step.
 struct ZoneSurroundings {
   double dry_bulb_C;
   double ground_C;
@@ -52,10 +52,11 @@ struct ZoneSurroundings {
   std::span<const double> irradiance_W_m2;  ///< By orientation; empty at night.
 };
 
-/// How rooms are served in a step; flows as W/K, of the whole building if all its rooms were these.
+/// How rooms are served in a step; flows as W/K, for the whole building if all its rooms
+/// were like these.
 struct ZoneService {
   double leakage_W_K_cm2;  ///< Infiltration per effective leakage area.
-  double outdoor_W_K;      ///< Outdoor air straight into the zones, by floor area.
+  double outdoor_W_K;      ///< Outdoor air directly into the zones, by floor area.
   double heating_C;
   double cooling_C;  ///< >= heating_C
   double supply_C;
@@ -100,15 +101,15 @@ class ZoneNetworks {
   /// Sets all masses, and the air, to one temperature.
   void reset(double mass_C);
 
-  /// Heat that the surroundings bring to all parts in this step; to be called before `serve`.
+  /// Sets the heat from the surroundings to all parts in this step; call it before `serve`.
   void expose(const ZoneSurroundings& surroundings);
 
-  /// One step of a part whose rooms have boxes. Cooling follows the flow between its limits; air at
-  /// minimum flow may cool below the cooling set-point, and at the heating one the part is held:
-  /// what the zone would lack without boxes is zone heating, the rest reheat.
+  /// One step of a part whose rooms have boxes. Cooling follows the flow between its limits. Air at
+  /// minimum flow may cool below the cooling set-point. At the heating set-point the part is kept
+  /// there: the shortage that the zone would have without boxes is zone heating, the rest reheat.
   ZoneTotals serve_with_boxes(int part, const ZoneService& service);
 
-  /// One step of a part whose set-points are held by heating and cooling in the zone.
+  /// One step of a part whose set-points are maintained by heating and cooling in the zone.
   ZoneTotals serve(int part, const ZoneService& service);
 
   /// °C, of a part and zone.
@@ -128,21 +129,20 @@ class ZoneNetworks {
     ZonePair mass_from_mass, mass_from_outdoor, mass_from_ground, mass_from_solar,
         mass_from_internal, mass_from_air;
   };
-  /// Share of a zone in the building's internal gains. @param first_core  Index; façades come
-  /// first.
+  /// A zone's share of the building's internal gains. @param first_core  Index; façades come first.
   [[nodiscard]] double gain_share(const Building& building, std::size_t zone,
                                   std::size_t first_core) const;
   static void set_coefficients(const ZoneConductances& c, double step_s, int place, Pair& pair);
 
   std::vector<Zone> zones_;
-  std::vector<Zone> glazing_;  ///< The same zones with nothing but windows.
+  std::vector<Zone> glazing_;  ///< The same zones with only their windows.
   Building windows_only_;
   std::vector<Pair> pairs_;
   std::vector<ZonePair> aperture_m2_;  ///< [pair * orientations + orientation]
   std::vector<ZonePair> mass_C_;       ///< [part * pairs + pair]
   std::vector<ZonePair> to_air_W_;     ///< By pair: J without the mass.
   std::vector<ZonePair> to_mass_K_;    ///< By pair: θ_m⁺ without mass and air.
-  std::vector<ZonePair> air_C_;        ///< [part * pairs + pair], of the step before.
+  std::vector<ZonePair> air_C_;        ///< [part * pairs + pair], in the previous step.
   double air_store_W_K_ = 0.0;         ///< Of air and furniture of the whole building, C / Δt.
   double dry_bulb_C_ = 0.0;
 };

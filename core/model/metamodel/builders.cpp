@@ -49,8 +49,8 @@ Result<Eigen::MatrixXd> pick_inputs(const std::vector<std::string>& wanted,
   return picked;
 }
 
-/// Adds the terms of a regression at known month inputs and output type: what is left is a
-/// polynomial in the parameters.
+/// Adds the terms of a regression at known month inputs and output type, which leaves a polynomial
+/// in the parameters.
 class CollapsedRow {
  public:
   /// @param known  Values of variables 0 … known.size() - 1; the parameters follow.

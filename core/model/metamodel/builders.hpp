@@ -1,4 +1,4 @@
-/// From a fitted or given regression to a model of the months at hand.
+/// Builds a model of given months from a fitted or given regression.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,23 +14,24 @@
 
 namespace recald::model::metamodel {
 
-/// Known inputs of the months a model is wanted for, in their own units.
+/// Known inputs of the months to model, in their own units.
 struct MonthInputs {
-  std::vector<std::string> names;   ///< (p) in any order; more than the regression uses is fine.
+  std::vector<std::string> names;   ///< (p) in any order; additional ones are ignored.
   std::vector<std::string> months;  ///< (m) for sentences: "2018-03".
   Eigen::MatrixXd values;           ///< (m x p)
 };
 
-/// The seed's form for any months, also ones that the design does not cover: outputs in the order
-/// of the design, in their units. Inputs are scaled as in the design, so a month outside its range
+/// The seed's form for any months, including those outside the design: outputs in the order of
+/// the design, in their units. Inputs are scaled as in the design, so a month outside its range
 /// is an extrapolation.
-/// @return not_found   an input of the regression is not among the names;
+/// @return the model; or
+///         not_found   an input of the regression is not among the names;
 ///         not_finite  an input has no number in a month.
 [[nodiscard]] Result<QuadraticModel> model_of(const regression::SeedForm& form,
                                               const MonthInputs& inputs);
 
-/// One regression a month, for some of the design's months in any order.
-/// @return not_found  a month that the design does not cover.
+/// One regression per month, for some of the design's months in any order.
+/// @return the model, or not_found for a month outside the design.
 [[nodiscard]] Result<QuadraticModel> model_of(const regression::MonthlyForm& form,
                                               std::span<const std::string> months);
 
@@ -40,7 +41,7 @@ struct NamedCoefficient {
   double value;
 };
 
-/// A regression that somebody else made: its coefficients and what its scaled axes mean.
+/// A regression made elsewhere: its coefficients and the meaning of its scaled axes.
 struct GivenRegression {
   std::vector<NamedCoefficient> terms;
   std::vector<std::string> parameters;
@@ -56,9 +57,10 @@ struct GivenRegression {
     std::span<const Parameter> parameters);
 
 /// The given regression for any months. Nothing is refitted, and an input called `winddir` is a
-/// plain number in degrees. Where `output_scales` are {0, 1} the outputs are the normalised ones.
-/// @return invalid_value  a term with an unknown factor, more than two factors, a coefficient that
-///                        comes twice or is not finite: names the term and the known factors;
+/// plain number in degrees. If `output_scales` are {0, 1}, the outputs are the normalised ones.
+/// @return the model; or
+///         invalid_value  a term with an unknown factor, more than two factors, a coefficient that
+///                        is repeated or not finite: names the term and the known factors;
 ///         not_found, not_finite  as above.
 [[nodiscard]] Result<QuadraticModel> model_of(const GivenRegression& regression,
                                               const MonthInputs& inputs);

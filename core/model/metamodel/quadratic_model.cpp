@@ -95,7 +95,7 @@ void QuadraticModel::evaluate_with_jacobian(std::span<const double> theta,
     const double second = term.is_main_effect() ? 1.0 : scaled_(term.second);
     derivatives.col(term.first) += (second * inverse_range_(term.first)) * coefficient;
     if (term.is_main_effect()) continue;
-    // For a square this is the other half of 2 t.
+    // For a square this adds the other half of 2 t.
     derivatives.col(term.second) +=
         (scaled_(term.first) * inverse_range_(term.second)) * coefficient;
   }

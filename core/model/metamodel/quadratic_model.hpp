@@ -1,5 +1,5 @@
-/// A building model that is a polynomial of second degree in the parameters: what a meta-model is
-/// once the months are fixed.
+/// A building model that is a quadratic polynomial in the parameters: a meta-model
+/// for fixed months.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,10 +13,10 @@
 
 namespace recald::model::metamodel {
 
-/// Collects the coefficients of a QuadraticModel; those given twice for one place add up.
+/// Collects the coefficients of a QuadraticModel; repeated ones for the same place add up.
 class QuadraticCoefficients {
  public:
-  /// @param parameter_scales  (q) what is 0 and 1 on the scaled axis t_j.
+  /// @param parameter_scales  (q) values at 0 and 1 on the scaled axis t_j.
   QuadraticCoefficients(std::vector<regression::ColumnScale> parameter_scales, int outputs,
                         int months);
 
@@ -42,7 +42,7 @@ class QuadraticCoefficients {
 /// with t_j = (theta_j - min_j) / (max_j - min_j), in the outputs' own units.
 ///
 /// Terms that no output uses are left out. `evaluate` is one product of a (rows x terms) matrix and
-/// a vector, the Jacobian at most twice that; neither allocates.
+/// a vector, and the Jacobian at most two; neither allocates.
 class QuadraticModel final : public MonthlyModel {
  public:
   explicit QuadraticModel(const QuadraticCoefficients& coefficients);

@@ -13,7 +13,7 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// Drops the oldest beyond `max`. @return how many.
+/// Drops the oldest entries beyond `max`. @return how many.
 template <class T>
 std::size_t keep_newest(std::vector<T>& values, std::size_t max) {
   if (values.size() <= max) return 0;

@@ -1,5 +1,5 @@
-/// Collects everything that is to be stored for a second and commits it together; keeps it if the
-/// commit fails.
+/// Gathers everything to be stored within a second and commits it at once; keeps it if
+/// the commit fails.
 #pragma once
 
 #include <chrono>
@@ -24,28 +24,28 @@ struct CommitRules {
   std::size_t samples_max = 50'000;
 };
 
-/// How the store is doing.
+/// The state of commits to the store.
 struct CommitHealth {
   bool is_degraded = false;  ///< The last commit failed.
-  std::string why;           ///< Then, what the store said.
+  std::string why;           ///< In that case, the store's error message.
   std::uint64_t commits = 0;
   std::uint64_t failures = 0;
   std::uint64_t lost_intervals = 0;  ///< Dropped, because the store refused for too long.
   std::uint64_t conflicts = 0;
   std::chrono::milliseconds last_duration{0};
-  LatencyHistogram durations;  ///< Of all commits, those refused as well.
+  LatencyHistogram durations;  ///< Of all commits, including refused ones.
 };
 
 class Committer {
  public:
-  /// Told what was committed: from then on it is acknowledged.
+  /// Called with what was committed: from then on it is acknowledged.
   using OnCommitted = std::function<void(const StoreBatch&, const CommitCounts&)>;
 
   Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed);
 
   void add(StoreBatch batch);
 
-  /// Commits what there is, now. @return the store's refusal; what was refused is kept.
+  /// Commits everything now. @return the store's refusal; refused data are kept.
   Result<void> flush();
 
   [[nodiscard]] const CommitHealth& health() const { return health_; }
@@ -63,7 +63,8 @@ class Committer {
   OnCommitted on_committed_;
   StoreBatch waiting_;
   CommitHealth health_;
-  /// When the next flush is due by the monotonic clock; later calls find out whether they are it.
+  /// When the next flush is due by the monotonic clock; a scheduled call compares it
+  /// with its own time.
   std::optional<std::chrono::milliseconds> due_;
   std::shared_ptr<Committer*> self_;
 };

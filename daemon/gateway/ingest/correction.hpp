@@ -9,7 +9,7 @@ namespace recald::daemon {
 struct Correction {
   std::string author;
   std::string reason;  ///< Not empty.
-  std::string sha256;  ///< Of what was sent.
+  std::string sha256;  ///< Of the request's content.
 };
 
 }  // namespace recald::daemon

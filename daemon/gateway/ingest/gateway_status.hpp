@@ -1,4 +1,4 @@
-/// The gateway as people see it: meters, buses, what waits for the store.
+/// The gateway's status for people: meters, buses, data waiting for the store.
 #pragma once
 
 #include <array>
@@ -19,34 +19,34 @@
 
 namespace recald::daemon {
 
-/// Of a meter that is polled.
+/// The status of a polled meter.
 struct PollStatus {
   std::string bus;
   UnitState state = UnitState::up;
   std::uint64_t skipped = 0;
   RequestCounts requests{};
-  std::vector<RefusedRegisters> refused;  ///< At present.
+  std::vector<RefusedRegisters> refused;  ///< Currently.
 };
 
 /// One quantity of a weather sensor.
 struct QuantityStatus {
   const weather::SensorQuantity* quantity;
-  std::optional<double> now;                       ///< In its unit; of a polled sensor.
+  std::optional<double> now;                       ///< In its unit; for a polled sensor.
   std::optional<metering::Reading> last_interval;  ///< Committed.
   std::optional<metering::Instant> known_until;    ///< End of the last valid interval.
-  double open_month_coverage = 0.0;                ///< As MeterStatus's.
+  double open_month_coverage = 0.0;                ///< As in MeterStatus.
   ChannelState state;
 };
 
-/// One meter or weather sensor whose readings the store keeps, as people see it.
+/// The status of one meter or weather sensor with stored readings.
 struct MeterStatus {
   std::string id;
   std::optional<PollStatus> poll;  ///< Absent: its readings are pushed.
-  LiveValues live;                 ///< Of a meter that is not polled, only when it was heard of.
+  LiveValues live;  ///< For a meter that is not polled, only when it was last heard from.
   std::optional<metering::Reading> last_interval;  ///< Committed.
   MeterCounters counters;
   double open_month_coverage = 0.0;  ///< 0…1; NaN before the month's first interval has ended.
-  /// Of a weather sensor: then its counters are the sum, and the coverage is the least of them.
+  /// For a weather sensor; its counters are then the sum and its coverage the least of these.
   std::vector<QuantityStatus> weather = {};
 };
 
@@ -59,10 +59,10 @@ struct BusStatus {
 struct GatewayStatus {
   bool clock_ok = false;
   CommitHealth store;
-  std::string no_store;                   ///< Why readings are kept in memory; empty: they are not.
-  std::size_t waiting_intervals = 0;      ///< For the store.
+  std::string no_store;  ///< Why readings are only kept in memory; empty: they are not.
+  std::size_t waiting_intervals = 0;      ///< Waiting for the store.
   std::array<std::uint64_t, 3> events{};  ///< Committed, by Severity.
-  std::vector<BusStatus> buses;           ///< That have meters.
+  std::vector<BusStatus> buses;           ///< Buses that have meters.
   std::vector<MeterStatus> meters;
 };
 

@@ -20,14 +20,14 @@ using metering::RegisterSample;
 using modbus::RegisterField;
 using PollTime = std::chrono::sys_time<std::chrono::milliseconds>;
 
-/// Two samples around each interval boundary are kept as read; so are all that the counter doubts.
+/// The two samples around each interval boundary are kept, and all that the counter doubts.
 constexpr std::chrono::seconds kNearBoundary{60};
-/// The open interval of a power-only meter is stored this often: a restart costs no more of it.
+/// The open interval of a power-only meter is stored this often, so a restart loses no more of it.
 constexpr std::chrono::seconds kKeepPowerEvery{60};
-/// A clock that is kept right steps back no further.
+/// A synchronised clock never steps back further.
 constexpr std::chrono::seconds kClockSlew{2};
 
-/// kW or kWh per unit of the field; maps are checked to have such units where they are used.
+/// kW or kWh per unit of the field; maps with other units are refused where they are loaded.
 double unit_factor(const RegisterField& field) {
   const auto unit = metering::find_unit(field.unit, metering::Utility::electricity, {});
   assert(unit && "a checked map has known units");
@@ -84,7 +84,7 @@ MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
       refusals_(meter_.id) {
   if (restored) state_ = *restored;
   state_.field = meter_.map.energy.empty() ? "power" : "energy";
-  // What the site file says now holds; the state was reached under what it said then.
+  // Use the current settings of the site file; the stored state was reached under the old ones.
   state_.settings = meter_.counter;
   if (!meter_.map.energy.empty() && meter_.map.power) {
     watch_.emplace(meter_.number, meter_.id, power_rules(meter_.booking));
@@ -115,7 +115,7 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   if (auto told = refusals_.take(read, result, at)) batch.events.push_back(std::move(*told));
   if (!result) {
     note_failure(result.error());
-    // What was not read is not what it was.
+    // A field that could not be read no longer has a current value.
     for (const std::size_t i : read.fields) latest_.erase(fields_[i].name);
     update_power();
     return batch;
@@ -140,7 +140,7 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
     take_energy(batch, poll, at);
     if (watch_) watch_->judge(batch, state_.settings, at);
   }
-  // What is committed stands with the state that explains it.
+  // Commit intervals together with the state that they were computed from.
   if (!batch.empty() && batch.registers.empty()) batch.registers.push_back({meter_.number, state_});
   return batch;
 }
@@ -161,7 +161,7 @@ void MeterTrack::update_power() {
   live_.power_kW = found->second.value * unit_factor(*field) * meter_.multiplier;
 }
 
-/// Another serial number twice in a row is another device; once is a bit that flipped.
+/// A different serial number twice in a row means another device; once may be a flipped bit.
 void MeterTrack::take_identity(StoreBatch& batch, PollTime poll, Instant at) {
   std::string identity;
   for (const std::string& name : meter_.map.identity) {
@@ -190,13 +190,12 @@ void MeterTrack::take_identity(StoreBatch& batch, PollTime poll, Instant at) {
   other_identity_.reset();
   state_.counter = metering::swap_meter(std::move(state_.counter)).state;
 }
-
 void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
   double energy_kWh = 0.0;
   double resolution_kWh = 0.0;
   for (const std::string& name : meter_.map.energy) {
     const auto found = latest_.find(name);
-    if (found == latest_.end() || found->second.poll != poll) return;  // not all of this poll yet
+    if (found == latest_.end() || found->second.poll != poll) return;  // the poll is not complete
     const RegisterField* field = meter_.map.find(name);
     const double factor = unit_factor(*field) * meter_.multiplier;
     energy_kWh += found->second.value * factor;
@@ -241,8 +240,8 @@ bool MeterTrack::is_worth_keeping(const RegisterSample& sample) const {
   return past < kNearBoundary || meter_.booking.interval - past <= kNearBoundary;
 }
 
-/// Times of two clocks cannot be subtracted: the counter starts anew, and the time between is
-/// missing. What is stamped later than now was stamped wrongly, and gives way to what comes.
+/// Times of two clocks cannot be subtracted, so the counter starts anew and the time between is
+/// missing. Readings stamped later than now have wrong stamps and will be replaced.
 void MeterTrack::begin_anew(Instant now) {
   state_.counter = {};
   since_sample_ |= Reason::clock;
@@ -252,14 +251,14 @@ void MeterTrack::begin_anew(Instant now) {
   if (relive_from(now, book.next)) book = {};
 }
 
-/// Intervals before `next` have been handed out. @return whether some of them lie ahead of now.
+/// Intervals before `next` have been stored. @return whether some of them lie in the future.
 bool MeterTrack::relive_from(Instant now, std::optional<Instant> next) {
   if (!next || now >= *next) return false;
   relived_until_ = std::max(relived_until_, *next);
   return true;
 }
 
-/// A doubtful reading, which has no value, takes no other's place.
+/// A doubtful reading without a value replaces nothing.
 bool MeterTrack::is_relived(const metering::Reading& reading) const {
   return reading.start < relived_until_ && std::isfinite(reading.mean_kW);
 }
@@ -270,7 +269,7 @@ void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
   const Instant last =
       state_.counter.pending ? state_.counter.pending->last.time : state_.counter.baseline.time;
   if (stands && sample.time <= last && !clock_was_set_) {
-    // Twice within a second. Further back, the clock was set while nobody ran.
+    // Two samples in one second. If it is further back, the clock was set while the daemon was off.
     if (last - sample.time <= kClockSlew) return;
     clock_was_set_ = true;
   }

@@ -1,8 +1,8 @@
-/// One live meter: turns what its registers said into what is stored.
+/// One live meter: turns the contents of its registers into what is stored.
 ///
-/// It does not know the bus or the store. It takes the outcome of each read and returns what must
-/// be committed together: intervals, the state they were computed from, samples worth keeping,
-/// events.
+/// It does not know the bus or the store. It takes the outcome of each read and returns what
+/// must be committed together: intervals, the state they were computed from, samples worth
+/// keeping, events.
 #pragma once
 
 #include <map>
@@ -21,40 +21,41 @@ namespace recald::daemon {
 struct TrackedMeter {
   std::uint32_t number = 0;  ///< In the store.
   std::string id;
-  /// Its `energy`, `power` and `identity` are what is read. Without `energy`, intervals are means
-  /// of the power.
+  /// Its `energy`, `power` and `identity` are read. Without `energy`, intervals are
+  /// means of the power.
   modbus::RegisterMap map;
-  double multiplier = 1.0;            ///< Of a current transformer that the meter does not know.
-  metering::CounterSettings counter;  ///< Resolution and modulus 0 and infinite: as the map says.
+  double multiplier = 1.0;  ///< Ratio of a current transformer that the meter does not apply.
+  metering::CounterSettings counter;  ///< Resolution 0 and modulus infinite: taken from the map.
   metering::BookingRules booking;
 };
 
-/// What the meter shows now.
+/// The meter's current values.
 struct LiveValues {
   std::optional<double> power_kW;
   std::optional<double> register_kWh;
-  std::optional<metering::Instant> read_at;  ///< Of the last good read.
+  std::optional<metering::Instant> read_at;  ///< Time of the last good read.
 };
 
 class MeterTrack {
  public:
-  /// @param restored  As it was stored; nothing for a meter never seen.
+  /// @param restored  The stored state; nothing for a new meter.
   MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
              const std::optional<RegisterState>& restored);
 
-  /// Teaches the usual day, as after a restart from stored intervals.
+  /// Adds a stored interval to the usual day, as after a restart.
   void remember(const metering::Reading& reading) { usual_.observe(reading); }
 
-  /// The outcome of one read, planned over `modbus::metered_fields`.
-  /// @param poll  Tells the polls apart: its due time. Registers that are summed must be of one.
+  /// Takes the outcome of one read, planned over `modbus::metered_fields`.
+  /// @param poll  Identifies the poll: its due time. Registers that are summed must
+  ///              be from one poll.
   [[nodiscard]] StoreBatch take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                                 std::chrono::sys_time<std::chrono::milliseconds> poll,
                                 metering::Instant at);
 
-  /// A sample of the counter from the time without a store, in order of time.
+  /// Takes a counter sample from the time without a store. Call in order of time.
   [[nodiscard]] StoreBatch take_kept(const metering::RegisterSample& sample);
 
-  /// The clock was set: what the register counted meanwhile belongs to no interval.
+  /// The clock was set, so what the register counted meanwhile belongs to no interval.
   void clock_was_set();
 
   [[nodiscard]] const TrackedMeter& meter() const { return meter_; }
@@ -66,7 +67,7 @@ class MeterTrack {
   struct FieldReading {
     double value;  ///< In the field's unit, scaled.
     double resolution;
-    double power_of_ten;  ///< Of its scale factor; 1 without one.
+    double power_of_ten;  ///< From its scale factor; 1 without one.
     std::chrono::sys_time<std::chrono::milliseconds> poll;
   };
 
@@ -81,7 +82,7 @@ class MeterTrack {
   bool relive_from(metering::Instant now, std::optional<metering::Instant> next);
   [[nodiscard]] bool is_relived(const metering::Reading& reading) const;
   void take_sample(StoreBatch& batch, const metering::RegisterSample& sample);
-  /// The power that this very read brought.
+  /// The power in this read, if it has one.
   [[nodiscard]] std::optional<double> new_power_kW(const modbus::PlannedRead& read) const;
   void take_power(StoreBatch& batch, double power_kW, metering::Instant at);
   [[nodiscard]] StoreEvent event_of(metering::CounterEvent event,
@@ -96,12 +97,12 @@ class MeterTrack {
   LiveValues live_;
   std::map<std::string, FieldReading> latest_;
   RefusalWatch refusals_;
-  std::optional<PowerWatch> watch_;  ///< Where the meter has both a counter and a power.
-  metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads failed since.
+  std::optional<PowerWatch> watch_;  ///< Set if the meter has both a counter and a power.
+  metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads have failed since then.
   bool clock_was_set_ = false;
   metering::Instant relived_until_ = metering::Instant::min();  ///< Stamps before a clock set back.
-  metering::Instant power_kept_{};  ///< When the open interval of a power was last handed out.
-  std::optional<std::string> other_identity_;  ///< Read once, not yet confirmed.
+  metering::Instant power_kept_{};  ///< When the open interval of the power was last stored.
+  std::optional<std::string> other_identity_;  ///< Read once, not confirmed yet.
 };
 
 }  // namespace recald::daemon

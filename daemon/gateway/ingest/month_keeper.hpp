@@ -13,7 +13,7 @@
 
 namespace recald::daemon {
 
-/// A meter and the number that stands for it in the store.
+/// A meter and its number in the store.
 struct StoredMeter {
   std::uint32_t number;
   metering::Meter meter;
@@ -21,35 +21,36 @@ struct StoredMeter {
 
 struct ClosedFigure {
   std::uint32_t number;
-  metering::MonthlyFigure figure;  ///< With the revision that it has in the store.
+  metering::MonthlyFigure figure;  ///< With its revision in the store.
 };
 
-/// A month's figure from the stored readings, by the rules of a replay.
-/// @param known_until  Readings that start later are left out, as if they had not come yet.
+/// A month's figure from the stored readings, computed as in a replay.
+/// @param known_until  Readings that start later are ignored, as if they had not arrived yet.
 [[nodiscard]] Result<metering::MonthlyFigure> stored_figure(
     Store& store, const metering::LocalCalendar& calendar, const metering::CloserOptions& options,
     const StoredMeter& meter, metering::Month month,
     metering::Instant known_until = metering::Instant::max());
 
-/// The months whose figures depend on a reading: its own; the next one, which is judged by how its
-/// meter behaved before; and the previous one, if the reading starts soon after it.
+/// The months whose figures depend on a reading: its own; the next one, whose checks use the
+/// meter's earlier behaviour; and the previous one, if the reading starts soon after it.
 [[nodiscard]] std::vector<metering::Month> months_that_depend_on(
     metering::Instant start, const metering::LocalCalendar& calendar);
 
-/// Nothing is kept in memory between two calls: a restart in the middle loses nothing and repeats
-/// nothing, and a figure is made of what is stored, by the rules of a replay.
+/// Keeps nothing in memory between two calls, so a restart loses and repeats nothing. A figure is
+/// computed from the stored readings, as in a replay.
 class MonthKeeper {
  public:
   MonthKeeper(Store& store, metering::LocalCalendar calendar, metering::CloserOptions options,
               std::string time_zone_release);
 
   /// Closes the months of each meter that ended a watermark ago, from its first reading on, and
-  /// those that were reopened. A meter whose rules have changed since has all its closed months
-  /// reopened first, once; an event says so.
-  /// @param on_closed  Is told of each as soon as it is stored; may be empty.
-  /// @return the new figures in order of meter and month, or the store's failure; what was closed
-  ///         before it stays closed.
-  /// @param at_most    So many months of all meters together; the others at the next call.
+  /// those that were reopened. If a meter's rules have changed, all its closed months are reopened
+  /// first, once, and an event reports it.
+  /// @param on_closed  Called for each month as soon as it is stored; may be empty.
+  /// @param at_most    Most months to close in this call, of all meters together; the
+  ///                   next call continues.
+  /// @return the new figures in order of meter and month, or the store's failure; months closed
+  ///         before the failure stay closed.
   [[nodiscard]] Result<std::vector<ClosedFigure>> close_due(
       std::span<const StoredMeter> meters, metering::Instant now,
       const std::function<void(const ClosedFigure&)>& on_closed = {},

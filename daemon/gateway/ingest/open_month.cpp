@@ -17,12 +17,12 @@ OpenMonth::OpenMonth(metering::LocalCalendar calendar, std::chrono::seconds inte
     : calendar_(std::move(calendar)), interval_(interval) {}
 
 void OpenMonth::observe(const metering::Reading& reading) {
-  if (reading.start < span_.begin) return;  // of a month that is over
+  if (reading.start < span_.begin) return;  // of an earlier month
   if (reading.start >= span_.end) {
     span_ = calendar_.month_span(calendar_.month_of(reading.start));
     is_measured_.assign(static_cast<std::size_t>(span_.length() / interval_ + 1), false);
   }
-  // A stored value gives way to a measured one and not the other way round.
+  // A measured value replaces a stored filled one, but not the other way round.
   if (reading.validity == metering::Validity::ok) {
     is_measured_[static_cast<std::size_t>((reading.start - span_.begin) / interval_)] = true;
   }

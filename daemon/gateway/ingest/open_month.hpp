@@ -9,16 +9,16 @@
 
 namespace recald::daemon {
 
-/// One meter's. Told each interval that is committed, and after a restart those that are stored, in
-/// order of their starts or nearly so; keeps a bit a slot.
+/// For one meter. Takes each committed interval, and after a restart the stored ones, roughly in
+/// order of their starts. Keeps one bit per slot.
 class OpenMonth {
  public:
   OpenMonth(metering::LocalCalendar calendar, std::chrono::seconds interval);
 
   void observe(const metering::Reading& reading);
 
-  /// Share, 0…1, of the slots that have ended by `now` that are measured and valid; NaN before the
-  /// month's first slot has ended. A slot that ended less than a minute ago does not count yet: it
+  /// Share, 0…1, of the slots ended by `now` that have a valid measurement; NaN before the month's
+  /// first slot has ended. A slot that ended less than a minute ago does not count yet, because it
   /// is booked with the first read after its end.
   [[nodiscard]] double coverage(metering::Instant now) const;
 

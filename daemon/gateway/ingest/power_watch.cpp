@@ -7,7 +7,7 @@ namespace {
 
 using metering::Reading;
 
-/// Of two polls around a boundary; more only wait for what will not come.
+/// Two polls around a boundary need no more; others would wait in vain.
 constexpr std::size_t kWaitingMax = 8;
 
 void put(std::deque<Reading>& waiting, const Reading& reading) {

@@ -1,4 +1,4 @@
-/// Watches a live meter's counter by its power: frozen counters, units and scales that differ.
+/// Checks a live meter's counter against its power: frozen counters, different units and scales.
 #pragma once
 
 #include <deque>
@@ -10,8 +10,8 @@
 
 namespace recald::daemon {
 
-/// Samples of the power and intervals of the counter come in any order; an interval is judged once
-/// both are known. Nothing of it is stored: after a restart a run begins anew.
+/// Samples of the power and intervals of the counter come in any order; an interval is checked once
+/// both are known. Nothing is stored: after a restart a run starts again.
 class PowerWatch {
  public:
   PowerWatch(std::uint32_t meter, std::string id, const metering::PowerRules& rules)
@@ -20,9 +20,8 @@ class PowerWatch {
   void take_power(const metering::PowerSample& sample);
   void take_interval(const metering::Reading& counted);
 
-  /// Puts what was found into the batch: intervals that take the place of those that were booked,
-  /// and events.
-  /// @param counter  As it is now; its rating and resolution are what the power is judged by.
+  /// Adds the findings to the batch: intervals that replace booked ones, and events.
+  /// @param counter  Current settings; the power is judged by its rating and resolution.
   void judge(StoreBatch& batch, const metering::CounterSettings& counter, metering::Instant at);
 
   void clock_was_set() { metering::forget_power(book_); }
@@ -33,8 +32,8 @@ class PowerWatch {
   metering::PowerRules rules_;
   metering::PowerBook book_;
   metering::PowerCheck check_;
-  std::deque<metering::Reading> counted_;  ///< Without their power yet, in order of time.
-  std::deque<metering::Reading> powered_;  ///< Without their counter yet.
+  std::deque<metering::Reading> counted_;  ///< Their power is not known yet; in order of time.
+  std::deque<metering::Reading> powered_;  ///< Their counter is not known yet.
 };
 
 }  // namespace recald::daemon

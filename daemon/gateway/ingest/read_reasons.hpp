@@ -1,4 +1,4 @@
-/// Why an interval has a hole, by what became of a read.
+/// The reason for a hole in an interval, from the outcome of a read.
 #pragma once
 
 #include "adapters/modbus/register_value.hpp"

@@ -12,14 +12,14 @@ namespace {
 using metering::Instant;
 
 constexpr std::chrono::hours kToldEvery{1};
-/// A device is busy now and then, and a gateway misses one; as long as refused registers wait at
-/// most.
+/// Devices are busy now and then, and gateways miss some. Equals the longest wait between tries of
+/// refused registers.
 constexpr std::chrono::minutes kPatience{5};
 
-/// What an exception is called where it goes on.
+/// How an exception is described when it lasts.
 struct Kind {
   std::string_view event;
-  std::string_view says;  ///< Of the meter, before the registers.
+  std::string_view says;  ///< About the meter, before the registers.
   std::string_view advice;
   std::chrono::seconds patience;
 };

@@ -1,4 +1,4 @@
-/// Registers for which a device returns an exception: since when, and the events about it.
+/// Registers that a device answers with an exception: since when, and the events about it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace recald::daemon {
 
-/// Registers that are asked for together and that are answered with an exception at present.
+/// Registers that are requested together and currently answered with an exception.
 struct RefusedRegisters {
   std::uint16_t address;  ///< On the wire: base 0.
   std::uint16_t count;
@@ -23,31 +23,32 @@ struct RefusedRegisters {
 };
 
 /// "meter 'main' refuses registers 0 to 3 with exception 2 (illegal data address) since
-/// 2024-03-01T12:00:00Z"; one that is busy, or that its gateway answers for, does not refuse.
+/// 2024-03-01T12:00:00Z". Busy devices, and gateways that answer for a device, are
+/// worded differently.
 [[nodiscard]] std::string sentence_of(const std::string& meter, const RefusedRegisters& refused);
 
 /// For one meter. A refusal of registers and their next answer are one event each; a device that
-/// alternates at every poll gives at most one such pair an hour.
+/// alternates at every poll causes at most one such pair per hour.
 class RefusalWatch {
  public:
   explicit RefusalWatch(std::string meter) : meter_(std::move(meter)) {}
 
-  /// The outcome of one read. "Busy" answers, and a gateway's exceptions for a silent device, may
-  /// pass: they become an event after five minutes without any other answer, once, and are counted
-  /// after that.
-  /// @return what people are to be told.
+  /// Takes the outcome of one read. "Busy" answers, and a gateway's exceptions for a silent device,
+  /// may be temporary: they become an event after five minutes without any other answer, once, and
+  /// are counted after that.
+  /// @return the event to report, if any.
   [[nodiscard]] std::optional<StoreEvent> take(const modbus::PlannedRead& read,
                                                const modbus::ReadResult& result,
                                                metering::Instant at);
 
-  /// Refusals that should be looked at.
+  /// Refusals that someone should look at.
   [[nodiscard]] std::vector<RefusedRegisters> refused() const;
 
  private:
   struct Read {
     std::optional<RefusedRegisters> refused;  ///< Since its last answer.
-    bool is_lasting = false;                  ///< It deserves a look.
-    bool is_told = false;                     ///< Of this refusal.
+    bool is_lasting = false;                  ///< Someone should look at it.
+    bool is_told = false;                     ///< This refusal was reported.
     metering::Instant told = metering::Instant::min();
   };
 

@@ -41,7 +41,7 @@ StoreEvent SensorWatch::event(Severity severity, std::string_view kind, std::str
           .kind = std::string{kind},
           .subject = sensor_,
           .text = std::move(text),
-          .is_counted = true};  // a restart tells it again
+          .is_counted = true};  // a restart reports it again
 }
 
 std::vector<StoreEvent> SensorWatch::judge(std::span<const MeterProgress* const> channels,

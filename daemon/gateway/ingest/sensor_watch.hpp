@@ -13,20 +13,19 @@
 
 namespace recald::daemon {
 
-/// A hole that is longer is filled with typical hours instead of a straight line
-/// (`weather::fill_gaps`).
+/// A longer hole is filled with typical hours instead of a straight line (`weather::fill_gaps`).
 inline constexpr std::chrono::hours kPolledSilenceMax{6};
 /// A pushed sensor may send a whole day at a time.
 inline constexpr std::chrono::hours kPushedSilenceMax{36};
 
-/// What is wrong with one quantity of a sensor.
+/// The faults of one quantity of a sensor.
 struct ChannelState {
-  std::optional<metering::Instant> silent_since;  ///< Absent: it is not.
+  std::optional<metering::Instant> silent_since;  ///< Absent: not silent.
   std::optional<metering::Instant> frozen_since;
 };
 
-/// For one sensor, polled or pushed. There are events for quantities that fall silent, that return,
-/// and for a frozen dry bulb.
+/// For one sensor, polled or pushed. Events report quantities that fall silent or return, and a
+/// frozen dry bulb.
 class SensorWatch {
  public:
   SensorWatch(std::string sensor, bool is_polled)
@@ -35,8 +34,8 @@ class SensorWatch {
   [[nodiscard]] bool is_polled() const { return is_polled_; }
   [[nodiscard]] ChannelState state_of(const MeterProgress& channel, metering::Instant now) const;
 
-  /// @param channels  Of this sensor. For a pushed one, only quantities that it has sent before can
-  /// be missing, and the dry bulb.
+  /// @param channels  Of this sensor. For a pushed one, only quantities that it has sent before,
+  ///                  and the dry bulb, can be missing.
   [[nodiscard]] std::vector<StoreEvent> judge(std::span<const MeterProgress* const> channels,
                                               metering::Instant now);
 
@@ -47,8 +46,8 @@ class SensorWatch {
   std::string sensor_;
   bool is_polled_;
   std::optional<metering::Instant>
-      begun_;                          ///< First judged: what was never known counts from here.
-  std::set<std::string_view> silent_;  ///< Quantities of which people were told.
+      begun_;  ///< Time of the first check; a quantity never known counts from here.
+  std::set<std::string_view> silent_;  ///< Quantities that were reported.
   std::set<std::string_view> frozen_;
 };
 

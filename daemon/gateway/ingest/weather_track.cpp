@@ -19,18 +19,18 @@ using metering::PowerBook;
 using metering::Reading;
 using metering::Reason;
 
-/// The open intervals are stored this often: a restart costs no more of them.
+/// The open intervals are stored this often, so a restart loses no more of them.
 constexpr std::chrono::seconds kKeepWeatherEvery{60};
-/// A clock that is kept right steps back no further.
+/// A synchronised clock never steps back further.
 constexpr std::chrono::seconds kSensorClockSlew{2};
-/// What a sensor did not say for longer leaves no interval behind: an event tells of it, and a
-/// month of silence must not become thousands of rows in one commit.
+/// A longer hole leaves no intervals: an event reports it, and a month of silence must not become
+/// thousands of rows in one commit.
 constexpr std::chrono::hours kWeatherHoleMax{24};
 constexpr std::chrono::hours kNotPlausibleToldEvery{1};
 constexpr double kRadianPerDegree = std::numbers::pi / 180.0;
 constexpr double kNoDirection = 1e-9;  // winds that cancel
 
-/// Names of a quantity's books in the store: of a mean, or of a direction's two components.
+/// Names of a quantity's books in the store: one for a mean, two for the components of a direction.
 using BookFields = std::array<std::string_view, 2>;
 constexpr BookFields kMeanFields{"mean", ""};
 constexpr BookFields kDirectionFields{"east", "north"};
@@ -39,7 +39,7 @@ const BookFields& book_fields(const weather::SensorQuantity& quantity) {
   return weather::is_wind_direction(quantity) ? kDirectionFields : kMeanFields;
 }
 
-/// Readings of both components of a direction, of the same interval, as one of degrees.
+/// Combines the readings of both components of a direction in one interval into degrees.
 Reading direction_of(const Reading& east, const Reading& north) {
   Reading reading = east;
   if (reading.validity != metering::Validity::ok) return reading;
@@ -68,7 +68,7 @@ WeatherTrack::WeatherTrack(TrackedSensor sensor)
       if (name == names.end()) continue;
       channel.books.at(static_cast<std::size_t>(name - names.begin())) = state.power;
     }
-    // Components of a direction go together, and may come out of a damaged store apart.
+    // Both components of a direction must match; a damaged store may return them out of step.
     const auto& [east, north] = channel.books;
     if (weather::is_wind_direction(*tracked.quantity) &&
         (east.next != north.next || east.until != north.until)) {
@@ -120,7 +120,7 @@ StoreBatch WeatherTrack::take(const modbus::PlannedRead& read, const modbus::Rea
       channel->since |= reason_of(found.value.error());
     }
   }
-  // What is committed stands with the state that explains it.
+  // Commit intervals together with the state that they were computed from.
   if (!batch.intervals.empty() || at - kept_ >= kKeepWeatherEvery) {
     put_states(batch);
     kept_ = at;
@@ -137,7 +137,7 @@ void WeatherTrack::take_value(StoreBatch& batch, Channel& channel, double value,
   book(batch, channel, value, at);
 }
 
-/// The same sensor at every poll is one event a day, which is counted once an hour.
+/// Per sensor, this is at most one event a day, counted at most once an hour.
 void WeatherTrack::tell(StoreBatch& batch, Channel& channel, double value, Instant at) const {
   if (channel.told != Instant::min() && at - channel.told < kNotPlausibleToldEvery) return;
   channel.told = at;
@@ -156,7 +156,7 @@ void WeatherTrack::book(StoreBatch& batch, Channel& channel, double value, Insta
   PowerBook& first = channel.books.front();
   const bool went_back = first.next && at < first.until - kSensorClockSlew;
   if (went_back && at < *first.next) {
-    // What is stamped later than now was stamped wrongly, and gives way to what comes.
+    // Readings stamped later than now have wrong stamps and will be replaced.
     channel.since |= Reason::clock;
     channel.relived_until = std::max(channel.relived_until, *first.next);
     channel.books = {};

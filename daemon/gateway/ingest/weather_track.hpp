@@ -1,6 +1,6 @@
-/// One polled weather sensor: turns what its registers said into stored interval means.
+/// One polled weather sensor: turns the contents of its registers into stored interval means.
 ///
-/// Like `MeterTrack` it does not know the bus or the store: it takes the outcome of each read and
+/// Like `MeterTrack`, it does not know the bus or the store: it takes the outcome of each read and
 /// returns what must be committed together. Its values are instantaneous; there is no counter.
 #pragma once
 
@@ -16,11 +16,11 @@
 
 namespace recald::daemon {
 
-/// What a sensor measures of one quantity.
+/// One quantity that a sensor measures.
 struct TrackedQuantity {
   std::uint32_t number = 0;  ///< In the store.
   const weather::SensorQuantity* quantity = nullptr;
-  std::vector<RegisterState> restored = {};  ///< As it was stored; empty: never seen.
+  std::vector<RegisterState> restored = {};  ///< The stored states; empty: never seen.
 };
 
 struct TrackedSensor {
@@ -34,29 +34,29 @@ class WeatherTrack {
  public:
   explicit WeatherTrack(TrackedSensor sensor);
 
-  /// The outcome of one read, planned over `modbus::metered_fields`. An impossible value counts as
-  /// none; an event says so, at most once an hour.
+  /// Takes the outcome of one read, planned over `modbus::metered_fields`. An impossible value
+  /// counts as missing; an event reports it, at most once an hour.
   [[nodiscard]] StoreBatch take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                                 metering::Instant at);
 
-  /// The clock was set: the weather in between belongs to no interval.
+  /// The clock was set, so the weather in between belongs to no interval.
   void clock_was_set();
 
-  /// The last value, in the quantity's unit; nothing where the last read had none.
+  /// The last value, in the quantity's unit; nothing if the last read had none.
   [[nodiscard]] std::optional<double> now(std::uint32_t number) const;
   [[nodiscard]] std::optional<metering::Instant> read_at() const { return read_at_; }
   [[nodiscard]] std::vector<RefusedRegisters> refused() const { return refusals_.refused(); }
 
  private:
-  /// A quantity and the mean of its open interval; of a direction those of east and north.
+  /// A quantity and the mean of its open interval; for a direction, those of east and north.
   struct Channel {
     std::uint32_t number;
     const weather::SensorQuantity* quantity;
     std::array<metering::PowerBook, 2> books{};
-    metering::Reason since = metering::Reason::none;  ///< Why there was no value since the last.
+    metering::Reason since = metering::Reason::none;  ///< Why there has been no value since.
     std::optional<double> now = {};
     metering::Instant relived_until =
-        metering::Instant::min();                       ///< Stamps before a clock set back.
+        metering::Instant::min();  ///< Latest stamp before the clock was set back.
     metering::Instant told = metering::Instant::min();  ///< Of an impossible value.
   };
 
@@ -71,8 +71,8 @@ class WeatherTrack {
   metering::PowerRules averaging_;
   std::vector<Channel> channels_;
   RefusalWatch refusals_;
-  std::optional<metering::Instant> read_at_;  ///< Of the last good read.
-  metering::Instant kept_{};                  ///< When the open intervals were last handed out.
+  std::optional<metering::Instant> read_at_;  ///< Time of the last good read.
+  metering::Instant kept_{};                  ///< When the open intervals were last stored.
 };
 
 }  // namespace recald::daemon

@@ -1,4 +1,4 @@
-/// What a bus has done since the process began, counted for those who watch it.
+/// Statistics of a bus since the process started.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace recald::daemon {
 
-/// How a request ended. No connection and a closed one are a timeout too, as in an interval's
-/// reasons.
+/// How a request ended. A missing or closed connection counts as a timeout, as in an
+/// interval's reasons.
 enum class RequestResult : std::uint8_t { ok, timeout, exception, crc, mismatch };
 
 inline constexpr std::array<std::string_view, 5> kRequestResults{"ok", "timeout", "exception",
@@ -25,7 +25,7 @@ using RequestCounts = std::array<std::uint64_t, kRequestResults.size()>;  ///< B
 struct BusCounters {
   std::vector<RequestCounts> requests;  ///< By unit.
   LatencyHistogram duration;            ///< Of all requests, from request to outcome.
-  /// Of each poll's first request behind its due time; probes are not due at any time.
+  /// Delay of each poll's first request after its due time; probes have no due time.
   LatencyHistogram lateness;
 };
 

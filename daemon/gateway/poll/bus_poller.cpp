@@ -11,11 +11,11 @@ namespace {
 using modbus::ReadFault;
 using std::chrono::milliseconds;
 
-/// The clock was set if both clocks disagree by more than this since the last look.
+/// If the clocks have drifted apart by more than this since the last check, the wall clock was set.
 constexpr milliseconds kClockSet{500};
-/// When no silent unit had its turn for so long, one has it whoever falls due.
+/// If no silent unit had a turn for this long, one gets it even if others are due.
 constexpr milliseconds kPatience{60'000};
-/// Probes may take this long before their share of the bus's time is counted.
+/// Probes may take this long before their share of the bus's time is checked.
 constexpr milliseconds kProbeCredit{5'000};
 
 WallTime next_multiple(WallTime t, milliseconds step) {
@@ -43,7 +43,7 @@ WallTime BusPoller::due_after(std::size_t unit, WallTime t) const {
   return std::min(next_multiple(t, units_[unit].period), next_multiple(t, units_[unit].interval));
 }
 
-/// At the first call, and when the wall clock was set, all polls are scheduled anew.
+/// At the first call, and after the wall clock was set, all polls are scheduled anew.
 void BusPoller::notice_clock(const Moment& now) {
   const milliseconds offset = now.wall.time_since_epoch() - now.monotonic;
   const bool is_first = !wall_minus_monotonic_.has_value();
@@ -55,7 +55,7 @@ void BusPoller::notice_clock(const Moment& now) {
   for (std::size_t i = 0; i < units_.size(); ++i) {
     states_[i].to_read.clear();
     states_[i].is_asked = false;
-    // What runs already shows its values at once; the schedule follows.
+    // At the start all units are polled at once, to show values; then the schedule applies.
     states_[i].due = is_first ? now.wall : due_after(i, now.wall);
   }
 }
@@ -63,7 +63,7 @@ void BusPoller::notice_clock(const Moment& now) {
 void BusPoller::begin_due_polls(const Moment& now) {
   for (std::size_t i = 0; i < units_.size(); ++i) {
     UnitPolling& polling = states_[i];
-    // A poll of which something was read keeps its due time: it says which reads belong together.
+    // A poll that has started keeps its due time, which identifies the reads that belong together.
     if (polling.due > now.wall || polling.is_asked) continue;
     const bool is_waiting = !polling.to_read.empty();
     if (!is_waiting) polling.since = polling.due;
@@ -84,7 +84,7 @@ bool BusPoller::is_reliable(const UnitPolling& polling) {
   return polling.has_answered && polling.health.state() == UnitState::up;
 }
 
-/// Whether a read that may last `timeout` ends before an answering unit falls due.
+/// Whether a read that may take `timeout` ends before an answering unit falls due.
 bool BusPoller::fits_before_reliable(milliseconds timeout, const Moment& now) const {
   return std::ranges::none_of(states_, [&](const UnitPolling& polling) {
     return is_reliable(polling) && polling.due < now.wall + timeout;
@@ -175,7 +175,7 @@ milliseconds BusPoller::wait(const Moment& now) const {
   }
   for (const UnitPolling& polling : states_) {
     if (polling.health.state() == UnitState::down) {
-      // A probe that is due already waits for the answering units, which are in this list.
+      // A probe that is already due waits for the answering units, which are in this list.
       const milliseconds probe = polling.health.next_probe() - now.monotonic;
       if (probe > milliseconds{0}) no_later(probe);
     } else if (polling.to_read.empty()) {
@@ -240,13 +240,14 @@ void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result
   gap_until_ = now.monotonic + rules_.request_gap;
   if (order.is_probe) probing_ += duration;
   UnitPolling& polling = states_[order.unit];
-  // The clock was set while the order was under way: its poll is off the schedule already.
+  // The clock was set during this order, so its poll is no longer on the schedule.
   const bool is_stale = !order.is_probe && polling.to_read.empty();
 
   const bool is_lost = !result && (result.error().fault == ReadFault::refused ||
                                    result.error().fault == ReadFault::closed);
   lost_connections_ = is_lost ? lost_connections_ + 1 : 0;
-  // A device that closes on one unit's request may serve the others: only the second time counts.
+  // A device that closes on one unit's request may still serve others, so only the
+  // second time counts.
   if (is_lost && (result.error().fault == ReadFault::refused || lost_connections_ > 1)) rest(now);
 
   const bool lives = result || (result.error().fault == ReadFault::exception &&
@@ -264,7 +265,7 @@ void BusPoller::answered(const BusOrder& order, const modbus::ReadResult& result
   polling.health.answered();
   polling.timeout.answered(duration);
   if (order.is_probe) {
-    polling.due = now.wall;  // back again: the whole poll at once
+    polling.due = now.wall;  // the unit is back: read the whole poll at once
     polling.to_read.clear();
     polling.is_asked = false;
     return;

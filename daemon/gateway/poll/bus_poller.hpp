@@ -1,5 +1,4 @@
-/// Decides what to ask which device next: the schedule of one bus, including everything that
-/// devices do wrong.
+/// Decides which device to ask next: the schedule of one bus, with all faults of its devices.
 ///
 /// It has no sockets, threads or clock: it is given the time and the answers, and says what to do.
 /// The live daemon, a replay and a test on a virtual clock all use it.
@@ -25,8 +24,8 @@ using WallTime = std::chrono::sys_time<std::chrono::milliseconds>;
 struct PolledUnit {
   std::string meter;  ///< Its id.
   std::uint8_t unit = 1;
-  std::vector<modbus::PlannedRead> reads;  ///< All of them at each poll. @pre not empty
-  /// Polls are due at multiples of it since 1970, and at every interval boundary as well.
+  std::vector<modbus::PlannedRead> reads;  ///< Each poll makes all of them. @pre not empty
+  /// Polls are due at multiples of it since 1970, and also at every interval boundary.
   std::chrono::milliseconds period{60'000};
   std::chrono::seconds interval{900};
   std::chrono::milliseconds timeout{0};  ///< Zero: learned.
@@ -35,13 +34,13 @@ struct PolledUnit {
 struct BusRules {
   HealthRules health;
   std::chrono::milliseconds request_gap{0};  ///< Pause after each answer (gateways that need one).
-  double probe_share = 0.05;                 ///< Of the bus's time, at most.
+  double probe_share = 0.05;                 ///< Largest share of the bus's time.
   std::chrono::milliseconds busy_wait{100};
   int busy_retries = 3;
   std::chrono::milliseconds reconnect_min{1'000};  ///< Doubles, jittered.
   std::chrono::milliseconds reconnect_max{60'000};
   std::chrono::milliseconds refused_min{
-      10'000};  ///< Before a refused read is asked again; doubles.
+      10'000};  ///< Before a refused read is tried again; doubles.
   std::chrono::milliseconds refused_max{300'000};
 };
 
@@ -53,66 +52,67 @@ struct BusOrder {
   std::chrono::milliseconds timeout;
   WallTime due;
   bool is_probe;
-  bool begins_poll = false;  ///< The first read of a poll: how late it is, the poll is.
+  bool begins_poll = false;  ///< The first read of a poll: its delay is the poll's delay.
 };
 
-/// A wait of several minutes is shortened to this: the wall clock may have been set meanwhile.
+/// Longer waits are cut to this, because the wall clock may be set meanwhile.
 inline constexpr std::chrono::milliseconds kLongestWait{1'000};
 
 class BusPoller {
  public:
   BusPoller(std::vector<PolledUnit> units, const BusRules& rules, Rng rng);
 
-  /// What to ask now. None: an order is under way, or nothing is due.
+  /// What to ask now. Nothing: an order is in progress, or nothing is due.
   ///
-  /// Due units that answer come first, in order of their due times. Units that were silent wait
-  /// until no answering one falls due within their time-out, so that 31 dead of 32 cost the living
-  /// one nothing. A poll that is late by more than a period is made once, for its latest due time;
-  /// who has waited longest comes first, so an overloaded bus starves nobody.
+  /// Due units that answer come first, in order of their due times. Silent units wait until no
+  /// answering unit falls due within their time-out, so 31 dead units of 32 do not delay the
+  /// one that works. A poll that is late by more than a period is made once, for its latest
+  /// due time. The unit that has waited longest comes first, so every unit is served even on
+  /// an overloaded bus.
   [[nodiscard]] std::optional<BusOrder> next(const Moment& now);
 
-  /// How long until `next` may have something, at most kLongestWait. @pre no order is under way
+  /// Time until `next` may return an order, at most kLongestWait. @pre no order is in progress
   [[nodiscard]] std::chrono::milliseconds wait(const Moment& now) const;
 
-  /// The order's outcome.
+  /// Takes the order's outcome.
   ///
-  /// - An answer, even an exception, shows that the unit lives. Gateway exceptions 10 and 11 do
-  /// not.
-  /// - Busy (5, 6): the same read again after 100 ms, three times. A unit that is busy then still
-  /// has not served that poll, and is degraded.
+  /// - An answer, even an exception, shows that the unit works. Gateway exceptions
+  ///   10 and 11 do not.
+  /// - Busy (5, 6): the same read is repeated up to three times, 100 ms apart. A unit that is still
+  ///   busy has not served that poll, and is degraded.
   /// - Any other exception is a refusal of that read: it is left out of the polls for 10 s, then
-  /// for twice as long, up to 5 minutes. A gateway that has just started says "illegal address" of
-  /// registers that it has a moment later.
-  /// - A silent unit loses the rest of its poll: one time-out a poll is enough.
-  /// - No connection: the whole bus rests, 1 s to 60 s.
+  ///   for twice as long, up to 5 minutes. A gateway that has just started returns "illegal
+  ///   address" for registers that it has a moment later.
+  /// - A silent unit loses the rest of its poll: one time-out per poll is enough.
+  /// - No connection: the whole bus pauses for 1 s to 60 s.
   void answered(const BusOrder& order, const modbus::ReadResult& result,
                 std::chrono::milliseconds duration, const Moment& now);
 
-  /// Forgets what it knows of its units: misses, time-outs, refusals, the rest of the bus. All are
-  /// polled at once, as at the start. The outcome of an order in progress is ignored.
+  /// Forgets everything about its units and the bus: misses, time-outs, refusals, pauses. All units
+  /// are polled at once, as at the start. The outcome of an order in progress is ignored.
   void begin_anew();
 
   [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }
-  /// A unit that answers but refuses a read, or is too busy for it, is degraded.
+  /// A unit that answers but refuses a read, or is too busy to serve it, is degraded.
   [[nodiscard]] UnitState state(std::size_t unit) const;
-  /// Polls that were not made because the bus was busy with others.
+  /// Polls that were skipped because the bus was busy with others.
   [[nodiscard]] std::uint64_t skipped(std::size_t unit) const { return states_[unit].skipped; }
 
  private:
-  /// Of a read.
+  /// The refusal of one read.
   struct Refusal {
-    std::chrono::milliseconds wait{0};  ///< Zero: it is not refused.
+    std::chrono::milliseconds wait{0};  ///< Zero: not refused.
     std::chrono::milliseconds until{0};
-    bool is_busy = false;  ///< The last poll found the unit busy to the end.
+    bool is_busy = false;  ///< The last poll found the unit busy throughout.
   };
   struct UnitPolling {
     UnitHealth health;
     LearnedTimeout timeout;
     std::vector<Refusal> refusals;     ///< By read.
-    WallTime due{};                    ///< Of the poll under way, else of the next one.
-    WallTime since{};                  ///< First due time that was not served.
-    std::vector<std::size_t> to_read;  ///< What the poll under way has left, last first.
-    bool is_asked = false;             ///< The poll under way has made its first read.
+    WallTime due{};                    ///< Of the poll in progress, else of the next one.
+    WallTime since{};                  ///< First due time that was missed.
+    std::vector<std::size_t> to_read;  ///< Remaining reads of the poll in progress, last first.
+    bool is_asked = false;             ///< The poll in progress has made its first read.
     std::chrono::milliseconds not_before{0};
     int busy = 0;               ///< Busy answers to this read.
     bool has_answered = false;  ///< Ever.
@@ -141,10 +141,9 @@ class BusPoller {
   Rng rng_;
   bool under_way_ = false;
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
-  std::chrono::milliseconds begun_{0};    ///< Monotonic, of the first call.
-  std::chrono::milliseconds probing_{0};  ///< Bus time given to probes.
-  std::chrono::milliseconds silent_asked_{
-      0};  ///< Monotonic: when one that was silent had its turn.
+  std::chrono::milliseconds begun_{0};         ///< Monotonic, of the first call.
+  std::chrono::milliseconds probing_{0};       ///< Bus time given to probes.
+  std::chrono::milliseconds silent_asked_{0};  ///< Monotonic: when a silent unit last had its turn.
   std::chrono::milliseconds gap_until_{0};
   std::chrono::milliseconds rest_until_{0};
   std::chrono::milliseconds rest_length_{0};

@@ -18,7 +18,7 @@ BusRunner::BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnR
 void BusRunner::start() { step(); }
 
 void BusRunner::begin_anew(const std::function<std::unique_ptr<Bus>()>& make_bus) {
-  self_ = std::make_shared<BusRunner*>(this);  // nobody who was asked before finds this one
+  self_ = std::make_shared<BusRunner*>(this);  // calls from before do not find this one
   bus_.reset();
   bus_ = make_bus();
   poller_.begin_anew();
@@ -49,12 +49,12 @@ void BusRunner::step() {
                BusRunner& runner = **self;
                const Moment at = runner.loop_.now();
                runner.finish({order, std::move(result), lateness, duration, at});
-               // Whoever was told may have ended this bus, and with it what it was told by.
+               // The listener may have destroyed this bus, and with it the object that called it.
                if (self.use_count() > 1) runner.step();
              });
 }
 
-/// The caller makes the next step, unless something is thrown.
+/// The caller makes the next step, unless an exception is thrown.
 void BusRunner::finish(const PolledRead& read) {
   poller_.answered(read.order, read.result, read.duration, read.at);
   count(read);

@@ -1,4 +1,5 @@
-/// One bus, kept busy: asks its poller what is next, its bus to read it, and hands on the outcome.
+/// Keeps one bus busy: asks the poller what is next, reads it on the bus, and
+/// passes on the outcome.
 #pragma once
 
 #include <functional>
@@ -15,12 +16,12 @@ namespace recald::daemon {
 struct PolledRead {
   BusOrder order;
   modbus::ReadResult result;
-  std::chrono::milliseconds lateness;  ///< Of the request, behind its due time.
+  std::chrono::milliseconds lateness;  ///< Of the request, after its due time.
   std::chrono::milliseconds duration;
-  Moment at;  ///< When the outcome was known: what its values are stamped with.
+  Moment at;  ///< When the outcome was known; its values get this stamp.
 };
 
-/// Polling continues whatever the listener throws. Lives on the loop's thread. May be destroyed at
+/// Polling continues even if the listener throws. Lives on the loop's thread. May be destroyed at
 /// any time; the outcome of a request in progress is then not reported.
 class BusRunner {
  public:
@@ -29,9 +30,9 @@ class BusRunner {
   BusRunner(Loop& loop, std::unique_ptr<Bus> bus, BusPoller poller, OnRead on_read);
 
   void start();
-  /// Starts again on another connection and keeps its counts. The outcome of a request in progress
+  /// Restarts on another connection and keeps its counts. The outcome of a request in progress
   /// is not reported.
-  /// @param make_bus  Called once the old bus has ended: a serial line has one owner.
+  /// @param make_bus  Called once the old bus has ended, because a serial line has one owner.
   void begin_anew(const std::function<std::unique_ptr<Bus>()>& make_bus);
   [[nodiscard]] const BusPoller& poller() const { return poller_; }
   [[nodiscard]] const BusCounters& counters() const { return counters_; }
@@ -46,7 +47,7 @@ class BusRunner {
   BusPoller poller_;
   OnRead on_read_;
   BusCounters counters_;
-  std::shared_ptr<BusRunner*> self_;  ///< Calls that come later find out whether this still is.
+  std::shared_ptr<BusRunner*> self_;  ///< Tells later calls whether this still exists.
 };
 
 }  // namespace recald::daemon

@@ -1,5 +1,5 @@
-/// How long something takes, counted in classes: a percentile can be read off it later, which a
-/// mean or a last value does not allow.
+/// Durations counted in classes, from which percentiles can be read later, unlike from a mean
+/// or a last value.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@ namespace recald::daemon {
 
 class LatencyHistogram {
  public:
-  /// Upper bounds of the classes, themselves included; what is longer is only in `count`. A
-  /// hundred milliseconds, what a poll may be late, is one of them.
+  /// Upper bounds of the classes, inclusive; longer durations are only in `count`. A poll may be
+  /// 100 ms late, so that is one of them.
   static constexpr std::array<double, 13> kBounds_s{0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1,
                                                     0.25,  0.5,    1.0,   2.5,  5.0,   10.0};
 
-  /// Below zero (the clock was set) is zero.
+  /// A negative duration (the clock was set) counts as zero.
   void observe(std::chrono::milliseconds length) {
     const double length_s = std::max(0.0, std::chrono::duration<double>(length).count());
     for (std::size_t i = 0; i < kBounds_s.size(); ++i) {
@@ -28,7 +28,7 @@ class LatencyHistogram {
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] double sum_s() const { return sum_s_; }
-  /// How many were no longer than each bound.
+  /// The number of durations within each bound.
   [[nodiscard]] const std::array<std::uint64_t, kBounds_s.size()>& at_most() const {
     return at_most_;
   }

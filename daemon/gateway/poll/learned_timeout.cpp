@@ -10,7 +10,7 @@ milliseconds LearnedTimeout::learned() const {
   if (answers_ < kEnough) return kUnknown;
   const std::size_t kept = std::min(answers_, kAnswers);
   auto sorted = durations_ms_;
-  // The 99 % quantile: of 128 the second largest.
+  // The 99 % quantile: the second largest of 128.
   const auto quantile = sorted.begin() + static_cast<std::ptrdiff_t>((99 * kept + 99) / 100 - 1);
   std::nth_element(sorted.begin(), quantile, sorted.begin() + static_cast<std::ptrdiff_t>(kept));
   return std::clamp(4 * milliseconds{*quantile}, kMin, kMax);

@@ -1,4 +1,4 @@
-/// How long to wait for a device, learned from how long it took before.
+/// How long to wait for a device, learned from its earlier response times.
 #pragma once
 
 #include <array>
@@ -7,21 +7,21 @@
 
 namespace recald::daemon {
 
-/// Four times the 99 % quantile of the last 128 answers, within 200 ms and 5 s; 1 s until eight
-/// answers are known. A miss doubles it until the next answer, so that a device that became slow is
-/// found again. (A device that answers within 600 ms loses 707 of 1000 reads at 300 ms and none at
-/// 600: stephane/libmodbus#776.)
+/// Four times the 99 % quantile of the last 128 answers, between 200 ms and 5 s; 1 s until eight
+/// answers are known. Each miss doubles it until the next answer, so that a device that became slow
+/// is found again. (A device that answers within 600 ms loses 707 of 1000 reads at 300 ms and none
+/// at 600: stephane/libmodbus#776.)
 class LearnedTimeout {
  public:
   static constexpr std::chrono::milliseconds kMin{200};
   static constexpr std::chrono::milliseconds kMax{5'000};
   static constexpr std::chrono::milliseconds kUnknown{1'000};
 
-  /// @param fixed  Configured by the user, then nothing is learned; zero: learn.
+  /// @param fixed  Set by the user, then nothing is learned; zero: learn.
   explicit LearnedTimeout(std::chrono::milliseconds fixed = {}) : fixed_(fixed) {}
 
   [[nodiscard]] std::chrono::milliseconds timeout() const;
-  /// For a look at a dead device: twice what is learned, however often it was missed.
+  /// For probing a dead device: twice the learned time-out, however often it was missed.
   [[nodiscard]] std::chrono::milliseconds probe_timeout() const;
 
   void answered(std::chrono::milliseconds duration);

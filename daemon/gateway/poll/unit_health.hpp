@@ -1,4 +1,4 @@
-/// Whether a device answers, and how often a silent one is worth a try.
+/// Whether a device answers, and how often to try a silent one.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,8 @@
 namespace recald::daemon {
 
 enum class UnitState : std::uint8_t {
-  down,      ///< Missed several polls in a row: it gets a cheap probe now and then, nothing else.
-  degraded,  ///< Missed the last one.
+  down,      ///< Missed several polls in a row: gets only a cheap probe now and then.
+  degraded,  ///< Missed the last poll.
   up,
 };
 
@@ -18,10 +18,10 @@ struct HealthRules {
   int down_after = 3;                          ///< Misses in a row.
   std::chrono::milliseconds probe_min{5'000};  ///< Wait before the first probe; doubles.
   std::chrono::milliseconds probe_max{300'000};
-  double probe_jitter = 0.1;  ///< So that the dead of one power cut are not probed in step.
+  double probe_jitter = 0.1;  ///< Keeps devices that lost power together from being probed in step.
 };
 
-/// One device. Times are monotonic. Retries never end: no state needs a restart.
+/// One device. Times are monotonic. Retries never stop, so no state needs a restart.
 class UnitHealth {
  public:
   explicit UnitHealth(const HealthRules& rules = {}) : rules_(rules) {}

@@ -22,10 +22,10 @@ constexpr milliseconds kClockSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
 constexpr int kEventsTakenOver = 10'000;
-constexpr std::size_t kSamplesAtATime = 500;  // taken over between two looks at the store
+constexpr std::size_t kSamplesAtATime = 500;  // taken over between two checks of the store
 constexpr std::size_t kMonthsAtATime = 12;    // of one meter, in one step of the loop
 
-/// A day of all meters, and no less than usual, is kept while the store refuses.
+/// While the store refuses, a day of all meters is kept, and no less than usual.
 CommitRules rules_for(const SiteConfig& site) {
   CommitRules rules;
   std::size_t intervals_a_day = 0;
@@ -133,7 +133,7 @@ void Gateway::watch_sensors_of(const SiteConfig& site) {
 }
 
 Result<void> Gateway::take_over(Store& memory, const std::function<void()>& on_progress) {
-  // In part it would not be found again: a counter does not go back to what lies behind it.
+  // Half a takeover could not be completed later: a counter does not accept older samples.
   return ports_.store.as_one([&] { return take_over_all(memory, on_progress); });
 }
 
@@ -208,7 +208,7 @@ LiveBus::Ports Gateway::ports_of(const LiveBus& bus) const {
   return {ports_.loop, ports_.make_bus, ports_.seed + std::hash<std::string>{}(bus.config().name)};
 }
 
-/// In a step of the loop each: to end a bus waits for the read under way.
+/// Each in its own step of the loop, because ending a bus waits for the read in progress.
 void Gateway::begin_buses_anew() {
   for (const auto& bus : buses_) {
     ports_.loop.after(milliseconds{0}, [weak = std::weak_ptr{self_}, name = bus->config().name] {
@@ -222,7 +222,7 @@ void Gateway::begin_buses_anew() {
 }
 
 Result<void> Gateway::reload(const SiteConfig& site) {
-  // A counter goes on from what is stored: all of it has to be.
+  // Counters continue from the stored state, so everything must be stored.
   if (auto flushed = committer_.flush(); !flushed) return flushed;
   const auto changed = std::stable_partition(
       buses_.begin(), buses_.end(), [&](const auto& bus) { return bus->is_described_by(site); });
@@ -231,8 +231,8 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   if (!opened) return tl::unexpected(opened.error());
   if (auto pushed = open_pushed(site); !pushed) return pushed;
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
-  begin_buses_anew();                   // those that stay
-  // Reads that are held were planned by a description that may be another now.
+  begin_buses_anew();                   // those that are kept
+  // Held reads were planned with the old descriptions, which may have changed.
   std::erase_if(held_, [&](const HeldRead& held) { return find_meter(held.meter) == nullptr; });
   for (auto& bus : *opened) {
     start(*bus);
@@ -240,7 +240,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   }
   watch_sensors_of(site);
   keeper_.set_options(site.closing);
-  // Rules that changed close months anew, but not before the reload has ended.
+  // Changed rules close months again, but only after the reload has ended.
   ports_.loop.post([weak = std::weak_ptr{self_}] {
     if (const auto self = weak.lock()) (*self)->close_months();
   });
@@ -278,13 +278,13 @@ MeterProgress* Gateway::find_progress(std::uint32_t number) {
   return pushed == pushed_.end() ? nullptr : &pushed->progress;
 }
 
-/// Stamps are good from the first plausible time on, and until the clock is set again.
+/// Stamps are good from the first plausible time on, until the clock is set again.
 void Gateway::watch_clock(const Moment& now) {
   const milliseconds offset = now.wall.time_since_epoch() - now.monotonic;
   const milliseconds moved =
       wall_minus_monotonic_ ? offset - *wall_minus_monotonic_ : milliseconds{0};
   wall_minus_monotonic_ = offset;
-  // Once it has settled it is not asked again: a clock that loses its server still runs.
+  // Once settled it is not checked again: a clock that loses its server keeps running.
   const bool is_settled = clock_ok_ || !ports_.is_clock_settling || !ports_.is_clock_settling();
   const bool was_ok = std::exchange(clock_ok_, is_settled && is_plausible_time(now.instant()));
   if (!was_ok) {
@@ -301,7 +301,7 @@ void Gateway::watch_clock(const Moment& now) {
             moved > milliseconds{0} ? "forward" : "back", std::abs(moved.count()) / 1000)});
 }
 
-/// Reads from before the first right time are stamped by how long ago they were.
+/// Stamps the reads from before the clock was right by their age.
 void Gateway::release_held(const Moment& now) {
   for (const HeldRead& held : std::exchange(held_, {})) {
     const auto wall = now.wall - (now.monotonic - held.read.at.monotonic);
@@ -412,7 +412,7 @@ void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts
                                               : progress->stored.meter.id == event.subject;
       if (!is_of_it) continue;
       ++progress->counters.events[event.kind];
-      break;  // one quantity counts for its sensor
+      break;  // one quantity stands for its sensor
     }
   }
 }
@@ -420,7 +420,7 @@ void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts
 void Gateway::close_months() {
   watch_clock(ports_.loop.now());
   if (!clock_ok_) return;
-  // A month is closed out of the store: what still waits for it would be missing.
+  // Months are closed from the store, so waiting readings must be committed first.
   if (!committer_.flush()) return;
   std::vector<std::uint32_t> meters;
   for (const MeterProgress* const progress : all_progress()) {
@@ -430,11 +430,11 @@ void Gateway::close_months() {
   close_months_of(std::move(meters));
 }
 
-/// The last one of them first, some of its months at a time, and the others after what else waits
-/// for the loop: a thousand months take seconds.
+/// Closes some months of the last meter in the list; the others follow after whatever else waits
+/// for the loop, because a thousand months take seconds.
 void Gateway::close_months_of(std::vector<std::uint32_t> meters) {
   if (meters.empty()) return;
-  // A reload may have taken it away meanwhile.
+  // A reload may have removed it meanwhile.
   const MeterProgress* const meter = find_progress(meters.back());
   const bool has_more = meter != nullptr && close_months_of(*meter);
   if (!has_more) meters.pop_back();
@@ -467,7 +467,7 @@ void Gateway::close_months_every_hour() {
   ports_.loop.after(kMonthsEvery, [weak = std::weak_ptr{self_}] {
     const auto self = weak.lock();
     if (!self) return;
-    // Not at the start: what was silent before has not been asked yet.
+    // Not at the start: sensors that seem silent have not been asked yet.
     (*self)->judge_sensors();
     (*self)->close_months_every_hour();
   });
@@ -589,7 +589,7 @@ void Gateway::add_quantity(MeterStatus& status, const MeterProgress& progress,
       clock_ok_ && watch != watches_.end()) {
     state = watch->second.state_of(progress, ports_.loop.now().instant());
   }
-  // What a sensor never sends is none of its quantities, unless it is missed.
+  // Leaves out quantities that a sensor never sent, unless they are missed.
   if (!status.poll && !progress.known_until() && !state.silent_since) return;
   const double coverage = coverage_of(progress);
   status.open_month_coverage = std::fmin(status.open_month_coverage, coverage);

@@ -1,8 +1,8 @@
-/// The daemon's heart: buses are polled, registers become intervals, intervals are committed,
-/// months close.
+/// The core of the daemon: polls buses, turns registers into intervals, commits
+/// them, closes months.
 ///
-/// Everything that happens here happens on the loop's thread. What it needs of the outside comes as
-/// ports, so that the whole of it runs on a virtual clock with scripted buses.
+/// Everything here runs on the loop's thread. Access to the outside comes as ports, so all of it
+/// also runs on a virtual clock with scripted buses.
 #pragma once
 
 #include <array>
@@ -28,28 +28,28 @@
 
 namespace recald::daemon {
 
-/// Told of each event as it happens, whether the store takes it or not.
+/// Called for each event when it happens, whether or not the store accepts it.
 using OnEvent = std::function<void(const StoreEvent&)>;
 
-/// What the gateway needs of the outside. All of it outlives the gateway.
+/// The gateway's access to the outside. All of it outlives the gateway.
 struct GatewayPorts {
   Loop& loop;
   Store& store;
   std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
   std::string time_zone_release;
   std::uint64_t seed = 1;
-  /// The clock is about to be set; not asked any more once it has said no. Absent: never.
+  /// Whether the clock is about to be set; not called again once it returned false. Absent: never.
   std::function<bool()> is_clock_settling = {};
   OnEvent on_event = {};
 };
 
-/// A month has closed, or closed again.
+/// Called when a month has closed, or closed again.
 using OnMonth = std::function<void(const metering::Meter&, const metering::MonthlyFigure&)>;
 
 class Gateway {
  public:
-  /// Registers the meters with the store and takes up their counters where they stopped.
-  /// @return or the store's failure; unsupported where a meter's reads cannot be planned.
+  /// Registers the meters with the store and restores their counters.
+  /// @return the gateway, or the store's failure; unsupported if a meter's reads cannot be planned.
   [[nodiscard]] static Result<std::unique_ptr<Gateway>> open(
       const SiteConfig& site, const metering::LocalCalendar& calendar, const GatewayPorts& ports,
       OnMonth on_month);
@@ -57,10 +57,10 @@ class Gateway {
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
-  /// Takes over what a gateway has kept in memory while this one's store could not be opened:
-  /// counters go on through its samples, and other meters' intervals are added. Call it before the
-  /// start.
-  /// @param on_progress  Told now and then that it goes on.
+  /// Takes over what a gateway kept in memory while this one's store could not be opened:
+  /// counters continue through its samples, and intervals of other meters are added. Call it
+  /// before the start.
+  /// @param on_progress  Called from time to time.
   /// @return or the store's failure: then nothing was taken over, and this gateway cannot be used.
   [[nodiscard]] Result<void> take_over(Store& memory,
                                        const std::function<void()>& on_progress = {});
@@ -68,61 +68,62 @@ class Gateway {
   /// Starts polling, and closes months that became due while the daemon was not running.
   void start();
 
-  /// Continues with another site file. All buses restart. A bus that is described as before keeps
-  /// its meters with their counters; the others are opened from the state in the store.
-  /// @return or why not, as `open`; then everything is as it was.
+  /// Continues with another site file. All buses restart. A bus with the same description keeps its
+  /// meters and their counters; the others are opened from the state in the store.
+  /// @return or an error as in `open`; then nothing has changed.
   /// @pre the site's time zone is the same
   Result<void> reload(const SiteConfig& site);
 
-  /// Soon, one after the other: each connection is closed, and misses, learned time-outs and
-  /// refusals are forgotten. Counters go on.
+  /// Restarts all buses soon, one after the other: closes each connection and forgets misses,
+  /// learned time-outs and refusals. Counters continue.
   void begin_buses_anew();
 
-  /// Pushed readings, of a meter with source = "http" or of a channel of such a weather sensor
-  /// ("roof.dry_bulb_C"). They are stored when it answers.
-  /// @param readings    Their `meter` is not looked at.
-  /// @param correction  With a correction they replace good readings too, as an edit.
-  /// @return not_found for a meter that takes none, or the store's failure; then nothing is stored.
+  /// Stores pushed readings, of a meter with source = "http" or of a channel of such a weather
+  /// sensor ("roof.dry_bulb_C"). They are on disk when this returns.
+  /// @param readings    Their `meter` is ignored.
+  /// @param correction  If given, they replace good readings too, as an edit.
+  /// @return the counts; or not_found for a meter that accepts none, or the store's failure; then
+  ///         nothing is stored.
   [[nodiscard]] Result<CommitCounts> take_pushed(const std::string& meter,
                                                  std::vector<metering::Reading> readings,
                                                  const std::optional<Correction>& correction = {});
 
-  /// For people to find it among the events.
+  /// Adds an event for people to find.
   void note(StoreEvent event) { hand_in({.events = {std::move(event)}}); }
 
-  /// Commits what is still on its way. Call it before the end.
+  /// Commits everything pending. Call it before the end.
   Result<void> flush() { return committer_.flush(); }
 
   [[nodiscard]] GatewayStatus status() const;
 
-  /// Of one meter, without looking at all. @return nothing for one that the store keeps nothing of.
+  /// The status of one meter, without the others. @return nothing for one without stored readings.
   [[nodiscard]] std::optional<MeterStatus> meter_status(std::string_view id) const;
 
  private:
-  /// A meter with source = "http", or a quantity of such a sensor: its readings come in by HTTP.
+  /// A meter with source = "http", or a quantity of such a sensor, whose readings arrive by HTTP.
   struct PushedMeter {
     MeterProgress progress;
-    std::optional<metering::Instant> heard_at;  ///< Since the process began.
+    std::optional<metering::Instant> heard_at;  ///< Since the process started.
   };
 
   /// A read from before the clock was right.
   struct HeldRead {
-    std::uint32_t meter;  ///< Its number: a reload may replace the meter meanwhile.
+    std::uint32_t meter;  ///< Its number, since a reload may replace the meter meanwhile.
     PolledRead read;
   };
 
   Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site,
           const GatewayPorts& ports, OnMonth on_month);
 
-  /// Opens the buses of `site`, but those that are among `kept`.
+  /// Opens the buses of `site`, except those among `kept`.
   [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
   [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
-  /// Opens the pushed meters and weather sensors of `site`; what is known of them stays.
+  /// Opens the pushed meters and weather sensors of `site`; those already open keep their state.
   Result<void> open_pushed(const SiteConfig& site);
   [[nodiscard]] PushedMeter again_pushed(MeterProgress progress) const;
-  /// Weather sensors that stay are watched on.
+  /// Weather sensors that stay are watched further.
   void watch_sensors_of(const SiteConfig& site);
   void judge_sensors();
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
@@ -133,13 +134,13 @@ class Gateway {
                                                std::span<const metering::RegisterSample> samples);
   [[nodiscard]] Result<void> take_over_intervals(MeterProgress& progress, Store& memory,
                                                  std::uint32_t number);
-  /// To be committed soon.
+  /// Passes a batch to the committer.
   void hand_in(StoreBatch batch);
   void take(LiveMeter& meter, const PolledRead& read);
   void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
-  /// As one commit: the batch, and the edit that it belongs to if it changes anything.
+  /// Commits the batch and, if it changes anything, its edit at once.
   [[nodiscard]] Result<CommitCounts> commit_pushed(StoreBatch& batch,
                                                    const std::optional<Correction>& correction,
                                                    metering::Instant now);
@@ -155,7 +156,7 @@ class Gateway {
   [[nodiscard]] double coverage_of(const MeterProgress& progress) const;
   void close_months();
   void close_months_of(std::vector<std::uint32_t> meters);
-  /// @return whether it may have more.
+  /// @return whether there may be more.
   bool close_months_of(const MeterProgress& meter);
   void close_months_every_hour();
 
@@ -167,7 +168,7 @@ class Gateway {
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
   std::vector<PushedMeter> pushed_;
-  std::map<std::string, SensorWatch> watches_;  ///< By id of a weather sensor.
+  std::map<std::string, SensorWatch> watches_;  ///< By id of the weather sensor.
   bool clock_ok_ = false;
   std::array<std::uint64_t, 3> events_{};  ///< Committed, by Severity.
   std::deque<HeldRead> held_;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::chrono::seconds kTryAgain{10};
 constexpr int kTriesMax = 3;
 
-/// What the work throws is why it failed.
+/// An exception of the work is the reason for its failure.
 Result<JobOutcome> done_safely(const DoJob& work, const StoredJob& job, const GoesOn& goes_on) {
   try {
     return work(job, *job.started, goes_on);
@@ -29,8 +29,8 @@ Result<JobOutcome> done_safely(const DoJob& work, const StoredJob& job, const Go
   }
 }
 
-/// What a calibration needed goes back to the machine. Else glibc keeps it, in pieces between what
-/// stays, and every one adds some.
+/// Returns the memory of a calibration to the system. Otherwise glibc keeps it in fragments between
+/// the allocations that stay, and every calibration adds some.
 Result<JobOutcome> done_and_tidied(const DoJob& work, const StoredJob& job, const GoesOn& goes_on) {
   auto outcome = done_safely(work, job, goes_on);
   ::malloc_trim(0);
@@ -54,8 +54,8 @@ void JobRunner::interrupt() {
   StoredJob job = current_;
   job.state = JobState::waiting;
   job.started.reset();
-  --job.tries;  // it was not its fault
-  // Refused, it is a job that a killed process left.
+  --job.tries;  // this attempt does not count
+  // If the store refuses, the job looks like one left by a killed process, and runs again.
   (void)ports_.store.put_job(job);
 }
 
@@ -140,7 +140,7 @@ void JobRunner::begin_next() {
   cancelled_ = false;
   running_goes_on_ = std::make_shared<std::atomic<bool>>(true);
 
-  // The work may outlive this: it has copies of all it uses.
+  // The work may outlive this object, so it has copies of everything it uses.
   const auto outcome = std::make_shared<Result<JobOutcome>>();
   ports_.worker.run(
       [work = work_, job = current_, outcome, goes_on = running_goes_on_] {
@@ -169,9 +169,10 @@ void JobRunner::finish(Result<JobOutcome> outcome) {
   keep();
 }
 
-/// A result is not lost to a disk that is full for a while.
+/// Keeps trying, so that a result survives a disk that is full for a while.
 void JobRunner::keep() {
-  // The job last: if the process ends in between it is done again, and the rest is there already.
+  // The job comes last: if the process ends in between, the job runs again and the rest
+  // is already stored.
   const bool is_kept = ports_.store.add_forecasts(forecasts_) && (!next_ || ask(*next_, "drift")) &&
                        ports_.store.put_job(current_);
   if (is_kept) {

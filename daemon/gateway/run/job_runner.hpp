@@ -1,5 +1,5 @@
-/// Calibrations and diagnoses beside polling: requested, run one at a time, stored with their
-/// results.
+/// Runs calibrations and diagnoses beside polling: takes requests, runs one job at a
+/// time, stores results.
 #pragma once
 
 #include <atomic>
@@ -18,30 +18,30 @@
 namespace recald::daemon {
 
 struct JobOutcome {
-  bool accepted = false;  ///< Its gates hold: this is the result in use from now on.
-  bool failed = false;    ///< It could not be done: `message` says why, `result` what it lacked.
-  std::string message;    ///< Which gate failed, or what it was made without; else empty.
-  std::string folder;     ///< With its files.
+  bool accepted = false;  ///< Its checks pass: this result is in use from now on.
+  bool failed = false;    ///< It failed: `message` says why, `result` what it lacked.
+  std::string message;    ///< Which check failed, or what was missing; else empty.
+  std::string folder;     ///< Contains its files.
   JobResult result;
-  std::vector<StoredForecast> forecasts;  ///< For the record.
-  std::optional<JobKind> next;            ///< What it gives reason for; "drift" asks for it.
+  std::vector<StoredForecast> forecasts;  ///< To be stored.
+  std::optional<JobKind> next;            ///< A job that this one calls for, requested by "drift".
 };
 
-/// False as soon as the job is to end early. Safe from any thread.
+/// Returns false once the job should stop early. Safe from any thread.
 using GoesOn = std::function<bool()>;
 
-/// Does a job, on the worker. @param now  When it began.
-/// @return what came of it; cancelled when it was told not to go on; or why it failed.
+/// Runs a job on the worker. @param now  When it began.
+/// @return the outcome; cancelled when it was told to stop; or why it failed.
 using DoJob = std::function<Result<JobOutcome>(const StoredJob& job, metering::Instant now,
                                                const GoesOn& goes_on)>;
 
-/// Told of every change of a job's state that has been stored.
+/// Called after every stored change of a job's state.
 using OnJob = std::function<void(const StoredJob&)>;
 
 /// A job is stored before its number is reported, and its outcome before the next one begins, so a
-/// kill at any moment loses no request. The job that was running runs again, three times at most,
-/// because a job that gets the process killed, perhaps for its memory, would otherwise do so for
-/// ever.
+/// kill at any moment loses no request. The running job runs again in the next process, three
+/// times at most, because a job that gets the process killed, perhaps for its memory, would
+/// otherwise do so forever.
 class JobRunner {
  public:
   struct Ports {
@@ -54,22 +54,22 @@ class JobRunner {
   JobRunner(const JobRunner&) = delete;
   JobRunner& operator=(const JobRunner&) = delete;
 
-  /// Applies to jobs that begin from now on; a running job continues unchanged.
+  /// Applies to jobs that start from now on; a running job is not affected.
   void set_work(DoJob work) { work_ = std::move(work); }
 
-  /// Takes up what an earlier process was asked for; later, while the store refuses.
+  /// Resumes the requests of an earlier process; waits while the store refuses.
   void resume();
 
-  /// A job that is already waiting serves the request: it will use the same readings.
+  /// Requests a job. If one is already waiting, it serves the request, since it will use
+  /// the same readings.
   /// @return the job's number, or the store's failure.
   [[nodiscard]] Result<std::int64_t> ask(JobKind kind, const std::string& asked_by);
 
-  /// A job that runs ends as soon as it can.
+  /// Cancels a job; a running one ends as soon as it can.
   /// @return not_found when no such job waits or runs.
   [[nodiscard]] Result<void> cancel(std::int64_t number);
 
-  /// Called when the process ends: a running job is interrupted, and runs again in the next
-  /// process.
+  /// Call when the process ends: a running job is interrupted, and runs again in the next process.
   void interrupt();
 
  private:
@@ -86,9 +86,9 @@ class JobRunner {
   DoJob work_;
   OnJob on_job_;
   Stage stage_ = Stage::idle;
-  StoredJob current_;                      ///< Unless idle.
-  std::vector<StoredForecast> forecasts_;  ///< Of `current_`, to be kept.
-  std::optional<JobKind> next_;            ///< To be asked for before `current_` is kept.
+  StoredJob current_;                      ///< Valid unless idle.
+  std::vector<StoredForecast> forecasts_;  ///< Of `current_`, to be stored.
+  std::optional<JobKind> next_;            ///< To be requested before `current_` is stored.
   bool cancelled_ = false;                 ///< `current_` was cancelled.
   std::shared_ptr<std::atomic<bool>> running_goes_on_;
   std::shared_ptr<JobRunner*> self_;

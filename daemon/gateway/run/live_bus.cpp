@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The site's meters on the bus of that name, and its weather sensors there, in order of the file.
+/// The site's meters and weather sensors on the bus of that name, in order of the file.
 std::vector<const MeterConfig*> meters_on(const SiteConfig& site, const std::string& bus) {
   std::vector<const MeterConfig*> meters;
   for (const auto* const list : {&site.meters, &site.sensors}) {
@@ -24,7 +24,7 @@ std::vector<const MeterConfig*> meters_on(const SiteConfig& site, const std::str
 }
 
 /// Why a meter without a state should have one; empty: it need not. Samples are stored together
-/// with the state that they led to, so where there are some, it was lost.
+/// with the state they led to, so if there are samples, the state was lost.
 Result<std::string> lost_state(Store& store, std::uint32_t meter, const std::string& field) {
   std::string lost;
   const auto read = store.for_each_sample(meter, field, [&](const metering::RegisterSample&) {
@@ -42,7 +42,7 @@ Result<std::vector<modbus::PlannedRead>> planned_reads(const MeterConfig& config
                  fmt::format("meter '{}': {}", config.meter.id, reads.error().message));
 }
 
-/// States of a meter's registers; those that cannot be read begin anew, and `doubt` says why.
+/// Stored states of a meter's registers. Unreadable ones start anew, and `doubt` says why.
 Result<std::vector<RegisterState>> stored_states(Store& store, std::uint32_t number,
                                                  std::string& doubt) {
   auto states = store.registers(number);
@@ -103,7 +103,7 @@ Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::Local
       .counter = config.counter.value_or(
           metering::CounterSettings{.rated_kW = config.meter.rated_kW.value_or(0.0)}),
       .booking = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll}};
-  // A map that once had a counter and now has none leaves the counter's state behind.
+  // A map that lost its counter leaves the counter's state behind in the store.
   const std::string field = live.map.energy.empty() ? "power" : "energy";
   const auto found = std::ranges::find(*states, field, &RegisterState::field);
   const std::optional<RegisterState> state =
@@ -159,7 +159,7 @@ Result<void> LiveBus::add_sensor(const MeterConfig& config, const metering::Loca
   return {};
 }
 
-/// The bus; where it has SunSpec devices, one that finds their models first.
+/// Creates the bus; with SunSpec devices, one that finds their models first.
 std::unique_ptr<Bus> LiveBus::make_bus(const Ports& ports) const {
   std::map<std::uint8_t, std::vector<std::uint16_t>> sunspec;
   for (const LiveMeter& meter : meters_) {

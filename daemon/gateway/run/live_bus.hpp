@@ -1,4 +1,5 @@
-/// A bus with its meters, as the site file describes them: what a reload keeps or replaces as one.
+/// A bus with its meters, as the site file describes them. A reload keeps or
+/// replaces it as a whole.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +23,12 @@ namespace recald::daemon {
 /// A meter or a weather sensor.
 struct LiveMeter {
   std::string id;
-  std::vector<MeterProgress> progress;  ///< A meter's one, or those of a sensor's quantities.
+  std::vector<MeterProgress> progress;  ///< One for a meter, or one per quantity of a sensor.
   LiveMeterConfig config;
-  std::string text;  ///< As MeterConfig's.
+  std::string text;  ///< As in MeterConfig.
   std::variant<MeterTrack, WeatherTrack> track;
   std::vector<modbus::PlannedRead> reads;
-  std::string doubt = {};  ///< What was wrong with what the store had of it; empty: nothing.
+  std::string doubt = {};  ///< What was wrong with its stored state; empty: nothing.
 
   [[nodiscard]] StoreBatch take(const PolledRead& read, metering::Instant at);
   void clock_was_set();
@@ -42,23 +43,23 @@ class LiveBus {
   struct Ports {
     Loop& loop;
     std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
-    std::uint64_t seed;  ///< Of the jitter of probes.
+    std::uint64_t seed;  ///< For the jitter of probes.
   };
   using OnRead = std::function<void(LiveMeter&, const PolledRead&)>;
 
-  /// Registers the bus's meters with the store and takes up their counters where they stopped.
-  /// @return or the store's failure; unsupported where a meter's reads cannot be planned.
+  /// Registers the bus's meters with the store and restores their counters.
+  /// @return the bus, or the store's failure; unsupported if a meter's reads cannot be planned.
   [[nodiscard]] static Result<std::unique_ptr<LiveBus>> open(
       const SiteConfig& site, const BusConfig& bus, const metering::LocalCalendar& calendar,
       Store& store);
 
-  /// The device behind it is opened and polls begin; nothing happens for a bus without meters.
+  /// Opens the device and starts polling; does nothing for a bus without meters.
   void start(const Ports& ports, OnRead on_read);
 
-  /// The device is opened anew and all that was learned of it forgotten, but its counters go on.
+  /// Opens the device again and forgets everything learned about it; the counters continue.
   void begin_anew(const Ports& ports);
 
-  /// Whether the site file says of this bus and its meters what it said when it was opened.
+  /// Whether the site file still describes this bus and its meters as when it was opened.
   [[nodiscard]] bool is_described_by(const SiteConfig& site) const;
 
   [[nodiscard]] const BusConfig& config() const { return config_; }

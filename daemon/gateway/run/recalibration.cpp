@@ -8,12 +8,13 @@
 namespace recald::daemon {
 namespace {
 
-/// Waiting goes by the monotonic clock and schedules by the wall clock, which may be set meanwhile.
+/// Waits use the monotonic clock and schedules the wall clock, which may be set
+/// meanwhile, so check again.
 constexpr std::chrono::milliseconds kLookAgain{60'000};
-/// Months of many meters close one after the other.
+/// The months of many meters close one after the other.
 constexpr std::chrono::milliseconds kTogether{60'000};
 
-/// The last month that all of them have closed. @return nothing where one of them has none.
+/// The last month that all of these meters have closed. @return nothing if one of them has none.
 Result<std::optional<metering::Month>> last_common_month(Store& store, const SiteConfig& site,
                                                          std::span<const std::string> meters) {
   std::optional<metering::Month> common;
@@ -63,7 +64,7 @@ Result<void> Recalibration::catch_up(Store& store, const SiteConfig& site) {
 void Recalibration::wait_for(metering::Instant next) {
   const auto left = next - loop_.now().wall;
   if (left.count() <= 0) {
-    start();  // first: whatever asking throws, the next time comes
+    start();  // first, so that the next time comes even if asking throws
     return ask_("schedule");
   }
   loop_.after(std::min(std::chrono::ceil<std::chrono::milliseconds>(left), kLookAgain),

@@ -1,4 +1,4 @@
-/// When the site's model is calibrated again automatically.
+/// Decides when to calibrate the site's model again automatically.
 #pragma once
 
 #include <functional>
@@ -13,24 +13,24 @@ namespace recald::daemon {
 
 class Recalibration {
  public:
-  /// @param ask  Asks for a calibration, with who asks: "month" or "schedule".
+  /// @param ask  Requests a calibration; gets the reason, "month" or "schedule".
   Recalibration(Loop& loop, const SiteConfig& site, metering::LocalCalendar calendar,
                 std::function<void(const std::string& asked_by)> ask);
   ~Recalibration() = default;
   Recalibration(const Recalibration&) = delete;
   Recalibration& operator=(const Recalibration&) = delete;
 
-  /// Waits for the times of the schedule, if it has any. Times at which the daemon was not running
-  /// are skipped.
+  /// Waits for the scheduled times, if there are any. Times when the daemon was not
+  /// running are skipped.
   void start();
 
-  /// Requests a calibration if the last month of all modelled meters has closed without a request
-  /// since: the process may have been killed in between, or the months were imported.
+  /// Requests a calibration if the last common month of all modelled meters has closed and none was
+  /// requested since: the process may have been killed in between, or the months were imported.
   /// @return or the store's failure.
   Result<void> catch_up(Store& store, const SiteConfig& site);
 
-  /// A month of this meter has closed, or closed again. Months of several meters that close
-  /// within a minute are one reason, not several.
+  /// Call when a month of this meter has closed, or closed again. Months of several meters that
+  /// close within a minute cause one request.
   void month_closed(const std::string& meter);
 
  private:

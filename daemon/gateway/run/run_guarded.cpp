@@ -7,10 +7,10 @@
 namespace recald::daemon {
 namespace {
 
-/// What was thrown last, and when.
+/// The last exception, and when it was thrown.
 class Thrown {
  public:
-  /// @return what people are to be told; nothing: they know.
+  /// @return an event to report, or nothing if it was reported recently.
   std::optional<StoreEvent> take(const std::string& what, const Moment& now) {
     if (what == last_ && now.monotonic - at_ < std::chrono::hours{1}) return {};
     last_ = what;

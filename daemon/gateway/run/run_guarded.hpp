@@ -1,4 +1,4 @@
-/// A loop that continues whatever its calls throw.
+/// Runs a loop that continues when its calls throw.
 #pragma once
 
 #include <utility>  // Boost 1.74's Asio uses std::exchange without it
@@ -11,9 +11,9 @@
 
 namespace recald::daemon {
 
-/// Runs the context until it is stopped. What a call or a coroutine throws becomes an event
-/// "unforeseen", the same one after the other once an hour, and all others go on.
-/// @param loop  On that context.
+/// Runs the context until it is stopped. An exception of a call or coroutine becomes an event
+/// "unforeseen", at most once an hour while it repeats, and everything else continues.
+/// @param loop  Runs on that context.
 void run_guarded(boost::asio::io_context& context, const Loop& loop,
                  const std::function<void(StoreEvent)>& note);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr std::chrono::seconds kWaitMin{10};
 constexpr std::chrono::seconds kWaitMax{600};
 
-/// As adapters/sqlite/recovery says it.
+/// The file name is set in adapters/sqlite/recovery.
 bool has_unfinished_recovery(const StoreConfig& config) {
   std::error_code ignored;
   return std::filesystem::exists(config.file.string() + ".recovery", ignored);

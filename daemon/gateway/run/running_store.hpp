@@ -1,4 +1,5 @@
-/// The store that the process runs on: the site's, or one in memory until the disk lets us have it.
+/// The store that the process runs on: the site's, or one in memory while the site's
+/// cannot be opened.
 #pragma once
 
 #include <chrono>
@@ -16,24 +17,24 @@ namespace recald::daemon {
 /// A store to run on.
 struct RunningStore {
   std::unique_ptr<Store> store;
-  std::string missing;  ///< Why it only lives in memory; empty: it is the site's.
+  std::string missing;  ///< Why it is only in memory; empty: it is the site's store.
 };
 
-/// Opens a site's store, as often as it takes, and holds its lock from the first time that it can
-/// be had. Used by one thread at a time.
+/// Opens a site's store, trying as often as needed, and holds its lock from the first success. Used
+/// by one thread at a time.
 class StoreOpener {
  public:
-  /// As `open_store`, whatever that throws.
-  /// @return io_failed: not now; else what no waiting helps against: unsupported, another recald
-  ///         runs on it.
+  /// As `open_store`, with its exceptions caught.
+  /// @return the store; or io_failed: not now; or an error that waiting does not fix: unsupported,
+  ///         or another recald runs on it.
   [[nodiscard]] Result<stores::CheckedStore> open(const StoreConfig& config, metering::Instant now,
                                                   const std::function<void()>& on_progress = {});
 
-  /// How long to wait before the next try: ten seconds. As long as a recovery is unfinished, which
-  /// reads all of a large store each time, twice as long as before, up to ten minutes.
+  /// Wait before the next try: ten seconds. While a recovery is unfinished, each try reads all of a
+  /// large store, so the wait doubles, up to ten minutes.
   [[nodiscard]] std::chrono::seconds wait() const { return wait_; }
 
-  /// What was opened could not be used.
+  /// Call when the opened store could not be used.
   void back_off();
 
  private:
@@ -45,8 +46,8 @@ class StoreOpener {
   std::chrono::seconds wait_{10};
 };
 
-/// The site's store; where the disk does not let us have it, one in memory: meters are polled at
-/// any rate, and what they say can be taken over later.
+/// Opens the site's store; if that fails for now, one in memory, so that meters are polled anyway
+/// and their readings can be moved later.
 [[nodiscard]] Result<RunningStore> open_running_store(StoreOpener& opener,
                                                       const StoreConfig& config,
                                                       metering::Instant now,

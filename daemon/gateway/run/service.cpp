@@ -40,7 +40,7 @@
 namespace recald::daemon {
 namespace {
 
-/// What a process cannot change under way. @return or a sentence that names it.
+/// Checks the settings that a running process cannot change. @return or a sentence that names one.
 Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   const auto needs_restart = [](const char* what) {
     return failure(
@@ -61,7 +61,7 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   return {};
 }
 
-/// Of a store in memory: nothing to copy, and no more of it than memory has.
+/// For a store in memory: no backups, and no more data than memory allows.
 StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
   if (running.missing.empty()) return config;
   config.backup_at.reset();
@@ -69,11 +69,11 @@ StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
   return config;
 }
 
-/// All parts of the process. Members end in the reverse of their order: whoever calls another one
-/// ends before it.
+/// All parts of the process. Members are destroyed in reverse order: an object that calls another
+/// one is destroyed before it.
 class Service {
  public:
-  /// @param opener, signals  Of the process; they outlive this.
+  /// @param opener, signals  Belong to the process; they outlive this.
   Service(OpenSite site, const ServiceOptions& options, RunningStore store, StoreOpener& opener,
           Signals& signals)
       : site_(std::move(site)),
@@ -94,7 +94,7 @@ class Service {
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }) {}
 
-  /// @param memory  What a service before this one has kept there; may be null.
+  /// @param memory  What an earlier service kept in memory; may be null.
   Result<void> open(Store* memory) {
     auto gateway =
         Gateway::open(site_.config, site_.calendar,
@@ -105,7 +105,7 @@ class Service {
                              return std::make_unique<modbus::BusThread>(bus.endpoint, loop_);
                            },
                        .time_zone_release = system::time_zone_release(),
-                       .seed = std::random_device{}(),  // for jitter only: no result has it
+                       .seed = std::random_device{}(),  // only for jitter, not for results
                        .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling,
                        .on_event = log_event},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
@@ -120,7 +120,7 @@ class Service {
     return {};
   }
 
-  /// Serves HTTP, where the site wants it.
+  /// Serves HTTP if the site is configured to.
   Result<void> listen() {
     const auto& http = site_.config.http;
     if (!http) return {};
@@ -152,12 +152,12 @@ class Service {
     return flushed;
   }
 
-  /// After a run that ended because the site's store can be opened: that store.
+  /// The site's store, after a run that ended because it can be opened.
   [[nodiscard]] std::optional<RunningStore> take_found() { return std::exchange(found_, {}); }
-  /// With what it has kept in memory.
+  /// The store with what was kept in memory.
   [[nodiscard]] std::unique_ptr<Store> take_store() { return std::move(running_.store); }
   [[nodiscard]] const OpenSite& site() const { return site_; }
-  /// The site's store is being opened beside the loop; to end this waits for it.
+  /// Whether the site's store is being opened on another thread; destroying this waits for it.
   [[nodiscard]] bool is_opening() const { return is_opening_; }
 
  private:
@@ -177,8 +177,8 @@ class Service {
     loop_.after(opener_.wait(), [this] { try_to_open(); });
   }
 
-  /// Beside the loop, which polls meanwhile: a large store takes minutes, a damaged one longer. The
-  /// worker has no jobs, since there is no store for them.
+  /// Opens the store beside the loop, which continues to poll: a large store takes minutes, a
+  /// damaged one longer. The worker has no jobs, since there is no store for them.
   void try_to_open() {
     is_opening_ = true;
     auto opened = std::make_shared<Result<stores::CheckedStore>>();
@@ -228,7 +228,7 @@ class Service {
                                        boost::asio::use_awaitable);
       const auto signal = signals_.next();
       if (!signal) continue;
-      // Posted: whatever comes of it, the next signal is heeded.
+      // Posted, so that the next signal is handled whatever happens here.
       if (*signal == SIGHUP) {
         loop_.post([this] { reload(); });
       } else if (*signal == SIGUSR1) {
@@ -238,7 +238,7 @@ class Service {
         break;
       }
     }
-    signals_.let_ends_through();  // a second one need not wait for the end
+    signals_.let_ends_through();  // a second one ends the process at once
     context_.stop();
   }
 
@@ -253,7 +253,7 @@ class Service {
     recalibration_->start();
   }
 
-  /// The site file again. One that is wrong changes nothing; the buses begin anew all the same.
+  /// Reads the site file again. If it is wrong, nothing changes except that the buses restart.
   void reload() {
     const auto changed = reload_from(site_.config.file);
     if (changed) {
@@ -290,7 +290,7 @@ class Service {
     jobs_.set_work(make_site_work(site_));
     weather_wait_.set_look(make_weather_look(site_));
     schedule();
-    // A month that closed within the last minute was to be asked for by the old schedule.
+    // A month that closed within the last minute would have been requested by the old schedule.
     catch_up();
     return {};
   }
@@ -318,7 +318,8 @@ class Service {
     }
   }
 
-  /// Of a site that is not calibrated by itself nothing is made again either.
+  /// If the site is not calibrated automatically, nothing is calibrated again for
+  /// its weather either.
   void calibrate_with_weather() {
     if (!site_.config.recalibration.schedule.is_never()) calibrate("weather");
   }
@@ -345,7 +346,7 @@ class Service {
 
   OpenSite site_;
   RunningStore running_;
-  Store* store_;  ///< Of `running_`.
+  Store* store_;  ///< From `running_`.
   StoreOpener& opener_;
   Signals& signals_;
   bool is_opening_ = false;
@@ -354,10 +355,10 @@ class Service {
   boost::asio::posix::stream_descriptor signal_file_{context_, signals_.descriptor()};
   asio::AsioLoop loop_;
   system::WorkerThread worker_;
-  system::WorkerThread checker_;  ///< Of backups.
-  system::WorkerThread looker_;   ///< At the weather.
+  system::WorkerThread checker_;  ///< For backups.
+  system::WorkerThread looker_;   ///< For weather checks.
   ServiceOptions options_;
-  JobRunner jobs_;  ///< Tells the worker's work to stop before the worker waits for it.
+  JobRunner jobs_;  ///< Tells its work to stop before the worker waits for it.
   WeatherWait weather_wait_;
   std::unique_ptr<Recalibration> recalibration_;
   Upkeep upkeep_;
@@ -366,7 +367,7 @@ class Service {
   std::unique_ptr<http::Server> server_;
 };
 
-/// An opening may last minutes more. It can be killed at any step, so nobody waits for it.
+/// Opening may take minutes more. It can be killed at any step, so do not wait for it.
 [[noreturn]] void leave_at_once(const Result<void>& ended) {
   std::_Exit(ended ? EXIT_SUCCESS : EXIT_FAILURE);
 }
@@ -387,7 +388,7 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
     auto service = std::make_unique<Service>(site, options, std::move(*store), opener, *signals);
     if (auto opened = service->open(memory.get()); !opened) {
       if (!memory) return opened;
-      // What it has is nowhere else: on with it, and another try later.
+      // The readings in memory exist nowhere else: continue with them, and try again later.
       spdlog::error("event=not_taken_over why=\"{}\"", opened.error().message);
       opener.back_off();
       store = RunningStore{std::move(memory), opened.error().message};

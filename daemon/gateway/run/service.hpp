@@ -10,12 +10,12 @@
 namespace recald::daemon {
 
 struct ServiceOptions {
-  std::optional<metering::TrialClock> trial;  ///< Absent: the world's time.
+  std::optional<metering::TrialClock> trial;  ///< Absent: real time.
 };
 
-/// Runs until it is told to end (SIGTERM or SIGINT), then commits what is on its way. SIGHUP reads
-/// the site file again, SIGUSR1 asks for a calibration.
-/// @return nothing, or why it could not begin or not commit at its end.
+/// Runs until it is told to end (SIGTERM or SIGINT), then commits what is pending. SIGHUP reads the
+/// site file again, SIGUSR1 requests a calibration.
+/// @return nothing, or why it could not start or could not commit at its end.
 [[nodiscard]] Result<void> run_service(OpenSite site, const ServiceOptions& options);
 
 }  // namespace recald::daemon

@@ -28,7 +28,7 @@ namespace recald::daemon {
 namespace {
 
 constexpr int kDriftParticles = 256;
-constexpr std::uint64_t kSeed = 1;  // a result must not depend on how often one asked before
+constexpr std::uint64_t kSeed = 1;  // a result must not depend on the number of earlier runs
 
 /// "weather is incomplete in 2024-03 (12 %), 2024-05 to 2024-07 (0 %)"; empty: it is complete.
 std::string lacking_words(const std::vector<MonthWeather>& months, const SiteConfig& site) {
@@ -86,7 +86,7 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
   return outcome;
 }
 
-/// For the record: what was said of each month before it was looked at.
+/// To be stored: the forecast of each month from before its figure was known.
 std::vector<StoredForecast> forecasts_of(const SiteDrift& drift, const RunFacts& facts,
                                          metering::Instant now) {
   std::vector<StoredForecast> forecasts;
@@ -114,7 +114,8 @@ std::vector<StoredForecast> forecasts_of(const SiteDrift& drift, const RunFacts&
   return forecasts;
 }
 
-/// The newest month has settled an alarm on something that the model lacks: it wants a name.
+/// The newest month has attributed an alarm to something the model lacks, so it
+/// should be identified.
 bool asks_for_a_name(const SiteDrift& drift) {
   return std::ranges::any_of(drift.alarms, [&](const ExplainedAlarm& alarm) {
     return alarm.consequence == ExplainedAlarm::Consequence::began_anew &&
@@ -123,8 +124,8 @@ bool asks_for_a_name(const SiteDrift& drift) {
   });
 }
 
-/// What all months say, beside a calibration that stands by itself.
-/// @return or why there is nothing to say: too few months, a model that cannot be followed.
+/// What all months show about drift. The calibration is valid without it.
+/// @return or why there is nothing: too few months, or a model that cannot be monitored.
 Result<DriftSummary> follow(OpenSite site, metering::Instant now,
                             const calibration::RunContext& context,
                             const std::filesystem::path& folder, JobOutcome& outcome) {
@@ -176,8 +177,8 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   return outcome;
 }
 
-/// A calibration that failed, with the weather of the months that it would have taken: it may have
-/// failed for want of it, and is made again when it comes.
+/// The outcome of a failed calibration, with the weather of its months. Missing weather may be the
+/// cause; then it is run again once the weather arrives.
 Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
                                       metering::Instant now) {
   if (error.code == ErrorCode::cancelled || !site.config.weather) return tl::unexpected(error);
@@ -185,7 +186,7 @@ Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
   const metering::MonthRange months{
       last - std::chrono::months{site.config.recalibration.months - 1}, last};
   auto known = make_weather_look(site)(months);
-  if (!known) {  // a file that is being written, perhaps: nothing is known
+  if (!known) {  // the file may be just being written: nothing is known
     known.emplace();
     for (metering::Month month = months.first; month <= last; month = metering::next_month(month)) {
       known->push_back({.month = metering::to_string(month)});

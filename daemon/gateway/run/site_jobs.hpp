@@ -1,5 +1,5 @@
-/// What the daemon's jobs do: what `recald calibrate` and `recald diagnose` do, on the latest
-/// months.
+/// The work of the daemon's jobs: as `recald calibrate` and `recald diagnose`, on
+/// the latest months.
 #pragma once
 
 #include "daemon/gateway/run/job_runner.hpp"
@@ -8,14 +8,14 @@
 
 namespace recald::daemon {
 
-/// Readings, weather and versions of the model are read afresh by each job, from a connection of
-/// its own, so that it may run on any thread. Same readings, same bytes.
+/// Each job reads the readings, weather and model versions again on its own connection, so it may
+/// run on any thread. Same readings, same bytes.
 ///
-/// A calibration says which months' weather it lacked; one that fails says so as well, since the
-/// weather may be the reason.
+/// A calibration says which months' weather it lacked; a failed one does too, since the weather
+/// may be the reason.
 [[nodiscard]] DoJob make_site_work(OpenSite site);
 
-/// What the site's weather file and sensors have now, read likewise.
+/// Reads what the site's weather file and sensors have now, in the same way.
 [[nodiscard]] LookAtWeather make_weather_look(OpenSite site);
 
 }  // namespace recald::daemon

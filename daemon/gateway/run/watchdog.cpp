@@ -23,7 +23,7 @@ Watchdog::Watchdog(Loop& loop, std::function<bool()> is_well)
     : loop_(loop), is_well_(std::move(is_well)), self_(std::make_shared<Watchdog*>(this)) {
   std::uint64_t microseconds = 0;
   if (sd_watchdog_enabled(0, &microseconds) > 0) {
-    // Half of it, as sd_watchdog_enabled(3) recommends.
+    // Half of the period, as sd_watchdog_enabled(3) recommends.
     period_ = std::chrono::milliseconds{microseconds / 2'000};
   }
 }

@@ -8,18 +8,18 @@
 
 namespace recald::daemon {
 
-/// Whoever starts us waits longer: a start that looks through a large store, or recovers one, takes
-/// minutes. Tells systemd at most every ten seconds, however often it is called.
+/// Asks systemd to wait longer: a start that checks or recovers a large store takes minutes.
+/// Notifies it at most every ten seconds, however often it is called.
 void extend_start();
 
-/// Feeds it while the loop is blocked but work goes on.
+/// Feeds the watchdog while the loop is blocked but work continues.
 void feed_watchdog();
 
-/// Feeds the watchdog of the unit file for as long as the loop turns and the store answers. Where
-/// nobody watches it does nothing.
+/// Feeds the watchdog of the unit file as long as the loop runs and the store answers. Without a
+/// watchdog it does nothing.
 class Watchdog {
  public:
-  /// @param is_well  Asked on the loop before each feed; false lets systemd restart us.
+  /// @param is_well  Called on the loop before each feed; false lets systemd restart us.
   Watchdog(Loop& loop, std::function<bool()> is_well);
 
   void ready();
@@ -30,7 +30,7 @@ class Watchdog {
 
   Loop& loop_;
   std::function<bool()> is_well_;
-  std::chrono::milliseconds period_{0};  ///< 0: nobody watches.
+  std::chrono::milliseconds period_{0};  ///< 0: no watchdog.
   std::shared_ptr<Watchdog*> self_;
 };
 

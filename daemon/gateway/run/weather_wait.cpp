@@ -14,14 +14,14 @@ using weather::grade_of;
 using weather::WeatherGrade;
 
 constexpr std::chrono::hours kLookEvery{1};
-/// Looking reads all the weather of years, and what has not come for so long will hardly come now.
+/// Looking reads all the weather of years, and weather that is this late will hardly come any more.
 constexpr std::chrono::days kHopedFor{60};
 constexpr std::chrono::hours kLookAtOldEvery{24};
-constexpr int kJobsMax = 20;  // that are looked through for one that knew its weather
+constexpr int kJobsMax = 20;  // searched for one with known weather
 
 bool is_lacking(const MonthWeather& month) { return grade_of(month.known) < WeatherGrade::good; }
 
-/// From the first of them to the last.
+/// From the first of these months to the last.
 std::optional<metering::MonthRange> range_of(const std::vector<MonthWeather>& months) {
   std::optional<metering::MonthRange> range;
   for (const MonthWeather& one : months) {
@@ -34,7 +34,7 @@ std::optional<metering::MonthRange> range_of(const std::vector<MonthWeather>& mo
   return range;
 }
 
-/// Whether one of the months that lack weather has ended not long ago.
+/// Whether one of the months that lack weather ended recently.
 bool has_recent_lack(const std::vector<MonthWeather>& months, metering::Instant now) {
   return std::ranges::any_of(months, [&](const MonthWeather& one) {
     const auto month = metering::parse_month(one.month);
@@ -43,7 +43,7 @@ bool has_recent_lack(const std::vector<MonthWeather>& months, metering::Instant 
   });
 }
 
-/// What looking throws is no weather.
+/// An exception while looking counts as no weather.
 Result<std::vector<MonthWeather>> look_safely(const LookAtWeather& look,
                                               const metering::MonthRange& months) {
   try {
@@ -70,8 +70,8 @@ void WeatherWait::look_every_hour() {
   });
 }
 
-/// Nothing while one waits or runs: it will see what there is. One that was cancelled, or failed
-/// for another reason, says nothing of the weather.
+/// Nothing while a calibration waits or runs: it will see the new weather. One that was cancelled,
+/// or failed for another reason, says nothing about the weather.
 std::optional<WeatherWait::Known> WeatherWait::last_known() const {
   const auto jobs = ports_.store.jobs(JobKind::calibration, kJobsMax);
   if (!jobs) return {};
@@ -92,7 +92,7 @@ void WeatherWait::look_again() {
   if (is_looking_) return;
   auto known = last_known();
   if (!known || std::ranges::none_of(known->months, is_lacking)) return;
-  // All months, as the calibration: what one of them has may depend on its neighbours.
+  // All months, as in the calibration: what is known of one may depend on its neighbours.
   const auto months = range_of(known->months);
   if (!months) return;
   const Moment now = ports_.loop.now();
@@ -100,7 +100,7 @@ void WeatherWait::look_again() {
   if (is_old && looked_at_ && now.monotonic - *looked_at_ < kLookAtOldEvery) return;
   looked_at_ = now.monotonic;
   is_looking_ = true;
-  // The work may outlive this: it has copies of all it uses.
+  // The work may outlive this object, so it has copies of everything it uses.
   const auto found = std::make_shared<Result<std::vector<MonthWeather>>>();
   ports_.worker.run([look = look_, months = *months, found] { *found = look_safely(look, months); },
                     [weak = std::weak_ptr{self_}, then = std::move(*known), found] {

@@ -15,13 +15,13 @@
 
 namespace recald::daemon {
 
-/// How much is known of the weather of these months now. Called on the worker; may be slow.
+/// How much of the weather of these months is known now. Called on the worker; may be slow.
 using LookAtWeather =
     std::function<Result<std::vector<MonthWeather>>(const metering::MonthRange& months)>;
 
-/// Once an hour, as long as the newest calibration has months whose weather is not all known; once
-/// a day where all of these ended long ago. It is asked for again when one of them gets from
-/// unknown to patchy, or to good: twice a month at most, however often a file grows.
+/// Checks once an hour, as long as the newest calibration has months with incomplete weather; once
+/// a day if all of these ended long ago. Requests a calibration when one of them changes from
+/// unknown to patchy, or to good: twice per month at most, however often a file grows.
 class WeatherWait {
  public:
   struct Ports {
@@ -35,14 +35,15 @@ class WeatherWait {
   WeatherWait& operator=(const WeatherWait&) = delete;
 
   void start();
-  /// Another site file holds from now on.
+  /// Replaces the look-up, for another site file.
   void set_look(LookAtWeather look) {
     look_ = std::move(look);
     looked_at_.reset();
   }
 
  private:
-  /// What was known of the weather when a calibration was made, or asked for again on its account.
+  /// What was known of the weather when a calibration was made, or was requested
+  /// again because of it.
   struct Known {
     std::int64_t job;
     std::vector<MonthWeather> months;
@@ -58,7 +59,7 @@ class WeatherWait {
   std::function<void()> ask_;
   bool is_looking_ = false;
   std::optional<std::chrono::milliseconds> looked_at_;  ///< Monotonic.
-  /// Whatever becomes of what was asked for, it is not asked for again with the same weather.
+  /// Whatever happens to the request, it is not repeated for the same weather.
   std::optional<Known> asked_;
   std::shared_ptr<WeatherWait*> self_;
 };

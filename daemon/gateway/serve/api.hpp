@@ -1,5 +1,5 @@
-/// The routes below /api/v1/. Lists have `limit` and `next`: the cursor of what follows, to be sent
-/// as `cursor`, or null.
+/// The routes below /api/v1/. Lists have `limit` and `next`: the cursor of the following entries,
+/// to be sent as `cursor`, or null.
 #pragma once
 
 #include <string>
@@ -10,33 +10,33 @@ namespace recald::daemon {
 
 [[nodiscard]] http::Response get_sites(const Served& served, const http::Request& request);
 
-/// All meters of the site; those that are polled with their state and values.
+/// All meters of the site; polled ones with their state and values.
 [[nodiscard]] http::Response get_meters(const Served& served, const http::Request& request);
 [[nodiscard]] http::Response get_meter(const Served& served, const std::string& id);
 
-/// ?meter (needed) &from &to &limit &cursor, in order of time.
+/// ?meter (required) &from &to &limit &cursor, in order of time.
 [[nodiscard]] http::Response get_intervals(const Served& served, const http::Request& request);
 
 /// ?meter &from &to (months, half open) &limit &cursor, by meter and month.
 [[nodiscard]] http::Response get_months(const Served& served, const http::Request& request);
 
-/// ?from &to &limit &cursor, the newest first, of the newest 10 000.
+/// ?from &to &limit &cursor, newest first, among the newest 10 000.
 [[nodiscard]] http::Response get_events(const Served& served, const http::Request& request);
 
-/// What the calibration in use says of new months; null until one does.
+/// What the calibration in use shows about new months; null until there is something.
 [[nodiscard]] http::Response get_forecasts(const Served& served, const http::Request& request);
 [[nodiscard]] http::Response get_drift(const Served& served, const http::Request& request);
 
-/// ?limit &cursor, the newest first, without results.
+/// ?limit &cursor, newest first, without results.
 [[nodiscard]] http::Response get_jobs_of(JobKind kind, const Served& served,
                                          const http::Request& request);
-/// One, with its result.
+/// One job, with its result.
 [[nodiscard]] http::Response get_job_of(JobKind kind, const Served& served, const std::string& id);
-/// 202 and where to look.
+/// 202, and where to find the job.
 [[nodiscard]] http::Response post_job_of(JobKind kind, const Served& served,
                                          const http::Request& request);
 
-/// 202 with the job as it is; one that runs ends in a moment. 409 when it neither waits nor runs.
+/// 202 with the job; a running one ends in a moment. 409 when it neither waits nor runs.
 [[nodiscard]] http::Response cancel_job_of(JobKind kind, const Served& served,
                                            const std::string& id);
 
@@ -57,8 +57,8 @@ http::Response post_job(const Served& served, const http::Request& request) {
   return post_job_of(kind, served, request);
 }
 
-/// Pushed readings, of a meter with source = "http"; see daemon/gateway/serve/README.md. Sent
-/// twice, they are taken once.
+/// Pushed readings of a meter with source = "http"; see daemon/gateway/serve/README.md. Sent twice,
+/// they are stored once.
 [[nodiscard]] http::Response post_readings(const Served& served, const http::Request& request);
 
 }  // namespace recald::daemon

@@ -13,8 +13,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using metering::Instant;
 
-/// "2026-03-01T00:00:00Z/2": events of that second, two of which were sent, and all before it. New
-/// events come in front and do not move it.
+/// "2026-03-01T00:00:00Z/2": two events of that second were sent, and all before it. New events
+/// come in front and do not move the cursor.
 struct EventCursor {
   Instant time = Instant::max();
   int sent = 0;
@@ -53,7 +53,7 @@ http::Response get_events(const Served& served, const http::Request& request) {
   if (!newest) return refusal(newest.error()).value();
 
   Json events = Json::array();
-  EventCursor at;  // how many of which second have passed
+  EventCursor at;  // how many events of which second were passed
   for (const StoreEvent& event : *newest) {
     at = event.time == at.time ? EventCursor{at.time, at.sent + 1} : EventCursor{event.time, 1};
     const bool was_sent =

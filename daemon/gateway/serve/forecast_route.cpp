@@ -48,7 +48,7 @@ http::Response get_forecasts(const Served& served, const http::Request& request)
   if (!stored) return refusal(stored.error()).value();
 
   Json forecasts = Json::array();
-  std::int64_t place = 0;  // rows are never taken out, and a month's revisions stand together
+  std::int64_t place = 0;  // rows are never removed, and revisions of a month are adjacent
   for (const StoredForecast& one : *stored) {
     if (output && one.output != *output) continue;
     if ((*from && one.month < **from) || (*to && one.month >= **to)) continue;

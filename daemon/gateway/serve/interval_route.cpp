@@ -14,16 +14,16 @@ namespace {
 using metering::Instant;
 using metering::TimeSpan;
 
-/// The store cannot be stopped in the middle of a span, so it is asked for pieces of it.
-constexpr int kPieceMin = 1'000;  // intervals: a gap of years is passed in few steps
+/// A query of the store cannot be stopped within a span, so the span is read in pieces.
+constexpr int kPieceMin = 1'000;  // intervals; a gap of years takes few steps
 
 struct Page {
   std::string intervals;  ///< JSON objects, separated by commas.
   int count = 0;
-  std::optional<Instant> next;  ///< Start of the first that did not fit.
+  std::optional<Instant> next;  ///< Start of the first interval that did not fit.
 };
 
-/// From the cursor on, where there is one: it is the start of the first interval not yet sent.
+/// The span from the cursor on, if there is one: the start of the first interval not yet sent.
 Checked<TimeSpan> span_from_cursor(const http::Request& request) {
   auto span = span_of(request);
   const auto cursor = text_of(request, "cursor");
@@ -36,9 +36,9 @@ Checked<TimeSpan> span_from_cursor(const http::Request& request) {
   return span;
 }
 
-/// What a query asks the intervals of: a meter, or a quantity of a weather sensor.
+/// The meter, or the quantity of a weather sensor, whose intervals a query asks for.
 struct Queried {
-  metering::Meter meter;  ///< As the store knows it.
+  metering::Meter meter;  ///< As stored.
   const weather::SensorQuantity* quantity = nullptr;
   bool is_stored = false;
 };
@@ -108,7 +108,8 @@ http::Response get_intervals(const Served& served, const http::Request& request)
 
   const metering::Meter& described = asked->meter;
   Page page;
-  // Asking would enter a meter that is read from its file; what was imported of it is for replays.
+  // Looking it up would register a meter that is read from a file; its imported readings
+  // are for replays.
   if (asked->is_stored) {
     const auto number = served.store.meter_number(described.id, described.interval);
     if (!number) return refusal(number.error()).value();

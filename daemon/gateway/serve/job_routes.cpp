@@ -37,7 +37,7 @@ std::optional<std::int64_t> number_in(const std::string& id) {
   return error == std::errc{} && stop == end ? std::optional{number} : std::nullopt;
 }
 
-/// A body is not needed; one that says something is an error, since nothing would come of it.
+/// A body is not needed; one with content is an error, since it would be ignored.
 bool asks_for_nothing_more(std::string body) {
   std::erase_if(body, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
   return body.empty() || body == "{}";
@@ -50,7 +50,7 @@ http::Response refused_job(const Error& error) {
   return http::error_response(409, "not_possible", error.message);
 }
 
-/// The job of that kind that an id stands for, or the answer that there is none.
+/// The job of that kind with this id, or a response that there is none.
 tl::expected<StoredJob, http::Response> find_job(JobKind kind, const Served& served,
                                                  const std::string& id) {
   const auto number = number_in(id);
@@ -95,7 +95,7 @@ http::Response get_job_of(JobKind kind, const Served& served, const std::string&
   const auto job = find_job(kind, served, id);
   if (!job) return job.error();
   http::Response response = json_answer(linked(*job));
-  // The document goes out as it stands: before the brace that closes the job.
+  // The document is sent unchanged, inserted before the brace that closes the job.
   const std::string& document = job->result.document;
   response.body.resize(response.body.rfind('}'));
   response.body += ",\"result\":" + (document.empty() ? "null" : document) + "}\n";
@@ -112,7 +112,7 @@ http::Response cancel_job_of(JobKind kind, const Served& served, const std::stri
   if (const auto cancelled = served.cancel_job(job->number); !cancelled) {
     return refused_job(cancelled.error());
   }
-  // One that runs ends in a moment, and is cancelled then.
+  // A running job is cancelled in a moment.
   const auto now = find_job(kind, served, id);
   return now ? json_answer(linked(*now), 202) : now.error();
 }

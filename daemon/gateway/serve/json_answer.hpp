@@ -1,4 +1,4 @@
-/// JSON on its way out.
+/// JSON responses.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,7 +7,7 @@
 
 namespace recald::daemon {
 
-/// One line. Text that is no UTF-8 (a name out of a damaged file) is replaced and not an error.
+/// One line. Text that is not UTF-8 (a name from a damaged file) is replaced, not refused.
 [[nodiscard]] http::Response json_answer(const nlohmann::ordered_json& json, int status = 200);
 
 }  // namespace recald::daemon

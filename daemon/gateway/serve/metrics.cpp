@@ -124,7 +124,7 @@ void write_store(PrometheusText& text, const Served& served, const GatewayStatus
   text.sample(store_bytes(served.site.store.file));
 }
 
-/// Climbs before an alarm does.
+/// Rises before an alarm does.
 void write_evidence(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
   text.begin("recald_drift_evidence_ratio", "gauge",
              "Log evidence that something has changed, divided by the alarm threshold, by month "
@@ -150,7 +150,7 @@ void write_drift(PrometheusText& text, const DriftSummary& drift, const std::str
   }
 }
 
-/// Who wants to be woken up watches this.
+/// Alerting should watch this.
 void write_alarms(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
   std::map<std::string, int> alarms;
   for (const DriftAlarm& one : drift.alarms) ++alarms[one.output];
@@ -161,7 +161,7 @@ void write_alarms(PrometheusText& text, const DriftSummary& drift, const std::st
   }
 }
 
-/// The calibration in use. Without one, or while the store cannot be read, nothing is said of it.
+/// The calibration in use. Nothing is written without one, or while the store cannot be read.
 void write_calibration(PrometheusText& text, const Served& served) {
   const auto job = served.store.last_accepted(JobKind::calibration);
   if (!job || !*job || !(*job)->ended) return;

@@ -5,9 +5,9 @@
 
 namespace recald::daemon {
 
-/// Everything that the gateway counts, and the calibration in use. README.md says what each says.
-/// Labels come from the site file and from lists of our own, never from a device or a client. What
-/// a meter never did has no series, so one in order has six of them.
+/// Everything that the gateway counts, and the calibration in use. README.md explains each metric.
+/// Labels come from the site file and from fixed lists, never from a device or a client. Values
+/// that never occurred have no series, so a healthy meter has six.
 [[nodiscard]] http::Response metrics(const Served& served);
 
 }  // namespace recald::daemon

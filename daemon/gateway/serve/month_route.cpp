@@ -12,17 +12,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 using metering::Month;
 
-/// What is asked for, and from where on: meters have their order in the site file.
+/// The request and where to start: meters are in the order of the site file.
 struct MonthQuery {
   const MeterConfig* meter = nullptr;  ///< Null: all.
   std::optional<Month> from;
   std::optional<Month> to;
   int limit = 0;
   std::size_t first_meter = 0;
-  std::optional<Month> first_month;  ///< Of the first meter.
+  std::optional<Month> first_month;  ///< For the first meter.
 };
 
-/// "METER/2026-03": the first figure that was not sent.
+/// "METER/2026-03": the first figure not yet sent.
 Checked<void> take_cursor(MonthQuery& query, const Served& served, const http::Request& request) {
   const auto cursor = text_of(request, "cursor");
   if (!cursor) return {};

@@ -8,7 +8,7 @@
 namespace recald::daemon {
 namespace {
 
-/// Label values and help texts are one line.
+/// Label values and help texts must be one line.
 std::string escaped(std::string_view text, bool with_quotes) {
   std::string out;
   for (const char c : text) {
@@ -25,7 +25,7 @@ std::string escaped(std::string_view text, bool with_quotes) {
   return out;
 }
 
-/// No locale has a say: fmt writes a dot.
+/// Independent of the locale: fmt writes a dot.
 std::string number(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value > 0 ? "+Inf" : "-Inf";

@@ -13,15 +13,15 @@ namespace recald::daemon {
 /// Labels of one sample, in this order.
 using Labels = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
-/// Families one after the other: each is begun once, then has its samples.
+/// Writes families one after the other: begin each one once, then add its samples.
 class PrometheusText {
  public:
   void begin(std::string_view name, std::string_view type, std::string_view help);
 
-  /// A sample of the family begun last. NaN and infinity are written as Prometheus reads them.
+  /// Adds a sample to the current family. NaN and infinity are written as Prometheus reads them.
   void sample(double value, Labels labels = {});
 
-  /// Buckets, sum and count. @pre the family's type is "histogram"
+  /// Adds buckets, sum and count. @pre the family's type is "histogram"
   void histogram(const LatencyHistogram& histogram, Labels labels = {});
 
   [[nodiscard]] const std::string& str() const { return out_; }

@@ -24,14 +24,14 @@ constexpr std::string_view kExample =
     R"({"meter":"chw","unit":"kWh","readings":[{"time":"2026-03-01T00:00:00Z","value":1.5}]})";
 constexpr std::array<std::string_view, 6> kKeys{"meter",  "unit",   "stamps",
                                                 "reason", "author", "readings"};
-constexpr int kDepthMax = 8;        // a body has three
-constexpr double kValueMax = 1e18;  // so that no unit and no multiplier makes it infinite
+constexpr int kDepthMax = 8;        // a valid body has three
+constexpr double kValueMax = 1e18;  // keeps values finite after any unit and multiplier
 constexpr seconds kClocksDiffer{300};
-/// A sender whose clock was reset must not give a site months of the year 2000.
+/// A sender whose clock was reset must not create months of the year 2000.
 constexpr std::chrono::days kOldest{400};
 
-/// Whether JSON has more brackets open at once than that. It is asked before the text is parsed: a
-/// megabyte of brackets would become a hundred times as much of nested values.
+/// Whether JSON has more open brackets at once than that. Checked before parsing: a megabyte of
+/// brackets would become a hundred times as much memory of nested values.
 bool is_nested_deeper(std::string_view json, int depth_max) {
   int depth = 0;
   bool is_text = false;
@@ -50,7 +50,7 @@ tl::unexpected<http::Response> malformed(std::string_view what, std::string_view
   return refusal(400, "malformed", fmt::format("{}; send JSON such as {}", what, kExample), field);
 }
 
-/// The text of a key, or nothing where it is absent or none.
+/// The text under a key; nothing if it is absent or not text.
 std::optional<std::string> text_in(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_string()) return {};
@@ -68,10 +68,10 @@ Checked<const MeterConfig*> pushed_meter(const nlohmann::json& body, const SiteC
                  "meter");
 }
 
-/// What the numbers of a body are.
+/// The meaning of the numbers in a body.
 struct PushedUnit {
-  metering::UnitConversion power{};                   ///< Of a meter.
-  const weather::SensorQuantity* quantity = nullptr;  ///< Of a weather sensor; else null.
+  metering::UnitConversion power{};                   ///< For a meter.
+  const weather::SensorQuantity* quantity = nullptr;  ///< For a weather sensor; else null.
 };
 
 Checked<PushedUnit> unit_of(const nlohmann::json& body, const MeterConfig& meter) {
@@ -92,7 +92,7 @@ Checked<PushedUnit> unit_of(const nlohmann::json& body, const MeterConfig& meter
   return PushedUnit{.power = *conversion};
 }
 
-/// Absent without a reason.
+/// Absent if there is no reason.
 Checked<std::optional<Correction>> correction_in(const nlohmann::json& body,
                                                  std::string_view bytes) {
   const auto is_text = [&](const char* key) {
@@ -119,7 +119,7 @@ Checked<std::optional<Correction>> correction_in(const nlohmann::json& body,
                     .sha256 = hash.hex()};
 }
 
-/// Reads one element of `readings` after the other.
+/// Reads the elements of `readings` one after the other.
 class Elements {
  public:
   Elements(const MeterConfig& meter, const metering::ValidationOptions& validation,

@@ -55,7 +55,7 @@ http::Response readiness(const Served& served) {
   const GatewayStatus status = served.status();
   const auto reasons = reasons_not_ready(status);
   const Json json = {{"status", reasons.empty() ? "ready" : "not ready"},
-                     {"site", served.site.id},  // its configuration is loaded, or nobody answered
+                     {"site", served.site.id},  // no answer without a loaded configuration
                      {"reasons", reasons},
                      {"look_at", reasons_to_look(status)}};
   return http::json_response(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",

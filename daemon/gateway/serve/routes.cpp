@@ -20,7 +20,7 @@ using http::Response;
 
 constexpr std::string_view kApi = "/api/v1/";
 
-/// What stands behind a path. `id` is what follows the path's last '/', where the route has one.
+/// The handlers of a path. `id` is the part after the path's last '/', if the route has one.
 struct Route {
   std::string_view path;
   bool has_id;

@@ -69,7 +69,7 @@ Json quantities_json(const std::vector<QuantityStatus>& quantities) {
   return all;
 }
 
-/// Of a weather sensor.
+/// For a weather sensor.
 Json sensor_status_json(const MeterStatus& status) {
   Json json;
   if (status.poll) {
@@ -87,7 +87,7 @@ Json status_json(const MeterStatus& status, std::chrono::seconds length) {
   Json last;
   if (status.last_interval) {
     last = Json::parse(interval_json({.reading = *status.last_interval}, length));
-    last.erase("revision");  // of the latest commit, which does not tell it
+    last.erase("revision");  // the latest commit does not report it
   }
   Json json;
   if (status.poll) {

@@ -1,5 +1,4 @@
-/// How values look in JSON: snake_case, units in names, times ISO 8601 with Z, null for what is not
-/// known.
+/// Values as JSON: snake_case, units in names, times in ISO 8601 with Z, null for unknown values.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,16 +18,16 @@ namespace recald::daemon {
 [[nodiscard]] nlohmann::ordered_json meter_json(const MeterConfig& config,
                                                 const MeterStatus* status);
 
-/// One object as text. Written by hand: ten thousand of them are one answer.
+/// One object as text. Written by hand for speed: a response may have ten thousand.
 [[nodiscard]] std::string interval_json(const StoredInterval& interval,
                                         std::chrono::seconds length);
-/// The same of a quantity of a weather sensor, which has a mean in its own unit and no energy.
+/// As above for a quantity of a weather sensor, which has a mean in its own unit and no energy.
 [[nodiscard]] std::string weather_interval_json(const StoredInterval& interval);
 
 [[nodiscard]] nlohmann::ordered_json month_json(const std::string& meter,
                                                 const metering::MonthlyFigure& figure);
 [[nodiscard]] nlohmann::ordered_json event_json(const StoreEvent& event);
-/// Without its result.
+/// The job without its result.
 [[nodiscard]] nlohmann::ordered_json job_json(const StoredJob& job);
 
 }  // namespace recald::daemon

@@ -1,4 +1,4 @@
-/// A site's server, as its [http] describes it.
+/// A site's HTTP server, as configured in [http].
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace recald::daemon {
 
-/// Listens, with the token and the certificate that the configuration names. /healthz and /readyz
-/// are answered without the token, so that a supervisor needs no secret.
+/// Listens with the configured token and certificate. /healthz and /readyz need no token, so that a
+/// supervisor needs no secret.
 /// @param context  Run by one thread; outlives the server.
-/// @param served   What it refers to outlives the server.
-/// @return or what http::read_token_file and http::Server::listen refuse.
+/// @param served   Everything it refers to outlives the server.
+/// @return the server, or an error of http::read_token_file or http::Server::listen.
 [[nodiscard]] Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
                                                                const HttpConfig& config,
                                                                Served served);

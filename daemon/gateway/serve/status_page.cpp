@@ -30,7 +30,7 @@ constexpr int kJobsShown = 5;
 constexpr double kCoverageGood = 0.9;
 constexpr int kWeatherDigits = 3;
 
-/// A sign beside each word, so that nothing is said by colour alone.
+/// A sign beside each word, so that the meaning never depends on colour alone.
 Cell state_cell(const MeterStatus* status) {
   if (status == nullptr) return {"recorded", "muted"};
   if (!status->poll) return {"pushed", "muted"};
@@ -72,7 +72,7 @@ std::string value_text(const MeterStatus* status, metering::Utility utility,
 
 Cell last_interval_cell(const MeterStatus* status, const Served& served) {
   if (status == nullptr) return {"–", "muted"};
-  // Of a sensor its dry bulb's, which comes first.
+  // For a sensor, that of its dry bulb, which comes first.
   const auto& last =
       status->weather.empty() ? status->last_interval : status->weather.front().last_interval;
   if (!last) return {"–", "muted"};
@@ -161,7 +161,7 @@ void write_jobs(Html& html, const Served& served, JobKind kind, std::string capt
   table.write(html);
 }
 
-/// What the months after a calibration have said against it.
+/// Alarms from the months after the calibration.
 void write_alarms(Html& html, const Served& served) {
   const auto job = served.store.last_accepted(JobKind::calibration);
   if (!job || !*job) return;

@@ -9,7 +9,7 @@
 namespace recald::daemon {
 namespace {
 
-/// The day of a name "<stem>-<day><extension>"; nothing for another name.
+/// The day in a name "<stem>-<day><extension>"; nothing for another name.
 std::optional<metering::Day> day_in(const StoreConfig& store, const std::filesystem::path& file) {
   const std::string prefix = store.file.stem().string() + "-";
   const std::string stem = file.stem().string();
@@ -18,8 +18,8 @@ std::optional<metering::Day> day_in(const StoreConfig& store, const std::filesys
   return day ? std::optional{*day} : std::nullopt;
 }
 
-/// "20240301" of the last damaged store beside this one, as its name has the day; empty: none.
-/// @return or why the folder cannot be looked at.
+/// The day "20240301" in the name of the last damaged store beside this one; empty: none.
+/// @return or why the folder cannot be read.
 Result<std::string> last_damage(const StoreConfig& store) {
   const std::string prefix = store.file.filename().string() + ".damaged-";
   const auto folder = store.file.has_parent_path() ? store.file.parent_path() : ".";
@@ -28,7 +28,7 @@ Result<std::string> last_damage(const StoreConfig& store) {
   for (std::filesystem::directory_iterator entry{folder, error}, end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    // A log that somebody left behind holds nothing without its file.
+    // A log left behind without its file is useless.
     if (!name.starts_with(prefix) || name.ends_with("-wal") || name.ends_with("-shm")) continue;
     last = std::max(last, name.substr(prefix.size(), 8));
   }
@@ -36,7 +36,7 @@ Result<std::string> last_damage(const StoreConfig& store) {
   return last;
 }
 
-/// "20240301", as the name of a damaged store has it.
+/// "20240301", as in the name of a damaged store.
 std::string digits_of(metering::Day day) {
   std::string digits = metering::to_string(day);
   std::erase(digits, '-');
@@ -57,7 +57,7 @@ std::vector<std::filesystem::path> backups_of(const StoreConfig& store) {
        !error && entry != end; entry.increment(error)) {
     if (day_in(store, entry->path())) files.push_back(entry->path());
   }
-  std::ranges::sort(files, std::greater{});  // names of one form sort as their days do
+  std::ranges::sort(files, std::greater{});  // names of one form sort by day
   return files;
 }
 

@@ -16,11 +16,11 @@ using metering::Validity;
 
 constexpr std::chrono::seconds kSamplesApartMax{300};
 constexpr double kShareOff = 0.001;
-/// The register does not stand on one line through such an interval.
+/// Across an interval with one of these reasons, register readings cannot be compared.
 constexpr Reason kBroken =
     Reason::rollover | Reason::wrap | Reason::reset | Reason::jump | Reason::bounce | Reason::clock;
 
-/// The register at each UTC midnight that lies between two samples.
+/// The register at each UTC midnight between two samples.
 Result<std::map<Instant, double>> midnights(Store& store, std::uint32_t meter) {
   std::map<Instant, double> register_kWh;
   std::optional<RegisterSample> before;
@@ -45,7 +45,7 @@ struct DaySum {
   std::chrono::seconds length{0};
 };
 
-/// Sums of the days whose intervals all came from one line of the register.
+/// Sums of the days whose intervals all came from one unbroken run of the register.
 Result<std::map<Instant, DaySum>> day_sums(Store& store, const StoredMeter& meter) {
   std::map<Instant, DaySum> sums;
   const auto read = store.for_each_interval(

@@ -1,4 +1,4 @@
-/// Intervals held against the counter that they came from.
+/// Compares intervals with the counter that they came from.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 namespace recald::daemon {
 
 struct CounterComparison {
-  std::uint64_t days = 0;  ///< That could be compared.
+  std::uint64_t days = 0;  ///< Days that could be compared.
   std::vector<std::string> problems;
 };
 
 /// Compares the sum of each UTC day's intervals with the difference of the register's samples. The
-/// register at midnight lies between the samples around it, five minutes apart at most; days in
-/// which the register was reset, or that a person edited, are left out.
+/// register at midnight is interpolated between the samples around it, at most five minutes apart.
+/// Days with a reset of the register or a manual edit are left out.
 [[nodiscard]] Result<CounterComparison> compare_with_counter(Store& store,
                                                              const StoredMeter& meter);
 

@@ -7,7 +7,7 @@
 namespace recald::daemon {
 namespace {
 
-/// The shortest text that reads back as the same number; nothing for none.
+/// The shortest text that reads back as the same number; empty if it is not finite.
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string reading_line(const std::string& meter, const metering::Reading& reading) {

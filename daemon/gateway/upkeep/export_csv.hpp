@@ -9,8 +9,9 @@
 
 namespace recald::daemon {
 
-/// `timestamp,meter,value,unit,validity,late,reasons`: what holds of each interval that starts in
-/// the span, meter by meter. Values are mean kW to the last bit, so an import gives the same.
+/// `timestamp,meter,value,unit,validity,late,reasons`: the reading in force for each interval
+/// that starts in the span, meter by meter. Values are mean kW with all digits, so an import
+/// gives the same readings.
 [[nodiscard]] Result<void> export_readings(Store& store, std::span<const StoredMeter> meters,
                                            const metering::TimeSpan& span, std::ostream& out);
 

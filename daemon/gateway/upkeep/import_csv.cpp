@@ -52,7 +52,7 @@ class Import {
   struct MeterImport {
     StoredMeter stored;
     std::set<Month> closed;
-    StoreBatch batch;  ///< Of one month.
+    StoreBatch batch;  ///< For one month.
     Month month{};
   };
 
@@ -80,8 +80,8 @@ class Import {
     return {};
   }
 
-  /// When the months of the store's readings are due. A file says nothing of the time after it:
-  /// what has not been read yet is not missing.
+  /// The time up to which the stored months are due. A file does not cover the time after its end:
+  /// readings that have not been made yet are not missing.
   [[nodiscard]] Result<metering::Instant> known_until(std::span<const StoredMeter> meters) const {
     metering::Instant last{};
     for (const StoredMeter& meter : meters) {
@@ -116,7 +116,7 @@ class Import {
     meter.batch.intervals.push_back({reading, options_.supersedes});
   }
 
-  /// The first failure ends it; what comes after is not tried.
+  /// The first failure ends the import.
   void commit(std::size_t index) {
     MeterImport& meter = meters_[index];
     StoreBatch batch = std::exchange(meter.batch, {});
@@ -155,7 +155,7 @@ class Import {
   const metering::LocalCalendar& calendar_;
   const ImportOptions& options_;
   std::int64_t edit_ = 0;
-  std::vector<MeterImport> meters_;  ///< By meter of the site, sums left out.
+  std::vector<MeterImport> meters_;  ///< By meter of the site, without sums.
   Result<void> failed_;
   ImportOutcome outcome_;
 };

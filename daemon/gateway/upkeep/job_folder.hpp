@@ -1,4 +1,4 @@
-/// Where jobs leave their files: beside the store, "tower-3-results/calibration-12".
+/// Where jobs write their files: beside the store, "tower-3-results/calibration-12".
 #pragma once
 
 #include <filesystem>

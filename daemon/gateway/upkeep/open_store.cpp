@@ -15,8 +15,8 @@ std::filesystem::path reserve_file(const StoreConfig& config) {
 Result<stores::CheckedStore> open_store(const StoreConfig& config, metering::Instant now,
                                         const std::function<void()>& on_progress) {
   const auto backups = backups_of(config);
-  // A damage is found after the newest backup was made, whatever is shown by a clock that has not
-  // been set: by the day in its name a damaged file tells which backups are from before.
+  // Damage is found after the newest backup was made, even if the clock has not been set and shows
+  // something else. The day in a damaged file's name shows which backups are older.
   if (!backups.empty()) {
     now = std::max<metering::Instant>(now, std::chrono::sys_days{day_of(config, backups.front())});
   }

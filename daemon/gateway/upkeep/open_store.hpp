@@ -6,13 +6,13 @@
 
 namespace recald::daemon {
 
-/// What Upkeep keeps in reserve beside the store.
+/// The file that Upkeep keeps in reserve beside the store.
 [[nodiscard]] std::filesystem::path reserve_file(const StoreConfig& config);
 
-/// Opens the store; a damaged one is recovered with the help of the daily backups, and an event
-/// "store_recovered" tells of it. On a full disk the reserve is given up.
-/// @param on_progress  Told now and then that it goes on; may be empty.
-/// @return or as stores::open_checked.
+/// Opens the store. A damaged one is recovered with the help of the daily backups, and an event
+/// "store_recovered" reports it. On a full disk the reserve is released.
+/// @param on_progress  Called from time to time; may be empty.
+/// @return the store, or as stores::open_checked.
 [[nodiscard]] Result<stores::CheckedStore> open_store(
     const StoreConfig& config, metering::Instant now,
     const std::function<void()>& on_progress = {});

@@ -10,11 +10,11 @@
 
 namespace recald::daemon {
 
-/// @return or not_found when the store has none of them.
+/// @return the meters, or not_found when the store has none of them.
 [[nodiscard]] Result<std::vector<StoredMeter>> stored_meters(Store& store, const SiteConfig& site);
 
-/// Opens a site's store to read, beside a daemon if one runs.
-/// @return or not_found when there is none yet.
+/// Opens a site's store for reading, even while a daemon runs.
+/// @return the store, or not_found when there is none yet.
 [[nodiscard]] Result<std::unique_ptr<Store>> open_to_read(const SiteConfig& site);
 
 }  // namespace recald::daemon

@@ -17,8 +17,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kRest = std::chrono::hours{1};
 
-/// Age is judged by a clock that readings have followed for a week. By one that was set years ahead
-/// for an hour, all that is kept would be old at once.
+/// Age is measured with a clock that readings have followed for a week. Otherwise, a clock set
+/// years ahead for an hour would make everything look old at once.
 metering::TimeSpan followed_until(Instant now) {
   return {now - std::chrono::days{21}, now - std::chrono::days{7}};
 }
@@ -109,7 +109,7 @@ void Upkeep::end_backup(const Result<std::string>& damage, Instant now) {
   }
 }
 
-/// Due is today's once its time has come, whatever happened meanwhile: the folder remembers.
+/// Today's backup is due once its time has come; the folder shows whether it was made.
 Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
   const auto today = calendar_.local_time(now).date;
   if (!config_.backup_at || !is_plausible_time(now) || damaged_on_ == today) return Progress::done;
@@ -149,7 +149,8 @@ Result<Upkeep::Progress> Upkeep::delete_aged(Instant now) {
   return *events == rules_.rows ? Progress::more : Progress::done;
 }
 
-/// One at a time, its files first: killed in between, it is still known and its turn comes again.
+/// Deletes one at a time, its files first: if killed in between, the job is still known and
+/// gets its turn again.
 Result<Upkeep::Progress> Upkeep::delete_results(JobKind kind) {
   const auto job = store_.oldest_job_beyond(kind, config_.results_kept);
   if (!job) return tl::unexpected(job.error());

@@ -1,5 +1,5 @@
-/// Keeps a store healthy while the daemon runs: a daily backup, space in reserve, and nothing that
-/// grows for ever except readings.
+/// Keeps a store healthy while the daemon runs: a daily backup, disk space in reserve, and bounded
+/// size for everything except readings.
 #pragma once
 
 #include <chrono>
@@ -20,31 +20,31 @@ namespace recald::daemon {
 
 struct UpkeepRules {
   std::uintmax_t reserve_bytes = 64 * 1024 * 1024;
-  int backup_pages = 64;                ///< Of 4 KiB, copied in one go.
-  int rows = 500;                       ///< Deleted in one go.
-  std::chrono::milliseconds pause{50};  ///< Between two portions: the meters come first.
+  int backup_pages = 64;                ///< Of 4 KiB, copied per step.
+  int rows = 500;                       ///< Deleted per step.
+  std::chrono::milliseconds pause{50};  ///< Between two steps: the meters come first.
 };
 
 class Upkeep {
  public:
-  /// From now on a commit that the disk refuses is tried again once the reserve is given up.
+  /// From now on, a commit that the disk refuses is tried again after the reserve is released.
   /// @param store    Outlives the upkeep.
-  /// @param checker  Looks through each backup before it may take the place of an older one: nobody
-  ///                 else's, and it outlives the upkeep.
-  /// @param tell     Takes the events.
+  /// @param checker  Checks each backup before it may replace an older one. For this object alone,
+  ///                 and outlives it.
+  /// @param tell     Receives the events.
   Upkeep(Store& store, Worker& checker, StoreConfig config, metering::LocalCalendar calendar,
          std::function<void(StoreEvent)> tell, const UpkeepRules& rules = {});
-  /// What the checker is about ends soon.
+  /// Stops the checker's work early.
   ~Upkeep();
   Upkeep(const Upkeep&) = delete;
   Upkeep& operator=(const Upkeep&) = delete;
 
-  /// Does one portion of what is due; none takes longer than a commit. What fails becomes an event,
-  /// once, and is tried again within the hour.
-  /// @return when to call again: soon while there is work, within the hour otherwise.
+  /// Does one step of what is due; no step takes longer than a commit. A failure becomes one event,
+  /// and is tried again within the hour.
+  /// @return when to call again: soon while there is work, else within the hour.
   std::chrono::milliseconds maintain(metering::Instant now);
 
-  /// Other times, places and numbers of backups, and another retention. @pre the same file
+  /// Changes the times, place and number of backups, and the retention. @pre the same file
   void set_config(StoreConfig config) { config_ = std::move(config); }
 
  private:
@@ -54,9 +54,9 @@ class Upkeep {
   [[nodiscard]] Result<Progress> back_up(metering::Instant now);
   [[nodiscard]] Result<Progress> begin_backup(metering::Instant now);
   void check_backup(metering::Instant now);
-  /// @param damage  What the check has found.
+  /// @param damage  The result of the check.
   void end_backup(const Result<std::string>& damage, metering::Instant now);
-  /// Samples and events that are too old, results that are too many.
+  /// Deletes samples and events that are too old, and surplus results.
   [[nodiscard]] Result<Progress> delete_old(metering::Instant now);
   [[nodiscard]] Result<Progress> delete_aged(metering::Instant now);
   [[nodiscard]] Result<Progress> delete_results(JobKind kind);
@@ -71,13 +71,13 @@ class Upkeep {
   std::function<void(StoreEvent)> tell_;
   UpkeepRules rules_;
   std::shared_ptr<system::ReservedSpace> reserve_;
-  std::shared_ptr<StoreBackup> backup_;  ///< Under way; the checker's too while it checks.
+  std::shared_ptr<StoreBackup> backup_;  ///< In progress; shared with the checker while it checks.
   bool is_checking_ = false;
   std::optional<metering::Day>
-      damaged_on_;  ///< Whose backup was damaged; the next day has another.
+      damaged_on_;  ///< Day whose backup was damaged; the next day gets another.
   std::stop_source stop_;
   std::shared_ptr<Upkeep*> self_;
-  std::string reserve_failure_;  ///< The last one told.
+  std::string reserve_failure_;  ///< The last failure reported.
   std::string backup_failure_;
   std::string deleting_failure_;
 };

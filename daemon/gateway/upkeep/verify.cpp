@@ -25,7 +25,7 @@ std::string kWh_a_day(double value) {
   return std::isnan(value) ? "no value" : fmt::format("{:.3f} kWh/day", value);
 }
 
-/// What differs between a stored month and the same closed again; empty: nothing.
+/// The difference between a stored month and the same month closed again; empty: none.
 std::string difference(const MonthlyFigure& stored, const MonthlyFigure& again) {
   if (!is_same(stored.daily_average_kWh, again.daily_average_kWh)) {
     return fmt::format("{} stored, {} when closed again", kWh_a_day(stored.daily_average_kWh),
@@ -98,7 +98,7 @@ Result<Verification> verify_store(Store& store, const SiteConfig& site,
   if (!checked) return tl::unexpected(checked.error());
   if (!checked->damage.empty()) {
     verification.problems.push_back(damaged_file(checked->damage));
-    return verification;  // what else is wrong comes from that
+    return verification;  // the damage causes all other faults
   }
   verification.problems = std::move(checked->problems);
   verification.intervals = checked->intervals;

@@ -1,8 +1,8 @@
-/// The effects that were added to a site's model, as a calibration meets them.
+/// The effects that were added to a site's model, as a calibration uses them.
 ///
-/// Their parameters η were learnt from the months of the diagnosis (`months_used`), and those must
-/// not teach them twice: a month after them takes the posterior of η as prior
-/// and calibrates it jointly with θ; a month up to them takes η from its draws, without feedback.
+/// Their parameters η were learnt from the months of the diagnosis (`months_used`), and no month
+/// may be used twice. For a later month, the posterior of η is the prior, and η is calibrated
+/// jointly with θ. For a month up to them, η is taken from its draws, without feedback.
 #pragma once
 
 #include <span>
@@ -16,29 +16,29 @@
 
 namespace recald::daemon {
 
-/// The version in force; that of the drawings where nothing was ever added.
-/// @return what `models::ModelStore::active` finds: a calibration must not go on without an effect
-///         only because its file is damaged.
+/// The version in force, or the drawings if nothing was ever added.
+/// @return the version, or as `models::ModelStore::active`: a calibration must not continue without
+///         an effect because its file is damaged.
 [[nodiscard]] Result<diagnosis::ModelVersion> active_version(const SiteConfig& site);
 
-/// Its effects, in the order of addition; none for the drawings.
+/// The effects of the version in force, in the order of addition; none for the drawings.
 [[nodiscard]] Result<std::vector<diagnosis::AddedEffect>> active_effects(const SiteConfig& site);
 
-/// How results name the model that made them: the version in force, or `drawings` where it is the
+/// How results name the model that they come from: the version in force, or `drawings` for the
 /// model of the drawings.
 [[nodiscard]] std::string version_name(const diagnosis::ModelVersion& active,
                                        const std::string& drawings);
 
-/// Whether the month may teach the effect's parameters: it lies after all that they learnt from.
+/// Whether the effect may learn from the month: the month comes after all that it was learnt from.
 [[nodiscard]] bool may_teach(const diagnosis::AddedEffect& effect, metering::Month month);
 
-/// What an effect's parameter is called among those of a design or a calibration:
-/// "night_setback_missing_share"; with its meter where it has one, "meter_scale_heat_factor".
+/// The name of an effect's parameter among those of a design or a calibration:
+/// "night_setback_missing_share"; with its meter if it has one, "meter_scale_heat_factor".
 [[nodiscard]] std::string effect_parameter_name(const diagnosis::AddedEffect& effect,
                                                 const diagnosis::EffectParameterRecord& parameter);
 
-/// A meta-model speaks only of what its design varied.
-/// @return unsupported with the first effect that has a parameter which the design lacks.
+/// A meta-model only knows the parameters that its design varied.
+/// @return unsupported for the first effect with a parameter that the design lacks.
 [[nodiscard]] Result<void> require_in_design(std::span<const diagnosis::AddedEffect> effects,
                                              std::span<const Parameter> design);
 

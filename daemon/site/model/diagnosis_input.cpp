@@ -24,8 +24,8 @@ using metering::Month;
 
 constexpr std::size_t kLeastMonths = 6;
 constexpr double kLeastOkShare = 0.5;
-constexpr double kLeastReadShare = 0.5;  // of the hours of a month that counts as read
-// Positions in `weather::kWeatherVariables`.
+constexpr double kLeastReadShare = 0.5;  // of a month's hours, for the month to count as read
+// Indices in `weather::kWeatherVariables`.
 constexpr std::size_t kHumidity = 1;
 constexpr std::size_t kWind = 2;
 constexpr std::size_t kSun = 4;
@@ -45,7 +45,7 @@ bool is_read(const MeterRecord& record, Month month) {
   return static_cast<double>(read) >= kLeastReadShare * 24.0 * metering::days_in(month);
 }
 
-/// Those in which some meter of the model was read.
+/// The months in which some meter of the model was read.
 std::vector<Month> months_read(const SiteConfig& site, const Recording& recording,
                                const std::vector<Month>& months) {
   std::vector<Month> read;
@@ -57,8 +57,8 @@ std::vector<Month> months_read(const SiteConfig& site, const Recording& recordin
   return read;
 }
 
-/// Measured hours of one meter in the order of the drivers; NaN where not measured. The hour that
-/// the clock repeats in autumn is recorded once and stands twice.
+/// Measured hours of one meter in the order of the drivers; NaN if not measured. The hour that the
+/// clock repeats in autumn is recorded once and appears twice.
 Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers) {
   std::map<std::pair<metering::Day, int>, double> by_hour;
   for (const auto& [month, hours] : record.hours) {
@@ -74,7 +74,7 @@ Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers
   return values;
 }
 
-/// @param meter  Of the site.
+/// @param meter  Index among the site's meters.
 diagnosis::MeterData priced(const SiteConfig& site, std::size_t meter, const MeterRecord& record,
                             const model::MeterMap& end_uses) {
   const metering::Meter& described = site.meters[meter].meter;
@@ -86,7 +86,8 @@ diagnosis::MeterData priced(const SiteConfig& site, std::size_t meter, const Met
           .emissions_kg_per_kWh = rates.emissions_kg_per_kWh};
 }
 
-/// Those of the site file, and what else day parts can inform. A prior that the file gives stands.
+/// The parameters of the site file, plus others that day parts can inform. Priors from
+/// the file are kept.
 Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
   ChosenParameters chosen;
   const auto add = [&](std::string_view name, const std::optional<Prior>& prior) {
@@ -100,7 +101,7 @@ Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
     if (std::ranges::find(chosen.parameters, name, &Parameter::name) != chosen.parameters.end()) {
       continue;
     }
-    // A design value of 0 or outside the library's range: the drawings are taken at their word.
+    // If the design value is 0 or outside the library's range, the drawings are trusted.
     (void)add(name, {});
   }
   return chosen;
@@ -184,7 +185,7 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   const diagnosis::SplitOptions split;
   problem.month_roles =
       diagnosis::split_months(months, months_read(site, recording, months), split);
-  // The months to be shown must not tell their own electricity.
+  // Months to be shown must not contribute to their own electricity profile.
   std::vector<Month> told;
   for (std::size_t i = 0; i < months.size(); ++i) {
     const bool is_told =
@@ -194,7 +195,8 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   auto profile = model::hourly::fit_profile_without_plant(loads_of(**electricity, told),
                                                           *site.building, place, months);
   if (!profile) return tl::unexpected(profile.error());
-  // One profile for all months: factors of calendar months would hide what a diagnosis looks for.
+  // One profile for all months: factors of calendar months would hide what a
+  // diagnosis searches for.
   profile->loads.month_factor.fill(1.0);
 
   auto drivers =

@@ -1,5 +1,4 @@
-/// From a site's files to what a diagnosis needs: drivers, meters by the hour, uncertain
-/// parameters.
+/// Prepares a diagnosis from a site's files: drivers, hourly meter data, uncertain parameters.
 #pragma once
 
 #include <optional>
@@ -15,8 +14,9 @@
 
 namespace recald::daemon {
 
-/// Whether there is enough to diagnose: six months with weather in which a modelled meter was read.
-/// @return not_enough_data, saying what is missing in the first month that is not such a one.
+/// Whether there are enough data to diagnose: six months with weather in which a
+/// modelled meter was read.
+/// @return not_enough_data, saying what the first unusable month lacks.
 [[nodiscard]] Result<void> require_months(const SiteConfig& site, const Recording& recording,
                                           const SiteWeather& weather);
 
@@ -24,13 +24,13 @@ namespace recald::daemon {
 [[nodiscard]] display::Warnings data_warnings(const SiteConfig& site, const Recording& recording,
                                               const SiteWeather& weather);
 
-/// The site over all months of its calibration and validation that have weather. Humidity or wind
-/// that the whole record lacks is assumed; months without readings are neither held nor shown.
-/// @param last_taught  Of the months that the electricity profile is read from; absent: all that
-/// are
-///                     not kept to be shown.
+/// The site over all months of its calibration and validation that have weather. If the
+/// whole record lacks humidity or wind, it is assumed. Months without readings are neither
+/// kept back nor shown.
+/// @param last_taught  Last month used for the electricity profile; absent: all months except those
+///                     to be shown are used.
 /// @return not_enough_data  fewer than six months, no modelled meter with readings, no electricity
-///                          meter, weather with holes.
+///         meter, weather with holes.
 [[nodiscard]] Result<diagnosis::SiteProblem> make_site_problem(
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
     const SiteWeather& weather, std::optional<metering::Month> last_taught = {});

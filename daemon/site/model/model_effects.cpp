@@ -21,11 +21,11 @@ using diagnosis::SiteProblem;
 using model::hourly::Alteration;
 using std::chrono::sys_days;
 
-/// Beyond this probability of a fitted prior's tails an effect is taken as level.
+/// Effects are tabulated up to this tail probability of a fitted prior, and held constant beyond.
 constexpr double kTail = 0.005;
 
-/// The first day of the drivers that the effect's days are counted from. Records hold the day
-/// itself for dated effects, and drivers begin with a month: the first one nearest.
+/// The first day of the drivers, from which the effect's days are counted. Records store the date
+/// of dated effects, and drivers begin with a month, so this is the nearest first of a month.
 sys_days origin_of(const AddedEffect& added, const Candidate& candidate, sys_days here) {
   if (!candidate.begins) return here;
   const std::size_t first_day = added.parameters.size() - (candidate.ends ? 2 : 1);
@@ -42,7 +42,7 @@ Error not_usable(const AddedEffect& added, const std::string& why) {
                       added.effect, why)};
 }
 
-/// The candidate that was added, as this program's catalogue has it.
+/// The candidate in the current catalogue that was added.
 Result<Candidate> candidate_of(const AddedEffect& added, const SiteProblem& site) {
   Candidate candidate{.effect = diagnosis::find_effect(added.effect),
                       .begins = added.from.has_value(),
@@ -75,7 +75,7 @@ Result<Candidate> candidate_of(const AddedEffect& added, const SiteProblem& site
   return candidate;
 }
 
-/// An effect that counts days without being dated does not say from which day.
+/// An effect that counts days but has no date does not say from which day.
 Result<void> check_days(const AddedEffect& added, const Candidate& candidate,
                         const SiteProblem& site) {
   const bool counts_days =
@@ -109,14 +109,14 @@ std::shared_ptr<const EffectParameterLabel> label_of(
   return label;
 }
 
-/// Of the original prior, moved by whole days.
+/// The original prior, shifted by whole days.
 Prior moved(const Prior& prior, double days) {
   const auto* uniform = std::get_if<UniformPrior>(&prior.distribution());
   if (days == 0.0 || uniform == nullptr) return prior;
   return UniformPrior{uniform->min + days, uniform->max + days};
 }
 
-/// Appends the effect's parameters; its days are brought from its own origin to the site's.
+/// Appends the effect's parameters, with its days converted from its own origin to the site's.
 void add_parameters(const AddedEffect& added, const Candidate& candidate, Eigen::Index& column,
                     ModelEffects& effects) {
   const sys_days here{effects.site->drivers->hours.front().date};
@@ -128,7 +128,7 @@ void add_parameters(const AddedEffect& added, const Candidate& candidate, Eigen:
     const double shift = j < own ? 0.0 : shift_days;
     std::vector<double> here_draws = record.draws;
     for (double& draw : here_draws) draw += shift;
-    // Effects were added one after the other: their draws know nothing of each other.
+    // Effects were added one after the other, so their draws are independent of each other.
     for (Eigen::Index i = 0; i < effects.draws.rows(); ++i) {
       effects.draws(i, column) = here_draws[static_cast<std::size_t>(i) % here_draws.size()];
     }
@@ -138,7 +138,7 @@ void add_parameters(const AddedEffect& added, const Candidate& candidate, Eigen:
   }
 }
 
-/// η of effect `index`: where it begins and how many it has.
+/// Index of the first η of effect `index`, and how many it has.
 std::pair<std::size_t, std::size_t> place_of(const ModelEffects& effects, std::size_t index) {
   std::size_t first = 0;
   for (std::size_t e = 0; e < index; ++e) first += effects.added[e].parameters.size();
@@ -218,7 +218,7 @@ Result<ModelEffects> make_model_effects(std::vector<AddedEffect> added,
   return effects;
 }
 
-/// Holds the effect that is bound at present.
+/// Holds the effect that is currently bound.
 class AlteredHourlyModel::Slot final : public Alteration {
  public:
   void put(std::shared_ptr<const Alteration> effect) { effect_ = std::move(effect); }
@@ -255,7 +255,7 @@ AlteredHourlyModel::AlteredHourlyModel(Factory make, std::shared_ptr<const Model
 
 AlteredHourlyModel::~AlteredHourlyModel() = default;
 
-/// With slots of its own: clones run side by side at different η.
+/// The clone has its own slots: clones run in parallel with different η.
 std::unique_ptr<MonthlyModel> AlteredHourlyModel::clone() const {
   return std::make_unique<AlteredHourlyModel>(make_, effects_);
 }

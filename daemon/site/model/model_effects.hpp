@@ -1,4 +1,4 @@
-/// The effects of the version in force, ready to be put into a monthly or an hourly model.
+/// The effects of the version in force, ready to be applied to a monthly or an hourly model.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,32 +15,32 @@
 
 namespace recald::daemon {
 
-/// An effect parameter among those of a calibration, with all that its words point to.
+/// An effect parameter in a calibration, together with the text it refers to.
 struct EffectParameterLabel {
   std::string name;
   std::string unit;
   std::string label;
-  model::ParameterDefinition definition;  ///< Of the three above; no building has it.
+  model::ParameterDefinition definition;  ///< Built from the three above; not a building parameter.
 };
 
 /// All effects of one version, in the order of addition. η is (r): the parameters of the first
 /// effect, then those of the second …
 struct ModelEffects {
-  std::shared_ptr<const diagnosis::SiteProblem> site;  ///< As a diagnosis of it sees it.
+  std::shared_ptr<const diagnosis::SiteProblem> site;  ///< As a diagnosis of it would build it.
   std::vector<diagnosis::AddedEffect> added;
   std::vector<diagnosis::Candidate> candidates;  ///< Of `added`.
-  std::vector<Parameter> parameters;             ///< (r) with what is known of η as priors.
-  Eigen::MatrixXd draws;                         ///< (draws x r) of the posteriors; days as here.
+  std::vector<Parameter> parameters;             ///< (r) priors are fitted to what is known of η.
+  Eigen::MatrixXd draws;  ///< (draws x r) of the posteriors; days from the site's origin.
   std::vector<std::shared_ptr<const EffectParameterLabel>> labels;  ///< (r)
 
   [[nodiscard]] std::vector<double> mean() const;  ///< (r) of the draws.
 
-  /// What an hourly run applies, in order. @param eta  (r) in the supports of the priors
+  /// The alterations of an hourly run, in order. @param eta  (r) in the supports of the priors
   [[nodiscard]] std::vector<std::shared_ptr<const model::hourly::Alteration>> alterations(
       std::span<const double> eta) const;
 
-  /// What a monthly model adds, over the range of the draws and of `parameters`' priors: all months
-  /// of `site`, each effect on top of those before it at their means.
+  /// The additions to a monthly model, over the range of the draws and of the priors of
+  /// `parameters`: for all months of `site`, each effect on top of the earlier ones at their means.
   /// @param theta  Of the monthly model; the first parameters of `site`.
   [[nodiscard]] std::vector<diagnosis::MonthlyEffect> monthly(
       std::span<const Parameter> theta) const;
@@ -49,17 +49,17 @@ struct ModelEffects {
 /// @param added  Not empty.
 /// @return the effects; or
 ///         unsupported      the catalogue has no such effect, or not with these parameters; the
-///                          site does not model its meter; it counts days from months that the
-///                          site's period no longer has;
+///                          site does not model its meter; it counts days from months outside
+///                          the site's period;
 ///         not_enough_data  no draws.
 [[nodiscard]] Result<ModelEffects> make_model_effects(
     std::vector<diagnosis::AddedEffect> added, std::shared_ptr<const diagnosis::SiteProblem> site);
 
 /// The hourly model with η among its parameters: θ of the site, then η. A change of η binds the
-/// effects anew, which allocates and is small beside a run.
+/// effects again, which allocates but costs little compared with a run.
 class AlteredHourlyModel final : public MonthlyModel {
  public:
-  /// Makes the model of some months that applies these alterations.
+  /// Makes a model of some months with these alterations.
   using Factory = std::function<std::unique_ptr<MonthlyModel>(
       std::vector<std::shared_ptr<const model::hourly::Alteration>>)>;
 
@@ -79,8 +79,8 @@ class AlteredHourlyModel final : public MonthlyModel {
 
   Factory make_;
   std::shared_ptr<const ModelEffects> effects_;
-  std::vector<std::shared_ptr<Slot>> slots_;  ///< In which the model finds the effects.
-  std::vector<double> eta_;                   ///< Those of the slots.
+  std::vector<std::shared_ptr<Slot>> slots_;  ///< The model reads its effects from these.
+  std::vector<double> eta_;                   ///< The values that the slots are bound to.
   std::unique_ptr<MonthlyModel> model_;
 };
 

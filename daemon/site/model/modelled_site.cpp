@@ -12,7 +12,7 @@
 namespace recald::daemon {
 namespace {
 
-/// What the site is held against: the model's outputs, or without a model every meter.
+/// The meters to compare with: the model's outputs, or every meter if there is no model.
 std::vector<std::string> outputs_of(const SiteConfig& site) {
   if (site.model) return site.model->outputs;
   std::vector<std::string> all;
@@ -20,9 +20,8 @@ std::vector<std::string> outputs_of(const SiteConfig& site) {
   return all;
 }
 
-/// A gateway may read a thousand meters for a model of three: only those are loaded from its store,
-/// and another one that has just been added, or that says nonsense, is none of the model's
-/// business.
+/// A gateway may read a thousand meters for a model of three. Only those are loaded from its store,
+/// so a meter that was just added or reports nonsense does not affect the model.
 void leave_out_unmodelled_live_meters(SiteConfig& site) {
   std::vector<std::string> needed = site.model->outputs;
   if (const auto electricity = profile_meter(site)) {
@@ -38,7 +37,7 @@ void leave_out_unmodelled_live_meters(SiteConfig& site) {
   site.meters = std::move(kept);
 }
 
-/// @pre what the model has no use for is left out
+/// @pre meters that the model does not use were removed
 Result<void> require_live_months(const SiteConfig& site, const Recording& recording) {
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
@@ -51,7 +50,7 @@ Result<void> require_live_months(const SiteConfig& site, const Recording& record
   return {};
 }
 
-/// Null for a site without live meters and sensors.
+/// Null for a site without live meters or sensors.
 Result<std::unique_ptr<StoredReadings>> open_live_readings(const SiteConfig& site) {
   if (!has_stored_meters(site)) return open_sensors(site);
   return StoredReadings::open(site);
@@ -134,7 +133,7 @@ Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
 
 Result<MonthRange> latest_months(const OpenSite& site, const Recording& recording,
                                  metering::Instant now) {
-  // A model is held against months that all its meters have; without one each stands by itself.
+  // A model needs months that all its meters have; without a model each meter stands alone.
   const bool is_shared = site.config.model.has_value();
   std::optional<MonthRange> common;
   for (const std::string& id : outputs_of(site.config)) {

@@ -1,5 +1,4 @@
-/// A site with all that a model of it is made from: readings, weather, and what results carry
-/// along.
+/// A site with everything needed to model it: readings, weather, and the facts that results carry.
 #pragma once
 
 #include <functional>
@@ -20,7 +19,7 @@ struct OpenSite {
 /// First calibration month to last validation month. @pre site.period
 [[nodiscard]] metering::MonthRange whole_period(const SiteConfig& site);
 
-/// Whether the site can be modelled at all; the sentence says what is missing.
+/// Whether the site can be modelled; the error says what is missing.
 [[nodiscard]] Result<void> require_model(const SiteConfig& site);
 
 struct ModelledSite {
@@ -30,29 +29,30 @@ struct ModelledSite {
   RunFacts facts;
 };
 
-/// A site's readings, from its files and, where it has live meters, from its store, every month
-/// closed by the rules of the site file.
+/// A site's readings, from its files and, for live meters, from its store, with every month closed
+/// by the rules of the site file.
 [[nodiscard]] Result<Recording> record_site(const OpenSite& site, const ReplayOptions& options,
                                             VirtualClock& clock,
                                             const OnMonthClosed& on_month_closed);
 
-/// The months to model, from what was recorded until `now`.
+/// Chooses the months to model from the months recorded until `now`.
 using ChoosePeriod = std::function<Result<PeriodConfig>(
     const OpenSite& site, const Recording& recording, metering::Instant now)>;
 
 /// Reads everything that the model needs. Of live meters it takes the months that the daemon has
-/// closed, in the revision that the API shows, and of their readings those of the period, for
-/// profiles, diagnoses, days and pictures. Live meters that it has no use for are no part of the
-/// site that is returned, so they neither mark months as different nor stand in reports; meters in
-/// files do, since they are read anyway.
-/// @param now     A site without a [period] is modelled on the latest months that are closed then.
-/// @param choose  In the place of both; absent: as the site file says.
-/// @return or what is missing. Of a site without a model every meter is read.
+/// closed, in the revision that the API shows, and the readings of the period, for profiles,
+/// diagnoses, days and figures. Live meters that it does not use are removed from the returned
+/// site, so they neither mark months as different nor appear in reports. Meters in files stay,
+/// since they are read anyway.
+/// @param now     A site without a [period] is modelled on the latest months that
+///                are closed by then.
+/// @param choose  Replaces both; absent: as the site file says.
+/// @return the site, or what is missing. Without a model, every meter is read.
 [[nodiscard]] Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
                                                       const ChoosePeriod& choose = {});
 
-/// The last `recalibration.months` months that all modelled meters have closed; without a model,
-/// that any meter has.
+/// The last `recalibration.months` months that are closed for all modelled meters; without a
+/// model, for any meter.
 /// @return not_enough_data when there is none.
 [[nodiscard]] Result<metering::MonthRange> latest_months(const OpenSite& site,
                                                          const Recording& recording,

@@ -1,4 +1,4 @@
-/// What every result carries besides its numbers, so that it can be believed and repeated.
+/// What every result carries besides its numbers, so that it can be trusted and reproduced.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct RunFacts {
   std::string data_revision;  ///< SHA-256 over the site file and all data files.
   std::string model_version;  ///< Kind of model and SHA-256 of the site file, shortened.
   std::string time_zone_data;
-  std::string weather_values;  ///< What temperatures were taken for; empty without weather.
-  std::vector<MonthWeather> weather = {};  ///< Of the months that were asked for.
-  /// Columns that no source has measured and that were assumed: "ghi_W_m2".
+  std::string weather_values;  ///< How temperatures were interpreted; empty without weather.
+  std::vector<MonthWeather> weather = {};  ///< The requested months.
+  /// Columns that no source measured and that were therefore assumed: "ghi_W_m2".
   std::vector<std::string> weather_assumed = {};
   std::string sampler;
   std::string hyper_prior_profile;
@@ -29,21 +29,21 @@ struct RunFacts {
   int burn_in = 0;
   int chains = 0;
   int design_runs = 0;
-  double wall_s = 0.0;  ///< The only thing that differs between equal runs.
+  double wall_s = 0.0;  ///< The only value that differs between equal runs.
 };
 
-/// Hashes what the site's results depend on.
-/// @param live_digest  Of the readings that came from live meters; empty: none did.
+/// Hashes everything that the site's results depend on.
+/// @param live_digest  Of the readings from live meters; empty: there were none.
 /// @return not_found or io_failed for a data file.
 [[nodiscard]] Result<RunFacts> facts_of(const SiteConfig& site,
                                         const std::string& live_digest = "");
 
-/// The same for a design of experiments, over the files it was read from.
-/// @param model  Kind of model: the version is this and the digest of the files, shortened.
+/// As above for a design of experiments, over the files it was read from.
+/// @param model  Kind of model; the version is this plus the shortened digest of the files.
 [[nodiscard]] Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
                                               std::string_view model);
 
-/// `facts` with the seed and what the sampling took.
+/// `facts` with the seed and the size of the sampling run.
 [[nodiscard]] RunFacts with_sampling(RunFacts facts, std::uint64_t seed,
                                      const calibration::Calibration& calibration);
 

@@ -21,7 +21,7 @@ std::vector<model::hourly::OutputDefinition> hourly_outputs(std::size_t meters) 
   return outputs;
 }
 
-/// The effects in these months of their site.
+/// The effects, restricted to these months of their site.
 std::vector<diagnosis::MonthlyEffect> effects_in(const SiteModelParts& parts,
                                                  const std::vector<Month>& months) {
   if (!parts.effects) return {};
@@ -53,7 +53,7 @@ Result<ModelFactory> monthly_model(const SiteConfig& site, const SiteModelParts&
   };
 }
 
-/// Effects count days from the first hour of the site that they were bound to.
+/// Effects count days from the first hour of the site to which they were bound.
 void count_days_from(const model::Drivers& first, model::Drivers& drivers) {
   const std::chrono::sys_days origin{first.hours.front().date};
   for (model::DriverHour& hour : drivers.hours) {
@@ -68,7 +68,7 @@ Result<ModelFactory> hourly_model(const SiteConfig& site, const SiteModelParts& 
                                   parts.loads, place.location, place.weather);
   if (!made) return tl::unexpected(made.error());
   if (parts.effects) count_days_from(*parts.effects->site->drivers, *made);
-  // Peaks are means over the meters' interval, so the model's steps are no longer than that.
+  // Peaks are means over the meters' interval, so the model's steps must not be longer.
   const int steps = site.interval < std::chrono::hours{1} ? 4 : 1;
   return [parts, steps, drivers = std::make_shared<const model::Drivers>(std::move(*made))](
              const model::Building& building) -> std::unique_ptr<MonthlyModel> {

@@ -1,5 +1,5 @@
-/// The model that a site is calibrated with, of any of its months: monthly or hourly, with the
-/// effects of the version in force.
+/// The model used to calibrate a site, for any of its months: monthly or hourly, with the effects
+/// of the version in force.
 #pragma once
 
 #include <memory>
@@ -15,18 +15,18 @@ namespace recald::daemon {
 
 [[nodiscard]] bool is_hourly(const SiteConfig& site);
 
-/// What all models of a site have in common, whatever the months.
+/// What all models of a site share, whatever the months.
 struct SiteModelParts {
-  std::vector<const model::ParameterDefinition*> definitions;  ///< (q) of θ.
-  std::vector<model::MeterMap> maps;                           ///< (m) of the model's outputs.
+  std::vector<const model::ParameterDefinition*> definitions;  ///< (q) for θ.
+  std::vector<model::MeterMap> maps;                           ///< (m) for the model's outputs.
   model::ElectricLoads loads;
   std::shared_ptr<const ModelEffects> effects;    ///< Null: none.
   std::vector<diagnosis::MonthlyEffect> monthly;  ///< Of `effects`; empty for an hourly model.
 };
 
-/// @param months  All of them among those of the effects' site, where there are effects.
-/// @return models of θ, then η: daily averages of the meters, and their peaks in turn with them
-///         where the model is hourly; not_enough_data from the weather.
+/// @param months  If there are effects, all of these must be months of the effects' site.
+/// @return models of θ, then η, that give daily averages of the meters; an hourly model alternates
+///         them with peaks. Or not_enough_data from the weather.
 [[nodiscard]] Result<ModelFactory> model_of(const SiteConfig& site, const SiteModelParts& parts,
                                             const std::vector<metering::Month>& months,
                                             const model::epc::Place& place);

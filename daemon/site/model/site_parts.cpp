@@ -105,7 +105,7 @@ std::optional<std::size_t> profile_meter(const SiteConfig& site) {
     if (!counts(model::EndUse::lighting) && !counts(model::EndUse::plugs)) return 1;
     return site.model->has_output(config.meter.id) ? 3 : 2;
   };
-  const auto best = std::ranges::max_element(site.meters, {}, rank);  // the first one of the best
+  const auto best = std::ranges::max_element(site.meters, {}, rank);  // the first of equals
   if (best == site.meters.end() || rank(*best) == 0) return std::nullopt;
   return static_cast<std::size_t>(best - site.meters.begin());
 }
@@ -151,7 +151,7 @@ Result<ChosenParameters> site_parameters(const SiteConfig& site) {
 
 namespace {
 
-/// Two meters that are said to draw the same, all of it: the model would be held to both.
+/// Refuses two meters that both stand for all of a utility: the model would count it twice.
 Result<void> require_once(const SiteConfig& site, const std::vector<model::MeterMap>& maps) {
   for (std::size_t i = 0; i < maps.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

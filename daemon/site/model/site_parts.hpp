@@ -1,4 +1,4 @@
-/// What every model of a site is made from: months, electricity, calibration parameters, meters.
+/// The parts of every model of a site: months, electricity, calibration parameters, meters.
 #pragma once
 
 #include <optional>
@@ -23,21 +23,21 @@ struct SiteMonths {
   std::vector<assessment::MonthRole> roles;
   std::vector<metering::Month> calibration;  ///< The leading part of `all`.
 
-  /// Ascending, each once.
+  /// Ascending, without repetition.
   [[nodiscard]] std::vector<metering::Month> in_order() const;
 };
 
-/// A month whose weather is mostly invented is left out; that, and weather with holes, in words.
+/// Leaves out months whose weather is mostly filled in, and says so in words; also reports holes.
 [[nodiscard]] SiteMonths choose_months(const PeriodConfig& period, const SiteWeather& weather,
                                        display::Warnings& warnings);
 
-/// The meter that tells lights and plugs: the first one of electricity that is modelled and counts
-/// them, or else the first one that counts them, or else the first one. An index of the site's
-/// meters. @pre the site has a model
+/// The meter that shows lights and plugs: the first modelled electricity meter that counts them, or
+/// else the first meter that counts them, or else the first. An index of the site's meters. @pre
+/// the site has a model
 [[nodiscard]] std::optional<std::size_t> profile_meter(const SiteConfig& site);
 
-/// What that meter has recorded.
-/// @return not_enough_data where the site has none.
+/// The record of that meter.
+/// @return not_enough_data if the site has none.
 [[nodiscard]] Result<const MeterRecord*> electricity_meter(const SiteConfig& site,
                                                            const Recording& recording);
 
@@ -45,20 +45,21 @@ struct SiteMonths {
 [[nodiscard]] std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
                                                         const std::vector<metering::Month>& months);
 
-/// Calibration parameters and how they enter a building, in the same order.
+/// Calibration parameters and their definitions in a building, in the same order.
 struct ChosenParameters {
   std::vector<const model::ParameterDefinition*> definitions;
   std::vector<Parameter> parameters;
 
-  /// @return what `find_parameter` and `make_parameter` find; then nothing was added.
+  /// @return the error of `find_parameter` or `make_parameter`; then nothing was added.
   [[nodiscard]] Result<void> add(std::string_view name, const model::Building& nominal,
                                  const std::optional<Prior>& prior);
 };
 
-/// Those that the site file names. @pre the site has a model
+/// The parameters that the site file names. @pre the site has a model
 [[nodiscard]] Result<ChosenParameters> site_parameters(const SiteConfig& site);
 
-/// What each modelled meter counts, in order of the model's outputs. @pre the site has a model
+/// What each modelled meter measures, in the order of the model's outputs. @pre the
+/// site has a model
 [[nodiscard]] Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site);
 
 }  // namespace recald::daemon

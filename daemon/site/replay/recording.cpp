@@ -30,14 +30,14 @@ csv::MeterRows rows_of(const MeterConfig& config) {
           .counter = config.counter};
 }
 
-/// Meters that are read from the same files in one go.
+/// Meters that are read together from the same files.
 struct FileGroup {
   std::vector<std::filesystem::path> files;  ///< In order of time.
-  std::optional<table::TableShape> shape;    ///< None: recald's own CSV.
+  std::optional<table::TableShape> shape;    ///< Absent: recald's own CSV.
   std::vector<std::size_t> meters;
 };
 
-/// In order of first mention.
+/// Ordered by first mention.
 std::vector<FileGroup> group_by_files(const SiteConfig& site) {
   std::vector<FileGroup> groups;
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
@@ -85,7 +85,7 @@ class GroupReader {
   std::vector<table::TableMeter> tables_;
 };
 
-/// @param recording  Gets what the files had to say.
+/// @param recording  Receives the notes and issues of the files.
 Result<void> read_group(const SiteConfig& site, const FileGroup& group,
                         const metering::LocalCalendar& calendar, const csv::ReadingsSink& sink,
                         Recording& recording) {
@@ -106,10 +106,10 @@ Result<void> read_group(const SiteConfig& site, const FileGroup& group,
   return {};
 }
 
-/// What the site says itself of zeros need not be asked.
+/// If the site file describes zero readings, they are not reported.
 bool is_told_of_zeros(const MeterRecord& record) { return record.meter.zero_run_max.has_value(); }
 
-/// What the closed months of one meter show besides their figures.
+/// What one meter's closed months show besides their figures.
 class SlotRecord {
  public:
   void take(const ClosedMonth& closed, MeterRecord& record) {
@@ -120,7 +120,7 @@ class SlotRecord {
   }
 
   /// @param figures  Of the months that were taken.
-  /// @param until    Where the site's record ends: what has not been read yet is no gap.
+  /// @param until    End of the site's record: what has not been read yet is not a gap.
   void describe(const std::vector<metering::MonthlyFigure>& figures,
                 const metering::LocalCalendar& calendar, MeterRecord& record,
                 Instant until = Instant::max()) const {
@@ -175,7 +175,7 @@ void find_changes(MeterRecord& record) {
       record.meter.id, record.figures, metering::level_change_options(record.meter.utility));
 }
 
-/// Collects what closed months leave behind.
+/// Collects the results of closed months.
 class Recorder {
  public:
   Recorder(const SiteConfig& site, Recording& recording)
@@ -214,8 +214,8 @@ class Recorder {
   std::vector<SlotRecord> slots_;
 };
 
-/// Adds up what meters read in the same interval. They come one after the other, so a sum is known
-/// when all have been read.
+/// Adds up readings of several meters in the same interval. Meters are read one after the other, so
+/// a sum is known only when all have been read.
 class Sum {
  public:
   Sum(std::size_t meter, const SiteConfig& site) : meter_(meter) {
@@ -226,7 +226,7 @@ class Sum {
 
   [[nodiscard]] std::size_t meter() const { return meter_; }
 
-  /// The first reading of a part in an interval, as wherever one comes twice.
+  /// As elsewhere, the first reading of a part in an interval counts.
   void take(std::size_t meter, const metering::Reading& reading) {
     const auto sign = signs_.find(meter);
     if (sign == signs_.end()) return;
@@ -240,8 +240,8 @@ class Sum {
     }
   }
 
-  /// In order of time. An interval that lacks a part, or of which one says it is no measurement, is
-  /// blank. Where a counter knows one's sum but not its shape, so it is with all of them.
+  /// Passes on the sums in order of time. An interval is blank if a part is missing or invalid. If
+  /// a counter knows a part's total but not its shape, the same holds for the sum.
   void hand_out(const std::function<void(const metering::Reading&)>& sink) const {
     for (const auto& [start, interval] : intervals_) {
       if (interval.parts.size() == signs_.size() && interval.is_known) {
@@ -252,8 +252,8 @@ class Sum {
     }
   }
 
-  /// The grid that all parts have. @pre they are in files, with rows of all of them
-  /// @return or a sentence about two that differ
+  /// The grid that all parts share. @pre they are in files with rows of each
+  /// @return the grid, or a sentence about two parts that differ
   [[nodiscard]] Result<csv::MeterInFile> grid(const SiteConfig& site,
                                               const Recording& recording) const {
     const std::size_t first = signs_.begin()->first;
@@ -280,7 +280,7 @@ class Sum {
     metering::Validity validity = metering::Validity::ok;
   };
   std::size_t meter_;
-  std::map<std::size_t, double> signs_;  ///< By meter of the site.
+  std::map<std::size_t, double> signs_;  ///< By meter index of the site.
   std::map<Instant, Interval> intervals_;
 };
 
@@ -294,7 +294,7 @@ std::vector<Sum> sums_of_files(const SiteConfig& site) {
   return sums;
 }
 
-/// The readings in the store of a meter, or of a sum of such. @return how many of meters there are.
+/// Reads a meter, or a sum of meters, from the store. @return the number of readings of its meters.
 Result<std::uint64_t> for_each_stored(const SiteConfig& site, std::size_t meter,
                                       const TimeSpan& span, LiveReadings& live,
                                       const ReadingSink& sink) {
@@ -311,7 +311,7 @@ Result<std::uint64_t> for_each_stored(const SiteConfig& site, std::size_t meter,
   return std::uint64_t{0};
 }
 
-/// @pre the files have been read
+/// @pre all files were read
 Result<void> add_sums(const std::vector<Sum>& sums, const SiteConfig& site,
                       const Recording& recording, metering::MonthCloser& closer,
                       const std::function<void(std::size_t, const metering::Reading&)>& take) {
@@ -324,7 +324,7 @@ Result<void> add_sums(const std::vector<Sum>& sums, const SiteConfig& site,
   return {};
 }
 
-/// Why there is no row: those that were refused, else what stands in the file instead.
+/// Why there are no rows: the refused ones, or else what the file contains instead.
 std::string refusal_words(const MeterRecord& record, const FileIssues& file) {
   const bool is_its_own = !record.rows.first_refused.empty();
   const auto& lines = is_its_own ? record.rows.first_refused : file.issues.listed;
@@ -341,7 +341,7 @@ std::string refusal_words(const MeterRecord& record, const FileIssues& file) {
   return words;
 }
 
-/// A file has rows of each meter that the site looks for in it.
+/// Requires rows of each meter that the site expects in a file.
 Result<void> require_rows(const SiteConfig& site, const Recording& recording) {
   for (std::size_t i = 0; i < recording.meters.size(); ++i) {
     const MeterConfig& config = site.meters[i];
@@ -356,7 +356,7 @@ Result<void> require_rows(const SiteConfig& site, const Recording& recording) {
   return {};
 }
 
-/// Amounts that never fall are those of a register that counts on.
+/// Amounts that never fall are probably the readings of a cumulative register.
 void doubt_amounts(const RegisterWatch& watch, const MeterConfig& config, MeterRecord& record) {
   if (record.meter.is_counted || !record.in_file || !watch.is_register()) return;
   const auto unit = metering::find_unit(record.in_file->unit, record.meter.utility, config.units);
@@ -378,7 +378,7 @@ TimeSpan asked_span(const ReplayOptions& options, const metering::LocalCalendar&
   return span;
 }
 
-/// The daemon closes its parts and not the sum: peaks do not add up.
+/// The daemon closes the months of the parts, not of the sum, since peaks do not add up.
 Result<std::vector<metering::MonthlyFigure>> months_of_sum(const SiteConfig& site,
                                                            std::size_t meter,
                                                            const metering::LocalCalendar& calendar,
@@ -469,7 +469,7 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   if (auto added = add_sums(sums, site, recording, closer, take); !added) {
     return tl::unexpected(added.error());
   }
-  // One that was added today says nothing yet; that must not stop what the others tell.
+  // A meter that was added today has no readings yet; the others must still be read.
   if (live != nullptr && recording.readings == 0) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("the store has no reading of any meter of {} yet", site.id));

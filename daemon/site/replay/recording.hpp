@@ -1,4 +1,4 @@
-/// Recorded readings through the same pipeline as live ones, on a virtual clock.
+/// Runs recorded readings through the same pipeline as live ones, on a virtual clock.
 #pragma once
 
 #include <functional>
@@ -18,49 +18,50 @@
 
 namespace recald::daemon {
 
-/// All that is kept of one meter: figures for ever, hourly means for profiles and pictures, what
-/// was wrong. The readings themselves pass through.
+/// Everything kept of one meter: figures permanently, hourly means for profiles and figures, and
+/// problems. The readings themselves are not kept.
 struct MeterRecord {
-  metering::Meter meter;                    ///< With the interval that the file showed.
-  std::optional<csv::MeterInFile> in_file;  ///< None: the file has no row of it.
+  metering::Meter meter;                    ///< With the interval found in the file.
+  std::optional<csv::MeterInFile> in_file;  ///< Absent: the file has no row of this meter.
   csv::MeterReport rows{};
   std::vector<metering::MonthlyFigure> figures;  ///< Ascending; the latest revision of each month.
   std::map<metering::Month, std::vector<profile::HourlyLoad>> hours;
   metering::MeterCounts counts;
   std::vector<metering::LevelChange> level_changes;
   std::vector<metering::DataFinding> findings;
-  std::string doubt;  ///< In a sentence, also among the findings: whether it is a register.
+  std::string doubt;  ///< A sentence, also among the findings: whether it is a register.
 };
 
 struct FileIssues {
   std::filesystem::path file;
   csv::LineIssues issues;
-  csv::OtherMeters others;  ///< Whose lines were left out.
+  csv::OtherMeters others;  ///< Their lines were left out.
 };
 
 struct Recording {
-  std::vector<MeterRecord> meters;  ///< One for each of the site's meters.
+  std::vector<MeterRecord> meters;  ///< One per meter of the site.
   std::vector<FileIssues> files;
   std::uint64_t readings = 0;
-  std::vector<std::string> notes;  ///< In words: what is not settled about the months.
+  std::vector<std::string> notes;  ///< What is uncertain about the months, in words.
 };
 
-/// Whether any meter of the site says that this month is not like the same months before. A model
-/// couples the meters: when one of them shows another building, all of them are its meters.
+/// Whether any meter of the site shows that this month differs from the same months before. A
+/// model couples the meters, so if one of them shows a changed building, the month counts as
+/// different for all.
 [[nodiscard]] bool is_site_different(const Recording& recording, metering::Month month);
 
 struct ReplayOptions {
-  std::optional<metering::Day> from;  ///< Local days, inclusive; readings outside are left out.
+  std::optional<metering::Day> from;  ///< Local days, inclusive; readings outside are ignored.
   std::optional<metering::Day> to;
 };
 
-/// Told when a month closes, with the virtual time at which it did.
+/// Called when a month closes, with the virtual time of closing.
 using OnMonthClosed = std::function<void(const metering::Meter&, const metering::MonthlyFigure&,
                                          metering::Instant now)>;
 
 using ReadingSink = std::function<void(const metering::Reading&)>;
 
-/// Where the months and the readings of live meters are found again.
+/// Access to the stored months and readings of live meters.
 class LiveReadings {
  public:
   virtual ~LiveReadings() = default;
@@ -68,41 +69,43 @@ class LiveReadings {
   /// The closed months of one meter, ascending, each in its latest revision.
   virtual Result<std::vector<metering::MonthlyFigure>> months(const MeterConfig& meter) = 0;
 
-  /// How many of them wait to be closed anew: late readings or another rule have changed them.
+  /// Number of months to be closed again, because of late readings or a changed rule.
   virtual Result<int> waiting_months(const MeterConfig& meter) = 0;
 
-  /// The readings of one meter that start in the span, in order of time. @return how many.
+  /// Passes on the readings of one meter that start in the span, in order of time.
+  /// @return how many.
   virtual Result<std::uint64_t> for_each(const MeterConfig& meter, const metering::TimeSpan& span,
                                          const ReadingSink& sink) = 0;
 
-  /// Start of the first of them; nothing where there is none.
+  /// Start of the meter's first reading; nothing if there is none.
   virtual Result<std::optional<metering::Instant>> first_start(const MeterConfig& meter) = 0;
 };
 
-/// Whether some meter of the site is read live.
+/// Whether any meter of the site is read live.
 [[nodiscard]] bool has_stored_meters(const SiteConfig& site);
 
-/// Reads every file of the site's meters once, in order of time as the files have it, then what
-/// live meters left behind, and closes months as time passes.
+/// Reads every file of the site's meters once, in the order of the file, then the stored readings
+/// of live meters, and closes months as time passes.
 ///
-/// @param live  Where live meters' readings are; null: live meters are left without a record.
-/// @return not_found / io_failed / malformed with the file's name; not_enough_data when a file has
-///         no row of a meter that the site declares, or of live meters none was ever read.
+/// @param live  The readings of live meters; null: live meters get no record.
+/// @return the recording; or not_found, io_failed or malformed with the file's name;
+///         not_enough_data when a file has no row of a declared meter, or no live
+///         meter was ever read.
 [[nodiscard]] Result<Recording> replay_meters(const SiteConfig& site,
                                               const metering::LocalCalendar& calendar,
                                               const ReplayOptions& options, VirtualClock& clock,
                                               const OnMonthClosed& on_month_closed,
                                               LiveReadings* live = nullptr);
 
-/// Gives live meters their figures: the months that the daemon has closed, not closed once more.
-/// Those of their sums are made of the readings.
+/// Gives live meters their figures: the months as the daemon closed them, without closing them
+/// again. The months of their sums are computed from the readings.
 /// @return or the store's failure.
 [[nodiscard]] Result<void> take_closed_months(const SiteConfig& site,
                                               const metering::LocalCalendar& calendar,
                                               LiveReadings& live, Recording& recording);
 
-/// Gives live meters their hours and findings in these months: what profiles, pictures and
-/// diagnoses need of the readings. Figures stay as they are.
+/// Gives live meters their hours and findings in these months, which profiles, figures and
+/// diagnoses need. The monthly figures do not change.
 /// @return or the store's failure.
 [[nodiscard]] Result<void> take_hours(const SiteConfig& site,
                                       const metering::LocalCalendar& calendar,

@@ -1,4 +1,5 @@
-/// Whether what a meter is said to have used in each interval is a register that counts on.
+/// Detects whether the values of a meter are those of a cumulative register instead of
+/// amounts per interval.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace recald::daemon {
 
-/// Takes a meter's readings as they come.
+/// Takes a meter's readings in order.
 class RegisterWatch {
  public:
   void take(const metering::Reading& reading) {
@@ -24,11 +25,11 @@ class RegisterWatch {
     last_ = reading.mean_kW;
   }
 
-  /// Hardly ever falls, as a register that is reset or wraps. What a building uses falls about as
-  /// often as it rises.
+  /// True if values hardly ever fall: a register falls only on reset or wrap. A building's
+  /// consumption falls about as often as it rises.
   [[nodiscard]] bool is_register() const { return rises_ >= 20 && falls_ * 200 <= rises_; }
 
-  /// Half as much again as it rose at the most from one interval to the next, in two figures.
+  /// 1.5 times the largest rise between two intervals, rounded up to two digits.
   [[nodiscard]] double rated_kW() const {
     const double most = 1.5 * largest_rise_kW_;
     const double step = std::pow(10.0, std::floor(std::log10(std::max(most, 1e-6))) - 1.0);

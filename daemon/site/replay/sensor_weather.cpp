@@ -31,7 +31,7 @@ double within_bounds(const SensorQuantity& quantity, double value) {
   return value;
 }
 
-/// As the store knows one quantity of a sensor.
+/// One quantity of a sensor, as the store names it.
 MeterConfig as_stored(const MeterConfig& sensor, const WeatherChannel& channel) {
   MeterConfig stored = sensor;
   stored.meter = stored_meter(sensor, channel);
@@ -56,7 +56,7 @@ Result<std::vector<SensorValue>> read_values(const MeterConfig& sensor,
   return values;
 }
 
-/// When a sensor began to measure each variable.
+/// Finds the time when a sensor began to measure each variable.
 Result<void> take_beginnings(const MeterConfig& sensor, LiveReadings& live,
                              weather::WeatherSource& source) {
   for (const WeatherChannel& channel : channels_of(sensor)) {
@@ -69,14 +69,14 @@ Result<void> take_beginnings(const MeterConfig& sensor, LiveReadings& live,
   return {};
 }
 
-/// What the sources have of one month.
+/// Shares of one month by source.
 std::map<std::string, double> shares_of(const weather::MergedWeather& merged,
                                         const metering::TimeSpan& month,
                                         const std::vector<std::string>& names) {
   std::map<std::string, double> shares;
   double hours_in_month = 0.0;
   for (std::size_t i = 0; i < merged.source.size(); ++i) {
-    // An hour belongs where its middle lies.
+    // An hour belongs to the month that contains its middle.
     if (!month.contains(merged.series.begin + hours{i} + std::chrono::minutes{30})) continue;
     hours_in_month += 1.0;
     for (const std::size_t variable : kNeededWeather) {
@@ -90,7 +90,7 @@ std::map<std::string, double> shares_of(const weather::MergedWeather& merged,
   return shares;
 }
 
-/// What none of the sources has measured, in these months or before.
+/// The variables that no source measured in these months or before.
 Result<std::vector<std::size_t>> never_measured(const weather::WeatherSeries& merged,
                                                 const std::optional<FileWeather>& file,
                                                 const SiteConfig& site, LiveReadings* live) {
@@ -112,8 +112,8 @@ Result<std::vector<std::size_t>> never_measured(const weather::WeatherSeries& me
   return lacking;
 }
 
-/// Whether it had begun to measure the variable and left nothing at all in the hole, not even what
-/// is not believed.
+/// Whether the sensor had begun to measure the variable and stored nothing in the hole, not even
+/// values that were rejected.
 Result<bool> is_silent_in(const weather::WeatherHole& hole, const MeterConfig& sensor,
                           LiveReadings& live) {
   for (const WeatherChannel& channel : channels_of(sensor)) {
@@ -122,7 +122,8 @@ Result<bool> is_silent_in(const weather::WeatherHole& hole, const MeterConfig& s
     const auto begun = live.first_start(stored);
     if (!begun) return tl::unexpected(begun.error());
     if (!*begun || **begun >= hole.span.begin) return false;
-    // A hole begins and ends on the hour, of which the sensor may have up to a half.
+    // A hole begins and ends on the hour, and the sensor may have values for up to
+    // half of that hour.
     const metering::TimeSpan inner{hole.span.begin + hours{1}, hole.span.end - hours{1}};
     bool is_silent = true;
     const auto count = live.for_each(stored, inner, [&](const metering::Reading& reading) {
@@ -134,7 +135,7 @@ Result<bool> is_silent_in(const weather::WeatherHole& hole, const MeterConfig& s
   return false;
 }
 
-/// "Sensor 'roof' was silent", or "Nothing is known" where silence is not why.
+/// "Sensor 'roof' was silent", or "Nothing is known" if silence is not the reason.
 Result<std::string> reason_of(const weather::WeatherHole& hole, const SiteConfig& site,
                               LiveReadings* live) {
   std::vector<MeterConfig> silent;
@@ -156,7 +157,7 @@ Result<std::string> reason_of(const weather::WeatherHole& hole, const SiteConfig
   return words + (silent.size() == 1 ? " was silent" : " were silent");
 }
 
-/// "Sensor 'roof' was silent from … to … (dry_bulb_C)."; empty: no hole that matters.
+/// "Sensor 'roof' was silent from … to … (dry_bulb_C)."; empty: no significant hole.
 Result<std::string> silence_of(const weather::WeatherSeries& series,
                                const metering::TimeSpan& month, const SiteConfig& site,
                                const SiteWeather& weather, LiveReadings* live) {
@@ -253,7 +254,7 @@ Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
       std::chrono::floor<hours>(calendar.month_span(months.first).begin) - hours{24},
       std::chrono::ceil<hours>(calendar.month_span(months.last).end) + hours{24}};
   std::vector<SensorWeather> sensors;
-  std::vector<std::string> names;  // by source
+  std::vector<std::string> names;  // one per source
   for (const MeterConfig& sensor : site.sensors) {
     if (live == nullptr) continue;
     auto read = read_sensor(sensor, span, *live);

@@ -1,5 +1,4 @@
-/// What the weather sensors of a site have measured, as the store has it, with the weather file
-/// where they have nothing.
+/// Weather measured by a site's sensors, from the store, completed by the weather file.
 #pragma once
 
 #include <optional>
@@ -9,28 +8,27 @@
 namespace recald::daemon {
 
 struct SensorWeather {
-  weather::WeatherSeries series;     ///< Covers the span; absent where the sensor has no value.
-  std::size_t frozen_intervals = 0;  ///< Of a dry bulb that stood still: not used.
+  weather::WeatherSeries series;     ///< Covers the span; absent if the sensor has no value.
+  std::size_t frozen_intervals = 0;  ///< Intervals with a frozen dry bulb, which are not used.
 };
 
-/// Hours of the means that are believed. Humidity above 100 % and a sun below zero, which sensors
-/// show, are cut off.
+/// Hourly means of the accepted values. Humidity above 100 % and sun below zero, which sensors
+/// report, are clipped.
 /// @param span  On the UTC hour.
 /// @return or the store's failure. @pre a weather sensor
 [[nodiscard]] Result<SensorWeather> read_sensor(const MeterConfig& sensor,
                                                 const metering::TimeSpan& span, LiveReadings& live);
 
-/// Weather as a file has it.
+/// Weather from a file.
 struct FileWeather {
   weather::WeatherSeries series;
   bool is_typical_year = false;
 };
 
-/// The weather of these months and a day on each side, over which gaps at their ends are bridged;
-/// not filled. What is to be told of it goes into `result`: notes, what was never
-/// measured, where it is from, silence.
-/// @param file  Absent: the sensors alone.
-/// @param live  Null: nothing of the sensors yet.
+/// The weather of these months and a day on each side, so that gaps at their ends can be bridged;
+/// not filled yet. Fills `result` with notes, variables never measured, sources and silences.
+/// @param file  Absent: only the sensors.
+/// @param live  Null: the sensors have no readings yet.
 /// @return or the store's failure. @pre the site has sensors
 [[nodiscard]] Result<weather::WeatherSeries> merge_with_sensors(
     const SiteConfig& site, const metering::LocalCalendar& calendar,

@@ -19,7 +19,7 @@
 namespace recald::daemon {
 namespace {
 
-constexpr std::size_t kDryBulb = 0;  // in `weather::kWeatherVariables`
+constexpr std::size_t kDryBulb = 0;  // index in `weather::kWeatherVariables`
 
 Result<csv::WeatherCsv> read_csv(const WeatherConfig& config) {
   return csv::read_weather(config.files.front(),
@@ -49,7 +49,7 @@ weather::ValuesTaken epw_values(const WeatherConfig& config) {
   return {weather::RecordedValues::instant, weather::KnownBy::usage};
 }
 
-/// One calendar year after the other from the same file. A typical year stands for each of them; a
+/// Reads the same file for each calendar year in turn. A typical year stands for every year; a
 /// recorded year only for itself.
 Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::MonthRange& months,
                                    SiteWeather& result) {
@@ -65,7 +65,7 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
       "The weather is a typical year, not the weather of the measured months: misfit of single "
       "months says little.");
   weather::WeatherSeries all;
-  // A year of local standard time ends within a day of the UTC year, so one more on each side.
+  // A year in local standard time ends within a day of the UTC year, so one more year on each side.
   for (int year = static_cast<int>(months.first.year()) - 1;
        year <= static_cast<int>(months.last.year()) + 1; ++year) {
     const auto one = epw::read_epw(config.files.front(), year, result.values.values);
@@ -76,7 +76,7 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
   return FileWeather{std::move(all), true};
 }
 
-/// Several recorded years, each in a file of its own, in any order. Hours between them are absent.
+/// Several recorded years, each in its own file, in any order. Hours between them are absent.
 Result<FileWeather> read_epw_list(const WeatherConfig& config, SiteWeather& result) {
   result.values = epw_values(config);
   std::map<metering::Instant, std::pair<std::string, weather::WeatherSeries>> years;
@@ -122,11 +122,10 @@ Result<FileWeather> read_file(const WeatherConfig& config, const metering::Month
 
 struct KnownShare {
   double share;
-  std::size_t variable;  ///< Position in `weather::kWeatherVariables`.
+  std::size_t variable;  ///< Index in `weather::kWeatherVariables`.
 };
 
-/// Of the needed variables the one that is known least; none of a month that the file does not
-/// touch.
+/// The least known of the needed variables; its share is 0 for a month outside the file.
 KnownShare least_known(const SiteWeather& weather, metering::Month month) {
   const auto& coverage = weather.filled.coverage;
   const auto found = std::ranges::find(coverage, month, &weather::WeatherCoverage::month);
@@ -158,7 +157,7 @@ std::string no_dry_bulb_words(const SiteConfig& site) {
          "or give an EPW file";
 }
 
-/// Of a variable that may be assumed: "humidity".
+/// The plain name of a variable that may be assumed: "humidity".
 std::string_view plain_name(std::size_t variable) {
   static constexpr std::array<std::string_view, 3> kNames = {"humidity", "wind", "sun"};
   const auto found = std::ranges::find(weather::kAssumable, variable);
@@ -173,7 +172,7 @@ bool is_measured(const SiteConfig& site, std::size_t variable) {
   });
 }
 
-/// Of a file alone: what it has, and where it ends before a month does.
+/// Describes a file without sensors: what it has, and where it ends before a month does.
 void describe_file(const SiteConfig& site, const metering::LocalCalendar& calendar,
                    const metering::MonthRange& months, const weather::WeatherSeries& series,
                    SiteWeather& result) {
@@ -193,7 +192,7 @@ void describe_file(const SiteConfig& site, const metering::LocalCalendar& calend
   }
 }
 
-/// What was filled, beside what the sources have.
+/// Adds what was filled to the shares of the sources.
 void add_filled_shares(SiteWeather& result) {
   for (auto& [month, from] : result.from) {
     const auto found =
@@ -233,7 +232,7 @@ Result<SiteWeather> read_all(const SiteConfig& site, const metering::LocalCalend
     if (!series) return tl::unexpected(series.error());
     result.filled = weather::fill_gaps(*series, calendar);
   }
-  // A site without a place has no model, which would need what is missing.
+  // A site without a location has no model, so nothing needs the missing variables.
   if (site.location && !result.assumed.empty()) {
     weather::assume_sky(result.filled.series, *site.location, result.assumed);
     result.notes.push_back(assumed_words(result.assumed));
@@ -266,7 +265,7 @@ Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
   const WeatherConfig& config = *site.weather;
   weather::WeatherSeries series;
   if (!config.files.empty()) {
-    if (config.format == WeatherFormat::epw) return WeatherLack{};  // has all of it
+    if (config.format == WeatherFormat::epw) return WeatherLack{};  // EPW files have all variables
     auto read = read_csv(config);
     if (!read) return tl::unexpected(read.error());
     series = std::move(read->series);

@@ -1,4 +1,4 @@
-/// The weather of a site over the months it needs, whole and hourly.
+/// The complete hourly weather of a site over the months it needs.
 #pragma once
 
 #include <array>
@@ -20,20 +20,20 @@
 
 namespace recald::daemon {
 
-/// Positions in `weather::kWeatherVariables` of what a building model cannot do without.
+/// Indices in `weather::kWeatherVariables` of the variables that a building model needs.
 inline constexpr std::array<std::size_t, 4> kNeededWeather{0, 1, 2, 4};
 
 struct SiteWeather {
   weather::FilledWeather filled;
   weather::ValuesTaken values;
-  std::vector<std::string> notes = {};  ///< What was done to it, in words.
-  /// What no source has ever measured and `filled.series` has all the same, by `assume_sky`:
-  /// positions in `weather::kWeatherVariables`, ascending.
+  std::vector<std::string> notes = {};  ///< What was done to the weather, in words.
+  /// Variables that no source ever measured and that `assume_sky` added to `filled.series`: indices
+  /// in `weather::kWeatherVariables`, ascending.
   std::vector<std::size_t> assumed = {};
-  /// Of the months that are needed, the share of its hours that each source has, filled ones as
-  /// "interpolated", "typical" and "assumed": means over what a model needs.
+  /// For each needed month, the share of its hours from each source, with filled hours as
+  /// "interpolated", "typical" and "assumed": means over the variables that a model needs.
   std::map<metering::Month, std::map<std::string, double>> from = {};
-  /// Of months with a stretch without weather a sentence that names it.
+  /// For each month with a hole in the weather, a sentence that names it.
   std::map<metering::Month, std::string> silence = {};
 };
 
@@ -42,49 +42,48 @@ struct SiteWeather {
 [[nodiscard]] std::string assumed_words(const std::vector<std::size_t>& assumed);
 [[nodiscard]] bool is_assumed(const SiteWeather& weather, std::size_t variable);
 
-/// What a site's weather lacks of what the models need.
+/// What the models need and a site's weather lacks.
 struct WeatherLack {
-  std::string sentence;              ///< No model runs without the temperature; empty: it is there.
+  std::string sentence;  ///< Set if the temperature is missing, without which no model runs.
   std::vector<std::size_t> assumed;  ///< As SiteWeather::assumed.
 };
 
-/// Reads the columns and rows of a weather CSV for what is in none of them, and measured by no
-/// sensor. @pre site.weather
-/// @return or what reading the file finds.
+/// Reads a weather CSV for variables that it lacks and no sensor measures. @pre site.weather
+/// @return or an error of reading the file.
 [[nodiscard]] Result<WeatherLack> lack_of_weather(const SiteConfig& site);
 
-/// Reads the site's weather file and what its sensors have measured, and fills what it can. Sensors
-/// come first, in order of the site file; the file has the hours that they lack, or, as a typical
-/// year, the time before them. What none of them has ever had is assumed. @pre site.weather
-/// @param months  Those that are needed: an EPW file is laid on their years. With sensors, only
-///                they are whole.
-/// @param live    Where sensors' readings are; null: nothing was read of them yet.
-/// @return or what reading finds; not_enough_data without the temperature.
+/// Reads the site's weather file and the readings of its sensors, and fills the gaps it can.
+/// Sensors take precedence, in the order of the site file. The file provides the hours that they
+/// lack, or, if it is a typical year, the time before them. Variables that none of them ever had
+/// are assumed. @pre site.weather
+/// @param months  The months needed: an EPW file is placed in their years. With sensors, only
+///                they are complete.
+/// @param live    The readings of sensors; null: there are none yet.
+/// @return or an error of reading; not_enough_data without the temperature.
 [[nodiscard]] Result<SiteWeather> load_weather(const SiteConfig& site,
                                                const metering::LocalCalendar& calendar,
                                                const metering::MonthRange& months,
                                                LiveReadings* live = nullptr);
 
-/// How much is known of the weather of each of these months, and from where, whatever a model
-/// lacks.
+/// How much of the weather is known in each of these months, and from where, whether or not a
+/// model can run on it.
 /// @pre as load_weather, months.first <= months.last
-/// @return or what reading finds.
+/// @return or an error of reading.
 [[nodiscard]] Result<std::vector<MonthWeather>> known_weather(
     const SiteConfig& site, const metering::LocalCalendar& calendar,
     const metering::MonthRange& months, LiveReadings* live = nullptr);
-/// The same of weather that has been read, for the months that were asked for.
+/// As above, for weather already read and the months it was requested for.
 [[nodiscard]] std::vector<MonthWeather> known_weather(const SiteWeather& weather);
 
-/// What the temperatures of the site's weather file are taken for, and how that is known. Reads the
-/// file. @pre site.weather with a file
+/// How the temperatures of the site's weather file are interpreted, and how that is known. Reads
+/// the file. @pre site.weather with a file
 [[nodiscard]] Result<weather::ValuesTaken> weather_values(const SiteConfig& site);
 
-/// Share of a month's hours in which the weather was measured or interpolated, worst of the
-/// variables that the models need and that are not assumed; 0 for a month that the file does not
-/// touch.
+/// Share of a month's hours in which the weather was measured or interpolated, for the worst of the
+/// variables that the models need and that are not assumed; 0 for a month outside the file.
 [[nodiscard]] double weather_coverage(const SiteWeather& weather, metering::Month month);
 
-/// Column of the variable that `weather_coverage` speaks of: "ghi_W_m2".
+/// Column of the variable that `weather_coverage` refers to: "ghi_W_m2".
 [[nodiscard]] std::string_view least_known_variable(const SiteWeather& weather,
                                                     metering::Month month);
 

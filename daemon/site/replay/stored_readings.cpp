@@ -15,7 +15,7 @@
 namespace recald::daemon {
 namespace {
 
-/// The bytes of a reading that results depend on. A missing value has one NaN, not any.
+/// Adds the bytes of a reading that results depend on. All missing values get the same NaN.
 void add_to(system::Sha256& digest, const metering::Reading& reading) {
   struct Bytes {
     std::int64_t start;

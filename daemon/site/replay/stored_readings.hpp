@@ -1,5 +1,5 @@
-/// What the daemon has read from live meters, as its store has it: for whoever calibrates,
-/// diagnoses or replays, while the daemon goes on writing.
+/// Readings of live meters from the daemon's store, for calibrating, diagnosing or replaying while
+/// the daemon keeps writing.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace recald::daemon {
 
 class StoredReadings final : public LiveReadings {
  public:
-  /// Opens the site's store to read from it.
+  /// Opens the site's store for reading.
   /// @return not_found when there is none yet; or as stores::open_to_read.
   [[nodiscard]] static Result<std::unique_ptr<StoredReadings>> open(const SiteConfig& site);
   ~StoredReadings() override;
@@ -24,7 +24,7 @@ class StoredReadings final : public LiveReadings {
                                  const ReadingSink& sink) override;
   Result<std::optional<metering::Instant>> first_start(const MeterConfig& meter) override;
 
-  /// SHA-256 of all months and readings that have been handed out. Ends the digest.
+  /// SHA-256 of all months and readings that were returned. Finishes the digest.
   [[nodiscard]] std::string digest();
 
  private:
@@ -33,8 +33,8 @@ class StoredReadings final : public LiveReadings {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Where the site's weather sensors have left theirs. Null for a site without sensors, or one whose
-/// daemon has not run yet: a weather file may do.
+/// The readings of the site's weather sensors. Null for a site without sensors, or one whose daemon
+/// has not run yet: the weather file may be enough.
 /// @return or as StoredReadings::open.
 [[nodiscard]] Result<std::unique_ptr<StoredReadings>> open_sensors(const SiteConfig& site);
 

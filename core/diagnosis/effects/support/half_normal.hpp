@@ -1,4 +1,4 @@
-/// The usual prior of an amount that can only add.
+/// The usual prior of an amount that is never negative.
 #pragma once
 
 #include <limits>
@@ -7,7 +7,8 @@
 
 namespace recald::diagnosis::effects {
 
-/// Density falls from 0 on; `sd` is that of the normal before it is cut at 0, in the amount's unit.
+/// Density falls from 0 on; `sd` is that of the normal before truncation at 0, in
+/// the amount's unit.
 /// @pre sd > 0
 [[nodiscard]] inline Prior half_normal(double sd) {
   return TruncatedNormalPrior{

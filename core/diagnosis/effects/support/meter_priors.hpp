@@ -7,20 +7,20 @@
 
 namespace recald::diagnosis::effects {
 
-/// `half_normal` that also ends at a physical limit. @pre sd > 0, max > 0
+/// `half_normal` with an upper physical limit. @pre sd > 0, max > 0
 [[nodiscard]] inline Prior half_normal_below(double sd, double max) {
   return TruncatedNormalPrior{.location = 0.0, .sd = sd, .min = 0.0, .max = max};
 }
 
-/// `share` of the mean of the meter with this utility, kW; where none does, or it stands still, of
-/// 10 W per floor area, so that the prior stays a proper one.
+/// `share` of the mean of this utility's meter, kW; without one, or if it reads zero, of 10 W per
+/// floor area, so that the prior stays proper.
 [[nodiscard]] inline double share_of_mean_kW(const SiteFacts& facts, metering::Utility utility,
                                              double share) {
   const double mean_kW = facts.mean_of_kW(utility);
   return share * (mean_kW > 0.0 ? mean_kW : 0.010 * facts.building.floor_area_m2);
 }
 
-/// A share of one or the other, tried at both ends. @param name  snake_case
+/// A share between two alternatives, tried at both ends. @param name  snake_case
 [[nodiscard]] inline EffectParameter either_share(const char* name) {
   return {.name = name,
           .unit = "-",

@@ -1,4 +1,4 @@
-/// Which part of an hour a longer or shifted plant day covers.
+/// The part of an hour that a longer or shifted plant day covers.
 #pragma once
 
 #include <algorithm>
@@ -7,16 +7,16 @@
 
 namespace recald::diagnosis::effects {
 
-/// Share of an hour that lies within `reach_h` of the plant's start or stop. Grows evenly with the
-/// reach, so that a calibration sees a slope and no steps.
-/// @param distance_h  From the middle of the hour to the start or stop, as
-///                    `DriverHour::hours_to_start` and `hours_since_stop` count; 0: the plant runs.
+/// Share of an hour that lies within `reach_h` of the plant's start or stop. Grows linearly with
+/// the reach, so that a calibration sees a slope and no steps.
+/// @param distance_h  From the middle of the hour to the start or stop, as counted by
+///                    `DriverHour::hours_to_start` and `hours_since_stop`; 0: the plant runs.
 [[nodiscard]] inline double covered_share(double reach_h, double distance_h) {
   if (distance_h <= 0.0) return 0.0;
   return std::clamp(reach_h - (distance_h - 0.5), 0.0, 1.0);
 }
 
-/// At least this share of the daytime rooms is at its occupied set-points with fans on.
+/// Keeps at least this share of the daytime rooms at occupied set-points with fans on.
 inline void run_at_least(double share, model::hourly::StepOperation& operation) {
   operation.daytime_share = std::max(operation.daytime_share, share);
 }

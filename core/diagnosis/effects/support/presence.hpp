@@ -1,4 +1,4 @@
-/// Fewer or more people than the schedule says, and the lights and plugs that go with them.
+/// Fewer or more people than in the schedule, with the lights and plugs that follow them.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace recald::diagnosis::effects {
 
-/// What stays on when nobody is in: the least lights and plugs of each calendar month, W.
+/// Loads that stay on when nobody is in: the lowest lights and plugs of each calendar month, W.
 class StandbyLoads {
  public:
   explicit StandbyLoads(const model::Drivers& drivers) {
@@ -23,7 +23,7 @@ class StandbyLoads {
     }
   }
 
-  /// What of the step's lights and plugs is above standby; 0 in months that the drivers lack.
+  /// The step's lights and plugs above standby; 0 in months that the drivers lack.
   [[nodiscard]] double lights_above_W(const model::DriverHour& hour, double lights_W) const {
     return std::max(lights_W - lights_W_[index(hour)], 0.0);
   }
@@ -39,8 +39,8 @@ class StandbyLoads {
   std::array<double, 12> plugs_W_;
 };
 
-/// Corridors, printers and servers do not leave with the people: this share of what lights and
-/// plugs draw above standby does.
+/// Corridors, printers and servers do not follow the people: only this share of lights and plugs
+/// above standby does.
 inline constexpr double kLoadsFollowingPeople = 0.8;
 
 /// Multiplies people by 1 + change, and lights and plugs above standby by

@@ -14,8 +14,8 @@ namespace recald::diagnosis::effects {
 
 /// The record with each interval showing what happened `shift_hours` later, power_kW(t + shift).
 ///
-/// A part of an interval is taken from its neighbour: exact where power is steady in each interval.
-/// Beyond the ends of a stretch of adjacent hours its first or last value stands.
+/// Part of an interval is taken from its neighbour, which is exact if power is constant within each
+/// interval. Beyond the ends of a stretch of adjacent hours its first or last value continues.
 ///
 /// @param power_kW  A whole number of values for each hour.
 [[nodiscard]] inline std::vector<double> shifted_record(std::span<const model::DriverHour> hours,
