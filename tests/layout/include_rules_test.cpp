@@ -41,7 +41,8 @@ TEST(IncludeRules, AFolderWithoutAPlaceInTheOrderIsRefused) {
 
 TEST(IncludeRules, OneRoomKnowsWhatKeepsAStore) {
   EXPECT_THAT(forbidden_arrows({{"adapters/stores/open.cpp", {"adapters/sqlite/sqlite_store.hpp"}},
-                                {"adapters/sqlite/backup.cpp", {"adapters/sqlite/handles.hpp"}}}),
+                                {"adapters/sqlite/backup.cpp", {"adapters/sqlite/handles.hpp"}},
+                                {"adapters/energyplus/a.cpp", {"adapters/sqlite/database.hpp"}}}),
               IsEmpty());
   EXPECT_EQ(forbidden_arrows({{"daemon/gateway/run/a.cpp", {"adapters/sqlite/sqlite_store.hpp"}},
                               {"adapters/models/b.cpp", {"adapters/sqlite/database.hpp"}}})
