@@ -121,7 +121,9 @@ Kind kind_of_code(std::string_view code) {
     if (c == ';') break;  // the format of positive numbers is enough
     has_date = has_date || c == 'y' || c == 'd';
     has_time = has_time || c == 'h' || c == 's';
-    if (c == 'e' || c == '#' || c == '0') return has_time ? Kind::time : Kind::number;
+    // Behind a date or a time digits are parts of a second, as in ss.000.
+    const bool is_digit = c == 'e' || c == '#' || c == '0';
+    if (is_digit && !has_date && !has_time) return Kind::number;
   }
   if (has_date) return has_time ? Kind::date_and_time : Kind::date;
   return has_time ? Kind::time : Kind::number;

@@ -119,7 +119,7 @@ void write_workbook(const std::filesystem::path& file, const std::vector<std::st
       "</Relationships>";
   const std::string styles =
       "<styleSheet " + ns +
-      "><numFmts><numFmt numFmtId=\"164\" formatCode=\"yyyy\\-mm\\-dd\\ hh:mm\"/></numFmts>"
+      "><numFmts><numFmt numFmtId=\"164\" formatCode=\"yyyy\\-mm\\-dd\\ hh:mm:ss.000\"/></numFmts>"
       "<cellXfs><xf numFmtId=\"0\"/><xf numFmtId=\"164\"/></cellXfs></styleSheet>";
   std::string shared = "<sst " + ns + ">";
   for (const std::string& text : header) shared += "<si><t>" + text + "</t></si>";
