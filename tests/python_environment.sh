@@ -1,0 +1,19 @@
+#!/bin/sh
+# A virtual environment in the build folder, with what a requirements file lists.
+#
+#   sh python_environment.sh PYTHON FOLDER REQUIREMENTS
+#
+# Where it cannot be installed, because there is no network, the build goes on and the tests that need it skip:
+# FOLDER/installed says that all is there.
+set -eu
+python=$1
+folder=$2
+requirements=$3
+[ "$folder/installed" -nt "$requirements" ] && exit 0
+rm -f "$folder/installed"
+if "$python" -m venv --clear "$folder" &&
+  "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --requirement "$requirements"; then
+  touch "$folder/installed"
+else
+  echo "Tests that need $(basename "$folder") will skip." >&2
+fi
