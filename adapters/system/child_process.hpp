@@ -18,7 +18,7 @@ struct ChildCommand {
   std::filesystem::path folder;  ///< It works here.
   std::filesystem::path output;  ///< Gets what it writes to both streams.
   std::chrono::seconds time_max{3600};
-  std::uint64_t memory_max_bytes = 0;  ///< Of address space; 0: without limit.
+  std::uint64_t memory_max_bytes = 0;  ///< Of address space, for it and what it starts; 0: none.
 };
 
 struct ChildEnd {

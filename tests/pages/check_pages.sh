@@ -17,7 +17,7 @@ trap 'rm -rf "$folder"' EXIT
   set -- full design readings-only meters young-meters diagnosis empty-handed drift status
 for name in "$@"; do
   if [ "$name" = status ]; then
-    "$write_status" "$folder"
+    "$write_status" "$folder/$name.html"
   else
     "$write" "$name" "$folder/$name.html"
   fi

@@ -76,8 +76,9 @@ TEST_F(Simulation, OneThatHangsIsEndedWithItsChildren) {
   EXPECT_TRUE(is_gone);
 }
 
+// The limit is set just after the start, and holds for what is started later.
 TEST_F(Simulation, OneThatEatsMemoryIsStopped) {
-  const auto greedy = run("head -c 300M /dev/zero | tail > /dev/null\n",
+  const auto greedy = run("sleep 1; head -c 300M /dev/zero | tail > /dev/null\n",
                           {.memory_max_bytes = std::uint64_t{100} << 20});
   EXPECT_FALSE(greedy.has_value());
 }

@@ -1,7 +1,6 @@
-// Writes the status page of a site that has troubles, with its style sheet, for the browser test.
+// Writes the status page of a site that has troubles to a file, for the browser test.
 //
-//   write_sample_status FOLDER
-#include <filesystem>
+//   write_sample_status FILE.html
 #include <fstream>
 #include <iostream>
 
@@ -31,14 +30,13 @@ struct TroubledSite final : ServedSite {
 
   void TestBody() override {}
 
-  /// As a file that finds its style sheet beside itself.
+  /// With its style sheet inside: a browser lets no file read another.
   std::string page() {
     std::string text = get("/").body;
-    const std::string link = "href=\"/style.css\"";
-    return text.replace(text.find(link), link.size(), "href=\"style.css\"");
+    const std::string link = "<link rel=\"stylesheet\" href=\"/style.css\">";
+    return text.replace(text.find(link), link.size(),
+                        "<style>" + get("/style.css").body + "</style>");
   }
-
-  std::string style() { return get("/style.css").body; }
 };
 
 }  // namespace
@@ -46,16 +44,12 @@ struct TroubledSite final : ServedSite {
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::cerr << "usage: write_sample_status FOLDER\n";
+    std::cerr << "usage: write_sample_status FILE.html\n";
     return 2;
   }
   recald::daemon::TroubledSite site;
-  const std::filesystem::path folder{argv[1]};
-  std::ofstream page{folder / "status.html", std::ios::binary};
-  std::ofstream style{folder / "style.css", std::ios::binary};
+  std::ofstream page{argv[1], std::ios::binary};
   page << site.page();
-  style << site.style();
   page.close();
-  style.close();
-  return page && style ? 0 : 1;
+  return page ? 0 : 1;
 }
