@@ -8,5 +8,5 @@ for name in chromium chromium-browser google-chrome; do
 done
 [ -n "$browser" ] || { echo "daemon/picture.sh: install chromium first" >&2; exit 1; }
 "$browser" --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=10000 \
-  --window-size=1000,760 --screenshot="$PWD/daemon/report.png" "file://$PWD/.demo/report.html" 2>/dev/null
+  --window-size=1000,1120 --screenshot="$PWD/daemon/report.png" "file://$PWD/.demo/report.html" 2>/dev/null
 echo "Drew daemon/report.png."

@@ -412,6 +412,9 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     meter.span = *report.span;
     meter.interval = report.shown.interval;
     meter.stamps = guess_stamps(survey, meter.span, meter.interval, calendar);
+    if (meter.stamps.value == csv::Stamps::end) {
+      meter.span = {meter.span.begin - meter.interval, meter.span.end - meter.interval};
+    }
     meter.zero_share = share(watch.zeros);
     meter.negative_share = share(watch.negatives);
     meter.frozen_share = share(watch.frozen);
