@@ -21,6 +21,9 @@ constexpr seconds kIntervalMax{3600};
 constexpr seconds kOffsetGrid{900};  // the offsets of all zones since 1971 are multiples of it
 
 std::string in_words(seconds span) {
+  constexpr std::int64_t kDay = 86'400;
+  if (span.count() >= 2 * kDay) return std::to_string(span.count() / kDay) + " days";
+  if (span.count() == kDay) return "day";
   return span.count() % 60 == 0 ? std::to_string(span.count() / 60) + " minutes"
                                 : std::to_string(span.count()) + " seconds";
 }
@@ -131,7 +134,9 @@ bool ReadingIntake::find_grid(IntakeMeter& meter) {
       kIntervalMax % *interval != seconds{0}) {
     refuse(row.line,
            "meter " + in_quotes(shown.name) + " comes every " + in_words(*interval) +
-               "; supported are whole minutes that divide an hour",
+               (*interval > kIntervalMax
+                    ? "; recald needs values of an hour or less: ask for the load profile"
+                    : "; supported are whole minutes that divide an hour"),
            text, &meter);
     return false;
   }

@@ -93,10 +93,11 @@ void write_glance(Html& html, const MetersData& data) {
          {peak != nullptr ? local_text(peak->peak->start, data.common.calendar) : "", "nowrap"}});
   }
   table.write(html);
-  html.element("p",
-               "The base load is what 95 of 100 hours exceed; its share is of all the energy that "
-               "the meter counted.",
-               "muted");
+  html.element(
+      "p",
+      "The load is above the base load in 95 % of all hours; its share is of all the energy that "
+      "the meter counted.",
+      "muted");
 }
 
 void write_short_section(Html& html, const MetersData& data) {

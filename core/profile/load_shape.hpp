@@ -12,7 +12,7 @@ namespace recald::profile {
 struct LoadShape {
   model::HourlySchedule mean_kW;             ///< NaN where a kind of day has no such hour.
   std::array<int, model::kDayTypes> days{};  ///< Days with a measured hour, by kind of day.
-  double base_kW;     ///< What 95 of 100 hours exceed; NaN below a week of hours.
+  double base_kW;     ///< Exceeded in 95 % of the hours; NaN below a week of hours.
   double base_share;  ///< Of the mean load, 0…1; NaN where the meter also counts backwards.
 };
 

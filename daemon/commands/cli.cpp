@@ -281,8 +281,9 @@ void add_init(CLI::App& command, InitArguments& arguments) {
   use->needs(area);
   area->needs(use);
   command.add_option("--storeys", starter.storeys, "Storeys")->capture_default_str()->needs(use);
-  command.add_option("--built", starter.built, "Year; before energy codes by default")->needs(use);
-  command.add_flag("--yes", arguments.asks_nothing, "Ask nothing (recald init never does)");
+  command.add_option("--built", starter.built, "Year of construction")->needs(use);
+  command.add_flag("--yes", arguments.asks_nothing,
+                   "Accepted for scripts; recald init asks nothing");
   command.add_flag("--json", arguments.json, "Print the result as one JSON object");
 }
 
@@ -380,7 +381,10 @@ void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& v
                    }});
 
   CLI::App* report =
-      app.add_subcommand("report", "Calibrate and write the report page")->group(kCalibrate);
+      app.add_subcommand(
+             "report",
+             "Write the page of a site: of its meters, and of a calibration where it has a model")
+          ->group(kCalibrate);
   report->add_option("site", given.report.site, "Site file (TOML)")->required();
   add_calibration(*report, given.report);
   report->add_option("--out", given.report.out, "Page to write, such as report.html")->required();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "adapters/system/write_file.hpp"
 #include "daemon/commands/commands.hpp"
@@ -67,7 +68,7 @@ void print_draft(const std::vector<SurveyedExport>& exports, const SiteDraft& dr
                    fmt::format("The time zone is taken for {}; give --timezone.", timezone.value));
   }
   if (guesses.empty()) return;
-  console.out << "Guessed, each with its reason in the file:\n";
+  console.out << "Look at these; the file says more beside its keys:\n";
   for (const std::string& guess : guesses) console.out << fmt::format("  {}\n", guess);
 }
 
@@ -110,7 +111,11 @@ int run_init(const InitArguments& arguments, const Console& console) {
     calendar = std::move(*opened);
   }
   std::vector<SurveyedExport> exports;
+  std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& one : arguments.files) {
+    if (!seen.insert(std::filesystem::weakly_canonical(one, ignored)).second) {
+      return console.misused(fmt::format("'{}' is named twice; name it once", one.string()));
+    }
     auto survey = survey_export(one, calendar);
     if (!survey) return console.fail(survey.error());
     exports.push_back(std::move(*survey));

@@ -238,7 +238,7 @@ TEST(MetersFirstSentence, SaysWhatMattersMost) {
                          .z = 7.0,
                          .words = {}}};
   EXPECT_EQ(first_screen_of(stories).sentence,
-            "Electricity has been at another level since Jul 2021: 35\u00a0% more in that month "
+            "Electricity has changed since Jul 2021: 35\u00a0% more in that month "
             "than in the same months before.");
 }
 

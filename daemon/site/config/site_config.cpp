@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <set>
@@ -662,6 +663,10 @@ tl::expected<SiteConfig, std::vector<std::string>> load_site(const std::filesyst
   }
   if (const auto is_file = system::require_file(file, "site file"); !is_file) {
     return tl::unexpected(Problems{is_file.error().message});
+  }
+  constexpr std::array kExports{".csv", ".xlsx", ".xlsm", ".xml", ".txt"};
+  if (std::ranges::find(kExports, file.extension()) != kExports.end()) {
+    return refused("is an export, not a site file; `recald init` makes a site file from it");
   }
   std::ifstream in{file, std::ios::binary};
   if (!in) return refused("cannot be read; give recald the right to read it");

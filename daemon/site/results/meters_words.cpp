@@ -221,7 +221,7 @@ std::string change_words(const std::string& label, const LevelChange& change) {
       change.back_since ? fmt::format("; it is as before since {}", month_text(*change.back_since))
                         : "";
   return fmt::format(
-      "{} has been at another level since {}: {} in that month than in the same "
+      "{} has changed since {}: {} in that month than in the same "
       "months before{}.",
       label, month_text(change.since), more_or_less(change.ratio - 1.0), ends);
 }

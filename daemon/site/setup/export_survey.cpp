@@ -385,6 +385,9 @@ Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::Ti
   if (minute(span.begin) == step && minute(last) == 0) {
     return {csv::Stamps::end, "it begins after midnight and ends at it"};
   }
+  // One end may be cut; the other says it too.
+  if (minute(span.begin) == 0) return {csv::Stamps::start, "it begins at midnight"};
+  if (minute(span.begin) == step) return {csv::Stamps::end, "it begins an interval after midnight"};
   return {csv::Stamps::start, "guessed; a file of whole days would decide"};
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <set>
 
 #include "adapters/epw/epw.hpp"
@@ -13,6 +15,8 @@ namespace recald::daemon {
 namespace {
 
 using metering::Month;
+
+constexpr double kOffsetsApart_h = 3.5;  // summer time, and zones that lie off their meridian
 
 /// Months that all meters have from end to end.
 Result<metering::MonthRange> shared_months(std::span<const SurveyedExport> exports,
@@ -67,6 +71,17 @@ Result<std::string> with_starter(std::string text, const SiteConfig& drafted,
   const auto weather = epw::read_epw(request.epw);
   if (!weather) return tl::unexpected(weather.error());
   const epw::EpwLocation& place = weather->location;
+  const auto january = std::chrono::sys_days{std::chrono::year{2024} / 1 / 15};
+  const double site_h =
+      std::chrono::duration<double, std::ratio<3600>>{calendar.utc_offset(january)}.count();
+  if (std::abs(place.utc_offset_h - site_h) > kOffsetsApart_h) {
+    return failure(
+        ErrorCode::invalid_value,
+        fmt::format("{} is weather of {}, {} (UTC{:+.0f} h), and the site's time zone is {}; "
+                    "give weather of the place, or the site's --timezone",
+                    request.epw.string(), place.city, place.country, place.utc_offset_h,
+                    calendar.zone_name()));
+  }
   const std::string where = fmt::format(
       "latitude_deg = {:.2f}   # of the EPW file: {}, {}\nlongitude_deg = {:.2f}\n"
       "altitude_m = {:.0f}\n",

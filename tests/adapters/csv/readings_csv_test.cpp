@@ -369,7 +369,7 @@ TEST(ReadingsCsvBadInput, IntervalsThatCannotBe) {
   EXPECT_NE(issue(kHead + "2016-03-01T00:00:00Z,main,1,kW\n").find("declare it"),
             std::string::npos);
   EXPECT_NE(issue(kHead + "2016-03-01T00:00:00Z,main,1,kWh\n2016-03-02T00:00:00Z,main,1,kWh\n")
-                .find("comes every 1440 minutes"),
+                .find("comes every day; recald needs values of an hour or less"),
             std::string::npos);
 }
 

@@ -32,7 +32,7 @@ TEST(MetersPage, AnswersTheReadersQuestionsInTheirOrder) {
 
 TEST(MetersPage, BeginsWithASentenceNumbersAndAPicture) {
   const std::string page = own_markup(render_meters(sample_meters()));
-  const std::size_t sentence = page.find("Steam has been at another level since Nov 2021");
+  const std::size_t sentence = page.find("Steam has changed since Nov 2021");
   const std::size_t number = page.find("<strong>−12.4\u00a0%</strong>");
   const std::size_t picture = page.find("data-figure=\"overview\"");
   const std::size_t table = page.find("The meters at a glance");

@@ -87,14 +87,14 @@ MetersData sample_meters() {
   for (OutputMonth& month : common.outputs[2].months) month.forecast.reset();
   data.first = {
       .sentence =
-          "Steam has been at another level since Nov 2021: 40\u00a0% less in that "
+          "Steam has changed since Nov 2021: 40\u00a0% less in that "
           "month than in the same months before.",
       .more = "In the months that were not fitted, the weather explains 1 of 2 meters.",
       .numbers = {{"+0.7\u00a0%", "Chilled water, against the forecast from its weather"},
                   {"−12.4\u00a0%", "Steam, against the forecast from its weather"},
                   {"−3.4\u00a0%", "Electricity, 12 months to Dec 2021 against a year before"}}};
   data.changes = {
-      "Steam has been at another level since Nov 2021: 40\u00a0% less in that month than in the "
+      "Steam has changed since Nov 2021: 40\u00a0% less in that month than in the "
       "same months before."};
   return data;
 }

@@ -401,6 +401,14 @@ TEST_F(InitStarter, TheWeatherAloneMakesNoModel) {
   EXPECT_THAT(read_text(site()), AllOf(HasSubstr("[weather]"), Not(HasSubstr("[[model]]"))));
 }
 
+TEST_F(InitStarter, WeatherOfAnotherContinentIsRefused) {
+  const Outcome outcome =
+      start({"--epw", path("place.epw").string(), "--timezone", "America/Chicago"});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("is weather of"), HasSubstr("America/Chicago")));
+  EXPECT_FALSE(std::filesystem::exists(path("site")));
+}
+
 TEST_F(InitStarter, WhatCannotBeIsRefusedWithNothingWritten) {
   EXPECT_EQ(start({"--use", "office", "--area", "7800"}).exit_code, kUsage);
   EXPECT_EQ(
@@ -573,6 +581,35 @@ TEST_F(Init, NaiveStampsNeedAZone) {
   EXPECT_THAT(outcome.err, HasSubstr("run again with --timezone"));
   EXPECT_FALSE(std::filesystem::exists(path("site")));
   EXPECT_EQ(init("naive.csv", "Mars/Olympus").exit_code, kUsage);
+}
+
+TEST_F(Init, AFileNamedTwiceIsRefused) {
+  write_text(path("main.csv"), "Time,kWh\n" + hours_of_june(plain_value));
+  const std::string file = path("main.csv").string();
+  const Outcome outcome =
+      run({"init", file, file, "--out", path("site").string(), "--timezone", "Europe/Berlin"});
+  EXPECT_EQ(outcome.exit_code, kUsage);
+  EXPECT_THAT(outcome.err, HasSubstr("is named twice"));
+}
+
+TEST_F(Init, AnExportInThePlaceOfASiteFileLeadsToInit) {
+  write_text(path("main.csv"), "Time,kWh\n" + hours_of_june(plain_value));
+  const Outcome outcome =
+      run({"report", path("main.csv").string(), "--out", path("page.html").string()});
+  EXPECT_EQ(outcome.exit_code, kFailure);
+  EXPECT_THAT(outcome.err, HasSubstr("is an export, not a site file; `recald init` makes"));
+}
+
+// The last row is gone, as after a cut: the first still says what its stamps are.
+TEST_F(Init, OneEndOfTheFileSaysWhatStampsAre) {
+  std::string text = "Time,kWh\n";
+  for (int minute = 15; minute < 20 * 1440 - 50; minute += 15) {
+    text += fmt::format("2024-06-{:02} {:02}:{:02},{}\n", minute / 1440 + 1, minute / 60 % 24,
+                        minute % 60, plain_value(minute));
+  }
+  write_text(path("ends.csv"), text);
+  ASSERT_EQ(init("ends.csv", "Europe/Berlin").exit_code, kSuccess);
+  EXPECT_THAT(read_text(site()), HasSubstr("stamps = \"end\""));
 }
 
 TEST_F(Init, ASiteFileThatIsThereStays) {
