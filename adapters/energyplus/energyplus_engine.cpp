@@ -26,14 +26,6 @@ constexpr std::size_t kKeyDigits = 20;
 
 int year_of(metering::Month month) { return static_cast<int>(month.year()); }
 
-/// The clock of the model all year: without summer time.
-seconds standard_offset(const metering::LocalCalendar& calendar, int year) {
-  const auto in = [&](unsigned month) {
-    return calendar.utc_offset(std::chrono::sys_days{std::chrono::year{year} / month / 15});
-  };
-  return std::min(in(1), in(7));
-}
-
 /// A day on either side, because local months may begin an hour before the model's days.
 std::pair<Day, Day> days_to_run(const std::vector<metering::Month>& months, int year) {
   using namespace std::chrono;
@@ -122,7 +114,7 @@ Result<std::vector<double>> EnergyPlusEngine::run_year(
   const auto sql = simulate(prepared, setup_.weather.at(year), folder, setup_.program,
                             setup_.limits, keep_going);
   if (!sql) return tl::unexpected(sql.error());
-  const auto meters = read_meters(*sql, names, standard_offset(calendar_, year));
+  const auto meters = read_meters(*sql, names, calendar_.standard_offset(std::chrono::year{year}));
   if (!meters) return tl::unexpected(meters.error());
   return monthly_figures(*meters, setup_.outputs, setup_.months, calendar_, setup_.peak_window);
 }

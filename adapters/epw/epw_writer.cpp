@@ -25,20 +25,13 @@ double dew_point_C(double dry_bulb_C, double humidity_pct) {
   return std::min(243.04 * x / (17.625 - x), dry_bulb_C);
 }
 
-std::chrono::seconds standard_offset(const metering::LocalCalendar& calendar, int year) {
-  const auto in = [&](unsigned month) {
-    return calendar.utc_offset(std::chrono::sys_days{std::chrono::year{year} / month / 15});
-  };
-  return std::min(in(1), in(7));
-}
-
 std::string day_text(Day day) {
   return fmt::format("{}/{}", static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
 }
 
 /// First and last day of summer time; over New Year in the south. "0,0" where there is none.
 std::string summer_time(const metering::LocalCalendar& calendar, int year) {
-  const auto offset = standard_offset(calendar, year);
+  const auto offset = calendar.standard_offset(std::chrono::year{year});
   const std::chrono::sys_days first{std::chrono::year{year} / 1 / 1};
   const std::chrono::sys_days last{std::chrono::year{year} / 12 / 31};
   const auto is_summer = [&](std::chrono::sys_days day) {
@@ -65,7 +58,9 @@ std::string header(int year, const weather::Location& location,
     days += fmt::format(",Holiday {},{}", ++count, day_text(day));
   }
   const double offset_h =
-      std::chrono::duration<double, std::ratio<3600>>{standard_offset(calendar, year)}.count();
+      std::chrono::duration<double, std::ratio<3600>>{
+          calendar.standard_offset(std::chrono::year{year})}
+          .count();
   const bool is_leap = std::chrono::year{year}.is_leap();
   const std::chrono::weekday first{std::chrono::sys_days{std::chrono::year{year} / 1 / 1}};
   constexpr std::string_view kWeekdays[] = {"Sunday",   "Monday", "Tuesday", "Wednesday",
@@ -135,7 +130,7 @@ Result<std::string> epw_text(const weather::WeatherSeries& weather, int year,
                              const weather::Location& location,
                              const metering::LocalCalendar& calendar,
                              const std::set<metering::Day>& holidays, std::string_view place) {
-  const auto offset = standard_offset(calendar, year);
+  const auto offset = calendar.standard_offset(std::chrono::year{year});
   const Instant begin = std::chrono::sys_days{std::chrono::year{year} / 1 / 1} - offset;
   const Instant end = std::chrono::sys_days{std::chrono::year{year + 1} / 1 / 1} - offset;
   std::string text = header(year, location, calendar, holidays, place);

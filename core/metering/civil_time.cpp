@@ -89,6 +89,11 @@ TimeSpan LocalCalendar::month_span(Month month) const {
 
 seconds LocalCalendar::utc_offset(Instant t) const { return offset_span(t).utc_offset; }
 
+std::chrono::seconds LocalCalendar::standard_offset(std::chrono::year year) const {
+  using std::chrono::sys_days;
+  return std::min(utc_offset(sys_days{year / 1 / 15}), utc_offset(sys_days{year / 7 / 15}));
+}
+
 LocalTime LocalCalendar::local_time(Instant t) const {
   const Instant wall = t + utc_offset(t);
   const auto midnight = std::chrono::floor<days>(wall);

@@ -73,6 +73,9 @@ class LocalCalendar {
   [[nodiscard]] LocalTime local_time(Instant t) const;
   [[nodiscard]] Month month_of(Instant t) const;
   [[nodiscard]] std::chrono::seconds utc_offset(Instant t) const;
+  /// Of the year's standard time: the lesser offset of its two opposite seasons is winter's, in
+  /// either hemisphere.
+  [[nodiscard]] std::chrono::seconds standard_offset(std::chrono::year year) const;
 
   /// The first instant that shows this wall-clock time, or the jump if the clock skips it.
   [[nodiscard]] Instant first_instant(Day day, int minute_of_day) const;

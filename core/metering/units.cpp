@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
+
+#include "core/text/ascii.hpp"
 
 namespace recald::metering {
 namespace {
@@ -126,13 +127,6 @@ constexpr std::array kSynonyms{
 constexpr std::array<std::string_view, 9> kFlows{"l/s", "l/h", "l/min", "gpm",   "m3/s",
                                                  "gal", "l",   "liter", "gallon"};
 
-std::string lower(std::string_view text) {
-  std::string out{text};
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
     text.replace(at, from.size(), to);
@@ -142,7 +136,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 
 /// Lower case, cube as 3, hour as h, without blanks, hyphens, dots and plural s.
 std::string plain(std::string_view text) {
-  std::string out = lower(text);
+  std::string out = to_lower(text);
   replace_all(out, "\xC2\xB3", "3");  // superscript three
   replace_all(out, "^3", "3");
   replace_all(out, "\xC2\xB7", "");  // a dot between kW and h

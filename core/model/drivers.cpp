@@ -69,15 +69,14 @@ DriverHour describe_hour(int month, Instant start, const metering::LocalCalendar
   const double relative_humidity = std::clamp(humidity_pct / 100.0, 0.0, 1.0);
   const std::chrono::sys_days date{local.date};
   const std::chrono::sys_days first_of_year{local.date.year() / std::chrono::January / 1};
-  // Of two opposite seasons, the smaller offset belongs to winter, in either hemisphere.
-  const auto winter_offset = std::min(calendar.utc_offset(first_of_year),
-                                      calendar.utc_offset(first_of_year + std::chrono::days{182}));
+  const bool is_summer_time =
+      calendar.utc_offset(start) > calendar.standard_offset(local.date.year());
   return {.start = start,
           .date = local.date,
           .day_index = 0,
           .weekday = std::chrono::weekday{date}.c_encoding(),
           .day_of_year = static_cast<int>((date - first_of_year).count()) + 1,
-          .daylight_saving = calendar.utc_offset(start) > winter_offset,
+          .daylight_saving = is_summer_time,
           .month = month,
           .day = day,
           .local_hour = hour,

@@ -71,9 +71,10 @@ Result<std::string> with_starter(std::string text, const SiteConfig& drafted,
   const auto weather = epw::read_epw(request.epw);
   if (!weather) return tl::unexpected(weather.error());
   const epw::EpwLocation& place = weather->location;
-  const auto january = std::chrono::sys_days{std::chrono::year{2024} / 1 / 15};
   const double site_h =
-      std::chrono::duration<double, std::ratio<3600>>{calendar.utc_offset(january)}.count();
+      std::chrono::duration<double, std::ratio<3600>>{
+          calendar.standard_offset(std::chrono::year{weather->year})}
+          .count();
   if (std::abs(place.utc_offset_h - site_h) > kOffsetsApart_h) {
     return failure(
         ErrorCode::invalid_value,
