@@ -10,19 +10,14 @@
 #include <tuple>
 
 #include "adapters/sqlite/database.hpp"
+#include "core/text/ascii.hpp"
 
 namespace recald::energyplus {
 namespace {
 
-std::string lower_case(std::string_view text) {
-  std::string out;
-  for (const char c : text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 bool is_autosized(const Json& value) {
   if (!value.is_string()) return false;
-  const std::string text = lower_case(value.get<std::string>());
+  const std::string text = to_lower(value.get<std::string>());
   return text == "autosize" || text == "autocalculate";
 }
 
@@ -35,7 +30,7 @@ std::optional<std::string> field_of(std::string_view description) {
   std::string field;
   for (const char c : description) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      field += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      field += to_lower(c);
     } else if (!field.empty() && field.back() != '_') {
       field += '_';
     }
@@ -69,7 +64,7 @@ FrozenSizes freeze_sizes(const std::vector<ComponentSize>& sizes, Json& objects)
   for (const ComponentSize& size : sizes) {
     const auto field = field_of(size.description);
     if (field && size.value > 0.0) {
-      by_field[{lower_case(size.type), lower_case(size.name), *field}] = size.value;
+      by_field[{to_lower(size.type), to_lower(size.name), *field}] = size.value;
     }
   }
   FrozenSizes result;
@@ -79,7 +74,7 @@ FrozenSizes freeze_sizes(const std::vector<ComponentSize>& sizes, Json& objects)
       if (!fields.is_object()) continue;
       for (auto& [field, value] : fields.items()) {
         if (!is_autosized(value)) continue;
-        const auto size = by_field.find({lower_case(type), lower_case(name), field});
+        const auto size = by_field.find({to_lower(type), to_lower(name), field});
         if (size == by_field.end()) {
           result.left.push_back(fmt::format("{}/{}/{}", type, name, field));
         } else {

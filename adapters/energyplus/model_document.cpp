@@ -4,21 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <span>
 
 #include "adapters/system/regular_file.hpp"
+#include "core/text/ascii.hpp"
 #include "core/text/nearest.hpp"
 
 namespace recald::energyplus {
 namespace {
 
 constexpr std::size_t kNamesShown = 8;
-
-char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
 /// Whether a text is what a pattern with '*' and '?' describes, whatever the case.
 bool matches(std::string_view text, std::string_view pattern) {
@@ -27,7 +25,7 @@ bool matches(std::string_view text, std::string_view pattern) {
   std::optional<std::size_t> star;  // the last one, to go back to
   std::size_t after_star = 0;
   while (t < text.size()) {
-    if (p < pattern.size() && (pattern[p] == '?' || lower(pattern[p]) == lower(text[t]))) {
+    if (p < pattern.size() && (pattern[p] == '?' || to_lower(pattern[p]) == to_lower(text[t]))) {
       ++t;
       ++p;
     } else if (p < pattern.size() && pattern[p] == '*') {

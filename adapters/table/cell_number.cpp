@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "adapters/csv/fields.hpp"
+#include "core/text/ascii.hpp"
 
 namespace recald::table {
 namespace {
@@ -56,7 +56,7 @@ bool is_blank(std::string_view cell) {
   if (cell.size() > 8) return false;
   std::string word;
   for (const char c : cell) {
-    word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    word += to_lower(c);
   }
   constexpr std::array<std::string_view, 12> kWords{
       "-", "--", "na", "n/a", "#n/a", "nan", "null", "none", "nil", "no data", "missing", "---"};

@@ -11,6 +11,7 @@
 #include "adapters/table/cell_number.hpp"
 #include "adapters/table/delimited.hpp"
 #include "core/metering/units.hpp"
+#include "core/text/ascii.hpp"
 #include "core/text/printable.hpp"
 
 namespace recald::table {
@@ -24,14 +25,8 @@ constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 constexpr std::array kDateFormats{TimeFormat::year_first, TimeFormat::day_first,
                                   TimeFormat::month_first};
 
-std::string lower_case(std::string_view text) {
-  std::string out;
-  for (const char c : text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 bool contains_any(std::string_view text, std::span<const std::string_view> words) {
-  const std::string lower = lower_case(text);
+  const std::string lower = to_lower(text);
   return std::any_of(words.begin(), words.end(),
                      [&](std::string_view word) { return lower.find(word) != std::string::npos; });
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "adapters/csv/fields.hpp"
+#include "core/text/ascii.hpp"
 
 namespace recald::table {
 namespace {
@@ -74,7 +75,7 @@ std::optional<int> month_of(std::string_view name) {
   if (name.size() < 3) return {};
   std::string start;
   for (const char c : name.substr(0, 3)) {
-    start += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    start += to_lower(c);
   }
   const std::size_t at = kNames.find(start);
   if (at == std::string_view::npos || at % 3 != 0) return {};
@@ -148,7 +149,7 @@ std::optional<seconds> take_time(Scanner& scan) {
   if (is_letter(after.front())) {
     std::string half;
     for (const char c : after.word()) {
-      half += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      half += to_lower(c);
     }
     if (half == "am" || half == "pm") {
       if (hour_of_day < 1 || hour_of_day > 12) return {};

@@ -9,6 +9,7 @@
 #include "adapters/table/archive.hpp"
 #include "adapters/table/element_cutter.hpp"
 #include "adapters/table/xml_nodes.hpp"
+#include "core/text/ascii.hpp"
 
 namespace recald::table {
 namespace {
@@ -108,7 +109,7 @@ Kind kind_of_code(std::string_view code) {
   bool has_time = false;
   bool in_quotes = false;
   for (std::size_t i = 0; i < code.size(); ++i) {
-    const char c = static_cast<char>(std::tolower(static_cast<unsigned char>(code[i])));
+    const char c = to_lower(code[i]);
     if (c == '"') in_quotes = !in_quotes;
     if (in_quotes) continue;
     if (c == '\\' || c == '_' || c == '*') ++i;  // the next letter is shown literally

@@ -6,6 +6,7 @@
 
 #include "core/metering/civil_time.hpp"
 #include "core/model/parameter_library.hpp"
+#include "core/text/ascii.hpp"
 
 namespace recald::display {
 namespace {
@@ -34,12 +35,6 @@ constexpr std::string_view kRoughness = "beta_";
 
 bool is_upper(char c) { return 'A' <= c && c <= 'Z'; }
 
-std::string lower(std::string_view text) {
-  std::string small{text};
-  for (char& c : small) c = is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c;
-  return small;
-}
-
 }  // namespace
 
 std::string id_words(std::string_view id) {
@@ -51,7 +46,7 @@ std::string id_words(std::string_view id) {
 std::string meter_label(std::string_view id) { return capitalised(id_words(id)); }
 
 std::string output_words(std::string_view output) {
-  const std::string small = lower(output);
+  const std::string small = to_lower(output);
   for (const auto& [end, words] : kOutputEnds) {
     if (!small.ends_with(end) || small.size() == end.size()) continue;
     output.remove_suffix(end.size());

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "core/text/ascii.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -20,8 +21,7 @@ constexpr std::array kSeparators{Separator{",", ','}, Separator{";", ';'}, Separ
 
 /// By the end of the file's name.
 Container container_of(const std::filesystem::path& file) {
-  std::string end = file.extension().string();
-  std::ranges::transform(end, end.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string end = to_lower(file.extension().string());
   if (end == ".xlsx" || end == ".xlsm") return Container::xlsx;
   return end == ".xml" ? Container::green_button : Container::text;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -17,6 +16,7 @@
 #include "adapters/table/green_button.hpp"
 #include "adapters/table/read_table.hpp"
 #include "adapters/table/xlsx.hpp"
+#include "core/text/ascii.hpp"
 #include "daemon/site/replay/register_watch.hpp"
 #include "daemon/site/setup/utility_guess.hpp"
 
@@ -272,10 +272,7 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
 /// A clock that is never changed: of a zone with summer time the winter's offset, by the hour.
 std::optional<std::string> fixed_zone(const metering::LocalCalendar& calendar, Instant around) {
   const auto year = std::chrono::year_month_day{std::chrono::floor<std::chrono::days>(around)};
-  const auto offset_in = [&](unsigned month) {
-    return calendar.utc_offset(std::chrono::sys_days{year.year() / month / 15});
-  };
-  const seconds winter = std::min(offset_in(1), offset_in(7));
+  const seconds winter = calendar.standard_offset(year.year());
   if (winter % std::chrono::hours{1} != seconds{0}) return {};
   const auto hours = std::chrono::duration_cast<std::chrono::hours>(winter).count();
   // Etc/GMT-1 is one hour ahead of UTC: POSIX counts westwards.
@@ -357,8 +354,7 @@ Result<void> require_sound(const SurveyedExport& survey, const WholeFile& whole)
 }
 
 bool says(std::string_view text, std::initializer_list<std::string_view> words) {
-  std::string lower{text};
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = to_lower(text);
   return std::ranges::any_of(
       words, [&](std::string_view word) { return lower.find(word) != std::string::npos; });
 }

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <set>
 
+#include "core/text/ascii.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 
@@ -57,7 +58,7 @@ std::string slug(std::string_view text) {
   for (std::size_t i = 0; i < text.size() && out.size() < kIdMax; ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     if (std::isalnum(byte) != 0) {
-      out += static_cast<char>(std::tolower(byte));
+      out += to_lower(text[i]);
     } else if (byte == 0xC3 && i + 1 < text.size()) {
       switch (static_cast<unsigned char>(text[++i])) {
         case 0xA4:

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 
 #include "core/metering/units.hpp"
+#include "core/text/ascii.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -48,14 +48,8 @@ constexpr std::array kWords{
     Word{"water", Utility::water},
 };
 
-std::string lower_case(std::string_view text) {
-  std::string out;
-  for (const char c : text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 std::optional<Utility> by_name(std::string_view name) {
-  const std::string lower = lower_case(name);
+  const std::string lower = to_lower(name);
   for (const Word& word : kWords) {
     if (lower.find(word.text) != std::string::npos) return word.utility;
   }
@@ -64,7 +58,7 @@ std::optional<Utility> by_name(std::string_view name) {
 
 /// Units that one utility alone is sold in.
 std::optional<Utility> by_unit(std::string_view unit) {
-  const std::string lower = lower_case(unit);
+  const std::string lower = to_lower(unit);
   const auto has = [&](std::string_view part) { return lower.find(part) != std::string::npos; };
   if (has("tonne")) return Utility::steam;
   if (has("ton") || lower.substr(0, 2) == "tr" || lower == "rth") return Utility::chilled_water;
