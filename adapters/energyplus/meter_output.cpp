@@ -76,12 +76,6 @@ Result<MeterOutput> read_meter(Database& database, const std::string& name,
 
 }  // namespace
 
-Result<std::vector<std::string>> reported_meters(const std::filesystem::path& file) {
-  auto database = open(file);
-  if (!database) return tl::unexpected(database.error());
-  return names_in(*database);
-}
-
 Result<std::vector<MeterOutput>> read_meters(const std::filesystem::path& file,
                                              const std::vector<std::string>& names,
                                              std::chrono::seconds utc_offset) {

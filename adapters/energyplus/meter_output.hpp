@@ -18,9 +18,6 @@ struct MeterOutput {
   std::vector<double> energy_kWh;
 };
 
-/// What the run reports at each time step: meters by name, and of a water meter nothing.
-[[nodiscard]] Result<std::vector<std::string>> reported_meters(const std::filesystem::path& file);
-
 /// @param names       As EnergyPlus calls them; letter case does not matter.
 /// @param utc_offset  Of the model's standard time, which its stamps are in.
 /// @return one per name, in their order, of the days of weather only (no design days, no warm-up);

@@ -40,6 +40,7 @@ Json run_period(const RunRequest& request, const Json& objects) {
 
 std::string failed_words(const ErrorFile& said, const system::ChildEnd& ended,
                          const std::filesystem::path& folder) {
+  const bool is_killed = ended.ending == system::Ending::killed;
   const std::string words = said.words();
   if (!words.empty()) {
     const std::size_t others = said.severe_count > 1 ? said.severe_count - 1 : 0;
@@ -49,8 +50,8 @@ std::string failed_words(const ErrorFile& said, const system::ChildEnd& ended,
                     : fmt::format(" ({} more in {})", others, (folder / "eplusout.err").string()));
   }
   return fmt::format("EnergyPlus ended with {} {} and without a word; see {}",
-                     ended.how == system::ChildEnd::How::signalled ? "signal" : "status",
-                     ended.code, (folder / "energyplus.log").string());
+                     is_killed ? "signal" : "status", is_killed ? ended.signal : ended.exit_code,
+                     (folder / "energyplus.log").string());
 }
 
 }  // namespace
@@ -73,9 +74,6 @@ void prepare_objects(const RunRequest& request, Json& objects) {
                                                {"reporting_frequency", "Timestep"}};
   }
   if (!meters.empty()) objects["Output:Meter"] = std::move(meters);
-  if (request.reports_all_meters) {
-    objects["Output:Meter"]["recald all"] = {{"key_name", "*"}, {"reporting_frequency", "Monthly"}};
-  }
   objects["Output:SQLite"] = {{"recald", {{"option_type", "Simple"}}}};
   Json& files = objects["OutputControl:Files"]["recald"];
   for (const std::string_view file : kUnwantedFiles) files[std::string{file}] = "No";
@@ -102,15 +100,15 @@ Result<std::filesystem::path> simulate(const Json& objects, const std::filesyste
                          .memory_max_bytes = limits.memory_max_bytes},
                         keep_going);
   if (!ended) return tl::unexpected(ended.error());
-  using How = system::ChildEnd::How;
-  if (ended->how == How::stopped) return failure(ErrorCode::cancelled, "stopped");
-  if (ended->how == How::timed_out) {
+  if (ended->ending == system::Ending::stopped) return failure(ErrorCode::cancelled, "stopped");
+  if (ended->ending == system::Ending::over_limit) {
     return failure(ErrorCode::out_of_range,
                    fmt::format("EnergyPlus was still running after {} s and was ended; see {}",
                                limits.time_max.count(), (folder / "energyplus.log").string()));
   }
   const ErrorFile said = read_error_file(folder / "eplusout.err");
-  const bool went_well = ended->how == How::exited && ended->code == 0 && said.fatal.empty();
+  const bool went_well =
+      ended->ending == system::Ending::exited && ended->exit_code == 0 && said.fatal.empty();
   if (went_well) return folder / kOutputFile;
   return failure(said.words().empty() ? ErrorCode::io_failed : ErrorCode::invalid_value,
                  failed_words(said, *ended, folder));

@@ -20,7 +20,6 @@ struct RunRequest {
   metering::Day first;              ///< Both in one calendar year, which the weather covers.
   metering::Day last;               ///< Inclusive.
   std::vector<std::string> meters;  ///< "Electricity:Facility"; reported at each time step.
-  bool reports_all_meters = false;  ///< Then also which meters there are.
 };
 
 struct RunLimits {

