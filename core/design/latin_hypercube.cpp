@@ -32,6 +32,20 @@ Eigen::MatrixXd plain_hypercube(std::span<const Parameter> parameters, int runs,
 
 }  // namespace
 
+Eigen::MatrixXd corners(std::span<const Parameter> parameters, int runs, Rng& rng) {
+  constexpr double kTail = 0.001;
+  Eigen::MatrixXd design(runs, static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+    for (Eigen::Index j = 0; j < design.cols(); ++j) {
+      const Prior& prior = parameters[static_cast<std::size_t>(j)].prior;
+      const bool is_upper = rng.below(2) == 1;
+      const double end = is_upper ? prior.max() : prior.min();
+      design(i, j) = std::isfinite(end) ? end : prior.quantile(is_upper ? 1.0 - kTail : kTail);
+    }
+  }
+  return design;
+}
+
 double largest_correlation(const Eigen::MatrixXd& design) {
   const Eigen::MatrixXd centred = design.rowwise() - design.colwise().mean();
   const Eigen::VectorXd norms = centred.colwise().norm();

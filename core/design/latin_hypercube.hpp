@@ -25,6 +25,11 @@ namespace recald::design {
 [[nodiscard]] Eigen::MatrixXd latin_hypercube(std::span<const Parameter> parameters, int runs,
                                               Rng& rng, int candidates = 50);
 
+/// Random corners of the prior box, where a meta-model is least sure: each parameter at one end of
+/// its prior, or at the quantile of one in a thousand where the prior is open.
+/// @return (runs x q) in the parameters' own units.
+[[nodiscard]] Eigen::MatrixXd corners(std::span<const Parameter> parameters, int runs, Rng& rng);
+
 /// Largest |Pearson correlation| between two columns of `design`; 0 for a single column.
 [[nodiscard]] double largest_correlation(const Eigen::MatrixXd& design);
 

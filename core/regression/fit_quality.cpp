@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/statistics/quantile.hpp"
+
 namespace recald::regression {
 namespace {
 
@@ -97,6 +99,37 @@ DesignQuality assess_fit(const DesignData& design, const std::vector<ColumnScale
   }
   quality.all = squares_of(all).quality();
   return quality;
+}
+
+std::vector<CheckedOutput> check_predictions(const DesignData& check,
+                                             const Eigen::MatrixXd& predicted) {
+  std::vector<CheckedOutput> outputs;
+  const Eigen::Index months = check.month_count();
+  for (std::size_t k = 0; k < check.outputs.size(); ++k) {
+    const Eigen::MatrixXd truth = check.output(static_cast<Eigen::Index>(k));
+    const Eigen::MatrixXd error =
+        predicted.middleCols(static_cast<Eigen::Index>(k) * months, months) - truth;
+    const Eigen::RowVectorXd means = truth.colwise().mean();
+    const Eigen::RowVectorXd spreads = (truth.rowwise() - means).colwise().squaredNorm();
+    const Eigen::RowVectorXd errors = error.colwise().squaredNorm();
+    std::vector<double> r2;
+    for (Eigen::Index i = 0; i < months; ++i) {
+      r2.push_back(spreads[i] > 0.0 ? 1.0 - errors[i] / spreads[i] : 1.0);
+    }
+    const auto worst = std::ranges::min_element(r2) - r2.begin();
+    CheckedOutput output{
+        .name = check.outputs[k],
+        .cvrmse = std::sqrt(error.squaredNorm() / static_cast<double>(error.size())) / truth.mean(),
+        .r2_median_month = 0.0,
+        .r2_worst_month = r2[static_cast<std::size_t>(worst)],
+        .worst_month = check.months[static_cast<std::size_t>(worst)],
+        .error_of_worst =
+            std::sqrt(errors[worst] / static_cast<double>(check.runs())) / means[worst]};
+    std::ranges::sort(r2);
+    output.r2_median_month = quantile_of_sorted(r2, 0.5);
+    outputs.push_back(std::move(output));
+  }
+  return outputs;
 }
 
 Eigen::MatrixXd normalise_outputs(const DesignData& design,

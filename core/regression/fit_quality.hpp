@@ -58,6 +58,22 @@ struct MeterOutputs {
                                        const Eigen::MatrixXd& fitted,
                                        const Eigen::MatrixXd& left_out);
 
+/// How well an output of other runs is predicted.
+struct CheckedOutput {
+  std::string name;
+  double cvrmse;  ///< Root mean square error over runs and months, over their mean.
+  double
+      r2_median_month;  ///< R2 over the runs of each month by itself: what is known of parameters.
+  double r2_worst_month;
+  std::string worst_month;
+  double error_of_worst;  ///< That month's root mean square error over its mean.
+};
+
+/// @param check      Runs that the regression has not seen.
+/// @param predicted  (runs x k * m) in the outputs' units.
+[[nodiscard]] std::vector<CheckedOutput> check_predictions(const DesignData& check,
+                                                           const Eigen::MatrixXd& predicted);
+
 /// (runs x k * m) the design's outputs, each by its scale.
 [[nodiscard]] Eigen::MatrixXd normalise_outputs(const DesignData& design,
                                                 const std::vector<ColumnScale>& scales);

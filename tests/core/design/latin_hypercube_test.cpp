@@ -68,6 +68,22 @@ TEST(LatinHypercube, MeansAreThoseOfThePriors) {
   }
 }
 
+TEST(Corners, EachParameterStandsAtAnEndOfItsPrior) {
+  std::vector<Parameter> all = parameters();
+  all.push_back({"open", "-", Prior{TruncatedNormalPrior{5.0, 1.0}}});
+  Rng rng{3};
+  const Eigen::MatrixXd design = corners(all, 40, rng);
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    const Prior& prior = all[static_cast<std::size_t>(j)].prior;
+    const auto lower = (design.col(j).array() == prior.min()).count();
+    EXPECT_EQ(lower + (design.col(j).array() == prior.max()).count(), 40);
+    EXPECT_GT(lower, 5);
+    EXPECT_LT(lower, 35);
+  }
+  EXPECT_NEAR(design.col(4).maxCoeff(), 5.0 + 3.09, 0.01);
+  EXPECT_NEAR(design.col(4).minCoeff(), 5.0 - 3.09, 0.01);
+}
+
 TEST(LargestCorrelation, OfKnownColumns) {
   Eigen::MatrixXd design(4, 3);
   design << 1, 1, 1,  //
