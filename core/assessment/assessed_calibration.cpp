@@ -120,7 +120,11 @@ Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
     const OutputForecasts* yardstick =
         yardsticks.empty() || !yardsticks[k] ? nullptr : &*yardsticks[k];
     double model_weight = 1.0;
-    if (yardstick != nullptr) forecast = pool(forecast, *yardstick, output.measured, model_weight);
+    std::optional<ForecastAssessment> by_model;
+    if (yardstick != nullptr) {
+      by_model = assess_forecasts(output.measured, result.roles, forecast, result.month_days);
+      forecast = pool(forecast, *yardstick, output.measured, model_weight);
+    }
     const auto part = [&](const std::vector<double>& all) {
       return std::span{all}.subspan(k * n, n);
     };
@@ -132,6 +136,7 @@ Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
                                                                   static_cast<Eigen::Index>(n))},
                                       forecast, result.month_days);
     output.assessment.model_weight = model_weight;
+    output.assessment.by_model = std::move(by_model);
     if (yardstick == nullptr) continue;
     output.assessment.yardstick =
         assess_forecasts(output.measured, result.roles, *yardstick, result.month_days);

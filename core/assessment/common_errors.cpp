@@ -48,6 +48,14 @@ std::vector<Eigen::VectorXd> common_errors(const model::Building& building,
   return errors;
 }
 
+std::vector<CommonError> kinds_of_common_errors(const std::vector<OutputCalibration>& outputs) {
+  std::vector<CommonError> kinds(1);
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    if (outputs[k].unit == "kW") kinds.push_back({CommonError::Kind::level, k, kPeakSd});
+  }
+  return kinds;
+}
+
 model::ElectricLoads more_use(model::ElectricLoads loads) {
   for (double& factor : loads.month_factor) factor *= 1.0 + kMoreUse;
   return loads;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/assessment/assessed_calibration.hpp"
+#include "core/assessment/model_errors.hpp"
 #include "core/model/building.hpp"
 #include "core/model/drivers.hpp"
 #include "core/model/monthly_model.hpp"
@@ -21,6 +22,10 @@ namespace recald::assessment {
     const model::Building& building, const ModelFactory& make,
     const std::vector<OutputCalibration>& outputs, MonthlyModel& model,
     std::span<const double> theta);
+
+/// What `common_errors` of the same outputs are of, in its order.
+[[nodiscard]] std::vector<CommonError> kinds_of_common_errors(
+    const std::vector<OutputCalibration>& outputs);
 
 /// f(mean + sd) - f(mean) of each parameter that is held, the others at their means: its exact
 /// marginalisation where f is linear in it.

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/metering/reading.hpp"
 #include "core/model/model_kind.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter.hpp"
@@ -13,6 +14,7 @@ namespace recald::assessment {
 
 /// What kind of energy a meter counts, as far as a model's errors differ by it.
 enum class Service { electricity, cooling, heating };
+[[nodiscard]] Service service_of(metering::Utility utility);
 
 /// Sizes of a model's own errors, learnt on buildings with nothing hidden.
 struct ModelErrorSizes {
@@ -41,6 +43,23 @@ struct ModelErrorSizes {
                                                         std::span<const double> spreads,
                                                         std::span<const Service> services,
                                                         const ModelErrorSizes& sizes);
+
+/// What an error common to all months is of.
+struct CommonError {
+  enum class Kind : unsigned char {
+    other,
+    parameter,  ///< What parameter `of` means in the model; `sd` in its unit.
+    level,      ///< A factor on output `of`; `sd` relative.
+  };
+  Kind kind = Kind::other;
+  std::size_t of = 0;
+  double sd = 0.0;
+};
+
+/// What `model_errors` of the same arguments are of, in its order.
+[[nodiscard]] std::vector<CommonError> kinds_of_model_errors(std::span<const double> spreads,
+                                                             std::span<const Service> services,
+                                                             const ModelErrorSizes& sizes);
 
 /// `sizes.parameter_share` of every prior's standard deviation.
 [[nodiscard]] std::vector<double> spreads_of(std::span<const Parameter> parameters,

@@ -69,6 +69,8 @@ struct OutputAssessment {
   std::vector<double> draw_cvrmse_validation;
   ForecastAssessment forecast;
   double model_weight = 1.0;  ///< Of the model in the forecast; the rest is the yardstick's.
+  /// The forecast by the model alone; absent where there is no yardstick, so that `forecast` is it.
+  std::optional<ForecastAssessment> by_model;
   /// The same by a regression of the meter's days on temperature alone.
   std::optional<ForecastAssessment> yardstick;
 };

@@ -41,6 +41,8 @@ struct Use {
   double plugs_W_m2 = 0.0;       ///< Installed; likewise.
   double exterior_kW = 0.0;      ///< Electricity that does not heat a zone.
   double zone_heat_share = 0.9;  ///< Of lights and plugs.
+  double lights_scale = 1.0;     ///< On the lights that were read off the electricity meter …
+  double plugs_scale = 1.0;      ///< … and on the plugs: 1 until a measure changes them.
   // Where gains arise; only the hourly model uses these.
   double closet_share = 0.0;   ///< Of the plugs' heat: in closets that are always kept cool.
   double gains_to_core = 0.0;  ///< Of the perimeter's even share of gains: arises in the core.
@@ -112,6 +114,9 @@ struct HotWater {
   double efficiency = 0.9;         ///< Distribution and generation together.
 };
 
+/// Leaving water at which chillers meet their nameplates (AHRI 550/590: 44 °F).
+inline constexpr double kRatedChilledWater_C = 6.67;
+
 struct Building {
   double floor_area_m2 = 0.0;
   int storeys = 1;
@@ -138,6 +143,9 @@ struct Building {
   /// Increase of the chiller's electricity per cooling for each K of outdoor wet bulb. Only the
   /// hourly model uses it.
   double chiller_lift_per_K = 0.0;
+  /// Water that leaves the chiller. A kelvin more spares it as much as a kelvin less of wet bulb.
+  /// Only the hourly model uses it, of a chiller that feels the wet bulb.
+  double chilled_water_C = kRatedChilledWater_C;
   HotWater hot_water;
   double base_heat_kW = 0.0;  ///< Heat used at all hours that serves no zone.
   double ground_temperature_C = 12.0;

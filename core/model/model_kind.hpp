@@ -12,9 +12,10 @@
 namespace recald {
 
 enum class ModelKind : std::uint8_t {
-  epc,        ///< Monthly quasi-steady state.
-  hourly,     ///< Zones hour by hour, with air handlers and plant.
-  metamodel,  ///< A regression of another model's runs.
+  epc,         ///< Monthly quasi-steady state.
+  hourly,      ///< Zones hour by hour, with air handlers and plant.
+  metamodel,   ///< A regression of another model's runs.
+  energyplus,  ///< A client's EnergyPlus model, through a regression of its runs.
 };
 
 struct ModelKindFacts {
@@ -28,6 +29,7 @@ inline constexpr auto kModelKinds = std::to_array<ModelKindFacts>({
     {ModelKind::epc, "epc", true, false},
     {ModelKind::hourly, "hourly", true, true},
     {ModelKind::metamodel, "metamodel", false, false},
+    {ModelKind::energyplus, "energyplus", false, true},
 });
 
 [[nodiscard]] constexpr const ModelKindFacts& facts_of(ModelKind kind) {

@@ -21,6 +21,38 @@ double one(const Building&) { return 1.0; }
 void scale_u(Building& b, double factor) {
   for (Surface& s : b.surfaces) s.u_W_m2K *= factor;
 }
+/// The resistances of the air on both sides of a surface, ISO 6946:2017 table 7, m2 K/W.
+double film_resistance_m2K_W(SurfaceKind kind) {
+  constexpr double kOutside = 0.04;
+  switch (kind) {
+    case SurfaceKind::roof:
+      return 0.10 + kOutside;
+    case SurfaceKind::ground:
+      return 0.17 + kOutside;
+    default:
+      return 0.13 + kOutside;
+  }
+}
+
+/// A model that knows U-values changes their part inside the wall: R = 1/U less the films. Glass
+/// hardly resists, so windows stay.
+void scale_resistance(Building& b, double factor) {
+  for (Surface& s : b.surfaces) {
+    if (s.kind == SurfaceKind::window || !(s.u_W_m2K > 0.0)) continue;
+    const double films = film_resistance_m2K_W(s.kind);
+    const double wall = std::max(1.0 / s.u_W_m2K - films, 0.0);
+    if (wall > 0.0) s.u_W_m2K = 1.0 / (films + factor * wall);
+  }
+}
+void scale_conductivity(Building& b, double factor) { scale_resistance(b, 1.0 / factor); }
+
+/// Of walls and roofs; a surface emits long waves as it absorbs them.
+void scale_thermal_absorptance(Building& b, double factor) {
+  for (Surface& s : b.surfaces) {
+    if (s.kind != SurfaceKind::window) s.emissivity *= factor;
+  }
+}
+void scale_heat_capacity(Building& b, double factor) { b.heat_capacity_J_m2K *= factor; }
 void scale_shgc(Building& b, double factor) {
   for (Surface& s : b.surfaces) s.shgc *= factor;
 }
@@ -83,15 +115,14 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
   // Table 1 of the seed.
   {"ground_temperature", "degC", "Ground temperature", "microclimate", kAbsolute, 12.6, 23.4,
    [](const Building& b) { return b.ground_temperature_C; }, [](Building& b, double v) { b.ground_temperature_C = v; }, kNoLeast},
-  {"conductivity_scale", "-", "Conductivity", "thermal properties", kRelative, 0.85, 1.15, nullptr, nullptr},
+  {"conductivity_scale", "-", "Conductivity", "thermal properties", kRelative, 0.85, 1.15, one, scale_conductivity},
   {"u_factor_scale", "-", "U-factors, all surfaces", "thermal properties", kRelative, 0.85, 1.15, one, scale_u},
   {"shgc_scale", "-", "Solar heat gain coefficients", "thermal properties", kRelative, 0.85, 1.15, one, scale_shgc},
-  {"thermal_resistance_scale", "-", "Thermal resistance", "thermal properties", kRelative, 0.85, 1.15, nullptr, nullptr},
-  {"density_scale", "-", "Density", "thermal properties", kRelative, 0.97, 1.03, nullptr, nullptr},
-  {"specific_heat_scale", "-", "Heat capacity", "thermal properties", kRelative, 0.6325, 1.3675,
-   one, [](Building& b, double v) { b.heat_capacity_J_m2K *= v; }},
+  {"thermal_resistance_scale", "-", "Thermal resistance", "thermal properties", kRelative, 0.85, 1.15, one, scale_resistance},
+  {"density_scale", "-", "Density", "thermal properties", kRelative, 0.97, 1.03, one, scale_heat_capacity},
+  {"specific_heat_scale", "-", "Heat capacity", "thermal properties", kRelative, 0.6325, 1.3675, one, scale_heat_capacity},
   {"dirt_correction", "-", "Dirt on the glass", "thermal properties", kRelative, 0.70, 1.30, one, scale_dirt},
-  {"thermal_absorptance_scale", "-", "Thermal absorptance", "optical properties", kRelative, 0.88, 1.12, nullptr, nullptr},
+  {"thermal_absorptance_scale", "-", "Thermal absorptance", "optical properties", kRelative, 0.88, 1.12, one, scale_thermal_absorptance},
   {"solar_absorptance_scale", "-", "Solar absorptance", "optical properties", kRelative, 0.88, 1.12, one, scale_solar_absorptance},
   {"visible_absorptance_scale", "-", "Visible absorptance", "optical properties", kRelative, 0.88, 1.12, nullptr, nullptr},
   {"infrared_transmittance_scale", "-", "Infrared transmittance", "optical properties", kRelative, 0.97, 1.03, nullptr, nullptr},
@@ -107,7 +138,8 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
    [](const Building& b) { return b.use.occupancy_person_m2; }, [](Building& b, double v) { b.use.occupancy_person_m2 = v; }},
   {"cooling_setpoint", "degC", "Cooling set-point, occupied hours", "system operation", kAbsolute, 20.0, 27.8,
    [](const Building& b) { return b.set_points.cooling_occupied_C; }, set_cooling_set_point, kNoLeast},
-  {"chilled_water_temperature", "degC", "Chilled water temperature", "system operation", kAbsolute, 5.0, 8.0, nullptr, nullptr, kNoLeast},
+  {"chilled_water_temperature", "degC", "Chilled water temperature", "system operation", kAbsolute, 5.0, 8.0,
+   [](const Building& b) { return b.chilled_water_C; }, [](Building& b, double v) { b.chilled_water_C = v; }, kNoLeast},
   {"supply_temperature", "degC", "Supply air temperature", "system operation", kAbsolute, 11.0, 14.0, supply_temperature, set_supply_temperature, kNoLeast},
   {"outdoor_airflow", "m3/s", "Outdoor airflow rate", "system operation", kRelative, 0.3, 1.2, outdoor_air, set_outdoor_air},
   // Ours.
@@ -144,6 +176,21 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
    [](const Building& b) { return b.air ? b.air->night_fan_share : 0.0; }, [](Building& b, double v) { if (b.air) b.air->night_fan_share = v; }, 0.0, 1.0},
   {"chiller_lift", "1/K", "More chiller electricity per K of outdoor wet bulb", "plant", kAbsolute, 0.0, 0.06,
    [](const Building& b) { return b.chiller_lift_per_K; }, [](Building& b, double v) { b.chiller_lift_per_K = v; }},
+  // Their meters give the built-in models lights and plugs.
+  {"lighting_power", "W/m2", "Installed lighting", "internal load", kRelative, 0.7, 1.4, nullptr, nullptr},
+  {"equipment_power", "W/m2", "Installed equipment", "internal load", kRelative, 0.5, 1.5, nullptr, nullptr},
+  {"infiltration_scale", "-", "Infiltration", "infiltration", kRelative, 0.1, 1.9,
+   one, [](Building& b, double v) { b.leakage_cm2_m2 *= v; }},
+  {"hot_water_scale", "-", "Hot water drawn, as a factor", "plant", kRelative, 0.0, 2.0,
+   one, [](Building& b, double v) { b.hot_water.volume_m3_day *= v; }},
+  {"cooling_cop", "-", "Rated COP of chillers and cooling coils", "plant", kRelative, 0.75, 1.15,
+   [](const Building& b) { return b.chiller_cop.value_or(0.0); }, [](Building& b, double v) { if (b.chiller_cop) b.chiller_cop = v; }},
+  {"lighting_use", "-", "Electricity of the lights, over what the meter's profile has", "internal load", kRelative, 0.75, 1.25,
+   one, [](Building& b, double v) { b.use.lights_scale *= v; }},
+  {"plug_use", "-", "Electricity of plug loads, over what the meter's profile has", "internal load", kRelative, 0.75, 1.25,
+   one, [](Building& b, double v) { b.use.plugs_scale *= v; }},
+  {"electric_use", "-", "Electricity of lights and plug loads, over what the meter's profile has", "internal load", kRelative, 0.75, 1.25,
+   one, [](Building& b, double v) { b.use.lights_scale *= v; b.use.plugs_scale *= v; }},
   {"floor_area", "m2", "Floor area", "geometry", kRelative, 0.4, 2.5,
    [](const Building& b) { return b.floor_area_m2; }, set_floor_area},
 });
@@ -172,7 +219,7 @@ Result<const ParameterDefinition*> find_parameter(std::string_view name) {
   if (!found->is_modelled()) {
     return failure(ErrorCode::unsupported,
                    "parameter '" + std::string{name} +
-                       "' belongs to dynamic simulations; the monthly model does not have it");
+                       "': this model has no such quantity; a model in EnergyPlus may have it");
   }
   return &*found;
 }
@@ -206,6 +253,11 @@ Result<Prior> physical_prior(const ParameterDefinition& definition, const Prior&
 
 Result<Parameter> make_parameter(const ParameterDefinition& definition, const Building& nominal,
                                  const std::optional<Prior>& prior) {
+  return make_parameter(definition, definition.get(nominal), prior);
+}
+
+Result<Parameter> make_parameter(const ParameterDefinition& definition, double design,
+                                 const std::optional<Prior>& prior) {
   const std::string name{definition.name};
   const std::string unit{definition.unit};
   if (prior) {
@@ -213,7 +265,6 @@ Result<Parameter> make_parameter(const ParameterDefinition& definition, const Bu
     if (!physical) return tl::unexpected(physical.error());
     return Parameter{name, unit, *physical};
   }
-  const double design = definition.get(nominal);
   if (definition.range == RangeKind::relative) {
     if (!(design > 0.0)) {
       return failure(ErrorCode::invalid_value,

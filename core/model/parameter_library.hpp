@@ -3,7 +3,8 @@
 ///
 /// The ranges are those of Table 1 of the seed if it has the parameter, with the design value
 /// as mode. Entries marked ours are for buildings that the seed did not have (gas boilers,
-/// unknown floor areas).
+/// unknown floor areas), and for models in EnergyPlus: adapters/energyplus/known_parameters.hpp
+/// says where they are in those.
 #pragma once
 
 #include <limits>
@@ -30,7 +31,7 @@ struct ParameterDefinition {
   RangeKind range;
   double low;
   double high;
-  double (*get)(const Building&);        ///< Design value; null: none of our models has it.
+  double (*get)(const Building&);        ///< Design value; null: no built-in model has it.
   void (*set)(Building&, double value);  ///< On a copy of the nominal building.
   double least = 0.0;                    ///< The physical minimum, whatever is usual.
   double most = std::numeric_limits<double>::infinity();
@@ -44,8 +45,9 @@ struct ParameterDefinition {
 inline constexpr std::string_view kSeedParameters[] = {"occupancy_density", "outdoor_airflow",
                                                        "cooling_setpoint"};
 
-/// @return the entry; not_found with the nearest name; or unsupported for one that only a dynamic
-///         simulation has (visible reflectance …).
+/// @return the entry; not_found with the nearest name; or unsupported for one that the built-in
+/// models
+///         do not have (visible reflectance …).
 [[nodiscard]] Result<const ParameterDefinition*> find_parameter(std::string_view name);
 
 /// A prior from the site, with open ends cut at the physical limits.
@@ -60,6 +62,10 @@ inline constexpr std::string_view kSeedParameters[] = {"occupancy_density", "out
 ///         range is relative to it; or as `physical_prior`.
 [[nodiscard]] Result<Parameter> make_parameter(const ParameterDefinition& definition,
                                                const Building& nominal,
+                                               const std::optional<Prior>& prior = {});
+
+/// As above, around a design value that the caller knows: of a model that is no Building.
+[[nodiscard]] Result<Parameter> make_parameter(const ParameterDefinition& definition, double design,
                                                const std::optional<Prior>& prior = {});
 
 /// Call after setting all parameters: keeps set-points at least 1 K apart (by moving the heating

@@ -96,9 +96,11 @@ void Epc::fill_gains(const Building& building, const Zone& zone, const ClimateSt
   const double people_W = building.floor_area_m2 * use.occupancy_person_m2 * use.sensible_W_person;
   for (int i = state.first_class; i < state.first_class + state.classes; ++i) {
     const ClimateClass& c = climate_->classes[static_cast<std::size_t>(i)];
-    double gains_W = zone.floor_share * (people_W * c.occupied_fraction +
-                                         use.zone_heat_share * (c.lights_W + c.plugs_W)) -
-                     zone.sky_loss_W;
+    double gains_W =
+        zone.floor_share *
+            (people_W * c.occupied_fraction +
+             use.zone_heat_share * (use.lights_scale * c.lights_W + use.plugs_scale * c.plugs_W)) -
+        zone.sky_loss_W;
     const std::span<const double> irradiance = climate_->irradiance(i);
     for (std::size_t k = 0; k < irradiance.size(); ++k) {
       gains_W += zone.solar_aperture_m2[k] * irradiance[k];
@@ -227,8 +229,8 @@ void Epc::evaluate_month(const Building& building, const ClimateMonth& month,
     hours += state->hours;
     for (int i = state->first_class; i < state->first_class + state->classes; ++i) {
       const ClimateClass& c = climate_->classes[static_cast<std::size_t>(i)];
-      energy[EndUse::lighting] += 1e-3 * c.hours * c.lights_W;
-      energy[EndUse::plugs] += 1e-3 * c.hours * c.plugs_W;
+      energy[EndUse::lighting] += 1e-3 * c.hours * building.use.lights_scale * c.lights_W;
+      energy[EndUse::plugs] += 1e-3 * c.hours * building.use.plugs_scale * c.plugs_W;
     }
   }
   energy[EndUse::exterior] = hours * building.use.exterior_kW;

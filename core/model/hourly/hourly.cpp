@@ -34,11 +34,12 @@ double covered(double reach_h, double distance_h) {
 }
 
 /// Electricity per cooling of the building's own chiller, relative to the nameplate:
-/// rises with wet bulb.
+/// rises with the lift from chilled water to wet bulb.
 double chiller_cost(const Building& building, double wet_bulb_C) {
   if (!building.chiller_cop) return 1.0;
-  return std::max(1.0 + building.chiller_lift_per_K * (wet_bulb_C - kRatedWetBulb_C),
-                  kLeastChillerCost);
+  const double lift_K =
+      (wet_bulb_C - kRatedWetBulb_C) - (building.chilled_water_C - kRatedChilledWater_C);
+  return std::max(1.0 + building.chiller_lift_per_K * lift_K, kLeastChillerCost);
 }
 
 double weekly_mean(const HourlySchedule& schedule) {
@@ -197,8 +198,8 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
   operation.humidity_ratio = h.humidity_ratio;
   operation.wind_m_s = h.wind_m_s;
   operation.people_share = h.occupied_fraction;
-  operation.lights_W = h.lights_W;
-  operation.plugs_W = h.plugs_W;
+  operation.lights_W = building_.use.lights_scale * h.lights_W;
+  operation.plugs_W = building_.use.plugs_scale * h.plugs_W;
   operation.exterior_W = 1000.0 * building_.use.exterior_kW * h.dark_share;
   follow_timetable(h, operation);
   switch_off(h, operation);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/sample_building.hpp"
 
 namespace recald::model {
@@ -34,6 +36,55 @@ TEST(ParameterLibrary, DynamicSimulationsParameterIsRefused) {
   const auto found = find_parameter("visible_reflectance_scale");
   ASSERT_FALSE(found.has_value());
   EXPECT_EQ(found.error().code, ErrorCode::unsupported);
+  EXPECT_THAT(found.error().message, HasSubstr("this model has no such quantity"));
+}
+
+// A wall of U = 0.5 is 2 m2 K/W, of which the films are 0.17 and the wall 1.83.
+TEST(ParameterLibrary, ConductivityChangesTheWallButNotItsFilmsNorTheGlass) {
+  Building building = sample_building();
+  building.surfaces = {{.name = "wall",
+                        .kind = SurfaceKind::wall,
+                        .area_m2 = 1.0,
+                        .u_W_m2K = 0.5,
+                        .orientation = {}},
+                       {.name = "sheet",
+                        .kind = SurfaceKind::roof,
+                        .area_m2 = 1.0,
+                        .u_W_m2K = 8.0,
+                        .orientation = {}},
+                       {.name = "pane",
+                        .kind = SurfaceKind::window,
+                        .area_m2 = 1.0,
+                        .u_W_m2K = 2.0,
+                        .orientation = {}}};
+  (*find_parameter("conductivity_scale"))->set(building, 1.15);
+  EXPECT_DOUBLE_EQ(building.surfaces[0].u_W_m2K, 1.0 / (0.17 + 1.83 / 1.15));
+  EXPECT_DOUBLE_EQ(building.surfaces[1].u_W_m2K, 8.0);
+  EXPECT_DOUBLE_EQ(building.surfaces[2].u_W_m2K, 2.0);
+  (*find_parameter("thermal_resistance_scale"))->set(building, 1.15);
+  EXPECT_DOUBLE_EQ(building.surfaces[0].u_W_m2K, 0.5);
+  EXPECT_DOUBLE_EQ(building.surfaces[1].u_W_m2K, 8.0);
+}
+
+TEST(ParameterLibrary, DensityAndAbsorptanceAreOfTheFabric) {
+  Building building = sample_building();
+  const double capacity = building.heat_capacity_J_m2K;
+  (*find_parameter("density_scale"))->set(building, 0.97);
+  EXPECT_DOUBLE_EQ(building.heat_capacity_J_m2K, 0.97 * capacity);
+  const Building before = building;
+  (*find_parameter("thermal_absorptance_scale"))->set(building, 0.88);
+  for (std::size_t i = 0; i < building.surfaces.size(); ++i) {
+    const double factor = building.surfaces[i].kind == SurfaceKind::window ? 1.0 : 0.88;
+    EXPECT_DOUBLE_EQ(building.surfaces[i].emissivity, factor * before.surfaces[i].emissivity);
+  }
+}
+
+TEST(ParameterLibrary, ADesignValueMayComeFromAModelThatIsNoBuilding) {
+  const auto library = parameter_library();
+  const auto lights = std::ranges::find(library, "lighting_power", &ParameterDefinition::name);
+  ASSERT_NE(lights, library.end());
+  EXPECT_FALSE(lights->is_modelled());
+  EXPECT_EQ(make_parameter(*lights, 10.0)->prior, (Prior{7.0, 10.0, 14.0}));
 }
 
 // Shops and halls leak more than the seed's offices: the drawings know better than the library.

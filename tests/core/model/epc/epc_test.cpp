@@ -228,6 +228,25 @@ TEST(EpcModel, ThetaLeavesNoTrace) {
   EXPECT_EQ(first, third);
 }
 
+// Lamps that take less use less themselves, and leave less to cool and more to heat.
+TEST(EpcModel, LightsAndPlugsFollowTheirParameters) {
+  const Building building = sample_building();
+  const auto climate = classes_of(building, kClassesPerState, 12);
+  EpcModel model{building,
+                 {*find_parameter("lighting_use"), *find_parameter("electric_use")},
+                 {*default_meter_map(metering::Utility::electricity)},
+                 climate};
+  const auto year = [&](double lights, double all, std::initializer_list<EndUse> uses) {
+    const double theta[] = {lights, all};
+    const auto energy = model.end_uses(theta);
+    return year_kWh({energy.begin(), energy.end()}, uses);
+  };
+  EXPECT_NEAR(year(0.6, 0.5, {lighting}), 0.3 * year(1.0, 1.0, {lighting}), 1e-6);
+  EXPECT_NEAR(year(0.6, 0.5, {plugs}), 0.5 * year(1.0, 1.0, {plugs}), 1e-6);
+  EXPECT_LT(year(0.6, 1.0, {sensible_cooling}), year(1.0, 1.0, {sensible_cooling}));
+  EXPECT_GT(year(0.6, 1.0, {zone_heating, reheat}), year(1.0, 1.0, {zone_heating, reheat}));
+}
+
 TEST(EpcModel, EvaluationDoesNotAllocate) {
   const Building building = sample_building();
   const auto climate = classes_of(building, kClassesPerState);

@@ -53,6 +53,25 @@ TEST(HourlyModel, GivesDailyAveragesAndPeaksOfLocalMonths) {
   EXPECT_NEAR(outputs[8 + 2], march_kW.col(0).sum() / 4.0 / 31.0, 1e-9);
 }
 
+TEST(HourlyModel, LightsAndPlugsFollowTheirParameters) {
+  const Building building = sample_building();
+  MeterMap lights;
+  lights[EndUse::lighting] = 1.0;
+  MeterMap plugs;
+  plugs[EndUse::plugs] = 1.0;
+  HourlyModel model{
+      building,
+      {*find_parameter("lighting_use"), *find_parameter("plug_use")},
+      {lights, plugs, meters()[1]},
+      {{0, OutputKind::daily_kWh}, {1, OutputKind::daily_kWh}, {2, OutputKind::daily_kWh}},
+      std::make_shared<const Drivers>(sample_drivers(building, 1))};
+  const std::vector<double> before = recald::evaluate(model, std::array{1.0, 1.0});
+  const std::vector<double> after = recald::evaluate(model, std::array{0.6, 0.5});
+  EXPECT_NEAR(after[0], 0.6 * before[0], 1e-9 * before[0]);
+  EXPECT_NEAR(after[1], 0.5 * before[1], 1e-9 * before[1]);
+  EXPECT_LT(after[2], before[2]);
+}
+
 TEST(HourlyModel, CarriesItsAlterationsIntoClones) {
   const auto drivers = std::make_shared<const Drivers>(sample_drivers(sample_building(), 2));
   HourlyModel plain = make_model(drivers);

@@ -339,22 +339,26 @@ TEST(Hourly, AnOwnChillerPaysByElectricity) {
   EXPECT_LT((own.col(0) - district.col(0) - district.col(1) / 4.0).abs().maxCoeff(), 1e-9);
 }
 
-TEST(Hourly, AnOwnChillerPaysForEachKelvinOfWetBulb) {
+TEST(Hourly, AnOwnChillerPaysForEachKelvinFromChilledWaterToWetBulb) {
   Hourly hourly = make_hourly(8);
-  Building building = sample_building();
-  building.chiller_lift_per_K = 0.03;
-  const Eigen::ArrayXXd district = power_of(hourly, building);
-  building.chiller_cop = 4.0;
-  const Eigen::ArrayXXd own = power_of(hourly, building);
   const Drivers& drivers = hourly.drivers();
-  for (std::size_t i = 0; i < drivers.hours.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const double wet_C = weather::wet_bulb_C(drivers.hours[i].dry_bulb_C,
-                                             drivers.hours[i].humidity_ratio, drivers.pressure_Pa);
-    const double cost = std::max(1.0 + 0.03 * (wet_C - 22.0), 0.4);
-    ASSERT_NEAR(own(row, 0) - district(row, 0), cost * district(row, 1) / 4.0, 1e-9) << i;
+  for (const double warmer_K : {0.0, 2.0}) {
+    SCOPED_TRACE(warmer_K);
+    Building building = sample_building();
+    building.chiller_lift_per_K = 0.03;
+    building.chilled_water_C = kRatedChilledWater_C + warmer_K;
+    const Eigen::ArrayXXd district = power_of(hourly, building);
+    building.chiller_cop = 4.0;
+    const Eigen::ArrayXXd own = power_of(hourly, building);
+    for (std::size_t i = 0; i < drivers.hours.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const double wet_C = weather::wet_bulb_C(
+          drivers.hours[i].dry_bulb_C, drivers.hours[i].humidity_ratio, drivers.pressure_Pa);
+      const double cost = std::max(1.0 + 0.03 * (wet_C - 22.0 - warmer_K), 0.4);
+      ASSERT_NEAR(own(row, 0) - district(row, 0), cost * district(row, 1) / 4.0, 1e-9) << i;
+    }
+    EXPECT_TRUE((own.rightCols(2) == district.rightCols(2)).all());
   }
-  EXPECT_TRUE((own.rightCols(2) == district.rightCols(2)).all());
 }
 
 TEST(Hourly, NightFansRunWhileRoomsAreHeatedAndOnlyThen) {
