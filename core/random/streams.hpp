@@ -37,15 +37,16 @@ inline constexpr Block kBridge{1ULL << 35, 1};
 inline constexpr Block kCut{1ULL << 36, kChainsMax};          ///< Chains given draws of an effect.
 inline constexpr Block kHypercube{1ULL << 37, 1};             ///< Of `recald doe`.
 inline constexpr Block kPredictions{1ULL << 38, kChainsMax};  ///< Of measured points, one a chain.
-inline constexpr Block kCauses{1ULL << 40, 1};                ///< Of an alarm.
-inline constexpr Block kVote{1ULL << 41, 1};  ///< Resampled months of a monthly model.
+inline constexpr Block kSavings{1ULL << 39, 3};  ///< Of measures, at a calibration's draws.
+inline constexpr Block kCauses{1ULL << 40, 1};   ///< Of an alarm.
+inline constexpr Block kVote{1ULL << 41, 1};     ///< Resampled months of a monthly model.
 /// Of a followed site, two a month. All windows share them and differ only in what they believe.
 inline constexpr Block kMonths{0, 2 * kMonthsMax};
 inline constexpr Block kPasses{0, kPassesMax};  ///< Of a diagnosis.
 
 inline constexpr std::array kOfCalibration{kChains,    kFolds,       kScreening, kDesign,
                                            kPilots,    kPopulations, kBridge,    kCut,
-                                           kHypercube, kPredictions};
+                                           kHypercube, kPredictions, kSavings};
 inline constexpr std::array kOfDiagnosis{kPasses, kVote};
 inline constexpr std::array kOfFollowing{kMonths, kDesign, kCauses};
 
