@@ -186,10 +186,11 @@ void write_peak_section(Html& html, const ReportData& data) {
   open_section(html, "peaks", "How high were the peaks?");
   if (!has_model(data)) {
     html.element("p", "There is no calibrated model yet: the figures show measurements only.");
-  } else {
+  } else if (std::ranges::any_of(data.outputs, &OutputResult::is_peak)) {
     html.element("p",
-                 "This model works on monthly sums and has no peaks: the figures show measurements "
-                 "only, and nothing here was calibrated.");
+                 "The figures show measurements. What the model makes of them stands under Fit.");
+  } else {
+    html.element("p", "The figures show measurements only: peaks were not calibrated.");
   }
   write_peak_figures(html, data);
   html.markup("</section>\n");

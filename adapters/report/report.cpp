@@ -18,6 +18,7 @@ constexpr Part kParts[] = {
     {"verdict", "In short", write_verdict_section},
     {"data", "Data", write_data_section},
     {"fit", "Fit", write_fit_section},
+    {"models", "Models", write_comparison_section},
     {"costs", "Cost", write_forecast_cost_section},
     {"parameters", "Parameters", write_parameter_section},
     {"peaks", "Peaks", write_peak_section},

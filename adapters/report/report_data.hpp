@@ -194,6 +194,22 @@ struct ForecastCost {
   std::optional<ForecastSum> emissions_t;  ///< CO2.
 };
 
+/// What one model makes of one meter.
+struct ComparedFit {
+  assessment::PeriodMetrics before;    ///< The model at its prior modes.
+  assessment::PeriodMetrics after;     ///< The calibrated model.
+  assessment::PeriodMetrics forecast;  ///< With what is known of its errors.
+};
+
+/// Another model of the same site, or this one, beside the others.
+struct ComparedModel {
+  std::string name;  ///< "EnergyPlus"
+  std::string note;  ///< Why it has no figures; empty: it has.
+  std::vector<std::pair<std::string, ComparedFit>> outputs;  ///< By label.
+  /// By label: "0.042 (0.031 to 0.055) person/m2".
+  std::vector<std::pair<std::string, std::string>> parameters;
+};
+
 struct ReportData {
   std::string title;
   std::string generated_at;  ///< Set by the caller; the report has no clock.
@@ -220,6 +236,7 @@ struct ReportData {
   std::vector<ForecastCost> forecast_costs;  ///< Likewise, or nothing is forecast.
   ElectricityProfile profile;
   std::vector<LoadGrid> loads;
+  std::vector<ComparedModel> compared;  ///< Empty: the site has one model.
 
   std::vector<std::string> not_known;  ///< What this report cannot show.
 };

@@ -36,6 +36,9 @@ void write_cost_section(Html& html, const ReportData& data);
 /// What the forecast months cost and emit, with a band.
 void write_forecast_cost_section(Html& html, const ReportData& data);
 
+/// The site's models beside each other: fit before and after, forecasts, parameters.
+void write_comparison_section(Html& html, const ReportData& data);
+
 void write_not_known_section(Html& html, const ReportData& data);
 
 /// What is needed to reproduce the numbers, and the licences of the drawing software.
