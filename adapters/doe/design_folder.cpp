@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 
+#include "adapters/doe/failed_runs_file.hpp"
 #include "adapters/doe/priors_file.hpp"
 #include "adapters/doe/table_reader.hpp"
 #include "core/absent.hpp"
@@ -104,9 +105,13 @@ class RunReader {
   RunReader(TableReader& table, DesignFolder& design) : table_{table}, design_{design} {}
 
   Result<void> read() {
+    auto failed = read_failed_runs(table_.file().parent_path());
+    if (!failed) return tl::unexpected(failed.error());
+    failed_ = std::move(*failed);
     if (auto found = find_columns(); !found) return found;
     if (auto all = for_each_row(table_, [this] { return read_row(); }); !all) return all;
     note_open_end(table_, design_.notes);
+    note_failed();
     if (design_.runs.size() < 2) {
       return failure(ErrorCode::not_enough_data,
                      fmt::format("'{}' has {} runs; a design needs at least 2, and a useful one "
@@ -147,6 +152,7 @@ class RunReader {
     const auto run = table_.whole_number(run_);
     if (!run) return tl::unexpected(run.error());
     if (!seen_.insert(*run).second) return table_.wrong(fmt::format("run {} comes twice", *run));
+    if (failed_.contains(*run)) return {};
     design_.runs.push_back(*run);
     for (const std::size_t column : columns_) {
       const auto value = table_.number(column);
@@ -169,6 +175,13 @@ class RunReader {
       note_outside(parameter, column);
     }
     return {};
+  }
+
+  void note_failed() {
+    if (failed_.empty()) return;
+    const auto& [run, because] = *failed_.begin();
+    design_.notes.push_back(fmt::format("{} of {} runs failed and are left out; run {}: {}",
+                                        failed_.size(), seen_.size(), run, because));
   }
 
   void note_outside(const Parameter& parameter, const Eigen::Ref<const Eigen::VectorXd>& values) {
@@ -195,6 +208,7 @@ class RunReader {
   std::vector<std::size_t> columns_;
   std::vector<double> values_;
   std::set<int> seen_;
+  std::map<int, std::string> failed_;
 };
 
 /// Reads doe_outputs.csv: every run in every month.

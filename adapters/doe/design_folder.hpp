@@ -6,6 +6,7 @@
 ///     doe_outputs.csv   run,month, one column per output    every run has every month
 ///     inputs.csv        month, one column per model input   may cover more months than the design
 ///     measurements.csv  month, one column per output        other columns are ignored
+///     failed.csv        run,because                         these runs have no outputs
 ///
 /// A month is YYYY-MM, or a number in all files. A folder holds the runs of one building: they
 /// differ only in the parameters and share the same weather.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "adapters/doe/failed_runs_file.hpp"
 #include "adapters/doe/priors_file.hpp"
 #include "adapters/doe/table_reader.hpp"
 #include "adapters/system/write_file.hpp"
@@ -172,6 +173,7 @@ Result<DesignRunsSoFar> open_design(const fs::path& folder, const DesignPlan& pl
 
 Result<void> write_outputs(const fs::path& folder, const DesignPlan& plan,
                            const DesignRunsSoFar& runs) {
+  if (auto written = write_failed_runs(folder, runs.failed); !written) return written;
   return system::write_file(folder / "doe_outputs.csv", outputs_csv(plan, runs));
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct DesignPlan {
 struct DesignRunsSoFar {
   Eigen::MatrixXd outputs;  ///< (runs x outputs * months), output-major; NaN in rows not yet run.
   std::vector<bool> done;   ///< (runs)
+  std::map<int, std::string> failed = {};  ///< Why, by number of the run.
 
   [[nodiscard]] int done_count() const;
 };
@@ -40,7 +42,8 @@ struct DesignRunsSoFar {
 [[nodiscard]] Result<DesignRunsSoFar> open_design(const std::filesystem::path& folder,
                                                   const DesignPlan& plan);
 
-/// Writes the finished runs to doe_outputs.csv. After a crash the file is either new or unchanged.
+/// Writes the finished runs to doe_outputs.csv and those that failed to failed.csv. After a crash
+/// the file is either new or unchanged.
 [[nodiscard]] Result<void> write_outputs(const std::filesystem::path& folder,
                                          const DesignPlan& plan, const DesignRunsSoFar& runs);
 

@@ -44,12 +44,19 @@ Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& t
 }
 
 Result<void> FolderEngine::run_rows(const std::vector<Eigen::Index>& rows,
-                                    const ForEachIndex& executor) {
-  const auto outputs = behind_->run(plan_.theta(rows, Eigen::all), executor, {});
+                                    const ForEachIndex& executor, const Observer& observer) {
+  const auto outputs = behind_->run(plan_.theta(rows, Eigen::all), executor, observer);
   if (!outputs) return tl::unexpected(outputs.error());
+  for (const FailedRun& failed : behind_->failed_runs()) {
+    const Eigen::Index row = rows[static_cast<std::size_t>(failed.row)];
+    runs_.failed[static_cast<int>(row) + 1] = failed.because;
+  }
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    runs_.outputs.row(rows[i]) = outputs->row(static_cast<Eigen::Index>(i));
+    const auto outputs_of_run = outputs->row(static_cast<Eigen::Index>(i));
+    if (!outputs_of_run.allFinite()) continue;
+    runs_.outputs.row(rows[i]) = outputs_of_run;
     runs_.done[static_cast<std::size_t>(rows[i])] = true;
+    runs_.failed.erase(static_cast<int>(rows[i]) + 1);
   }
   return write_outputs(folder_, plan_, runs_);
 }
@@ -68,15 +75,26 @@ Result<Eigen::MatrixXd> FolderEngine::run(const Eigen::MatrixXd& theta,
                                folder_.string()));
   }
   const auto total = static_cast<int>(runs_.done.size());
+  const std::ptrdiff_t batch = behind_ != nullptr && behind_->keeps_runs()
+                                   ? std::max<std::ptrdiff_t>(std::ssize(missing), 1)
+                                   : kRunsPerWrite;
   for (auto next = missing.begin(); next != missing.end();) {
-    if (observer && !observer(done_count(), total)) {
+    const auto end = next + std::min(batch, missing.end() - next);
+    const int before = total - static_cast<int>(missing.end() - next);
+    int reached = before;
+    const auto goes_on = [&](int done, int) {
+      reached = before + done;
+      return !observer || observer(reached, total);
+    };
+    auto ran = goes_on(0, 0) ? run_rows({next, end}, executor, goes_on)
+                             : Result<void>{failure(ErrorCode::cancelled, "stopped")};
+    if (!ran && ran.error().code == ErrorCode::cancelled) {
       return failure(ErrorCode::cancelled,
                      fmt::format("stopped after {} of {} runs; the same command goes on with the "
                                  "others",
-                                 done_count(), total));
+                                 reached, total));
     }
-    const auto end = next + std::min(kRunsPerWrite, missing.end() - next);
-    if (auto ran = run_rows({next, end}, executor); !ran) return tl::unexpected(ran.error());
+    if (!ran) return tl::unexpected(ran.error());
     next = end;
   }
   return Eigen::MatrixXd{runs_.outputs(*rows, Eigen::all)};

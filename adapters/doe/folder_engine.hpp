@@ -19,8 +19,11 @@ class FolderEngine final : public Engine {
 
   /// Number of runs in the folder.
   [[nodiscard]] int done_count() const { return runs_.done_count(); }
+  /// Why runs failed, by number; they are tried again by the next `run`.
+  [[nodiscard]] const std::map<int, std::string>& failed() const { return runs_.failed; }
 
-  /// Writes after every few runs, so that an interruption loses little.
+  /// Writes after every few runs, so that an interruption loses little; once where the engine keeps
+  /// its runs itself. A run that fails is NaN and stands in `failed`.
   /// @param theta  Rows of the plan.
   /// @return the outputs; or not_found if a run is missing and there is no engine behind;
   ///         invalid_value for a row that is not in the plan; an error of the engine behind;
@@ -33,7 +36,8 @@ class FolderEngine final : public Engine {
 
   /// @return the plan's row for each row of theta, or invalid_value.
   [[nodiscard]] Result<std::vector<Eigen::Index>> rows_of(const Eigen::MatrixXd& theta) const;
-  Result<void> run_rows(const std::vector<Eigen::Index>& rows, const ForEachIndex& executor);
+  Result<void> run_rows(const std::vector<Eigen::Index>& rows, const ForEachIndex& executor,
+                        const Observer& observer);
 
   std::filesystem::path folder_;
   DesignPlan plan_;

@@ -76,6 +76,8 @@ FrozenSizes freeze_sizes(const std::vector<ComponentSize>& sizes, Json& objects)
         if (!is_autosized(value)) continue;
         const auto size = by_field.find({to_lower(type), to_lower(name), field});
         if (size == by_field.end()) {
+          // What EnergyPlus calculates anew in each run (a person's sensible heat) is no size.
+          if (to_lower(value.get<std::string>()) == "autocalculate") continue;
           result.left.push_back(fmt::format("{}/{}/{}", type, name, field));
         } else {
           value = size->second;

@@ -11,10 +11,12 @@
 #include <set>
 #include <utility>
 
+#include "adapters/energyplus/known_parameters.hpp"
 #include "adapters/energyplus/meter_output.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/write_file.hpp"
 #include "core/absent.hpp"
+#include "core/weather/daily_inputs.hpp"
 
 namespace recald::energyplus {
 namespace {
@@ -39,27 +41,59 @@ std::pair<Day, Day> days_to_run(const std::vector<metering::Month>& months, int 
   return {Day{begin}, Day{end}};
 }
 
+std::optional<std::vector<double>> numbers_in(const Json& json, const char* key,
+                                              std::size_t count) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_array() || found->size() != count) return {};
+  std::vector<double> numbers;
+  numbers.reserve(count);
+  for (const auto& value : *found) {
+    if (!value.is_number()) return {};
+    numbers.push_back(value.get<double>());
+  }
+  return numbers;
+}
+
 /// The figures of a run that was made before; none where the file is not whole.
-std::optional<std::vector<double>> kept_figures(const std::filesystem::path& file,
-                                                std::size_t count) {
+std::optional<RunFigures> kept_figures(const std::filesystem::path& file, std::size_t months,
+                                       std::size_t days) {
   std::ifstream in{file};
   if (!in) return {};
-  const auto json = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || !json.contains("figures") || !json["figures"].is_array()) return {};
-  std::vector<double> figures;
-  for (const auto& value : json["figures"]) {
-    if (!value.is_number()) return {};
-    figures.push_back(value.get<double>());
+  const auto json = Json::parse(in, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) return {};
+  auto of_months = numbers_in(json, "figures", months);
+  auto of_days = numbers_in(json, "days", days);
+  if (!of_months || !of_days) return {};
+  return RunFigures{std::move(*of_months), std::move(*of_days)};
+}
+
+/// Of days six digits are kept: there are many, and they are summed.
+std::string kept_text(const RunFigures& figures) {
+  const auto digits = [](double value) { return fmt::format("{:.6g}", value); };
+  std::vector<std::string> days(figures.days.size());
+  std::ranges::transform(figures.days, days.begin(), digits);
+  return fmt::format(R"({{"figures":{},"days":[{}]}})", Json(figures.months).dump(),
+                     fmt::join(days, ","));
+}
+
+/// Takes over what `from` has and `to` lacks.
+void fill_in(const std::vector<double>& from, std::vector<double>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    if (!std::isnan(from[i])) to[i] = from[i];
   }
-  if (figures.size() != count) return {};
-  return figures;
+}
+
+bool are_whole(const std::vector<double>& figures) {
+  return std::ranges::all_of(figures, [](double figure) { return std::isfinite(figure); });
 }
 
 }  // namespace
 
 EnergyPlusEngine::EnergyPlusEngine(EngineSetup setup, const metering::LocalCalendar& calendar,
                                    std::string fingerprint)
-    : setup_{std::move(setup)}, calendar_{calendar}, fingerprint_{std::move(fingerprint)} {}
+    : setup_{std::move(setup)}, calendar_{calendar}, fingerprint_{std::move(fingerprint)} {
+  days_ = weather::days_of(setup_.months);
+}
 
 Result<std::unique_ptr<EnergyPlusEngine>> EnergyPlusEngine::make(
     EngineSetup setup, const metering::LocalCalendar& calendar) {
@@ -67,14 +101,17 @@ Result<std::unique_ptr<EnergyPlusEngine>> EnergyPlusEngine::make(
   digest.add(setup.model.objects.dump());
   digest.add(setup.program.version);
   for (const ModelOutput& output : setup.outputs) {
-    digest.add(output.is_peak ? "peak" : "mean");
+    digest.add(output.is_peak ? fmt::format("peak {}", output.interval_noise) : "mean");
     for (const SignedMeter& meter : output.meters) {
       digest.add(fmt::format("{}{}", meter.sign, meter.name));
     }
   }
   for (const TargetedParameter& one : setup.parameters) {
-    digest.add(fmt::format("{}", static_cast<int>(one.change)));
-    for (const Target& target : one.targets) digest.add(target.pattern);
+    digest.add(fmt::format("{} {:a}", static_cast<int>(one.change), one.design));
+    for (const Target& target : one.targets) {
+      digest.add(fmt::format("{} {}", static_cast<int>(target.sense), target.most));
+      for (const auto& field : target.fields) digest.add(field.to_string());
+    }
   }
   std::set<int> years;
   for (const metering::Month month : setup.months) {
@@ -97,6 +134,12 @@ Result<std::unique_ptr<EnergyPlusEngine>> EnergyPlusEngine::make(
       new EnergyPlusEngine{std::move(setup), calendar, digest.hex()}};
 }
 
+std::vector<Parameter> EnergyPlusEngine::parameters() const {
+  std::vector<Parameter> parameters;
+  for (const TargetedParameter& one : setup_.parameters) parameters.push_back(one.parameter);
+  return parameters;
+}
+
 std::string EnergyPlusEngine::key_of(const Eigen::VectorXd& values) const {
   system::Sha256 digest;
   digest.add(fingerprint_);
@@ -104,9 +147,9 @@ std::string EnergyPlusEngine::key_of(const Eigen::VectorXd& values) const {
   return digest.hex().substr(0, kKeyDigits);
 }
 
-Result<std::vector<double>> EnergyPlusEngine::run_year(
-    const Json& objects, int year, const std::filesystem::path& folder,
-    const std::function<bool()>& keep_going) const {
+Result<RunFigures> EnergyPlusEngine::run_year(const Json& objects, int year,
+                                              const std::filesystem::path& folder,
+                                              const std::function<bool()>& keep_going) const {
   const auto [first, last] = days_to_run(setup_.months, year);
   Json prepared = objects;
   const std::vector<std::string> names = meters_of(setup_.outputs);
@@ -116,40 +159,43 @@ Result<std::vector<double>> EnergyPlusEngine::run_year(
   if (!sql) return tl::unexpected(sql.error());
   const auto meters = read_meters(*sql, names, calendar_.standard_offset(std::chrono::year{year}));
   if (!meters) return tl::unexpected(meters.error());
-  return monthly_figures(*meters, setup_.outputs, setup_.months, calendar_, setup_.peak_window);
+  return RunFigures{
+      monthly_figures(*meters, setup_.outputs, setup_.months, calendar_, setup_.peak_window),
+      daily_figures(*meters, setup_.outputs, days_, calendar_, setup_.peak_window)};
 }
 
-Result<std::vector<double>> EnergyPlusEngine::run_row(
-    const Eigen::VectorXd& values, const std::function<bool()>& keep_going) const {
-  const std::size_t count = setup_.outputs.size() * setup_.months.size();
+Result<RunFigures> EnergyPlusEngine::run_row(const Eigen::VectorXd& values,
+                                             const std::function<bool()>& keep_going) const {
+  const std::size_t month_count = setup_.outputs.size() * setup_.months.size();
+  const std::size_t day_count = setup_.outputs.size() * days_.size();
   const std::string key = key_of(values);
   const std::filesystem::path kept = setup_.folder / (key + ".json");
-  if (auto figures = kept_figures(kept, count)) return std::move(*figures);
+  if (auto figures = kept_figures(kept, month_count, day_count)) return std::move(*figures);
 
   Json objects = setup_.model.objects;
   for (std::size_t j = 0; j < setup_.parameters.size(); ++j) {
     const TargetedParameter& one = setup_.parameters[j];
     for (const Target& target : one.targets) {
-      apply(target, one.change, values[static_cast<Eigen::Index>(j)], objects);
+      apply(target, one.change, one.amount(values[static_cast<Eigen::Index>(j)]), objects);
     }
   }
+  settle(setup_.model.objects, objects);
   const std::filesystem::path folder = setup_.folder / key;
-  std::vector<double> figures(count, kAbsent);
+  RunFigures figures{std::vector<double>(month_count, kAbsent),
+                     std::vector<double>(day_count, kAbsent)};
   for (const auto& [year, weather] : setup_.weather) {
     const bool has_months = std::ranges::any_of(
         setup_.months, [&](metering::Month month) { return year_of(month) == year; });
     if (!has_months) continue;
     const auto of_year = run_year(objects, year, folder, keep_going);
     if (!of_year) return of_year;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!std::isnan((*of_year)[i])) figures[i] = (*of_year)[i];
-    }
+    fill_in(of_year->months, figures.months);
+    fill_in(of_year->days, figures.days);
   }
-  if (std::ranges::any_of(figures, [](double figure) { return !std::isfinite(figure); })) {
+  if (!are_whole(figures.months) || !are_whole(figures.days)) {
     return failure(ErrorCode::not_finite, "EnergyPlus did not report all of a month");
   }
-  if (auto written = system::write_file(kept, nlohmann::json{{"figures", figures}}.dump());
-      !written) {
+  if (auto written = system::write_file(kept, kept_text(figures)); !written) {
     return tl::unexpected(written.error());
   }
   std::error_code ignored;
@@ -163,7 +209,7 @@ Result<Eigen::MatrixXd> EnergyPlusEngine::run(const Eigen::MatrixXd& theta,
   assert(theta.cols() == static_cast<Eigen::Index>(setup_.parameters.size()));
   if (auto made = system::make_folder(setup_.folder); !made) return tl::unexpected(made.error());
   const auto rows = static_cast<std::size_t>(theta.rows());
-  std::vector<Result<std::vector<double>>> results(rows, std::vector<double>{});
+  std::vector<Result<RunFigures>> results(rows, RunFigures{});
   std::atomic<int> done = 0;
   std::atomic<bool> is_stopped = false;
   std::mutex telling;
@@ -174,7 +220,15 @@ Result<Eigen::MatrixXd> EnergyPlusEngine::run(const Eigen::MatrixXd& theta,
     if (!observer(done, static_cast<int>(rows))) is_stopped = true;
     return !is_stopped.load();
   };
+  // Equal rows are one run: each has a folder of its own, named after its values.
+  std::vector<std::size_t> run_of(rows);
+  std::map<std::string, std::size_t> first_of;
+  for (std::size_t row = 0; row < rows; ++row) {
+    run_of[row] =
+        first_of.try_emplace(key_of(theta.row(static_cast<Eigen::Index>(row))), row).first->second;
+  }
   executor(rows, [&](std::size_t row) {
+    if (run_of[row] != row) return;
     if (!keep_going()) {
       results[row] = failure(ErrorCode::cancelled, "stopped");
       return;
@@ -185,18 +239,22 @@ Result<Eigen::MatrixXd> EnergyPlusEngine::run(const Eigen::MatrixXd& theta,
 
   const auto columns = static_cast<Eigen::Index>(setup_.outputs.size() * setup_.months.size());
   Eigen::MatrixXd outputs = Eigen::MatrixXd::Constant(theta.rows(), columns, kAbsent);
-  std::vector<Parameter> parameters;
-  for (const TargetedParameter& one : setup_.parameters) parameters.push_back(one.parameter);
+  failures_.clear();
+  const auto day_columns = static_cast<Eigen::Index>(setup_.outputs.size() * days_.size());
+  daily_.setConstant(theta.rows(), day_columns, kAbsent);
   for (std::size_t row = 0; row < rows; ++row) {
     const auto index = static_cast<Eigen::Index>(row);
-    if (results[row]) {
-      outputs.row(index) = Eigen::Map<const Eigen::RowVectorXd>(results[row]->data(), columns);
+    const Result<RunFigures>& result = results[run_of[row]];
+    if (result) {
+      outputs.row(index) = Eigen::Map<const Eigen::RowVectorXd>(result->months.data(), columns);
+      daily_.row(index) = Eigen::Map<const Eigen::RowVectorXd>(result->days.data(), day_columns);
       continue;
     }
-    const Error& error = results[row].error();
-    if (error.code == ErrorCode::cancelled) return tl::unexpected(error);
-    const std::vector<double> values{theta.row(index).begin(), theta.row(index).end()};
-    failures_.push_back({describe(parameters, values), error.message});
+    const Error& error = result.error();
+    // A full disk is no fault of the run's parameters.
+    const bool stops_all = error.code == ErrorCode::cancelled || error.code == ErrorCode::io_failed;
+    if (stops_all) return tl::unexpected(error);
+    failures_.push_back({index, error.message});
   }
   return outputs;
 }

@@ -21,6 +21,15 @@ struct TargetedParameter {
   Parameter parameter;
   std::vector<Target> targets;
   Change change = Change::scale;
+  /// The value at which the model is as it stands: of a factor 1, of a difference 0, of a quantity
+  /// that is scaled or shifted to a value what the model has.
+  double design = 1.0;
+
+  /// What `apply` needs for a value of the parameter.
+  [[nodiscard]] double amount(double value) const {
+    if (change == Change::scale) return value / design;
+    return change == Change::add ? value - design : value;
+  }
 };
 
 /// All that is fixed between runs.
@@ -36,10 +45,10 @@ struct EngineSetup {
   std::filesystem::path folder;  ///< Runs are made and kept here.
 };
 
-/// A run that gave no months.
-struct FailedRun {
-  std::string at;       ///< The parameters' values in words.
-  std::string because;  ///< A sentence, in EnergyPlus's words where it had some.
+/// What a run gave, output-major.
+struct RunFigures {
+  std::vector<double> months;  ///< As the engine gives them.
+  std::vector<double> days;    ///< As `daily_figures`, of all days of the months.
 };
 
 /// Each run is kept as a small file named after all that it depends on. So a design that was
@@ -52,28 +61,42 @@ class EnergyPlusEngine final : public Engine {
   [[nodiscard]] static Result<std::unique_ptr<EnergyPlusEngine>> make(
       EngineSetup setup, const metering::LocalCalendar& calendar);
 
-  /// A row whose run fails is NaN and among `failures`; the others go on.
+  /// A row whose run fails is NaN and among `failed_runs`; the others go on.
   /// @return as Engine::run; io_failed: the folder cannot be written; cancelled: what was run is
   ///         kept.
   Result<Eigen::MatrixXd> run(const Eigen::MatrixXd& theta, const ForEachIndex& executor,
                               const Observer& observer) override;
 
-  [[nodiscard]] const std::vector<FailedRun>& failures() const { return failures_; }
+  [[nodiscard]] std::vector<FailedRun> failed_runs() const override { return failures_; }
+  [[nodiscard]] bool keeps_runs() const override { return true; }
+
+  [[nodiscard]] std::vector<Parameter> parameters() const;
+
+  /// Of all that a run depends on besides its parameters' values.
+  [[nodiscard]] const std::string& fingerprint() const { return fingerprint_; }
+
+  /// The days of the months, which `daily` is of.
+  [[nodiscard]] const std::vector<metering::Day>& days() const { return days_; }
+  /// Of the rows last run: energies in kWh, peaks in kW; NaN in rows that failed.
+  /// (rows x outputs * days), output-major.
+  [[nodiscard]] const Eigen::MatrixXd& daily() const { return daily_; }
 
  private:
   EnergyPlusEngine(EngineSetup setup, const metering::LocalCalendar& calendar,
                    std::string fingerprint);
 
-  [[nodiscard]] Result<std::vector<double>> run_row(const Eigen::VectorXd& values,
-                                                    const std::function<bool()>& keep_going) const;
-  [[nodiscard]] Result<std::vector<double>> run_year(const Json& objects, int year,
-                                                     const std::filesystem::path& folder,
-                                                     const std::function<bool()>& keep_going) const;
+  [[nodiscard]] Result<RunFigures> run_row(const Eigen::VectorXd& values,
+                                           const std::function<bool()>& keep_going) const;
+  [[nodiscard]] Result<RunFigures> run_year(const Json& objects, int year,
+                                            const std::filesystem::path& folder,
+                                            const std::function<bool()>& keep_going) const;
   [[nodiscard]] std::string key_of(const Eigen::VectorXd& values) const;
 
   EngineSetup setup_;
   const metering::LocalCalendar& calendar_;
   std::string fingerprint_;  ///< Of the setup and the weather's bytes.
+  std::vector<metering::Day> days_;
+  Eigen::MatrixXd daily_;
   std::vector<FailedRun> failures_;
 };
 

@@ -17,6 +17,7 @@ namespace recald::energyplus {
 namespace {
 
 constexpr std::size_t kNamesShown = 8;
+constexpr double kLeastDivisor = 1e-9;  // nobody is a very large area per person
 
 /// Whether a text is what a pattern with '*' and '?' describes, whatever the case.
 bool matches(std::string_view text, std::string_view pattern) {
@@ -174,6 +175,16 @@ Result<Target> find_target(const ModelDocument& model, std::string_view pattern)
                                advice(parts[depth], search.names())));
   }
   Target target{std::string{pattern}, search.found()};
+  // A Schedule:Compact has its times and its numbers in one list; "data/*/field" means the numbers.
+  const auto is_number = [&](const Json::json_pointer& f) {
+    return model.objects.at(f).is_number();
+  };
+  if (std::ranges::any_of(target.fields, is_number)) {
+    std::erase_if(target.fields, [&](const Json::json_pointer& field) {
+      const auto list = field.parent_pointer().parent_pointer();
+      return !is_number(field) && model.objects.at(list).is_array();
+    });
+  }
   for (const Json::json_pointer& field : target.fields) {
     const Json& value = model.objects.at(field);
     if (value.is_number()) continue;
@@ -185,21 +196,40 @@ Result<Target> find_target(const ModelDocument& model, std::string_view pattern)
   return target;
 }
 
+std::vector<Json::json_pointer> find_fields(const Json& objects, std::string_view pattern) {
+  Search search{parts_of(pattern)};
+  search.run(objects);
+  return search.found();
+}
+
 void apply(const Target& target, Change change, double value, Json& objects) {
+  const auto changed = [&](double before) {
+    switch (change) {
+      case Change::set:
+        return value;
+      case Change::scale:
+        return before * value;
+      case Change::add:
+        break;
+    }
+    return before + value;
+  };
   for (const Json::json_pointer& field : target.fields) {
     Json& node = objects.at(field);
     const double before = node.get<double>();
-    switch (change) {
-      case Change::set:
-        node = value;
+    double after = 0.0;
+    switch (target.sense) {
+      case Sense::direct:
+        after = changed(before);
         break;
-      case Change::scale:
-        node = before * value;
+      case Sense::reciprocal:
+        after = 1.0 / std::max(changed(1.0 / std::max(before, kLeastDivisor)), kLeastDivisor);
         break;
-      case Change::add:
-        node = before + value;
+      case Sense::complement:
+        after = 1.0 - changed(1.0 - before);
         break;
     }
+    node = std::min(after, target.most);
   }
 }
 

@@ -110,8 +110,7 @@ Result<std::filesystem::path> simulate(const Json& objects, const std::filesyste
   const bool went_well =
       ended->ending == system::Ending::exited && ended->exit_code == 0 && said.fatal.empty();
   if (went_well) return folder / kOutputFile;
-  return failure(said.words().empty() ? ErrorCode::io_failed : ErrorCode::invalid_value,
-                 failed_words(said, *ended, folder));
+  return failure(ErrorCode::invalid_value, failed_words(said, *ended, folder));
 }
 
 }  // namespace recald::energyplus

@@ -34,8 +34,8 @@ void prepare_objects(const RunRequest& request, Json& objects);
 /// Writes the prepared model into the folder and runs it there.
 /// @param objects  As `prepare_objects` left them.
 /// @param folder   Made, or emptied.
-/// @return the SQLite file of the run; or invalid_value: EnergyPlus refuses the model or breaks
-///         off, in its own first words; io_failed: it cannot be started, or died; out_of_range: it
+/// @return the SQLite file of the run; or invalid_value: EnergyPlus refuses the model, breaks off
+///         or dies, in its own first words; io_failed: it cannot be started; out_of_range: it
 ///         took too long; cancelled.
 [[nodiscard]] Result<std::filesystem::path> simulate(
     const Json& objects, const std::filesystem::path& weather, const std::filesystem::path& folder,

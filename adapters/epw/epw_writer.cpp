@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "core/weather/psychrometrics.hpp"
@@ -50,7 +52,10 @@ std::string summer_time(const metering::LocalCalendar& calendar, int year) {
 
 std::string header(int year, const weather::Location& location,
                    const metering::LocalCalendar& calendar, const std::set<Day>& holidays,
-                   std::string_view place) {
+                   std::string_view name) {
+  std::string place{name};
+  std::ranges::replace_if(
+      place, [](char c) { return c == ',' || c == '\n' || c == '\r'; }, ' ');
   std::string days;
   int count = 0;
   for (const Day day : holidays) {

@@ -11,6 +11,8 @@
 #include <numbers>
 
 #include "adapters/energyplus/component_sizes.hpp"
+#include "adapters/energyplus/read_model.hpp"
+#include "adapters/energyplus/trial.hpp"
 #include "adapters/epw/epw_writer.hpp"
 #include "adapters/system/parallel_for.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -166,21 +168,28 @@ TEST_F(RealEnergyPlus, AParameterChangesTheMonths) {
   const auto outputs =
       run->run((Eigen::MatrixXd(2, 1) << 1.0, 0.5).finished(), system::parallel_for(2), {});
   ASSERT_TRUE(outputs.has_value()) << outputs.error().message;
-  ASSERT_TRUE(run->failures().empty()) << run->failures().front().because;
+  ASSERT_TRUE(run->failed_runs().empty()) << run->failed_runs().front().because;
   const Eigen::RowVector4d whole{24.0, 24.0, 1.0, 1.0};
   EXPECT_LT((outputs->row(0) - whole).cwiseAbs().maxCoeff(), 1e-6) << *outputs;
   EXPECT_LT((outputs->row(1) - 0.5 * whole).cwiseAbs().maxCoeff(), 1e-6);
+  ASSERT_EQ(run->days().size(), 59u);
+  ASSERT_EQ(run->daily().cols(), 2 * 59);
+  EXPECT_TRUE(run->daily().row(0).head(59).isConstant(24.0, 1e-6)) << "kWh";
+  EXPECT_TRUE(run->daily().row(1).tail(59).isConstant(0.5, 1e-6)) << "kW";
 }
 
 TEST_F(RealEnergyPlus, WhatWasRunIsNotRunAgain) {
   const Eigen::MatrixXd one = Eigen::MatrixXd::Constant(1, 1, 1.25);
-  const auto first = engine(setup())->run(one, for_each_index_serially, {});
+  const auto made = engine(setup());
+  const auto first = made->run(one, for_each_index_serially, {});
   ASSERT_TRUE(first.has_value()) << first.error().message;
   EngineSetup without_program = setup();
   without_program.program.executable = "/no/such/energyplus";
-  const auto again = engine(without_program)->run(one, for_each_index_serially, {});
+  const auto kept = engine(without_program);
+  const auto again = kept->run(one, for_each_index_serially, {});
   ASSERT_TRUE(again.has_value());
   EXPECT_EQ(*again, *first);
+  EXPECT_TRUE(kept->daily().isApprox(made->daily(), 1e-5));
 }
 
 TEST_F(RealEnergyPlus, ARunThatFailsIsToldAndTheOthersGoOn) {
@@ -191,10 +200,11 @@ TEST_F(RealEnergyPlus, ARunThatFailsIsToldAndTheOthersGoOn) {
   const auto outputs =
       run->run((Eigen::MatrixXd(2, 1) << -1.0, 1.0).finished(), system::parallel_for(2), {});
   ASSERT_TRUE(outputs.has_value());
-  ASSERT_EQ(run->failures().size(), 1u);
-  EXPECT_EQ(run->failures().front().at, "lighting = -1 -");
-  EXPECT_THAT(run->failures().front().because, HasSubstr("EnergyPlus says"));
+  ASSERT_EQ(run->failed_runs().size(), 1u);
+  EXPECT_EQ(run->failed_runs().front().row, 0);
+  EXPECT_THAT(run->failed_runs().front().because, HasSubstr("EnergyPlus says"));
   EXPECT_TRUE(outputs->row(0).array().isNaN().all());
+  EXPECT_TRUE(run->daily().row(0).array().isNaN().all());
   EXPECT_TRUE(outputs->row(1).allFinite());
 }
 
@@ -203,8 +213,52 @@ TEST_F(RealEnergyPlus, AMeterThatTheModelDoesNotReportIsNamed) {
   wrong.outputs = {{"electricity", {{"Electricity:Facilty", 1.0}}, false}};
   const auto run = engine(wrong);
   ASSERT_TRUE(run->run(Eigen::MatrixXd::Ones(1, 1), for_each_index_serially, {}).has_value());
-  ASSERT_EQ(run->failures().size(), 1u);
-  EXPECT_THAT(run->failures().front().because, HasSubstr("does not report a meter"));
+  ASSERT_EQ(run->failed_runs().size(), 1u);
+  EXPECT_THAT(run->failed_runs().front().because, HasSubstr("does not report a meter"));
+}
+
+TEST_F(RealEnergyPlus, AnUndividedPeakWindowHasItsShareOfTheSteps) {
+  EngineSetup ten_minutes = setup();
+  ten_minutes.model.objects["Timestep"]["t"]["number_of_timesteps_per_hour"] = 6;
+  const auto outputs =
+      engine(ten_minutes)->run(Eigen::MatrixXd::Ones(1, 1), for_each_index_serially, {});
+  ASSERT_TRUE(outputs.has_value());
+  EXPECT_NEAR((*outputs)(0, 2), 1.0, 1e-6);
+}
+
+TEST_F(RealEnergyPlus, ATrialFindsTheMetersAndIsKept) {
+  const EngineSetup all = setup();
+  const auto tried = [&](const std::vector<std::string>& meters, const Program& program) {
+    return try_model(all.model, meters, std::chrono::year{2021} / 1 / 1, all.weather.at(2021),
+                     all.folder, program, {}, {});
+  };
+  const auto first = tried({"Electricity:Facility"}, program_);
+  ASSERT_TRUE(first.has_value()) << first.error().message;
+  EXPECT_EQ(first->model.objects, all.model.objects);
+  EXPECT_EQ(first->sizes.frozen, 0);
+  const Program nowhere{"/no/such/energyplus", program_.version};
+  EXPECT_TRUE(tried({"Electricity:Facility"}, nowhere).has_value());
+  EXPECT_THAT(tried({"Electricity:Facilty"}, program_).error().message,
+              HasSubstr("does not report a meter"));
+}
+
+TEST_F(RealEnergyPlus, AnIdfIsConvertedAndStaysAsItWas) {
+  const std::string text = "Version," + program_.version +
+                           ";\nBuilding,House,0,City,0.04,0.4,FullExterior,25,6;\n"
+                           "GlobalGeometryRules,UpperLeftCorner,Counterclockwise,World;\nSchedule:Constant,On,,1;\n";
+  write_text(folder_ / "house.idf", text);
+  const auto model = read_model(folder_ / "house.idf", program_);
+  ASSERT_TRUE(model.has_value()) << model.error().message;
+  EXPECT_EQ(model->version, program_.version);
+  EXPECT_TRUE(model->objects["Building"].contains("House"));
+  EXPECT_EQ(recald::testing::read_text(folder_ / "house.idf"), text);
+}
+
+TEST_F(RealEnergyPlus, AModelOfAnotherYearsReleaseIsRefused) {
+  write_text(folder_ / "old.epJSON",
+             R"({"Version": {"v": {"version_identifier": "9.5"}}, "Building": {"House": {}}})");
+  EXPECT_THAT(read_model(folder_ / "old.epJSON", program_).error().message,
+              HasSubstr("is a model of EnergyPlus 9.5 and the program is " + program_.version));
 }
 
 TEST_F(RealEnergyPlus, StopsWhenAskedTo) {

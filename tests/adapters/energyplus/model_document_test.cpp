@@ -35,6 +35,7 @@ TEST(ModelDocument, APatternFindsFieldsWhateverTheCase) {
   EXPECT_EQ(find_target(model(), "Lights/shop*/watts_per_floor_area")->fields.size(), 1u);
   EXPECT_EQ(find_target(model(), "Lights/*/fraction_radiant")->fields.size(), 1u);
   EXPECT_EQ(find_target(model(), "Schedule:Compact/Heating/data/1/field")->fields.size(), 1u);
+  EXPECT_EQ(find_target(model(), "Schedule:Compact/Heating/data/*/field")->fields.size(), 2u);
 }
 
 TEST(ModelDocument, WhatIsNotThereNamesTheNearest) {
@@ -47,7 +48,7 @@ TEST(ModelDocument, WhatIsNotThereNamesTheNearest) {
   EXPECT_THAT(refused("Lights"), HasSubstr("must have the form Type/Object/field"));
   EXPECT_THAT(refused("Fan:VariableVolume/*/maximum_flow_rate"),
               HasSubstr("is \"Autosize\", not a number; write the number that it stands for"));
-  EXPECT_THAT(refused("Schedule:Compact/Heating/data/*/field"), HasSubstr("not a number"));
+  EXPECT_THAT(refused("Schedule:Compact/Heating/data/0/field"), HasSubstr("not a number"));
 }
 
 TEST(ModelDocument, ChangesEveryFieldOfATarget) {
@@ -62,6 +63,22 @@ TEST(ModelDocument, ChangesEveryFieldOfATarget) {
   apply(lights, Change::set, 8.0, objects);
   EXPECT_EQ(objects["Lights"]["Core lights"]["watts_per_floor_area"], 8.0);
   EXPECT_EQ(objects["Lights"]["Core lights"]["fraction_radiant"], 0.4);
+}
+
+TEST(ModelDocument, AChangeIsOfTheQuantityHoweverTheFieldHasIt) {
+  const ModelDocument before = model();
+  Target target = find_target(before, "Lights/Shop*/watts_per_floor_area").value();
+  const auto changed = [&](Sense sense, Change change, double value) {
+    Json objects = before.objects;
+    target.sense = sense;
+    apply(target, change, value, objects);
+    return objects["Lights"]["Shop Lights"]["watts_per_floor_area"].get<double>();
+  };
+  EXPECT_DOUBLE_EQ(changed(Sense::reciprocal, Change::scale, 0.5), 40.0);
+  EXPECT_DOUBLE_EQ(changed(Sense::reciprocal, Change::set, 0.1), 10.0);
+  EXPECT_DOUBLE_EQ(changed(Sense::complement, Change::scale, 2.0), 1.0 + 2.0 * 19.0);
+  target.most = 25.0;
+  EXPECT_DOUBLE_EQ(changed(Sense::direct, Change::scale, 2.0), 25.0);
 }
 
 }  // namespace
