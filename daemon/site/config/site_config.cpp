@@ -408,27 +408,99 @@ std::optional<PeriodConfig> read_period(TomlReader table) {
   return PeriodConfig{*calibration, validation};
 }
 
+/// "[min, mode, max]" or the numbers by name, with their distribution.
+std::optional<Prior> read_prior(TomlReader& table, const std::string& name) {
+  const bool is_short = table.has("prior");
+  const auto three = table.numbers("prior", 3);
+  const auto distribution = table.text("distribution");
+  PriorNumbers numbers{table.number("min"), table.number("mode"), table.number("max"),
+                       table.number("sd")};
+  const bool is_long = distribution || numbers.min || numbers.mode || numbers.max || numbers.sd;
+  if (is_short && is_long) {
+    table.problem_at("prior", name +
+                                  ": 'prior' is short for min, mode and max of a triangular prior; "
+                                  "give one of the two");
+    return {};
+  }
+  if (three) {
+    numbers.min = (*three)[0];
+    numbers.mode = (*three)[1];
+    numbers.max = (*three)[2];
+  } else if (is_short || !is_long) {
+    return {};
+  }
+  const auto prior = Prior::named(distribution.value_or("triangular"), numbers);
+  if (prior) return *prior;
+  table.problem(name + ": " + prior.error().message + ", or nothing to use the library's range");
+  return {};
+}
+
+void require_prior_for_source(TomlReader& table, const ParameterConfig& config) {
+  if (config.prior || config.source.empty()) return;
+  table.problem_at("source", config.name +
+                                 ": 'source' says where a prior comes from; give min, mode and "
+                                 "max, or leave it out");
+}
+
 ParameterConfig read_parameter(TomlReader& table) {
   ParameterConfig config{table.required_text("name"), {}, table.text_or("source", "")};
   const auto found = model::find_parameter(config.name);
   if (!config.name.empty() && !found) table.problem_at("name", found.error().message);
-  const auto distribution = table.text("distribution");
-  const PriorNumbers numbers{table.number("min"), table.number("mode"), table.number("max"),
-                             table.number("sd")};
-  if (distribution || numbers.min || numbers.mode || numbers.max || numbers.sd) {
-    const auto prior = Prior::named(distribution.value_or("triangular"), numbers);
-    if (!prior) {
-      table.problem(config.name + ": " + prior.error().message +
-                    ", or nothing to use the library's range");
-    } else if (const auto physical = found ? model::physical_prior(**found, *prior) : prior) {
+  config.prior = read_prior(table, config.name);
+  if (config.prior && found) {
+    if (const auto physical = model::physical_prior(**found, *config.prior)) {
       config.prior = *physical;
     } else {
       table.problem(physical.error().message);
     }
-  } else if (!config.source.empty()) {
-    table.problem_at("source", config.name +
-                                   ": 'source' says where a prior comes from; give min, mode and "
-                                   "max, or leave it out");
+  }
+  require_prior_for_source(table, config);
+  for (const char* key : {"targets", "change", "unit"}) {
+    if (!table.has(key)) continue;
+    table.problem_at(key, fmt::format("'{}' belongs to a model of kind \"energyplus\"", key));
+  }
+  table.finish();
+  return config;
+}
+
+/// Of an EnergyPlus model: any name where targets are given, else one of the library, which is
+/// looked up when the model is at hand.
+ParameterConfig read_targeted_parameter(TomlReader& table) {
+  ParameterConfig config{table.required_text("name"), {}, table.text_or("source", "")};
+  if (!config.name.empty() && !is_identifier(config.name)) {
+    table.problem_at(
+        "name", fmt::format("'name' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", config.name));
+  }
+  config.prior = read_prior(table, config.name);
+  require_prior_for_source(table, config);
+  config.targets = table.one_or_more("targets").value_or(std::vector<std::string>{});
+  const auto library = model::parameter_library();
+  const auto known = std::ranges::find(library, config.name, &model::ParameterDefinition::name);
+  if (config.prior && config.targets.empty() && known != library.end()) {
+    if (const auto physical = model::physical_prior(*known, *config.prior)) {
+      config.prior = *physical;
+    } else {
+      table.problem(physical.error().message);
+    }
+  }
+  const auto change = table.word("change", {"set", "scale", "add"});
+  if (change) {
+    using enum energyplus::Change;
+    config.change = *change == "set" ? set : *change == "scale" ? scale : add;
+  }
+  config.unit = table.text_or("unit", "-");
+  if (config.targets.empty()) {
+    for (const char* key : {"change", "unit"}) {
+      if (!table.has(key)) continue;
+      table.problem_at(key, fmt::format("{}: '{}' needs 'targets'; without them the library of "
+                                        "parameters says what is changed",
+                                        config.name, key));
+    }
+  } else if (!change || !config.prior) {
+    table.problem(
+        fmt::format("{}: with 'targets' give 'change' (set, scale or add) and 'prior' "
+                    "([min, mode, max])",
+                    config.name));
   }
   table.finish();
   return config;
@@ -445,11 +517,35 @@ ModelErrorsConfig read_model_errors(TomlReader table) {
   return errors;
 }
 
+/// @param outputs  Ids of meters. @return what only this kind of model has
+EnergyPlusConfig read_energyplus(TomlReader& table, const SiteConfig& site,
+                                 const std::vector<std::string>& outputs) {
+  EnergyPlusConfig config;
+  if (const std::string file = table.required_text("file"); !file.empty()) {
+    config.file = resolve(site.file, file, "file", table);
+  }
+  if (const auto program = table.text("program")) {
+    config.program = resolve(site.file, *program, "program", table);
+  }
+  const std::string design = table.text_or("design", site.file.stem().string() + "-doe");
+  config.design = resolve(site.file, design, "design", table);
+  config.runs = table.whole_number_or("runs", config.runs, {2, 100'000});
+  config.time_max = table.duration("time_max").value_or(config.time_max);
+  config.interval_noise = table.number_or("interval_noise", 0.0, {0.0, 0.5});
+  if (auto reports = table.table("reports")) {
+    for (const std::string& id : outputs) {
+      if (auto meters = reports->one_or_more(id)) config.reports[id] = std::move(*meters);
+    }
+    reports->finish();
+  }
+  return config;
+}
+
 ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
   ModelConfig config;
-  if (const auto kind = table.word("kind", model_kind_names(/*of_building_alone=*/true))) {
-    config.kind = *find_model_kind(*kind);
-  }
+  std::vector<std::string_view> kinds = model_kind_names(/*of_building_alone=*/true);
+  kinds.push_back(name_of(ModelKind::energyplus));
+  if (const auto kind = table.word("kind", kinds)) config.kind = *find_model_kind(*kind);
   const auto outputs = table.texts("outputs");
   config.outputs = outputs.value_or(std::vector<std::string>{});
   if (!table.has("outputs")) {
@@ -470,16 +566,61 @@ ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
     }
   }
   if (auto errors = table.table("errors")) config.errors = read_model_errors(*errors);
-  for (TomlReader& parameter : table.tables("parameter")) {
-    config.parameters.push_back(read_parameter(parameter));
+  const bool is_energyplus = config.kind == ModelKind::energyplus;
+  if (is_energyplus) {
+    config.energyplus = read_energyplus(table, site, config.outputs);
+  } else {
+    for (const char* key :
+         {"file", "program", "design", "runs", "time_max", "interval_noise", "reports"}) {
+      if (!table.has(key)) continue;
+      table.problem_at(key,
+                       fmt::format("'{}' belongs to a model of kind \"energyplus\"; add kind = "
+                                   "\"energyplus\", or leave it out",
+                                   key));
+    }
   }
-  if (config.parameters.empty()) {
+  for (TomlReader& parameter : table.tables("parameter")) {
+    config.parameters.push_back(is_energyplus ? read_targeted_parameter(parameter)
+                                              : read_parameter(parameter));
+  }
+  if (config.parameters.empty() && !is_energyplus) {
     for (const std::string_view name : model::kSeedParameters) {
       config.parameters.push_back({std::string{name}, {}});
     }
   }
   table.finish();
   return config;
+}
+
+/// The first model is the one that the daemon follows; others are calibrated beside it.
+void read_models(TomlReader& root, bool is_located, SiteConfig& config) {
+  for (TomlReader& table : root.tables("model")) {
+    ModelConfig model = read_model(table, config);
+    const auto same = [&](const ModelConfig& other) { return other.kind == model.kind; };
+    const bool has_same =
+        (config.model && same(*config.model)) || std::ranges::any_of(config.other_models, same);
+    if (has_same) {
+      table.problem_at("kind", fmt::format("two [[model]] are of kind \"{}\"; models that are "
+                                           "compared are of different kinds",
+                                           name_of(model.kind)));
+    }
+    // What is there but wrong has been reported already.
+    if (facts_of(model.kind).is_of_building && !root.has("building")) {
+      table.problem("needs a [building]");
+    }
+    const bool has_store = std::ranges::any_of(config.meters, &MeterConfig::is_stored);
+    // A store has its latest months.
+    if (!root.has("period") && !has_store) table.problem("needs a [period]");
+    if (!root.has("weather") && config.sensors.empty()) {
+      table.problem("needs [weather], or a [[meter]] with role = \"weather\"");
+    }
+    if (!is_located) table.problem("needs latitude_deg and longitude_deg in [site]");
+    if (config.model) {
+      config.other_models.push_back(std::move(model));
+    } else {
+      config.model = std::move(model);
+    }
+  }
 }
 
 /// Meters with their addresses on buses, and weather sensors. @param tables  All [[meter]].
@@ -561,22 +702,8 @@ void read_root(TomlReader root, SiteConfig& config) {
   read_whole_weather(root, config);
   if (auto period = root.table("period")) config.period = read_period(*period);
   if (auto building = root.table("building")) config.building = read_building(*building);
-  std::vector<TomlReader> models = root.tables("model");
-  if (models.size() > 1) models[1].problem("only one [[model]] per site is supported");
-  if (!models.empty()) {
-    config.model = read_model(models.front(), config);
-    // What is there but wrong has been reported already.
-    TomlReader& model = models.front();
-    if (!root.has("building")) model.problem("needs a [building]");
-    const bool has_store = std::ranges::any_of(config.meters, &MeterConfig::is_stored);
-    // A store has its latest months.
-    if (!root.has("period") && !has_store) model.problem("needs a [period]");
-    if (!root.has("weather") && config.sensors.empty()) {
-      model.problem("needs [weather], or a [[meter]] with role = \"weather\"");
-    }
-    const bool located = site && site->has("latitude_deg") && site->has("longitude_deg");
-    if (!located) model.problem("needs latitude_deg and longitude_deg in [site]");
-  }
+  const bool is_located = site && site->has("latitude_deg") && site->has("longitude_deg");
+  read_models(root, is_located, config);
   root.finish();
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adapters/csv/line_issues.hpp"
+#include "adapters/energyplus/model_document.hpp"
 #include "core/display/unit.hpp"
 #include "core/metering/close_month.hpp"
 #include "core/metering/counter.hpp"
@@ -94,6 +95,10 @@ struct ParameterConfig {
   std::string name;
   std::optional<Prior> prior;  ///< Absent: from the library.
   std::string source;          ///< Where that prior comes from; empty: nobody says.
+  /// Of an EnergyPlus model: patterns of the fields that it changes; empty: as the library has it.
+  std::vector<std::string> targets = {};
+  energyplus::Change change = energyplus::Change::scale;
+  std::string unit = "-";
 };
 
 /// Sizes of the model's own errors that the site knows better (`assessment::ModelErrorSizes`);
@@ -105,12 +110,27 @@ struct ModelErrorsConfig {
   std::optional<double> electricity_level;
 };
 
+/// kind = "energyplus": the model, and where its runs live.
+struct EnergyPlusConfig {
+  std::filesystem::path file;     ///< epJSON or IDF.
+  std::filesystem::path program;  ///< Empty: RECALD_ENERGYPLUS, else along PATH.
+  std::filesystem::path design;
+  int runs = 200;
+  std::chrono::seconds time_max{1800};  ///< Of one run.
+  /// Relative sd of the meters' intervals about the simulated ones: a measured peak is the largest
+  /// of some thousand noisy intervals.
+  double interval_noise = 0.0;
+  /// By output: the meters of the model that it is the sum of; a minus subtracts one.
+  std::map<std::string, std::vector<std::string>> reports;
+};
+
 struct ModelConfig {
   ModelKind kind = ModelKind::epc;
   std::vector<std::string> outputs;       ///< Ids of meters.
   std::map<std::string, double> weights;  ///< By meter; absent: 1.
   std::vector<ParameterConfig> parameters;
   ModelErrorsConfig errors;
+  std::optional<EnergyPlusConfig> energyplus;  ///< Of that kind, and only of it.
 
   [[nodiscard]] bool has_output(const std::string& meter_id) const;
 };
@@ -135,7 +155,8 @@ struct SiteConfig {
   std::vector<MeterConfig> sensors;
   std::optional<WeatherConfig> weather;  ///< There where the site has a file or a sensor.
   std::optional<PeriodConfig> period;
-  std::optional<ModelConfig> model;
+  std::optional<ModelConfig> model;       ///< The first, which the daemon follows.
+  std::vector<ModelConfig> other_models;  ///< Calibrated beside it, to be compared.
   std::optional<model::Building> building;
 
   /// Index of a meter by its id.

@@ -66,6 +66,10 @@ class TomlReader {
 
   /// Whether the key is there, be its value right or wrong.
   [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
+  [[nodiscard]] bool is_list(std::string_view key) const {
+    const toml::node* node = table_->get(key);
+    return node != nullptr && node->is_array();
+  }
   /// Keys of this table, for tables whose keys are names of the user's (weights by meter).
   [[nodiscard]] std::vector<std::string> keys() const;
 

@@ -25,7 +25,9 @@ using recald::testing::kSampleMeters;
 using recald::testing::line_of;
 using recald::testing::sample_site;
 using recald::testing::TemporaryFolder;
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 class SiteFile {
@@ -237,7 +239,7 @@ const Mistake kSiteMistakes[] = {
     {"MissingCalibrationPeriod", "calibration = { from = \"2021-01\", to = \"2021-09\" }\n", "",
      "[period]", "[period] 'calibration' is missing: { from = \"2021-01\", to = \"2022-12\" }"},
     {"UnknownModel", "kind = \"epc\"", "kind = \"daily\"", "daily",
-     "[model] 'kind' is \"daily\"; it must be one of epc, hourly"},
+     "[model] 'kind' is \"daily\"; it must be one of epc, hourly, energyplus"},
     {"OutputThatIsNoMeter", "[\"electricity\", \"district_heat\"]", "[\"electricity\", \"heat\"]",
      "outputs", "[model] 'outputs' names 'heat', which is not the id of a [[meter]]"},
     {"OutputsAsText", "[\"electricity\", \"district_heat\"]", "\"electricity\"", "outputs",
@@ -252,9 +254,10 @@ const Mistake kSiteMistakes[] = {
      "[model.weights] 'district_heat' is 8; it must be between 1e-09 and 1"},
     {"MisspeltParameter", "\"occupancy_density\"", "\"occupancy_densty\"", "occupancy_densty",
      "[model.parameter] unknown parameter 'occupancy_densty'; did you mean 'occupancy_density'?"},
-    {"ParameterOfAnotherModel", "\"occupancy_density\"", "\"density_scale\"", "density_scale",
-     "[model.parameter] parameter 'density_scale' belongs to dynamic simulations; the monthly "
-     "model does not have it"},
+    {"ParameterOfAnotherModel", "\"occupancy_density\"",
+     "\"visible_absorptance_scale\"", "visible_absorptance_scale",
+     "[model.parameter] parameter 'visible_absorptance_scale': this model has no such quantity; a "
+     "model in EnergyPlus may have it"},
     {"PriorOutOfOrder", "min = 0.8", "min = 2.2", "[[model.parameter]]\nname = \"outdoor_airflow\"",
      "[model.parameter] outdoor_airflow: a triangular prior needs min <= mode <= max and min < "
      "max, but min = 2.2, mode = 2, max = 2.6, or nothing to use the library's range"},
@@ -342,13 +345,85 @@ TEST(SiteConfig, BuildingNamesWhatItLacks) {
   lacking(without("[building.schedule]", "[building.setpoint]"), "[building.schedule] is missing");
 }
 
-TEST(SiteConfig, SecondModelIsOneTooMany) {
+TEST(SiteConfig, ModelsOfDifferentKindsAreCompared) {
+  const std::string hourly = "\n[[model]]\nkind = \"hourly\"\noutputs = [\"district_heat\"]\n";
+  const SiteConfig site = SiteFile{sample_site() + hourly}.config();
+  EXPECT_EQ(site.model->kind, ModelKind::epc);
+  ASSERT_EQ(site.other_models.size(), 1);
+  EXPECT_EQ(site.other_models[0].kind, ModelKind::hourly);
+}
+
+TEST(SiteConfig, TwoModelsOfOneKindAreOneTooMany) {
   const std::string text =
       sample_site() + "\n[[model]]\nkind = \"epc\"\noutputs = [\"district_heat\"]\n";
-  const std::string line = std::to_string(line_of(sample_site(), "efficiency = 0.95") + 2);
+  const std::string line = std::to_string(line_of(sample_site(), "efficiency = 0.95") + 3);
+  EXPECT_THAT(SiteFile{text}.problems(),
+              ElementsAre("site.toml:" + line +
+                          ": [model] two [[model]] are of kind \"epc\"; models that are compared "
+                          "are of different kinds"));
+}
+
+constexpr std::string_view kEnergyPlusModel = R"(
+[[model]]
+kind = "energyplus"
+file = "office.epJSON"
+outputs = ["district_heat"]
+[model.reports]
+district_heat = "HeatingCoils:EnergyTransfer"
+[[model.parameter]]
+name = "lighting"
+targets = ["Lights/*/watts_per_floor_area"]
+change = "scale"
+prior = [0.7, 1.0, 1.4]
+[[model.parameter]]
+name = "occupancy_density"
+)";
+
+TEST(SiteConfig, EnergyPlusModelSaysWhatIsRunAndVaried) {
+  const SiteFile file{sample_site() + std::string{kEnergyPlusModel}};
+  const SiteConfig site = file.config();
+  ASSERT_EQ(site.other_models.size(), 1);
+  const ModelConfig& model = site.other_models[0];
+  ASSERT_TRUE(model.energyplus.has_value());
+  EXPECT_EQ(model.energyplus->file.filename(), "office.epJSON");
+  EXPECT_EQ(model.energyplus->design.filename(), "site-doe");
+  EXPECT_EQ(model.energyplus->runs, 200);
+  EXPECT_THAT(model.energyplus->reports.at("district_heat"),
+              ElementsAre("HeatingCoils:EnergyTransfer"));
+  ASSERT_EQ(model.parameters.size(), 2);
+  EXPECT_EQ(*model.parameters[0].prior, Prior(0.7, 1.0, 1.4));
+  EXPECT_EQ(model.parameters[0].change, energyplus::Change::scale);
+  EXPECT_THAT(model.parameters[0].targets, ElementsAre("Lights/*/watts_per_floor_area"));
+  EXPECT_FALSE(model.parameters[1].prior.has_value());
+}
+
+TEST(SiteConfig, MistakesInAnEnergyPlusModelAreNamed) {
+  const auto problems_of = [](std::string_view what, std::string_view with) {
+    return SiteFile{sample_site() + edited(std::string{kEnergyPlusModel}, what, with)}.problems();
+  };
+  EXPECT_THAT(problems_of("change = \"scale\"\n", ""),
+              ElementsAre(HasSubstr("lighting: with 'targets' give 'change' (set, scale or add)")));
+  EXPECT_THAT(problems_of("targets = [\"Lights/*/watts_per_floor_area\"]\n", ""),
+              ElementsAre(HasSubstr("lighting: 'change' needs 'targets'")));
+  EXPECT_THAT(problems_of("file = \"office.epJSON\"\n", ""),
+              ElementsAre(HasSubstr("'file' is missing")));
+  EXPECT_THAT(problems_of("district_heat = \"Heat", "heat = \"Heat"),
+              ElementsAre(HasSubstr("unknown key 'heat'")));
   EXPECT_THAT(
-      SiteFile{text}.problems(),
-      ElementsAre("site.toml:" + line + ": [model] only one [[model]] per site is supported"));
+      problems_of("prior = [0.7, 1.0, 1.4]", "prior = [0.7, 1.0, 1.4]\nmin = 0.5"),
+      ElementsAre(HasSubstr("'prior' is short for min, mode and max"), HasSubstr("give 'change'")));
+  EXPECT_THAT(problems_of("kind = \"energyplus\"", "kind = \"hourly\""),
+              Contains(HasSubstr("'file' belongs to a model of kind \"energyplus\"")));
+}
+
+TEST(SiteConfig, PriorInShortIsMinModeMax) {
+  const std::string text = sample_site();
+  EXPECT_THAT(SiteFile{text + "\n[[model.parameter]]\nname = \"cooling_setpoint\"\n"
+                              "prior = [21, 24, 27]\n"}
+                  .config()
+                  .model->parameters.back()
+                  .prior,
+              ::testing::Optional(Prior(21.0, 24.0, 27.0)));
 }
 
 TEST(SiteConfig, EmptyFileSaysWhatASiteIs) {
