@@ -1,15 +1,19 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <sstream>
+#include <vector>
 
 #include "adapters/system/write_file.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
+#include "daemon/site/results/comparison.hpp"
 #include "daemon/site/results/meters_report.hpp"
 
 namespace recald::daemon {
@@ -32,6 +36,21 @@ tl::expected<ModelledSite, int> open_for_calibration(const CalibrateArguments& a
   return load_aloud(std::move(*site), console);
 }
 
+/// An EnergyPlus model needs its runs; those that are missing are made.
+tl::expected<ModelledSite, int> open_with_runs(const CalibrateArguments& arguments,
+                                               const Console& console) {
+  auto modelled = open_for_calibration(arguments, console);
+  if (!modelled) return modelled;
+  const SiteConfig& site = modelled->site.config;
+  if (!site.model || !site.model->energyplus || has_all_runs(site)) return modelled;
+  const auto made =
+      make_runs_aloud(*modelled, {.seed = arguments.seed}, arguments.threads, console);
+  if (!made) return tl::unexpected(made.error());
+  // The runs are part of what the result depends on; what was said of the data was said.
+  return open_for_calibration(
+      arguments, {console.out, console.err, console.is_terminal, Console::Detail::little});
+}
+
 /// From the site file to the calibration; failures are printed and come back as an exit code.
 tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments& arguments,
                                                        const Console& console) {
@@ -42,7 +61,7 @@ tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments&
   const CalibrateOptions options{
       std::move(*calibration), arguments.prior_sensitivity,
       arguments.discrepancy == "seed" ? DiscrepancyForm::seed : DiscrepancyForm::sound};
-  auto modelled = open_for_calibration(arguments, console);
+  auto modelled = open_with_runs(arguments, console);
   if (!modelled) return tl::unexpected(modelled.error());
 
   const InterruptGuard guard;
@@ -73,16 +92,75 @@ int report_meters(const OpenSite& site, const CalibrateArguments& arguments,
 
 }  // namespace
 
+namespace {
+
+/// The site's other models, one after the other; what stops one of them is noted, not fatal.
+void calibrate_others(const CalibrateArguments& arguments, const Console& console,
+                      std::vector<SiteModelResult>& models) {
+  const std::vector<ModelConfig> others = models.front().done->modelled.site.config.other_models;
+  for (const ModelConfig& model : others) {
+    CalibrateArguments of_model = arguments;
+    of_model.model = model.kind;
+    std::ostringstream said;
+    if (model.energyplus) {  // hours may pass: its progress is seen
+      const auto with_runs = open_with_runs(of_model, console);
+      if (!with_runs) {
+        models.push_back(
+            {model.kind, failure(ErrorCode::unsupported, "its runs are not complete")});
+        continue;
+      }
+    }
+    auto done = calibrate_aloud(of_model, {console.out, said, false, Console::Detail::little});
+    if (done) {
+      models.push_back({model.kind, std::move(*done)});
+      continue;
+    }
+    std::string sentence = said.str();
+    while (sentence.ends_with('\n')) sentence.pop_back();
+    sentence = sentence.substr(sentence.rfind('\n') + 1);
+    models.push_back({model.kind, failure(ErrorCode::unsupported, sentence)});
+  }
+}
+
+/// The first model's files as ever, with all models in its page; the others' in folders of their
+/// own.
+Result<void> write_models(const std::vector<SiteModelResult>& models, const std::string& json,
+                          const std::filesystem::path& folder) {
+  const FinishedCalibration& first = *models.front().done;
+  if (models.size() == 1) return write_calibration(first, json, generated_at(), folder);
+  for (std::size_t i = 1; i < models.size(); ++i) {
+    if (!models[i].done) continue;
+    const FinishedCalibration& done = *models[i].done;
+    auto written = write_calibration(done, calibration_json(done.calibration, done.modelled.facts),
+                                     generated_at(), folder / name_of(models[i].kind));
+    if (!written) return written;
+  }
+  if (auto made = system::make_folder(folder); !made) return made;
+  if (auto written =
+          system::write_file(folder / "comparison.json", comparison_json(models).dump(2) + "\n");
+      !written) {
+    return written;
+  }
+  return write_calibration(first, json, generated_at(), folder, compared_models(models));
+}
+
+}  // namespace
+
 int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
   if (!arguments.design.folder.empty()) return run_calibrate_design(arguments, console);
-  const auto done = calibrate_aloud(arguments, console);
+  auto done = calibrate_aloud(arguments, console);
   if (!done) return done.error();
+  std::vector<SiteModelResult> models;
+  models.push_back({done->calibration.model, std::move(*done)});
+  if (!arguments.model) calibrate_others(arguments, console, models);
   const InterruptGuard until_written;
-  const std::string json = calibration_json(done->calibration, done->modelled.facts);
-  return deliver(done->calibration, json, arguments, console,
-                 [&](const std::filesystem::path& folder) {
-                   return write_calibration(*done, json, generated_at(), folder);
-                 });
+  const FinishedCalibration& first = *models.front().done;
+  const std::string json = calibration_json(first.calibration, first.modelled.facts);
+  const int code = deliver(
+      first.calibration, json, arguments, console,
+      [&](const std::filesystem::path& folder) { return write_models(models, json, folder); });
+  if (models.size() > 1 && !arguments.json) console.out << comparison_words(models);
+  return code;
 }
 
 int run_report(const CalibrateArguments& arguments, const Console& console) {

@@ -9,7 +9,9 @@
 #include "daemon/commands/check_meters.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/calibrate/site_runs.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
+#include "daemon/site/model/energyplus_site.hpp"
 #include "daemon/site/model/site_parts.hpp"
 #include "daemon/site/replay/recording.hpp"
 #include "daemon/site/replay/site_weather.hpp"
@@ -123,24 +125,69 @@ std::vector<std::string> check_buses(const SiteConfig& site, const Console& cons
   return problems;
 }
 
-/// Problems that only show once several tables are seen together.
-std::vector<std::string> check_model(const SiteConfig& site, const Console& console, bool json) {
+void print_parameter(const Parameter& parameter, const Console& console) {
+  const Prior& prior = parameter.prior;
+  console.out << fmt::format("  parameter {:<20} triangular {:.4g} / {:.4g} / {:.4g} {}\n",
+                             parameter.name, prior.min(), prior.mode(), prior.max(),
+                             parameter.unit);
+}
+
+/// Of a model of the site's [building]. @return sentences
+std::vector<std::string> check_built_in(const SiteConfig& site, const Console& console, bool json) {
   std::vector<std::string> problems;
-  if (const auto maps = meter_maps(site); !maps) {
-    problems.push_back(site.file.filename().string() + ": " + maps.error().message);
-  }
+  if (const auto maps = meter_maps(site); !maps) problems.push_back(maps.error().message);
   for (const ParameterConfig& config : site.model->parameters) {
     const auto definition = model::find_parameter(config.name);
     const auto parameter = model::make_parameter(**definition, *site.building, config.prior);
     if (!parameter) {
-      problems.push_back(site.file.filename().string() + ": " + parameter.error().message);
+      problems.push_back(parameter.error().message);
+    } else if (!json) {
+      print_parameter(*parameter, console);
+    }
+  }
+  return problems;
+}
+
+/// Of a client's model: whether it can be run, unless its runs are there. @return sentences
+std::vector<std::string> check_energyplus(const SiteConfig& site, const Console& console,
+                                          bool json) {
+  const ModelConfig& model = *site.model;
+  if (auto runnable = require_runnable(model); !runnable) return {runnable.error().message};
+  if (has_all_runs(site)) {
+    if (!json) console.out << "  runs      " << model.energyplus->design.string() << "\n";
+    return {};
+  }
+  const auto opened = open_energyplus(*model.energyplus);
+  if (!opened) return {opened.error().message};
+  std::vector<std::string> problems;
+  for (const ParameterConfig& config : model.parameters) {
+    ModelConfig alone = model;
+    alone.parameters = {config};
+    const auto found = find_parameters(opened->model, alone);
+    if (found) {
+      if (!json) print_parameter(found->front().parameter, console);
       continue;
     }
-    if (json) continue;
-    const Prior& prior = parameter->prior;
-    console.out << fmt::format("  parameter {:<20} triangular {:.4g} / {:.4g} / {:.4g} {}\n",
-                               parameter->name, prior.min(), prior.mode(), prior.max(),
-                               parameter->unit);
+    // A flow that is autosized is a number once the model has been tried.
+    const ErrorCode code = found.error().code;
+    const bool is_known = code == ErrorCode::not_found || code == ErrorCode::malformed;
+    if (is_known) problems.push_back(found.error().message);
+  }
+  return problems;
+}
+
+/// Problems that only show once several tables are seen together.
+std::vector<std::string> check_models(SiteConfig site, const Console& console, bool json) {
+  std::vector<std::string> problems;
+  std::vector<ModelConfig> models{*site.model};
+  models.insert(models.end(), site.other_models.begin(), site.other_models.end());
+  for (ModelConfig& model : models) {
+    site.model = std::move(model);
+    const bool is_of_building = facts_of(site.model->kind).is_of_building;
+    for (const std::string& sentence : is_of_building ? check_built_in(site, console, json)
+                                                      : check_energyplus(site, console, json)) {
+      problems.push_back(site.file.filename().string() + ": " + sentence);
+    }
   }
   return problems;
 }
@@ -244,7 +291,7 @@ int run_check(const CheckArguments& arguments, const Console& console) {
     problems.insert(problems.end(), more.begin(), more.end());
   }
   if (site && site->model) {
-    const auto more = check_model(*site, console, arguments.json);
+    const auto more = check_models(*site, console, arguments.json);
     problems.insert(problems.end(), more.begin(), more.end());
   }
   nlohmann::ordered_json meters = nlohmann::ordered_json::array();

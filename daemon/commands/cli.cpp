@@ -151,14 +151,18 @@ void add_screen(CLI::App& command, ScreenArguments& arguments) {
 void add_doe(CLI::App& command, DoeArguments& arguments) {
   add_site(command, arguments);
   add_model(command, arguments.model, "Model to run, instead of the site file's", true);
-  command.add_option("--runs", arguments.runs, "Model runs of the design")
-      ->check(CLI::Range(20, 100'000))
-      ->capture_default_str();
-  command.add_option("--out", arguments.out, "Design folder; an unfinished design is continued")
-      ->required();
+  command.add_option("--runs", arguments.runs, "Model runs of the design; 200 by default")
+      ->check(CLI::Range(10, 100'000));
+  command.add_option(
+      "--out", arguments.out,
+      "Design folder; an unfinished design is continued. An EnergyPlus model has one "
+      "of its own");
   command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
   command.add_option("--threads", arguments.threads, "Number of threads; 0 for one per core")
       ->capture_default_str();
+  command.add_flag("--corners", arguments.at_corners,
+                   "Run corners of the priors, with which recald metamodel --check tests a "
+                   "regression");
 }
 
 /// What CLI11 cannot say of two options at once; empty where all is well.
@@ -245,8 +249,10 @@ struct Arguments {
   ScreenArguments screen;
   MetamodelArguments metamodel;
   DoeArguments doe;
+  EngineArguments engine;
   DiagnoseArguments diagnose;
   DriftArguments drift;
+  EcmArguments ecm;
   DetectabilityArguments detectability;
   StatusArguments status;
   ModelArguments model;
@@ -409,6 +415,8 @@ void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs)
       app.add_subcommand("metamodel", "Fit a regression to the runs of a design")->group(kDesigns);
   add_screen(*metamodel, given.metamodel);
   add_form(*metamodel, given.metamodel.design);
+  metamodel->add_option("--check", given.metamodel.check,
+                        "Another design of the same model, such as corners, to be predicted");
   metamodel
       ->add_option("--parameters", given.metamodel.parameters, "all, or names separated by commas")
       ->capture_default_str();
@@ -453,6 +461,23 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   drift->add_option("--threads", given.drift.threads, "Number of threads; 0 for one per core");
   verbs.push_back({drift, [&](const Console& console) { return run_drift(given.drift, console); }});
 
+  CLI::App* ecm =
+      app.add_subcommand("ecm", "Say what measures would save, or what was saved since a date")
+          ->group(kCalibrate);
+  add_site(*ecm, given.ecm);
+  CLI::Option* measure =
+      ecm->add_option("--measure", given.ecm.measure, "What measures change and cost (TOML)")
+          ->option_text("FILE");
+  ecm->add_option("--since", given.ecm.since,
+                  "What was saved since this local day, YYYY-MM-DD, by regression and by model")
+      ->excludes(measure);
+  ecm->add_option("--out", given.ecm.out,
+                  "Folder for ecm.json, savings.csv and the page savings.html");
+  add_model(*ecm, given.ecm.model, "epc or hourly; else as the site file says", true);
+  ecm->add_option("--seed", given.ecm.seed, "Seed of all random numbers")->capture_default_str();
+  ecm->add_option("--threads", given.ecm.threads, "Number of threads; 0 for one per core");
+  verbs.push_back({ecm, [&](const Console& console) { return run_ecm(given.ecm, console); }});
+
   CLI::App* detectability =
       app.add_subcommand("detectability", "Estimate how visible an effect would be at a site")
           ->group(kFind);
@@ -482,6 +507,17 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
       ->add_option("version", given.model.version, "Version; the one in use by default");
   add("revert", "Go back to an earlier version", run_model_revert)
       ->add_option("version", given.model.version, "Version; the one before by default");
+}
+
+void add_engine_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* engine =
+      app.add_subcommand("engine", "Look into the EnergyPlus model of a site")->group(kDesigns);
+  engine->require_subcommand(1);
+  CLI::App* show = engine->add_subcommand(
+      "show", "List what the model reports and what in it could be varied, as lines to paste");
+  add_site(*show, given.engine);
+  verbs.push_back(
+      {show, [&](const Console& console) { return run_engine_show(given.engine, console); }});
 }
 
 /// Pages and scripts made from `app`, which has all commands by then.
@@ -557,6 +593,8 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   add_calibration_verbs(app, given, verbs);
   add_design_verbs(app, given, verbs);
   add_model_verbs(app, given, verbs);
+  add_engine_verbs(app, given, verbs);
+
   add_shell_verbs(app, given, verbs);
   const std::span words{argv, static_cast<std::size_t>(argc)};
   if (const auto why = unknown_command(app, words.subspan(std::min<std::size_t>(1, words.size())));

@@ -77,16 +77,20 @@ struct ScreenArguments {
 };
 
 struct MetamodelArguments : ScreenArguments {
+  std::filesystem::path check;     ///< Another design of the same model to predict; or empty.
   std::string parameters = "all";  ///< Or names separated by commas.
 };
 
 struct DoeArguments : SiteArguments {
-  std::filesystem::path out;
+  std::filesystem::path out;       ///< Empty: the folder that the site file's model names.
   std::optional<ModelKind> model;  ///< Absent: as the site file says.
-  int runs = 200;
+  std::optional<int> runs;         ///< Absent: as the site file says, else 200.
   std::uint64_t seed = 1;
   unsigned threads = 0;
+  bool at_corners = false;  ///< Of the priors, in the place of a hypercube.
 };
+
+struct EngineArguments : SiteArguments {};
 
 struct DiagnoseArguments : SiteArguments {
   std::filesystem::path out;
@@ -103,6 +107,14 @@ struct DriftArguments : SiteArguments {
   int particles = 512;
   std::uint64_t seed = 1;
   unsigned threads = 0;
+};
+
+/// One of `measure` and `since`.
+struct EcmArguments : SiteArguments, SamplingArguments {
+  std::filesystem::path measure;   ///< File of measures, or empty.
+  std::string since;               ///< Local day, or empty.
+  std::filesystem::path out;       ///< Folder for ecm.json, savings.csv and savings.html, or empty.
+  std::optional<ModelKind> model;  ///< Absent: as the site file says.
 };
 
 struct InitArguments {
@@ -189,12 +201,16 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
 int run_report(const CalibrateArguments& arguments, const Console& console);
 int run_screen(const ScreenArguments& arguments, const Console& console);
 int run_metamodel(const MetamodelArguments& arguments, const Console& console);
+/// What the site's EnergyPlus model reports, and what in it could be varied.
+int run_engine_show(const EngineArguments& arguments, const Console& console);
 /// Runs the site's model over a Latin hypercube into a design folder, or goes on with one.
 int run_doe(const DoeArguments& arguments, const Console& console);
 /// Locates, names and shows what the model lacks; with `apply` the model gets it.
 int run_diagnose(const DiagnoseArguments& arguments, const Console& console);
 /// Forecasts each month from those before and says where and since when the building left them.
 int run_drift(const DriftArguments& arguments, const Console& console);
+/// What measures would save, by the calibrated model; or what was saved since a date.
+int run_ecm(const EcmArguments& arguments, const Console& console);
 /// How visible an effect of a given footprint is at the site, whose data must be without it.
 int run_detectability(const DetectabilityArguments& arguments, const Console& console);
 /// The versions of the site's model, the one in force marked.

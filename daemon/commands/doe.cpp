@@ -6,54 +6,62 @@
 #include "adapters/system/parallel_for.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/calibrate/design_outliers.hpp"
 #include "daemon/site/calibrate/design_site.hpp"
 #include "daemon/site/calibrate/site_design.hpp"
+#include "daemon/site/calibrate/site_runs.hpp"
 #include "daemon/site/model/active_effects.hpp"
 
 namespace recald::daemon {
 namespace {
 
-std::string design_json(const DoeArguments& arguments, const doe::DesignPlan& plan, int before,
-                        const display::Warnings& warnings) {
-  std::vector<std::string> parameters;
-  for (const Parameter& parameter : plan.parameters) parameters.push_back(parameter.name);
-  const nlohmann::ordered_json json = {{"folder", arguments.out.string()},
-                                       {"runs", plan.theta.rows()},
-                                       {"runs_before", before},
-                                       {"parameters", parameters},
-                                       {"outputs", plan.output_names},
-                                       {"months", plan.months.size()},
-                                       {"seed", plan.seed},
+constexpr int kUsualRuns = 200;
+
+std::string design_json(const std::filesystem::path& folder, std::uint64_t seed,
+                        const MadeRuns& made, const display::Warnings& warnings) {
+  const nlohmann::ordered_json json = {{"folder", folder.string()},
+                                       {"runs", made.total},
+                                       {"runs_before", made.before},
+                                       {"runs_failed", made.failed},
+                                       {"parameters", made.parameters},
+                                       {"outputs", made.outputs},
+                                       {"months", made.months},
+                                       {"seed", seed},
                                        {"warnings", display::texts_of(warnings)}};
   return json.dump(2) + "\n";
 }
 
-std::string design_words(const DoeArguments& arguments, const doe::DesignPlan& plan, int before,
+std::string design_words(const std::filesystem::path& folder, const MadeRuns& made,
                          const display::Warnings& warnings) {
-  std::string text = fmt::format("{}: {} runs of {} parameters, {} outputs in {} months",
-                                 arguments.out.string(), plan.theta.rows(), plan.parameters.size(),
-                                 plan.output_names.size(), plan.months.size());
-  text += before == 0 ? ".\n" : fmt::format("; {} of them already existed.\n", before);
+  std::string text =
+      fmt::format("{}: {} runs of {} parameters, {} outputs in {} months", folder.string(),
+                  made.total, made.parameters.size(), made.outputs.size(), made.months);
+  text += made.before == 0 ? ".\n" : fmt::format("; {} of them already existed.\n", made.before);
+  if (made.failed > 0) {
+    text += fmt::format("{} of them failed; {} says why.\n", made.failed,
+                        (folder / "failed.csv").string());
+  }
   return text + display::warning_lines(warnings);
 }
 
-}  // namespace
-
-int run_doe(const DoeArguments& arguments, const Console& console) {
-  auto modelled = open_modelled_site(arguments.site, console, arguments.model);
-  if (!modelled) return modelled.error();
-  const auto& [site, recording, weather, facts] = *modelled;
+/// A design of one of our own models.
+tl::expected<MadeRuns, int> make_built_in_runs(const ModelledSite& modelled,
+                                               const DoeArguments& arguments,
+                                               const Console& console,
+                                               display::Warnings& warnings) {
+  const auto& [site, recording, weather, facts] = modelled;
   const auto version = active_version(site.config);
-  if (!version) return console.fail(version.error());
+  if (!version) return tl::unexpected(console.fail(version.error()));
   const auto prepared =
       prepare_site(site.config, site.calendar, recording, weather, version->effects);
-  if (!prepared) return console.fail(prepared.error());
+  if (!prepared) return tl::unexpected(console.fail(prepared.error()));
   const SiteDesignOptions options{
-      .runs = arguments.runs,
+      .runs = arguments.runs.value_or(kUsualRuns),
       .seed = arguments.seed,
+      .at_corners = arguments.at_corners,
       .fingerprint = fmt::format("{} {} {}", version_name(*version, facts.model_version),
                                  facts.data_revision, facts.recald_version)};
   const doe::DesignPlan plan = plan_design(*prepared, options);
@@ -61,8 +69,12 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
   const InterruptGuard guard;
   auto engine = site_engine(*prepared);
   auto folder = doe::FolderEngine::open(arguments.out, plan, &engine);
-  if (!folder) return console.fail(folder.error());
-  const int before = folder->done_count();
+  if (!folder) return tl::unexpected(console.fail(folder.error()));
+  MadeRuns made{.outputs = plan.output_names,
+                .months = plan.months.size(),
+                .total = static_cast<int>(plan.theta.rows()),
+                .before = folder->done_count()};
+  for (const Parameter& parameter : plan.parameters) made.parameters.push_back(parameter.name);
   const auto runs = [&] {
     ProgressLine line{console};
     return folder->run(plan.theta, system::parallel_for(arguments.threads),
@@ -71,16 +83,42 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
                          return !guard.interrupted();
                        });
   }();
-  if (!runs) return console.fail(runs.error());
+  if (!runs) return tl::unexpected(console.fail(runs.error()));
   if (auto noted = note_site(arguments.out, arguments.site, version->effects); !noted) {
-    return console.fail(noted.error());
+    return tl::unexpected(console.fail(noted.error()));
   }
-  display::Warnings warnings = prepared->so_far.warnings;
-  if (auto design = doe::read_design_folder(arguments.out)) {
+  warnings = prepared->so_far.warnings;
+  return made;
+}
+
+}  // namespace
+
+int run_doe(const DoeArguments& arguments, const Console& console) {
+  auto modelled = open_modelled_site(arguments.site, console, arguments.model);
+  if (!modelled) return modelled.error();
+  const ModelConfig& model = *modelled->site.config.model;
+  const std::filesystem::path folder =
+      arguments.out.empty() && model.energyplus ? model.energyplus->design : arguments.out;
+  if (folder.empty()) return console.misused("give the design folder with --out");
+  if (arguments.at_corners && arguments.out.empty()) {
+    return console.misused(
+        "corners check a design and are none: give a folder of theirs with --out");
+  }
+  display::Warnings warnings;
+  auto made = model.energyplus ? make_runs_aloud(*modelled,
+                                                 {.folder = folder,
+                                                  .runs = arguments.runs.value_or(0),
+                                                  .seed = arguments.seed,
+                                                  .at_corners = arguments.at_corners},
+                                                 arguments.threads, console)
+                               : make_built_in_runs(*modelled, arguments, console, warnings);
+  if (!made) return made.error();
+  display::add_notes(made->notes, warnings);
+  if (auto design = doe::read_design_folder(folder)) {
     display::add_notes(set_aside_outliers(*design), warnings);
   }
-  console.out << (arguments.json ? design_json(arguments, plan, before, warnings)
-                                 : design_words(arguments, plan, before, warnings));
+  console.out << (arguments.json ? design_json(folder, arguments.seed, *made, warnings)
+                                 : design_words(folder, *made, warnings));
   return kSuccess;
 }
 

@@ -45,11 +45,21 @@ int run_metamodel(const MetamodelArguments& arguments, const Console& console) {
   std::vector<std::string> notes = design->notes;
   notes.insert(notes.end(), design_site->notes.begin(), design_site->notes.end());
   notes.insert(notes.end(), fitted->notes.begin(), fitted->notes.end());
-  const std::string json = metamodel_json(*fitted, notes, *facts);
+  std::vector<regression::CheckedOutput> checked;
+  if (!arguments.check.empty()) {
+    const auto check = open_design_folder({.folder = arguments.check}, console);
+    if (!check) return check.error();
+    const auto other = chosen_data(*check, arguments.parameters);
+    if (!other) return console.fail(other.error());
+    auto outputs = check_metamodel(*fitted, *data, *other);
+    if (!outputs) return console.fail(outputs.error());
+    checked = std::move(*outputs);
+  }
+  const std::string json = metamodel_json(*fitted, notes, *facts, checked);
   if (auto written = write_result(arguments.out, "metamodel.json", json); !written) {
     return console.fail(written.error());
   }
-  console.out << (arguments.json ? json : metamodel_table(*fitted, notes));
+  console.out << (arguments.json ? json : metamodel_table(*fitted, notes, checked));
   return kSuccess;
 }
 

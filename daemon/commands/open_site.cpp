@@ -97,7 +97,11 @@ tl::expected<ModelledSite, int> open_modelled_site(const std::filesystem::path& 
   if (auto modelled = require_model(site->config); !modelled) {
     return tl::unexpected(console.fail(modelled.error()));
   }
-  if (model) site->config.model->kind = *model;
+  if (model) {
+    if (auto chosen = choose_model(site->config, *model); !chosen) {
+      return tl::unexpected(console.fail(chosen.error()));
+    }
+  }
   return load_aloud(std::move(*site), console, choose);
 }
 

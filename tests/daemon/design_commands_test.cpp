@@ -419,7 +419,7 @@ TEST_F(DesignCommands, WrongUsageIsTwo) {
       {"calibrate", "--doe", doe, "--predictive"},
       {"calibrate", "--doe", doe, "--hyper-prior", "none"},
       {"calibrate", "--doe", doe, "--sampler", "dram", "--draws", "200", "--burn-in", "300"},
-      {"doe", "site.toml"},
+      {"doe", "site.toml", "--corners", "--runs", "1"},
       {"doe", "site.toml", "--out", "x", "--runs", "3"},
   };
   for (const auto& arguments : misuses) {

@@ -67,6 +67,22 @@ TEST_F(DoeCommand, LeavesAFolderThatTheOthersWorkOn) {
   EXPECT_FALSE(result["after"]["validation"]["district_heat_daily_kWh"]["cvrmse"].is_null());
 }
 
+TEST_F(DoeCommand, CornersOfThePriorsCheckTheRegression) {
+  ASSERT_EQ(doe("design").exit_code, kSuccess);
+  ASSERT_EQ(doe("corners", {"--corners"}).exit_code, kSuccess);
+  const Outcome checked =
+      run({"metamodel", "--doe", path("design"), "--check", path("corners"), "--json"});
+  ASSERT_EQ(checked.exit_code, kSuccess) << checked.err;
+  const Json heat = Json::parse(checked.out)["check"]["district_heat_daily_kWh"];
+  EXPECT_LT(heat["cvrmse"], 0.3);
+  EXPECT_GT(heat["cvrmse"], 0.0);
+  EXPECT_THAT(run({"metamodel", "--doe", path("design"), "--check", path("corners")}).out,
+              HasSubstr("runs to check"));
+  ASSERT_EQ(doe("hourly", {"--model", "hourly"}).exit_code, kSuccess);
+  EXPECT_THAT(run({"metamodel", "--doe", path("design"), "--check", path("hourly")}).err,
+              HasSubstr("of other parameters, outputs or months"));
+}
+
 TEST_F(DoeCommand, TheSameSeedGivesTheSameBytes) {
   ASSERT_EQ(doe("one", {"--threads", "1"}).exit_code, kSuccess);
   ASSERT_EQ(doe("two", {"--threads", "2"}).exit_code, kSuccess);

@@ -23,6 +23,7 @@ constexpr auto kOrder = std::to_array<std::string_view>({
     "daemon/site/diagnose",
     "daemon/site/drift",
     "daemon/site/results",
+    "daemon/site/savings",
     "daemon/gateway/poll",
     "daemon/gateway/ingest",
     "daemon/gateway/upkeep",

@@ -146,7 +146,9 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
                              metering::to_string(now), drift_json(*drift, modelled->facts), folder);
   if (!written) return tl::unexpected(written.error());
   outcome.forecasts = forecasts_of(*drift, modelled->facts, now);
-  if (asks_for_a_name(*drift)) outcome.next = JobKind::diagnosis;
+  SiteConfig hourly = modelled->site.config;
+  const bool can_be_diagnosed = choose_model(hourly, ModelKind::hourly).has_value();
+  if (asks_for_a_name(*drift) && can_be_diagnosed) outcome.next = JobKind::diagnosis;
   return summary_of(*drift);
 }
 
@@ -206,7 +208,9 @@ Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
                             const GoesOn& goes_on) {
   const auto folder = job_folder(site.config.store, job.kind, job.number);
-  site.config.model->kind = ModelKind::hourly;
+  if (auto chosen = choose_model(site.config, ModelKind::hourly); !chosen) {
+    return tl::unexpected(chosen.error());
+  }
   auto modelled = load_modelled_site(std::move(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
   const auto problem = prepare_diagnosis(*modelled);

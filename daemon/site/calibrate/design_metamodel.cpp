@@ -105,4 +105,27 @@ Result<FittedMetamodel> fit_metamodel(const regression::DesignData& design,
   return fitted;
 }
 
+Result<std::vector<regression::CheckedOutput>> check_metamodel(
+    const FittedMetamodel& fitted, const regression::DesignData& design,
+    const regression::DesignData& check) {
+  if (check.parameters != design.parameters || check.outputs != design.outputs ||
+      check.months != design.months) {
+    return failure(ErrorCode::invalid_value,
+                   "the runs to check with are of other parameters, outputs or months than the "
+                   "design's; make both from one site file");
+  }
+  auto model = fitted.form == MetamodelForm::seed
+                   ? model::metamodel::model_of(*fitted.seed_form,
+                                                {design.inputs, design.months, design.month_inputs})
+                   : model::metamodel::model_of(*fitted.monthly_form, design.months);
+  if (!model) return tl::unexpected(model.error());
+  Eigen::MatrixXd predicted(check.values.rows(), check.values.cols());
+  for (Eigen::Index i = 0; i < predicted.rows(); ++i) {
+    const std::vector<double> theta{check.theta.row(i).begin(), check.theta.row(i).end()};
+    const std::vector<double> outputs = evaluate(*model, theta);
+    predicted.row(i) = Eigen::Map<const Eigen::RowVectorXd>(outputs.data(), predicted.cols());
+  }
+  return regression::check_predictions(check, predicted);
+}
+
 }  // namespace recald::daemon

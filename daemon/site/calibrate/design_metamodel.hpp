@@ -57,4 +57,10 @@ struct FittedMetamodel {
 [[nodiscard]] Result<FittedMetamodel> fit_metamodel(const regression::DesignData& design,
                                                     const MetamodelOptions& options);
 
+/// How the regression predicts another design of the same model, such as corners of the prior.
+/// @return (outputs) or invalid_value: other parameters, outputs or months.
+[[nodiscard]] Result<std::vector<regression::CheckedOutput>> check_metamodel(
+    const FittedMetamodel& fitted, const regression::DesignData& design,
+    const regression::DesignData& check);
+
 }  // namespace recald::daemon

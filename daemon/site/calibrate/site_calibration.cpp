@@ -22,6 +22,7 @@
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/effects_calibration.hpp"
 #include "daemon/site/calibrate/meter_forecast.hpp"
+#include "daemon/site/calibrate/site_metamodel.hpp"
 #include "daemon/site/calibrate/yardstick.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
 #include "daemon/site/model/site_model.hpp"
@@ -94,6 +95,7 @@ void warn_about_level_changes(const Recording& recording, SiteCalibration& resul
 /// A wide prior lets a parameter go where no building lies, and it goes there when something else
 /// is missing.
 void warn_about_unusual_parameters(const SiteConfig& site, SiteCalibration& result) {
+  if (result.definitions.empty()) return;  // a client's model has values of its own
   for (std::size_t j = 0; j < site.model->parameters.size(); ++j) {
     const auto usual = model::make_parameter(*result.definitions[j], *site.building);
     if (!usual) continue;
@@ -112,7 +114,7 @@ void warn_about_unusual_parameters(const SiteConfig& site, SiteCalibration& resu
 void add_words(const Recording& recording, const SiteWeather& weather, SiteCalibration& result) {
   warn_about_level_changes(recording, result);
   display::add_notes(recording.notes, result.warnings);
-  if (!result.profile.check.constant) {
+  if (facts_of(result.model).is_of_building && !result.profile.check.constant) {
     result.warnings.push_back(display::warning_of(result.profile.check.words));
   }
   display::add_notes(weather.notes, result.warnings);
@@ -130,6 +132,7 @@ Result<void> take_effects(const SiteConfig& site, const metering::LocalCalendar&
   if (!effects) return tl::unexpected(effects.error());
   for (std::size_t j = 0; j < effects->parameters.size(); ++j) {
     result.definitions.push_back(&effects->labels[j]->definition);
+    result.labels.emplace_back(effects->labels[j]->definition.label);
     result.parameters.push_back(effects->parameters[j]);
   }
   result.effects = std::make_shared<const ModelEffects>(std::move(*effects));
@@ -154,30 +157,6 @@ Result<ModelFactory> whole_model_of(const SiteConfig& site, const SiteModelParts
   return [first = std::move(*first), second = std::move(*second)](const model::Building& building) {
     return std::make_unique<JoinedMonthsModel>(first(building), second(building));
   };
-}
-
-/// @param errors  Of all months; the problem has its own.
-void add_common_errors(const std::vector<Eigen::VectorXd>& errors, PreparedSite& prepared) {
-  const auto all = static_cast<Eigen::Index>(prepared.so_far.months.size());
-  const auto first = static_cast<Eigen::Index>(prepared.problem.month_names.size());
-  for (const Eigen::VectorXd& error : errors) {
-    prepared.common_errors.push_back(error);
-    prepared.problem.common_errors.push_back(assessment::leading_months(error, all, first));
-  }
-}
-
-void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weather,
-                const SiteMonths& months, PreparedSite& prepared) {
-  weather::WeatherSeries series = weather.filled.series;
-  // What is assumed follows the temperature: a discrepancy must not seem to follow it.
-  for (const std::size_t variable : weather.assumed) {
-    for (weather::WeatherHour& hour : series.hours) {
-      hour.*weather::kWeatherVariables[variable].member = kAbsent;
-    }
-  }
-  const auto inputs = weather::monthly_inputs(series, calendar, months.calibration);
-  prepared.problem.inputs = {inputs.names, inputs.values};
-  prepared.inputs = also_in(weather::monthly_inputs(series, calendar, months.all), inputs.names);
 }
 
 /// Errors of one standard deviation, one for each variable of the weather that is assumed: how all
@@ -207,6 +186,47 @@ Result<std::vector<Eigen::VectorXd>> assumed_weather_errors(
 
 }  // namespace
 
+void add_common_errors(const std::vector<Eigen::VectorXd>& errors,
+                       const std::vector<assessment::CommonError>& kinds, PreparedSite& prepared) {
+  const auto all = static_cast<Eigen::Index>(prepared.so_far.months.size());
+  const auto first = static_cast<Eigen::Index>(prepared.problem.month_names.size());
+  for (const Eigen::VectorXd& error : errors) {
+    prepared.common_errors.push_back(error);
+    prepared.problem.common_errors.push_back(assessment::leading_months(error, all, first));
+  }
+  prepared.errors.insert(prepared.errors.end(), kinds.begin(), kinds.end());
+  prepared.errors.resize(prepared.common_errors.size());
+}
+
+void add_inputs(const metering::LocalCalendar& calendar, const SiteWeather& weather,
+                const SiteMonths& months, PreparedSite& prepared) {
+  weather::WeatherSeries series = weather.filled.series;
+  // What is assumed follows the temperature: a discrepancy must not seem to follow it.
+  for (const std::size_t variable : weather.assumed) {
+    for (weather::WeatherHour& hour : series.hours) {
+      hour.*weather::kWeatherVariables[variable].member = kAbsent;
+    }
+  }
+  const auto inputs = weather::monthly_inputs(series, calendar, months.calibration);
+  prepared.problem.inputs = {inputs.names, inputs.values};
+  prepared.inputs = also_in(weather::monthly_inputs(series, calendar, months.all), inputs.names);
+}
+
+Result<BegunSite> begin_site(const SiteConfig& site, const Recording& recording,
+                             const SiteWeather& weather) {
+  BegunSite begun;
+  SiteCalibration& result = begun.so_far;
+  begun.months = choose_months(*site.period, weather, result.warnings);
+  if (auto enough = require_months(begun.months, *site.period, weather); !enough) {
+    return tl::unexpected(enough.error());
+  }
+  result.model = site.model->kind;
+  result.units = site.units;
+  take_months(begun.months, result);
+  result.outputs = collect_outputs(site, recording, begun.months.all);
+  return begun;
+}
+
 std::vector<assessment::OutputCalibration> collect_outputs(const SiteConfig& site,
                                                            const Recording& recording,
                                                            const std::vector<Month>& months) {
@@ -222,7 +242,7 @@ std::vector<assessment::OutputCalibration> collect_outputs(const SiteConfig& sit
     const assessment::MeteredMonths metered{id, meter, record.meter.utility, record.figures,
                                             record.level_changes};
     add(assessment::daily_output(metered, months));
-    if (is_hourly(site)) add(assessment::peak_output(metered, months));
+    if (facts_of(site.model->kind).has_peaks) add(assessment::peak_output(metered, months));
   }
   return outputs;
 }
@@ -245,6 +265,12 @@ Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
                                                  const metering::LocalCalendar& calendar,
                                                  const Recording& recording,
                                                  const SiteWeather& weather) {
+  if (!site.building) {
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("{} has no [building], whose installed lights and plugs split the "
+                               "electricity meter into a profile",
+                               site.file.filename().string()));
+  }
   display::Warnings warnings;
   const SiteMonths months = choose_months(*site.period, weather, warnings);
   if (auto enough = require_months(months, *site.period, weather); !enough) {
@@ -266,19 +292,19 @@ void take_months(const SiteMonths& months, SiteCalibration& result) {
 Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                   const Recording& recording, const SiteWeather& weather,
                                   std::vector<diagnosis::AddedEffect> added) {
-  PreparedSite prepared;
-  SiteCalibration& result = prepared.so_far;
-  const SiteMonths months = choose_months(*site.period, weather, result.warnings);
-  if (auto enough = require_months(months, *site.period, weather); !enough) {
-    return tl::unexpected(enough.error());
+  if (!facts_of(site.model->kind).is_of_building) {
+    return prepare_on_runs(site, calendar, recording, weather, added);
   }
-  result.model = site.model->kind;
-  result.units = site.units;
-  take_months(months, result);
+  auto begun = begin_site(site, recording, weather);
+  if (!begun) return tl::unexpected(begun.error());
+  PreparedSite prepared{.so_far = std::move(begun->so_far)};
+  const SiteMonths& months = begun->months;
+  SiteCalibration& result = prepared.so_far;
   auto chosen = site_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
   result.definitions = std::move(chosen->definitions);
   result.parameters = std::move(chosen->parameters);
+  for (const auto* definition : result.definitions) result.labels.emplace_back(definition->label);
   for (const ParameterConfig& config : site.model->parameters) {
     result.prior_sources.push_back(config.source);
   }
@@ -289,7 +315,6 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   auto profile = fit_site_profile(site, recording, place, months.calibration);
   if (!profile) return tl::unexpected(profile.error());
   result.profile = std::move(*profile);
-  result.outputs = collect_outputs(site, recording, months.all);
   SiteModelParts parts{result.definitions, std::move(*maps), {}, {}, {}};
   if (auto with = take_effects(site, calendar, recording, weather, std::move(added), result);
       !with) {
@@ -314,6 +339,7 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
       assumed_weather_errors(site, parts, months, place, weather, *prepared.whole_model, modes);
   if (!of_weather) return tl::unexpected(of_weather.error());
 
+  prepared.parts = parts;
   parts.loads = assessment::more_use(parts.loads);
   const auto with_more = whole_model_of(site, parts, months, place);
   if (!with_more) return tl::unexpected(with_more.error());
@@ -327,22 +353,12 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   };
   prepared.problem.common_errors = errors(*make, *prepared.model);
   prepared.common_errors = errors(*whole, *prepared.whole_model);
-  add_common_errors(*of_weather, prepared);
+  prepared.errors = assessment::kinds_of_common_errors(result.outputs);
+  add_common_errors(*of_weather, {}, prepared);
   return prepared;
 }
 
 namespace {
-
-assessment::Service service_of(metering::Utility utility) {
-  switch (utility) {
-    case metering::Utility::electricity:
-      return assessment::Service::electricity;
-    case metering::Utility::chilled_water:
-      return assessment::Service::cooling;
-    default:
-      return assessment::Service::heating;
-  }
-}
 
 /// Lights and plugs are not the same in every month, which no schedule tells.
 void add_use_scatter(std::size_t k, SiteCalibration& result,
@@ -379,7 +395,9 @@ std::optional<std::string> why_no_evidence(const assessment::OutputCalibration& 
 void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& sizes,
                    PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
-  const std::size_t profiled = *profile_meter(site);
+  // Of a client's model nothing was read off a meter.
+  const std::size_t profiled =
+      facts_of(site.model->kind).is_of_building ? *profile_meter(site) : site.meters.size();
   int other_figures = 0;
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     const auto& output = result.outputs[k];
@@ -397,7 +415,7 @@ void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& si
       const Eigen::VectorXd level =
           sizes.electricity_level *
           Eigen::Map<const Eigen::VectorXd>(use.data(), static_cast<Eigen::Index>(use.size()));
-      add_common_errors({level}, prepared);
+      add_common_errors({level}, {}, prepared);
     } else if (auto why = why_no_evidence(result.outputs[k], profiled)) {
       using enum assessment::Following;
       assessment::set_aside(k, std::move(*why), is_peak ? errors : level, result, prepared.problem);
@@ -411,6 +429,10 @@ void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& si
 std::vector<double> parameter_spreads(const SiteConfig& site,
                                       const assessment::ModelErrorSizes& sizes,
                                       SiteCalibration& result) {
+  if (result.definitions.empty()) {
+    result.parameter_errors.assign(result.parameters.size(), sizes.parameter_share);
+    return assessment::spreads_of(result.parameters, sizes);
+  }
   std::vector<double> spreads(result.parameters.size(), 0.0);
   result.parameter_errors.assign(result.parameters.size(), 0.0);
   for (std::size_t j = 0; j < site.model->parameters.size(); ++j) {
@@ -438,8 +460,10 @@ assessment::ModelErrorSizes sizes_of(const ModelConfig& model) {
 /// Why the parameters cannot be calibrated: too few figures are left of meters that they move.
 std::optional<std::string> why_too_little(const SiteConfig& site, const PreparedSite& prepared) {
   const int points = calibration::measured_points(prepared.problem);
-  const int needed =
-      static_cast<int>(site.model->parameters.size()) + calibration::kPointsBeyondParameters;
+  const SiteCalibration& so_far = prepared.so_far;
+  const std::size_t parameters =
+      so_far.effects ? site.model->parameters.size() : so_far.parameters.size();
+  const int needed = static_cast<int>(parameters) + calibration::kPointsBeyondParameters;
   if (points >= needed) return std::nullopt;
   std::string why = fmt::format(
       "The model is not calibrated: its parameters need at least {} monthly figures of meters that "
@@ -461,11 +485,11 @@ void add_model_errors(const SiteConfig& site, PreparedSite& prepared) {
   take_evidence(site, sizes, prepared);
   std::vector<assessment::Service> services;
   for (const assessment::OutputCalibration& output : result.outputs) {
-    services.push_back(service_of(site.meters[output.meter].meter.utility));
+    services.push_back(assessment::service_of(site.meters[output.meter].meter.utility));
   }
   auto errors =
       assessment::model_errors(*prepared.whole_model, result.parameters, spreads, services, sizes);
-  add_common_errors(errors, prepared);
+  add_common_errors(errors, assessment::kinds_of_model_errors(spreads, services, sizes), prepared);
 }
 
 }  // namespace
@@ -496,8 +520,10 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
   CalibrateOptions how = options;
   if (options.discrepancy == DiscrepancyForm::sound) {
     add_model_errors(site, *prepared);
-    // Whoever names a sampler gets the model itself in the chains.
-    how.calibration.emulate = options.calibration.sampling.sampler == nullptr;
+    // Whoever names a sampler gets the model itself in the chains; a regression is a polynomial
+    // already.
+    how.calibration.emulate = options.calibration.sampling.sampler == nullptr &&
+                              facts_of(site.model->kind).is_of_building;
   }
   if (auto why = why_too_little(site, *prepared)) return forecast_alone(std::move(*why));
   SiteCalibration result = std::move(prepared->so_far);
@@ -505,6 +531,8 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
                   ? calibrate_with_effects(*prepared, how, std::move(*design), context, result)
                   : calibrate_all(*prepared, how, std::move(*design), context, result);
   if (!done) return tl::unexpected(done.error());
+  result.with = std::make_shared<const CalibratedWith>(CalibratedWith{
+      std::move(prepared->problem), std::move(prepared->errors), std::move(prepared->parts)});
   const assessment::WholePeriod whole{{prepared->inputs.names, prepared->inputs.values},
                                       std::move(prepared->common_errors)};
   const auto yardsticks = yardsticks_of(site, calendar, recording, weather, result);

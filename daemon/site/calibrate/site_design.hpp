@@ -13,6 +13,7 @@ namespace recald::daemon {
 struct SiteDesignOptions {
   int runs = 200;
   std::uint64_t seed = 1;
+  bool at_corners = false;  ///< Of the priors, in the place of a hypercube.
   std::string fingerprint;  ///< Of site file, data and program: what a run depends on.
 };
 

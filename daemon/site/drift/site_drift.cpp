@@ -58,6 +58,11 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
 std::vector<drift::DailyWatches::Output> days_of_meters(const ModelledSite& modelled,
                                                         int learning_months,
                                                         SiteCalibration& site) {
+  if (!facts_of(site.model).is_of_building) {
+    site.warnings.push_back(
+        display::warning_of("The daily watch is off: it needs a model of a [building]."));
+    return {};
+  }
   std::vector<FollowedMeter> meters;
   std::vector<int> outputs;
   for (std::size_t k = 0; k < site.outputs.size(); ++k) {
@@ -132,11 +137,13 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
   }
   const int learning_months = prepared->model->month_count();
   SiteCalibration& so_far = prepared->so_far;
-  drift::SeenBeside beside{
-      .meter_changes =
-          meter_changes_of(modelled.recording, so_far.month_names.front(), learning_months),
-      .directions = {{.name = "electricity use", .change = prepared->electricity_use}},
-      .days = days_of_meters(modelled, learning_months, so_far)};
+  drift::SeenBeside beside{.meter_changes = meter_changes_of(
+                               modelled.recording, so_far.month_names.front(), learning_months),
+                           .directions = {},
+                           .days = days_of_meters(modelled, learning_months, so_far)};
+  if (!prepared->electricity_use.empty()) {
+    beside.directions.push_back({.name = "electricity use", .change = prepared->electricity_use});
+  }
   auto drift = drift::follow({so_far,
                               *prepared->whole_model,
                               learning_months,

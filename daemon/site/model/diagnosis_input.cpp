@@ -169,6 +169,11 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                       const metering::LocalCalendar& calendar,
                                       const Recording& recording, const SiteWeather& weather,
                                       std::optional<Month> last_taught) {
+  if (!site.building) {
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("{} has no [building], which hours are simulated with",
+                               site.file.filename().string()));
+  }
   SiteProblem problem;
   problem.nominal = *site.building;
   display::Warnings said_elsewhere;

@@ -79,6 +79,32 @@ Result<void> require_model(const SiteConfig& site) {
                   site.file.filename().string()));
 }
 
+Result<void> choose_model(SiteConfig& site, ModelKind kind) {
+  if (site.model->kind == kind) return {};
+  const auto other = std::ranges::find(site.other_models, kind, &ModelConfig::kind);
+  if (other != site.other_models.end()) {
+    std::swap(*site.model, *other);
+    return {};
+  }
+  const bool is_of_building = facts_of(kind).is_of_building;
+  if (is_of_building && facts_of(site.model->kind).is_of_building) {
+    site.model->kind = kind;
+    return {};
+  }
+  const auto with_building = std::ranges::find_if(site.other_models, [](const ModelConfig& model) {
+    return facts_of(model.kind).is_of_building;
+  });
+  if (is_of_building && with_building != site.other_models.end()) {
+    std::swap(*site.model, *with_building);
+    site.model->kind = kind;
+    return {};
+  }
+  return failure(
+      ErrorCode::unsupported,
+      fmt::format("{} has no [[model]] of kind \"{}\"{}; add one", site.file.filename().string(),
+                  name_of(kind), is_of_building ? ", which needs a [building]" : ""));
+}
+
 Result<Recording> record_site(const OpenSite& site, const ReplayOptions& options,
                               VirtualClock& clock, const OnMonthClosed& on_month_closed) {
   const auto live = open_live_readings(site.config);

@@ -22,6 +22,11 @@ struct OpenSite {
 /// Whether the site can be modelled; the error says what is missing.
 [[nodiscard]] Result<void> require_model(const SiteConfig& site);
 
+/// Puts the site's model of another kind in the first place: one that the site file has, or the
+/// first as it would be of that kind, where both are of the site's [building].
+/// @return unsupported: the site has no such model. @pre the site has a model
+[[nodiscard]] Result<void> choose_model(SiteConfig& site, ModelKind kind);
+
 struct ModelledSite {
   OpenSite site;
   Recording recording;

@@ -21,6 +21,14 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
   for (const auto& file : files) {
     if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
   }
+  if (site.model && site.model->energyplus) {
+    for (const char* name : {"priors.csv", "doe_inputs.csv", "doe_outputs.csv"}) {
+      const auto file = site.model->energyplus->design / name;
+      std::error_code ignored;
+      if (!std::filesystem::exists(file, ignored)) continue;  // its runs are still to be made
+      if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
+    }
+  }
   data_digest.add(live_digest);
   RunFacts facts;
   facts.recald_version = kVersion;

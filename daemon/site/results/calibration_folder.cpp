@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <utility>
 #include <vector>
 
 #include "adapters/report/meters_page.hpp"
@@ -46,7 +47,7 @@ Result<void> write_files(const assessment::AssessedCalibration& result, const Ru
 }  // namespace
 
 std::string render(const FinishedCalibration& done, const std::string& generated_at,
-                   const std::string& most_likely) {
+                   const std::string& most_likely, std::vector<report::ComparedModel> compared) {
   const ModelledSite& modelled = done.modelled;
   const OpenSite& site = modelled.site;
   if (!done.calibration.not_calibrated_because.empty()) {
@@ -57,20 +58,27 @@ std::string render(const FinishedCalibration& done, const std::string& generated
   report::ReportData data = report_of(site.config, site.calendar, modelled.recording,
                                       done.calibration, modelled.facts, generated_at);
   data.most_likely = most_likely;
+  data.compared = std::move(compared);
   return report::render_report(data);
 }
 
 Result<void> write_calibration(const FinishedCalibration& done, const std::string& json,
-                               const std::string& generated_at,
-                               const std::filesystem::path& folder) {
+                               const std::string& generated_at, const std::filesystem::path& folder,
+                               std::vector<report::ComparedModel> compared) {
   const RunFacts& facts = done.modelled.facts;
   std::vector<ResultFile> files{
       {"months.csv", months_csv(done.modelled.recording, facts.time_zone_data)}};
-  if (done.calibration.not_calibrated_because.empty()) {  // the profile is a model's
+  if (const auto& design = done.calibration.design) {
+    files.push_back({"screen.json", screen_json(design->screening, design->folder.parameters,
+                                                design->folder.notes, facts)});
+    files.push_back(
+        {"metamodel.json", metamodel_json(design->fitted, design->fitted.notes, facts)});
+  } else if (done.calibration.not_calibrated_because.empty()) {  // the profile is a model's
     files.push_back({"profile.json", profile_json(done.calibration.profile)});
   }
   files.push_back(
-      {"report.html", render(done, generated_at, most_likely_in(folder, facts.data_revision))});
+      {"report.html", render(done, generated_at, most_likely_in(folder, facts.data_revision),
+                             std::move(compared))});
   return write_files(done.calibration, facts, files, json, folder);
 }
 

@@ -214,7 +214,8 @@ std::string screen_table(const screening::Screening& screening,
 }
 
 std::string metamodel_json(const FittedMetamodel& fitted, const std::vector<std::string>& notes,
-                           const RunFacts& facts) {
+                           const RunFacts& facts,
+                           const std::vector<regression::CheckedOutput>& checked) {
   const DesignQuality& quality = fitted.quality();
   Json sigma_r = Json::object();
   for (const regression::OutputQuality& output : quality.outputs) {
@@ -237,11 +238,19 @@ std::string metamodel_json(const FittedMetamodel& fitted, const std::vector<std:
                {"scaling", scaling_json(fitted)},
                {"terms", monthly ? monthly_terms_json(*fitted.monthly_form)
                                  : seed_terms_json(*fitted.seed_form)}};
+  for (const regression::CheckedOutput& output : checked) {
+    json["check"][output.name] = {{"cvrmse", output.cvrmse},
+                                  {"r2_median_month", output.r2_median_month},
+                                  {"r2_worst_month", output.r2_worst_month},
+                                  {"worst_month", output.worst_month},
+                                  {"error_of_worst_month", output.error_of_worst}};
+  }
   add_facts(json, notes, facts);
   return json.dump(2) + "\n";
 }
 
-std::string metamodel_table(const FittedMetamodel& fitted, const std::vector<std::string>& notes) {
+std::string metamodel_table(const FittedMetamodel& fitted, const std::vector<std::string>& notes,
+                            const std::vector<regression::CheckedOutput>& checked) {
   std::vector<std::string> names;
   for (const auto& output : fitted.quality().outputs) names.push_back(output.name);
   const std::size_t width = longest(names, 11);
@@ -267,6 +276,16 @@ std::string metamodel_table(const FittedMetamodel& fitted, const std::vector<std
   text += fmt::format("Chosen: {}: {}\n", to_string(fitted.form), fitted.why);
   if (fitted.form == MetamodelForm::monthly) {
     text += "It speaks of the design's months alone; for other months the seed's form is needed.\n";
+  }
+  if (!checked.empty()) {
+    text += fmt::format("\n{:<{}}{:>12}{:>18}{:>24}\n", "runs to check", width, "CV(RMSE)",
+                        "R2, median month", "worst month, its error");
+    for (const regression::CheckedOutput& output : checked) {
+      text += fmt::format("{:<{}}{:>11.2f}%{:>18.4f}{:>24}\n", output.name, width,
+                          100.0 * output.cvrmse, output.r2_median_month,
+                          fmt::format("{:.4f} {} {:.2f}%", output.r2_worst_month,
+                                      output.worst_month, 100.0 * output.error_of_worst));
+    }
   }
   return text + notes_text(notes);
 }

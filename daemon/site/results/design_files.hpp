@@ -24,12 +24,13 @@ namespace recald::daemon {
 
 /// `terms` are those of the chosen form. Seed: by meter, one coefficient each. Monthly: by output,
 /// one coefficient a month. Variables are scaled to [0, 1] by `scaling`, outputs likewise.
-[[nodiscard]] std::string metamodel_json(const FittedMetamodel& fitted,
-                                         const std::vector<std::string>& notes,
-                                         const RunFacts& facts);
+[[nodiscard]] std::string metamodel_json(
+    const FittedMetamodel& fitted, const std::vector<std::string>& notes, const RunFacts& facts,
+    const std::vector<regression::CheckedOutput>& checked = {});
 
 /// Both forms by output, in sample and left out, and which was chosen.
-[[nodiscard]] std::string metamodel_table(const FittedMetamodel& fitted,
-                                          const std::vector<std::string>& notes);
+[[nodiscard]] std::string metamodel_table(
+    const FittedMetamodel& fitted, const std::vector<std::string>& notes,
+    const std::vector<regression::CheckedOutput>& checked = {});
 
 }  // namespace recald::daemon

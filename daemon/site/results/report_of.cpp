@@ -295,24 +295,30 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                           .units = site.units,
                           .currency = site.tariff.currency};
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
-    data.parameters.push_back(parameter_of(result, j, std::string{result.definitions[j]->label}));
+    data.parameters.push_back(parameter_of(result, j, result.labels[j]));
   }
   std::vector<ShownOutput> shown;
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     const assessment::OutputCalibration& output = result.outputs[k];
-    if (is_peak(output)) continue;  // the page shows peaks as measured, beside each other
-    shown.push_back({k, display::meter_label(recording.meters[output.meter].meter.id)});
+    const bool is_of_building = facts_of(result.model).is_of_building;
+    // Peaks that are no evidence are shown as measured, beside each other.
+    if (is_peak(output) && is_of_building) continue;
+    shown.push_back({k, display::meter_label(recording.meters[output.meter].meter.id) +
+                            (is_peak(output) ? " peak" : "")});
     data.outputs.push_back({.label = shown.back().label,
+                            .is_peak = is_peak(output),
                             .units = display::meter_units(site.units, output.utility),
                             .months = months_of(recording, result, output),
                             .assessment = output.assessment});
-    add_forecast_cost(site, recording.meters[output.meter], result, output, data);
+    if (!is_peak(output))
+      add_forecast_cost(site, recording.meters[output.meter], result, output, data);
   }
   add_calibration(result, shown, data);
-  data.not_known.emplace_back(
-      facts_of(result.model).has_peaks
-          ? "Peak demand is shown as measured; the model's own peaks are in calibration.json."
-          : "Peak demand is measured only. The monthly model has no peaks.");
+  if (facts_of(result.model).is_of_building)
+    data.not_known.emplace_back(
+        facts_of(result.model).has_peaks
+            ? "Peak demand is shown as measured; the model's own peaks are in calibration.json."
+            : "Peak demand is measured only. The monthly model has no peaks.");
   for (const MeterRecord& record : recording.meters) {
     for (metering::DataFinding finding : record.findings) {
       finding.meter = display::meter_label(finding.meter);
@@ -323,6 +329,7 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                           .months = record.figures});
     data.loads.push_back(load_of(record, site.units));
   }
+  if (!facts_of(result.model).is_of_building) return data;  // no profile was read off a meter
   using enum model::DayType;
   data.profile = {
       .day_types = {day_profile_of(result.profile, workday, "Working day"),

@@ -80,7 +80,7 @@ TEST_F(BashCompletion, OffersCommandsOptionsValuesAndFiles) {
   EXPECT_THAT(offered("recald diag"), ElementsAre("diagnose"));
   EXPECT_THAT(offered("recald model re"), ElementsAre("revert"));
   EXPECT_THAT(offered("recald diagnose site.toml --as"), ElementsAre("--assume"));
-  EXPECT_THAT(offered("recald calibrate --model e"), ElementsAre("epc"));
+  EXPECT_THAT(offered("recald calibrate --model ep"), ElementsAre("epc"));
   EXPECT_THAT(offered("recald calibrate site"), ElementsAre("site.toml"));
 }
 

