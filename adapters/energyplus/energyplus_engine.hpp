@@ -11,26 +11,10 @@
 #include "adapters/energyplus/monthly_output.hpp"
 #include "adapters/energyplus/program.hpp"
 #include "adapters/energyplus/simulation.hpp"
+#include "adapters/energyplus/targeted_parameter.hpp"
 #include "adapters/ports/engine.hpp"
-#include "core/model/parameter.hpp"
 
 namespace recald::energyplus {
-
-/// A parameter, and what it does to the model.
-struct TargetedParameter {
-  Parameter parameter;
-  std::vector<Target> targets;
-  Change change = Change::scale;
-  /// The value at which the model is as it stands: of a factor 1, of a difference 0, of a quantity
-  /// that is scaled or shifted to a value what the model has.
-  double design = 1.0;
-
-  /// What `apply` needs for a value of the parameter.
-  [[nodiscard]] double amount(double value) const {
-    if (change == Change::scale) return value / design;
-    return change == Change::add ? value - design : value;
-  }
-};
 
 /// All that is fixed between runs.
 struct EngineSetup {

@@ -141,7 +141,7 @@ double mean(std::span<const double> values) {
 struct Found {
   std::vector<Target> targets;
   double design = 1.0;
-  Change change = Change::scale;
+  ChangeKind change = ChangeKind::scale;
 };
 
 /// Reads one model, for each name in turn.
@@ -186,7 +186,7 @@ class Finder {
   }
 
   [[nodiscard]] Found ground() const {
-    Found found{.targets = {}, .design = 0.0, .change = Change::add};
+    Found found{.targets = {}, .design = 0.0, .change = ChangeKind::add};
     std::vector<double> months;
     for (const std::string_view type :
          {"Site:GroundTemperature:BuildingSurface", "Site:GroundTemperature:FCfactorMethod"}) {
@@ -200,7 +200,7 @@ class Finder {
   }
 
   [[nodiscard]] Found density(const std::vector<Level>& levels) const {
-    Found found{.targets = {}, .design = rooms_.density(levels), .change = Change::scale};
+    Found found{.targets = {}, .design = rooms_.density(levels), .change = ChangeKind::scale};
     if (!(found.design > 0.0)) return found;
     // A target for each type and field, so that patterns can be shown.
     std::map<std::string, Target> targets;
@@ -219,7 +219,7 @@ class Finder {
   }
 
   [[nodiscard]] Found temperature(Role role) const {
-    Found found{.targets = {}, .design = 0.0, .change = Change::add};
+    Found found{.targets = {}, .design = 0.0, .change = ChangeKind::add};
     std::vector<double> occupied;
     std::set<std::string> moved;  // a day may serve several schedules
     for (const RoleSchedule& schedule : schedules_of(objects_, role)) {
@@ -306,9 +306,10 @@ Result<KnownParameter> known(const Finder& finder, const model::ParameterDefinit
   }
   auto parameter = model::make_parameter(definition, found.design, prior);
   if (!parameter) return tl::unexpected(parameter.error());
-  return KnownParameter{std::move(*parameter),         std::string{definition.label},
-                        std::string{definition.group}, found.change,
-                        std::move(found.targets),      found.design};
+  return KnownParameter{
+      {std::move(*parameter), std::move(found.targets), found.change, found.design},
+      std::string{definition.label},
+      std::string{definition.group}};
 }
 
 /// The lowest cooling set-point less the highest heating one, with the heating ones' fields.

@@ -6,29 +6,18 @@
 #include <string_view>
 #include <vector>
 
-#include "adapters/energyplus/model_document.hpp"
-#include "core/model/parameter.hpp"
+#include "adapters/energyplus/targeted_parameter.hpp"
 #include "core/result.hpp"
 
 namespace recald::energyplus {
 
-/// A parameter of the library in a model. Its value is in the library's unit, so that it compares
-/// with the built-in models': a cooling set-point in degC, people per m2.
-struct KnownParameter {
-  Parameter parameter;  ///< With the prior of the library around the model's own value.
-  std::string label;    ///< For people.
-  std::string group;    ///< As in Table 1 of the seed.
-  Change change = Change::scale;
-  std::vector<Target> targets;
-  double design = 1.0;  ///< The value that the model has as it stands.
-
-  /// What `apply` needs for a value: differences move together what differs between rooms and
-  /// between night and day, factors what differs between objects.
-  [[nodiscard]] double amount(double value) const {
-    return change == Change::scale ? value / design
-           : change == Change::add ? value - design
-                                   : value;
-  }
+/// A parameter of the library in a model, with the prior of the library around the model's own
+/// value. Its value is in the library's unit, so that it compares with the built-in models': a
+/// cooling set-point in degC, people per m2. Differences move together what differs between rooms
+/// and between night and day, factors what differs between objects.
+struct KnownParameter : TargetedParameter {
+  std::string label;  ///< For people.
+  std::string group;  ///< As in Table 1 of the seed.
 };
 
 /// Makes the model ready for known parameters: schedules split by role, and defaults that a

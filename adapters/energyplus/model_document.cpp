@@ -202,14 +202,14 @@ std::vector<Json::json_pointer> find_fields(const Json& objects, std::string_vie
   return search.found();
 }
 
-void apply(const Target& target, Change change, double value, Json& objects) {
+void apply(const Target& target, ChangeKind change, double value, Json& objects) {
   const auto changed = [&](double before) {
     switch (change) {
-      case Change::set:
+      case ChangeKind::set:
         return value;
-      case Change::scale:
+      case ChangeKind::scale:
         return before * value;
-      case Change::add:
+      case ChangeKind::add:
         break;
     }
     return before + value;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/model/change_kind.hpp"
 #include "core/result.hpp"
 
 namespace recald::energyplus {
@@ -27,8 +28,7 @@ struct ModelDocument {
 /// @param name  Stands in messages.
 [[nodiscard]] Result<ModelDocument> parse_epjson(std::string_view text, std::string_view name);
 
-/// What a parameter does to a field.
-enum class Change : std::uint8_t { set, scale, add };
+using model::ChangeKind;
 
 /// What the change applies to, where the model writes a quantity down in another way.
 enum class Sense : std::uint8_t {
@@ -59,6 +59,6 @@ struct Target {
                                                           std::string_view pattern);
 
 /// Changes each field of the target. @pre the target was found in such a document.
-void apply(const Target& target, Change change, double value, Json& objects);
+void apply(const Target& target, ChangeKind change, double value, Json& objects);
 
 }  // namespace recald::energyplus

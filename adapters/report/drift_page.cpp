@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "adapters/report/forecast_table.hpp"
 #include "adapters/report/format.hpp"
 #include "adapters/report/html.hpp"
 #include "adapters/report/page.hpp"
@@ -63,19 +64,6 @@ void write_changes_section(Html& html, const DriftData& data) {
   html.markup("</section>\n");
 }
 
-Table forecast_table(const ForecastSeries& series) {
-  Table table(fmt::format("{}: forecast and measured by month, {}", series.label, series.unit));
-  table.columns({"Month", "5 %", "Median", "95 %", "Measured"});
-  for (const ForecastMonth& month : series.months) {
-    std::vector<Cell> cells{{month_text(month.month)}};
-    for (const auto& value : {month.q05, month.q50, month.q95, month.measured}) {
-      cells.push_back({number_text(value), "number"});
-    }
-    table.row(std::move(cells));
-  }
-  return table;
-}
-
 void write_forecast_section(Html& html, const DriftData& data) {
   if (data.outputs.empty()) return;
   open_section(html, "forecasts", "What was forecast, and what came");
@@ -95,7 +83,7 @@ void write_forecast_section(Html& html, const DriftData& data) {
                   .caption = series.trust +
                              " Band: nine of ten months should lie inside. Shaded: from the "
                              "earliest month that an alarm may date from until it was raised."},
-                 forecast_table(series));
+                 forecast_table(series, "forecast"));
   }
   html.markup("</section>\n");
 }

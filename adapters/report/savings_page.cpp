@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "adapters/report/forecast_table.hpp"
 #include "adapters/report/format.hpp"
 #include "adapters/report/html.hpp"
 #include "adapters/report/page.hpp"
@@ -39,19 +40,6 @@ void write_saving_cards(Html& html, const SavingsData& data) {
   html.markup("</section>\n");
 }
 
-Table expected_table(const ForecastSeries& series) {
-  Table table(fmt::format("{}: expected and measured by month, {}", series.label, series.unit));
-  table.columns({"Month", "5 %", "Median", "95 %", "Measured"});
-  for (const ForecastMonth& month : series.months) {
-    std::vector<Cell> cells{{month_text(month.month)}};
-    for (const auto& value : {month.q05, month.q50, month.q95, month.measured}) {
-      cells.push_back({number_text(value), "number"});
-    }
-    table.row(std::move(cells));
-  }
-  return table;
-}
-
 void write_expected_months(Html& html, const SavingsData& data) {
   if (data.months.empty()) return;
   open_section(html, "months", "Months before and after");
@@ -67,7 +55,7 @@ void write_expected_months(Html& html, const SavingsData& data) {
                                              "90 % band, and what it showed, {} months.",
                                              series.label, series.months.size()),
                   .caption = series.trust},
-                 expected_table(series));
+                 forecast_table(series, "expected"));
   }
   html.markup("</section>\n");
 }

@@ -1,22 +1,15 @@
 /// A measure: named changes to a building, and what they cost.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "core/model/change_kind.hpp"
 
 namespace recald::savings {
 
-enum class ChangeKind : unsigned char {
-  set,    ///< To this value.
-  scale,  ///< Times this factor.
-  add,    ///< More by this; less where it is negative.
-};
-
-/// In files, in the order of `ChangeKind`.
-inline constexpr std::array<std::string_view, 3> kChangeKindNames{"set", "scale", "add"};
+using model::ChangeKind;
 
 /// How far a change will go. What will come of a measure is often not known before: then it is
 /// drawn from a triangular distribution. @pre min <= mode <= max, finite
@@ -43,8 +36,5 @@ struct Measure {
   std::optional<double> cost;  ///< Money of the site's tariff, once.
   std::vector<Change> changes;
 };
-
-/// A quantity after a change. All in the quantity's unit, but for the factor of `scale`.
-[[nodiscard]] double changed(ChangeKind kind, double before, double by);
 
 }  // namespace recald::savings

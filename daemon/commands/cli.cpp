@@ -424,20 +424,7 @@ void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs)
       {metamodel, [&](const Console& console) { return run_metamodel(given.metamodel, console); }});
 }
 
-void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* diagnose =
-      app.add_subcommand("diagnose", "Find the physical effect that the model is missing")
-          ->group(kFind);
-  add_site(*diagnose, given.diagnose);
-  diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.json");
-  diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
-      ->capture_default_str();
-  diagnose->add_flag("--apply", given.diagnose.apply, "Add the effect that is named to the model");
-  diagnose->add_option("--assume", given.diagnose.assumed,
-                       "Add only this effect, EFFECT or EFFECT:METER, which is known to be there");
-  verbs.push_back(
-      {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
-
+void add_drift_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* drift =
       app.add_subcommand("drift",
                          "Forecast each month from the months before it and say what changed")
@@ -460,7 +447,9 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
       ->capture_default_str();
   drift->add_option("--threads", given.drift.threads, "Number of threads; 0 for one per core");
   verbs.push_back({drift, [&](const Console& console) { return run_drift(given.drift, console); }});
+}
 
+void add_ecm_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* ecm =
       app.add_subcommand("ecm", "Say what measures would save, or what was saved since a date")
           ->group(kCalibrate);
@@ -477,6 +466,21 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   ecm->add_option("--seed", given.ecm.seed, "Seed of all random numbers")->capture_default_str();
   ecm->add_option("--threads", given.ecm.threads, "Number of threads; 0 for one per core");
   verbs.push_back({ecm, [&](const Console& console) { return run_ecm(given.ecm, console); }});
+}
+
+void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* diagnose =
+      app.add_subcommand("diagnose", "Find the physical effect that the model is missing")
+          ->group(kFind);
+  add_site(*diagnose, given.diagnose);
+  diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.json");
+  diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
+      ->capture_default_str();
+  diagnose->add_flag("--apply", given.diagnose.apply, "Add the effect that is named to the model");
+  diagnose->add_option("--assume", given.diagnose.assumed,
+                       "Add only this effect, EFFECT or EFFECT:METER, which is known to be there");
+  verbs.push_back(
+      {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
 
   CLI::App* detectability =
       app.add_subcommand("detectability", "Estimate how visible an effect would be at a site")
@@ -592,6 +596,8 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   add_device_verbs(app, given, verbs);
   add_calibration_verbs(app, given, verbs);
   add_design_verbs(app, given, verbs);
+  add_drift_verb(app, given, verbs);
+  add_ecm_verb(app, given, verbs);
   add_model_verbs(app, given, verbs);
   add_engine_verbs(app, given, verbs);
 

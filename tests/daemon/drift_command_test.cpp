@@ -9,6 +9,7 @@
 
 #include "command_line.hpp"
 #include "simulators/scenario/building_feed.hpp"
+#include "tampered_readings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::daemon {
@@ -19,29 +20,8 @@ using recald::testing::read_text;
 using recald::testing::write_text;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using testing::multiplied;
 using testing::run;
-
-/// Readings of one meter multiplied from an instant on: somebody changed a transformer.
-std::string multiplied(const std::string& readings, const std::string& meter,
-                       const std::string& from, double factor) {
-  std::istringstream in{readings};
-  std::string text;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream fields{line};
-    std::string stamp, name, value, unit;
-    std::getline(fields, stamp, ',');
-    std::getline(fields, name, ',');
-    std::getline(fields, value, ',');
-    std::getline(fields, unit, ',');
-    if (name == meter && stamp >= from && !value.empty()) {
-      text += stamp + "," + name + "," + std::to_string(factor * std::stod(value)) + "," + unit;
-    } else {
-      text += line;
-    }
-    text += '\n';
-  }
-  return text;
-}
 
 /// Readings without those of one meter in some months: nobody came to read it.
 std::string without(const std::string& readings, const std::string& meter,

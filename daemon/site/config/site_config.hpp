@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "adapters/csv/line_issues.hpp"
-#include "adapters/energyplus/model_document.hpp"
 #include "core/display/unit.hpp"
 #include "core/metering/close_month.hpp"
 #include "core/metering/counter.hpp"
 #include "core/metering/month_closer.hpp"
 #include "core/metering/units.hpp"
 #include "core/model/building.hpp"
+#include "core/model/change_kind.hpp"
 #include "core/model/end_use.hpp"
 #include "core/model/model_kind.hpp"
 #include "core/model/parameter.hpp"
@@ -97,7 +97,7 @@ struct ParameterConfig {
   std::string source;          ///< Where that prior comes from; empty: nobody says.
   /// Of an EnergyPlus model: patterns of the fields that it changes; empty: as the library has it.
   std::vector<std::string> targets = {};
-  energyplus::Change change = energyplus::Change::scale;
+  model::ChangeKind change = model::ChangeKind::scale;
   std::string unit = "-";
 };
 

@@ -113,6 +113,19 @@ std::string span_words(const std::vector<Month>& months) {
   return metering::to_string(months.front()) + " to " + metering::to_string(months.back());
 }
 
+Result<void> require_building_and_months(const SiteConfig& site, std::size_t months) {
+  if (!site.building) {
+    return failure(ErrorCode::not_enough_data,
+                   fmt::format("{} has no [building], which hours are simulated with",
+                               site.file.filename().string()));
+  }
+  if (months >= kLeastMonths) return {};
+  return failure(ErrorCode::not_enough_data,
+                 fmt::format("a diagnosis needs at least {} months with weather and meters; {} has "
+                             "{}; widen [period] or give more weather",
+                             kLeastMonths, site.id, months));
+}
+
 }  // namespace
 
 Result<void> require_months(const SiteConfig& site, const Recording& recording,
@@ -169,21 +182,13 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                       const metering::LocalCalendar& calendar,
                                       const Recording& recording, const SiteWeather& weather,
                                       std::optional<Month> last_taught) {
-  if (!site.building) {
-    return failure(ErrorCode::not_enough_data,
-                   fmt::format("{} has no [building], which hours are simulated with",
-                               site.file.filename().string()));
+  display::Warnings said_elsewhere;
+  const std::vector<Month> months = months_with_weather(site, weather, said_elsewhere);
+  if (auto enough = require_building_and_months(site, months.size()); !enough) {
+    return tl::unexpected(enough.error());
   }
   SiteProblem problem;
   problem.nominal = *site.building;
-  display::Warnings said_elsewhere;
-  const std::vector<Month> months = months_with_weather(site, weather, said_elsewhere);
-  if (months.size() < kLeastMonths) {
-    return failure(ErrorCode::not_enough_data,
-                   fmt::format("a diagnosis needs at least {} months with weather and meters; {} "
-                               "has {}; widen [period] or give more weather",
-                               kLeastMonths, site.id, months.size()));
-  }
   const auto electricity = electricity_meter(site, recording);
   if (!electricity) return tl::unexpected(electricity.error());
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};

@@ -29,13 +29,12 @@ Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelD
   if (config.targets.empty()) {
     auto known = energyplus::find_known_parameter(model, config.name, config.prior);
     if (!known) return tl::unexpected(known.error());
-    return energyplus::TargetedParameter{std::move(known->parameter), std::move(known->targets),
-                                         known->change, known->design};
+    return energyplus::TargetedParameter{std::move(*known)};
   }
   energyplus::TargetedParameter found{{config.name, config.unit, *config.prior},
                                       {},
                                       config.change,
-                                      config.change == energyplus::Change::scale ? 1.0 : 0.0};
+                                      config.change == model::ChangeKind::scale ? 1.0 : 0.0};
   for (const std::string& pattern : config.targets) {
     auto target = energyplus::find_target(model, pattern);
     if (!target) {

@@ -57,8 +57,8 @@ Change read_change(TomlReader& table, const SiteConfig& site) {
                 .targets = table.one_or_more("targets").value_or(std::vector<std::string>{}),
                 .kind = ChangeKind::scale,
                 .by = {}};
-  const std::vector<std::string_view> kinds{savings::kChangeKindNames.begin(),
-                                            savings::kChangeKindNames.end()};
+  const std::vector<std::string_view> kinds{model::kChangeKindNames.begin(),
+                                            model::kChangeKindNames.end()};
   if (const auto kind = table.word("change", kinds)) {
     change.kind = static_cast<ChangeKind>(std::ranges::find(kinds, *kind) - kinds.begin());
   } else if (!table.has("change")) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "core/assessment/model_errors.hpp"
@@ -336,7 +337,7 @@ void take_cost(std::optional<double> cost, bool is_year, MeasureSaving& saving) 
 }
 
 /// All of them have one.
-std::optional<double> cost_of_all(const std::vector<Measure>& measures) {
+std::optional<double> cost_of_all(std::span<const Measure> measures) {
   double sum = 0.0;
   for (const Measure& measure : measures) {
     if (!measure.cost) return std::nullopt;
@@ -366,6 +367,32 @@ std::vector<std::string> notes_of_all(const SiteCalibration& result, bool is_yea
         "Effects that the model has keep acting on its meters with the measure too.");
   }
   return notes;
+}
+
+using RunModel = std::function<Result<Eigen::MatrixXd>(const Eigen::MatrixXd& theta)>;
+
+/// Each measure by itself and, where there are several, all of them.
+/// @param plain     (draws x columns) without any.
+/// @param achieved  As `draw_achieved`.
+Result<void> add_savings(const RunModel& run, const Asked& asked, const Eigen::MatrixXd& plain,
+                         std::span<const Measure> measures,
+                         std::span<const std::vector<Eigen::VectorXd>> achieved,
+                         SiteSavings& savings) {
+  for (std::size_t m = 0; m < measures.size(); ++m) {
+    const auto after =
+        run(with_measures(plain, asked.columns, measures.subspan(m, 1), achieved.subspan(m, 1)));
+    if (!after) return tl::unexpected(after.error());
+    MeasureSaving saving = saving_of(asked, measures[m].name, *after);
+    take_cost(measures[m].cost, savings.is_year, saving);
+    add_knowledge(asked, measures[m], saving.notes);
+    savings.measures.push_back(std::move(saving));
+  }
+  if (measures.size() < 2) return {};
+  const auto after = run(with_measures(plain, asked.columns, measures, achieved));
+  if (!after) return tl::unexpected(after.error());
+  savings.measures.push_back(saving_of(asked, kAllTogether, *after));
+  take_cost(cost_of_all(measures), savings.is_year, savings.measures.back());
+  return {};
 }
 
 }  // namespace
@@ -433,21 +460,8 @@ Result<SiteSavings> savings_of(const FinishedCalibration& finished,
                       .measures = {},
                       .notes = notes_of_all(result, asked.year.is_year)};
   const auto achieved = draw_achieved(measures, plain.rows(), rng_of_measures);
-  const std::span<const Measure> all{measures};
-  for (std::size_t m = 0; m < measures.size(); ++m) {
-    const auto after = run(
-        with_measures(plain, asked.columns, all.subspan(m, 1), std::span{achieved}.subspan(m, 1)));
-    if (!after) return tl::unexpected(after.error());
-    MeasureSaving saving = saving_of(asked, measures[m].name, *after);
-    take_cost(measures[m].cost, savings.is_year, saving);
-    add_knowledge(asked, measures[m], saving.notes);
-    savings.measures.push_back(std::move(saving));
-  }
-  if (measures.size() > 1) {
-    const auto after = run(with_measures(plain, asked.columns, all, achieved));
-    if (!after) return tl::unexpected(after.error());
-    savings.measures.push_back(saving_of(asked, kAllTogether, *after));
-    take_cost(cost_of_all(measures), savings.is_year, savings.measures.back());
+  if (auto added = add_savings(run, asked, plain, measures, achieved, savings); !added) {
+    return tl::unexpected(added.error());
   }
   return savings;
 }

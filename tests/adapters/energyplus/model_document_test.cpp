@@ -55,12 +55,12 @@ TEST(ModelDocument, ChangesEveryFieldOfATarget) {
   const ModelDocument before = model();
   const Target lights = find_target(before, "Lights/*/watts_per_floor_area").value();
   Json objects = before.objects;
-  apply(lights, Change::scale, 0.5, objects);
+  apply(lights, ChangeKind::scale, 0.5, objects);
   EXPECT_EQ(objects["Lights"]["Shop Lights"]["watts_per_floor_area"], 10.0);
   EXPECT_EQ(objects["Lights"]["Core lights"]["watts_per_floor_area"], 5.0);
-  apply(lights, Change::add, 2.0, objects);
+  apply(lights, ChangeKind::add, 2.0, objects);
   EXPECT_EQ(objects["Lights"]["Shop Lights"]["watts_per_floor_area"], 12.0);
-  apply(lights, Change::set, 8.0, objects);
+  apply(lights, ChangeKind::set, 8.0, objects);
   EXPECT_EQ(objects["Lights"]["Core lights"]["watts_per_floor_area"], 8.0);
   EXPECT_EQ(objects["Lights"]["Core lights"]["fraction_radiant"], 0.4);
 }
@@ -68,17 +68,17 @@ TEST(ModelDocument, ChangesEveryFieldOfATarget) {
 TEST(ModelDocument, AChangeIsOfTheQuantityHoweverTheFieldHasIt) {
   const ModelDocument before = model();
   Target target = find_target(before, "Lights/Shop*/watts_per_floor_area").value();
-  const auto changed = [&](Sense sense, Change change, double value) {
+  const auto changed = [&](Sense sense, ChangeKind change, double value) {
     Json objects = before.objects;
     target.sense = sense;
     apply(target, change, value, objects);
     return objects["Lights"]["Shop Lights"]["watts_per_floor_area"].get<double>();
   };
-  EXPECT_DOUBLE_EQ(changed(Sense::reciprocal, Change::scale, 0.5), 40.0);
-  EXPECT_DOUBLE_EQ(changed(Sense::reciprocal, Change::set, 0.1), 10.0);
-  EXPECT_DOUBLE_EQ(changed(Sense::complement, Change::scale, 2.0), 1.0 + 2.0 * 19.0);
+  EXPECT_DOUBLE_EQ(changed(Sense::reciprocal, ChangeKind::scale, 0.5), 40.0);
+  EXPECT_DOUBLE_EQ(changed(Sense::reciprocal, ChangeKind::set, 0.1), 10.0);
+  EXPECT_DOUBLE_EQ(changed(Sense::complement, ChangeKind::scale, 2.0), 1.0 + 2.0 * 19.0);
   target.most = 25.0;
-  EXPECT_DOUBLE_EQ(changed(Sense::direct, Change::scale, 2.0), 25.0);
+  EXPECT_DOUBLE_EQ(changed(Sense::direct, ChangeKind::scale, 2.0), 25.0);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@ namespace recald::savings::measure_test {
 namespace {
 
 TEST(Measure, ChangesSetScaleAndAdd) {
-  EXPECT_DOUBLE_EQ(changed(ChangeKind::set, 24.0, 25.5), 25.5);
-  EXPECT_DOUBLE_EQ(changed(ChangeKind::scale, 5.0, 0.7), 3.5);
-  EXPECT_DOUBLE_EQ(changed(ChangeKind::add, 24.0, -1.5), 22.5);
+  EXPECT_DOUBLE_EQ(model::changed(ChangeKind::set, 24.0, 25.5), 25.5);
+  EXPECT_DOUBLE_EQ(model::changed(ChangeKind::scale, 5.0, 0.7), 3.5);
+  EXPECT_DOUBLE_EQ(model::changed(ChangeKind::add, 24.0, -1.5), 22.5);
 }
 
 TEST(Measure, WhatIsAchievedIsANumberOrTriangular) {

