@@ -221,12 +221,16 @@ TEST_F(OnEnergyPlus, AChangeInThatYearIsFound) {
 }
 
 TEST_F(OnEnergyPlus, RunsOfAModelThatWasEditedAreNotTaken) {
-  const std::string text =
+  const std::string noisier =
       edited(std::string{kSite}, "interval_noise = 0.02", "interval_noise = 0.03");
-  EXPECT_THAT(run({"calibrate", site("edited.toml", text)}).err,
+  EXPECT_THAT(run({"calibrate", site("edited.toml", noisier)}).err,
               HasSubstr("holds a design that was made from another site file"));
-  EXPECT_THAT(run({"drift", site("edited.toml", text), "--learn", "12"}).err,
+  EXPECT_THAT(run({"drift", site("edited.toml", noisier), "--learn", "12"}).err,
               HasSubstr("were made before the model's targets"));
+  const std::string reported =
+      edited(std::string{kSite}, "DistrictHeatingWater:Facility", "Heating:DistrictHeatingWater");
+  EXPECT_THAT(run({"drift", site("edited.toml", reported), "--learn", "12"}).err,
+              HasSubstr("were made before [model.reports] of 'heat' changed"));
 }
 
 TEST_F(OnEnergyPlus, CornersOfThePriorsMayComeTwice) {

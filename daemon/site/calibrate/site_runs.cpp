@@ -91,9 +91,20 @@ std::string file_digest(const ModelConfig& model) {
   return digest.add_file(model.energyplus->file) ? digest.hex() : "";
 }
 
+/// "Electricity:Facility -Cooling:Electricity"
+std::string reports_text(const ModelConfig& model, const std::string& output) {
+  const auto reports = model.energyplus->reports.find(output);
+  return reports == model.energyplus->reports.end()
+             ? ""
+             : fmt::format("{}", fmt::join(reports->second, " "));
+}
+
 Result<void> note_model(const ModelConfig& model) {
-  const nlohmann::ordered_json note = {{"settings", settings_digest(model)},
-                                       {"file", file_digest(model)}};
+  nlohmann::ordered_json note = {{"settings", settings_digest(model)},
+                                 {"file", file_digest(model)}};
+  for (const std::string& output : model.outputs) {
+    note["reports"][output] = reports_text(model, output);
+  }
   return system::write_file(model.energyplus->design / kModelNote, note.dump(2) + "\n");
 }
 
@@ -111,6 +122,13 @@ Result<void> require_runs_of(const ModelConfig& model) {
     edited = "the model's targets, changes or interval_noise";
   } else if (!file.empty() && note.value("file", "") != file) {
     edited = "'" + model.energyplus->file.filename().string() + "'";
+  }
+  // The site may follow fewer meters than were simulated.
+  for (const std::string& output : model.outputs) {
+    const auto reports = note.value("reports", nlohmann::json::object());
+    const bool is_other =
+        reports.contains(output) && reports[output] != reports_text(model, output);
+    if (is_other) edited = fmt::format("[model.reports] of '{}'", output);
   }
   if (edited.empty()) return {};
   return failure(ErrorCode::invalid_value,

@@ -33,8 +33,8 @@ struct MadeRuns {
 };
 
 /// Whether the runs in the site's design are of the model as the site file has it now: the same
-/// fields changed in the same way, and, where the model file is at hand, the same
-/// bytes. Nothing is said against a folder that does not tell.
+/// fields changed in the same way, the same reports of its outputs, and, where the model file is at
+/// hand, the same bytes. Nothing is said against a folder that does not tell.
 /// @return invalid_value: what was edited since. @pre the model is of kind energyplus
 [[nodiscard]] Result<void> require_runs_of(const ModelConfig& model);
 
