@@ -168,7 +168,7 @@ Eigen::MatrixXd with_measures(Eigen::MatrixXd theta, const Columns& columns,
       const Index j = *columns.find(change.parameter);
       const auto& definition = *columns.definitions[static_cast<std::size_t>(j)];
       for (Index d = 0; d < theta.rows(); ++d) {
-        theta(d, j) = std::clamp(savings::changed(change.kind, theta(d, j), achieved[m][c](d)),
+        theta(d, j) = std::clamp(model::changed(change.kind, theta(d, j), achieved[m][c](d)),
                                  definition.least, definition.most);
       }
     }
