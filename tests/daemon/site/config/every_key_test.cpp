@@ -123,9 +123,9 @@ TEST_F(EveryKey, WordsAreKnownOnes) {
                                    "currency",     "program"};
   for (const Entry& entry : entries_) {
     if (entry.type != toml::node_type::string || free.contains(entry.key)) continue;
-    if (entry.path == "bus.cellar.port") continue;         // any device
-    if (entry.path == "model.parameter.source") continue;  // any words
-    if (entry.path == "model.parameter.unit") continue;    // of a client's model
+    if (entry.path == "bus.cellar.port") continue;           // any device
+    if (entry.path == "model.parameter.source") continue;    // any words
+    if (entry.path == "model.parameter.unit") continue;      // of a client's model
     if (entry.path.starts_with("model.reports.")) continue;  // likewise
     if (entry.path == "model.parameter.targets") continue;
     expect_refused(entry, "\"no such\"", "no such");
