@@ -55,6 +55,7 @@ class EnergyPlusEngine final : public Engine {
   [[nodiscard]] bool keeps_runs() const override { return true; }
 
   [[nodiscard]] std::vector<Parameter> parameters() const;
+  [[nodiscard]] const std::vector<TargetedParameter>& targeted() const { return setup_.parameters; }
 
   /// Of all that a run depends on besides its parameters' values.
   [[nodiscard]] const std::string& fingerprint() const { return fingerprint_; }

@@ -39,16 +39,8 @@ tl::expected<ModelledSite, int> open_for_calibration(const CalibrateArguments& a
 /// An EnergyPlus model needs its runs; those that are missing are made.
 tl::expected<ModelledSite, int> open_with_runs(const CalibrateArguments& arguments,
                                                const Console& console) {
-  auto modelled = open_for_calibration(arguments, console);
-  if (!modelled) return modelled;
-  const SiteConfig& site = modelled->site.config;
-  if (!site.model || !site.model->energyplus || has_all_runs(site)) return modelled;
-  const auto made =
-      make_runs_aloud(*modelled, {.seed = arguments.seed}, arguments.threads, console);
-  if (!made) return tl::unexpected(made.error());
-  // The runs are part of what the result depends on; what was said of the data was said.
-  return open_for_calibration(
-      arguments, {console.out, console.err, console.is_terminal, Console::Detail::little});
+  return with_runs([&](const Console& to) { return open_for_calibration(arguments, to); },
+                   arguments.seed, arguments.threads, console);
 }
 
 /// From the site file to the calibration; failures are printed and come back as an exit code.

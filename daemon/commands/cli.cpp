@@ -462,7 +462,7 @@ void add_ecm_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
       ->excludes(measure);
   ecm->add_option("--out", given.ecm.out,
                   "Folder for ecm.json, savings.csv and the page savings.html");
-  add_model(*ecm, given.ecm.model, "epc or hourly; else as the site file says", true);
+  add_model(*ecm, given.ecm.model, "epc, hourly or energyplus; else as the site file says", false);
   ecm->add_option("--seed", given.ecm.seed, "Seed of all random numbers")->capture_default_str();
   ecm->add_option("--threads", given.ecm.threads, "Number of threads; 0 for one per core");
   verbs.push_back({ecm, [&](const Console& console) { return run_ecm(given.ecm, console); }});

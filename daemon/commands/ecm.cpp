@@ -4,9 +4,11 @@
 
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/savings/measure_file.hpp"
+#include "daemon/site/savings/measure_runs.hpp"
 #include "daemon/site/savings/savings_files.hpp"
 #include "daemon/site/savings/savings_words.hpp"
 
@@ -46,10 +48,10 @@ int deliver_savings(const FinishedCalibration& finished, const Savings& savings,
   return kSuccess;
 }
 
-/// A site needs a model that recald has built in, whose parameters a measure can change.
-tl::expected<ModelledSite, int> open_built_in(const EcmArguments& arguments,
-                                              std::vector<savings::Measure>& measures,
-                                              const Console& console) {
+/// Reads the measures too, which are checked against the model.
+tl::expected<ModelledSite, int> open_for_measures(const EcmArguments& arguments,
+                                                  std::vector<savings::Measure>& measures,
+                                                  const Console& console) {
   auto site = open_site(arguments.site);
   if (!site) return tl::unexpected(console.fail(site.error()));
   if (auto has = require_model(site->config); !has) {
@@ -60,24 +62,41 @@ tl::expected<ModelledSite, int> open_built_in(const EcmArguments& arguments,
       return tl::unexpected(console.fail(chosen.error()));
     }
   }
-  const ModelKindFacts& kind = facts_of(site->config.model->kind);
-  if (!kind.is_of_building) {
-    return tl::unexpected(console.fail(
-        fmt::format("{}: savings of measures need a model of the building, epc or hourly; this "
-                    "site's is {}",
-                    arguments.site.filename().string(), kind.name)));
-  }
   auto read = load_measures(arguments.measure, site->config);
   if (!read) return tl::unexpected(console.fail(read.error()));
   measures = std::move(*read);
   return load_aloud(std::move(*site), console);
 }
 
+/// Of an EnergyPlus model, the runs with each measure that are missing. @return an exit code
+int make_missing_runs(const ModelledSite& modelled, const std::vector<savings::Measure>& measures,
+                      const EcmArguments& arguments, const Console& console) {
+  const ModelConfig& model = *modelled.site.config.model;
+  if (!model.energyplus) return kSuccess;
+  for (const std::span<const savings::Measure> some : alone_and_together(measures)) {
+    if (has_measure_runs(model, some)) continue;
+    const auto made = make_runs_aloud(
+        [&](const ForEachIndex& executor, const Engine::Observer& observer) {
+          return make_measure_runs(modelled, some, executor, observer);
+        },
+        arguments.threads, console);
+    if (!made) return made.error();
+    for (const std::string& note : made->notes) console.err << note << "\n";
+  }
+  return kSuccess;
+}
+
 int run_measures(const EcmArguments& arguments, const Console& console) {
   const Begin begin = std::chrono::steady_clock::now();
   std::vector<savings::Measure> measures;
-  auto modelled = open_built_in(arguments, measures, console);
+  auto modelled =
+      with_runs([&](const Console& to) { return open_for_measures(arguments, measures, to); },
+                arguments.seed, arguments.threads, console);
   if (!modelled) return modelled.error();
+  if (const int code = make_missing_runs(*modelled, measures, arguments, console);
+      code != kSuccess) {
+    return code;
+  }
   const InterruptGuard guard;
   ProgressLine line{console};
   const calibration::RunContext context = run_context(arguments, guard, line);

@@ -48,14 +48,13 @@ class Estimate {
 
 }  // namespace
 
-tl::expected<MadeRuns, int> make_runs_aloud(const ModelledSite& modelled,
-                                            const RunsOptions& options, unsigned threads,
+tl::expected<MadeRuns, int> make_runs_aloud(const MakeRuns& make, unsigned threads,
                                             const Console& console) {
   const InterruptGuard guard;
   auto made = [&] {
     ProgressLine line{console};
     Estimate estimate{threads, console};
-    return make_runs(modelled, options, system::parallel_for(threads), [&](int done, int total) {
+    return make(system::parallel_for(threads), [&](int done, int total) {
       estimate.show(done, total);
       if (total > 0) line.show({calibration::Progress::Stage::design, 0, done, total});
       return !guard.interrupted();
@@ -63,6 +62,29 @@ tl::expected<MadeRuns, int> make_runs_aloud(const ModelledSite& modelled,
   }();
   if (!made) return tl::unexpected(console.fail(made.error()));
   return std::move(*made);
+}
+
+tl::expected<MadeRuns, int> make_runs_aloud(const ModelledSite& modelled,
+                                            const RunsOptions& options, unsigned threads,
+                                            const Console& console) {
+  return make_runs_aloud(
+      [&](const ForEachIndex& executor, const Engine::Observer& observer) {
+        return make_runs(modelled, options, executor, observer);
+      },
+      threads, console);
+}
+
+tl::expected<ModelledSite, int> with_runs(
+    const std::function<tl::expected<ModelledSite, int>(const Console&)>& open, std::uint64_t seed,
+    unsigned threads, const Console& console) {
+  auto modelled = open(console);
+  if (!modelled) return modelled;
+  const SiteConfig& site = modelled->site.config;
+  if (!site.model || !site.model->energyplus || has_all_runs(site)) return modelled;
+  const auto made = make_runs_aloud(*modelled, {.seed = seed}, threads, console);
+  if (!made) return tl::unexpected(made.error());
+  // What was said of the data was said.
+  return open({console.out, console.err, console.is_terminal, Console::Detail::little});
 }
 
 }  // namespace recald::daemon

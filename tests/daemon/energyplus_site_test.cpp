@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "adapters/energyplus/program.hpp"
 #include "adapters/system/child_process.hpp"
@@ -115,25 +116,8 @@ class OnEnergyPlus : public ::testing::Test {
                                                                     .years = kYears,
                                                                     .seed = 7});
     ASSERT_TRUE(written.has_value()) << written.error().message;
-    simulators::energyplus::ReadingOptions readings{
-        .runs = {},
-        .meters = simulators::energyplus::district_meters(),
-        .standard_offset = std::chrono::hours{-5}};
-    for (int year = kFirstYear; year < kFirstYear + kYears; ++year) {
-      const std::string out = fmt::format("truth-{}", year);
-      const auto ended =
-          system::run_child({.program = program->executable,
-                             .arguments = {"--weather", fmt::format("{}.epw", year),
-                                           "--output-directory", out, out + ".epJSON"},
-                             .folder = folder,
-                             .output = folder / "truth.log"},
-                            {});
-      ASSERT_TRUE(ended.has_value() && ended->exit_code == 0) << read_text(folder / "truth.log");
-      readings.runs.push_back(folder / out / "eplusout.sql");
-    }
-    const auto csv = simulators::energyplus::readings_csv(readings);
-    ASSERT_TRUE(csv.has_value()) << csv.error().message;
-    write_text(folder / "readings.csv", *csv);
+    program_ = program->executable;
+    write_text(folder / "readings.csv", readings_of("truth", kYears));
     write_text(folder / "site.toml", std::string{kSite});
     made_ = new Outcome{run({"doe", (folder / "site.toml").string()})};
   }
@@ -147,6 +131,30 @@ class OnEnergyPlus : public ::testing::Test {
     ASSERT_EQ(made_->exit_code, kSuccess) << made_->err;
   }
 
+  /// What the meters record in these years of the building in NAME-YEAR.epJSON.
+  static std::string readings_of(const std::string& name, int years) {
+    const std::filesystem::path& folder = folder_->path();
+    simulators::energyplus::ReadingOptions readings{
+        .runs = {},
+        .meters = simulators::energyplus::district_meters(),
+        .standard_offset = std::chrono::hours{-5}};
+    for (int year = kFirstYear; year < kFirstYear + years; ++year) {
+      const std::string out = fmt::format("{}-{}", name, year);
+      const auto ended =
+          system::run_child({.program = program_,
+                             .arguments = {"--weather", fmt::format("{}.epw", year),
+                                           "--output-directory", out, out + ".epJSON"},
+                             .folder = folder,
+                             .output = folder / "truth.log"},
+                            {});
+      EXPECT_TRUE(ended.has_value() && ended->exit_code == 0) << read_text(folder / "truth.log");
+      readings.runs.push_back(folder / out / "eplusout.sql");
+    }
+    const auto csv = simulators::energyplus::readings_csv(readings);
+    EXPECT_TRUE(csv.has_value()) << csv.error().message;
+    return csv.value_or("");
+  }
+
   [[nodiscard]] static std::string path(std::string_view name) {
     return (*folder_ / name).string();
   }
@@ -158,9 +166,33 @@ class OnEnergyPlus : public ::testing::Test {
 
   static TemporaryFolder* folder_;
   static Outcome* made_;
+  static std::filesystem::path program_;
 };
 TemporaryFolder* OnEnergyPlus::folder_ = nullptr;
 Outcome* OnEnergyPlus::made_ = nullptr;
+std::filesystem::path OnEnergyPlus::program_;
+
+constexpr double kLampsLeft = 0.6;
+constexpr std::string_view kLamps = R"([[measure]]
+name = "Better lamps"
+[[measure.change]]
+targets = "Lights/*/watts_per_floor_area"
+change = "scale"
+value = 0.6
+)";
+
+/// kWh of a meter in the first two years.
+double energy_kWh(const std::string& readings, const std::string& meter) {
+  double sum = 0.0;
+  std::istringstream lines{readings};
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t comma = line.find(',');
+    if (line.compare(comma + 1, meter.size() + 1, meter + ",") != 0) continue;
+    if (line.substr(0, 4) >= "2023") continue;
+    sum += std::stod(line.substr(comma + 1 + meter.size() + 1));
+  }
+  return sum;
+}
 
 TEST_F(OnEnergyPlus, RunsAreUsedAndNeverMadeAgain) {
   EXPECT_THAT(made_->out, HasSubstr("14 runs of 3 parameters, 6 outputs in 24 months"));
@@ -218,6 +250,48 @@ TEST_F(OnEnergyPlus, AChangeInThatYearIsFound) {
   const Json drift = Json::parse(read_text(*folder_ / "changed/drift.json"));
   ASSERT_FALSE(drift["alarms"].empty());
   EXPECT_THAT(drift["alarms"][0].dump(), HasSubstr("chilled_water"));
+}
+
+TEST_F(OnEnergyPlus, AMeasureSavesWhatItSavesInTheBuildingThatNobodyKnows) {
+  for (const int year : {kFirstYear, kFirstYear + 1}) {
+    Json building = Json::parse(read_text(*folder_ / fmt::format("truth-{}.epJSON", year)));
+    for (auto& lights : building["Lights"]) {
+      lights["watts_per_floor_area"] = kLampsLeft * lights["watts_per_floor_area"].get<double>();
+    }
+    write_text(*folder_ / fmt::format("lamps-{}.epJSON", year), building.dump());
+  }
+  const std::string without = read_text(*folder_ / "readings.csv");
+  const std::string with = readings_of("lamps", 2);
+  write_text(*folder_ / "lamps.toml", std::string{kLamps});
+  const Outcome done =
+      run({"ecm", path("site.toml"), "--measure", path("lamps.toml"), "--out", path("ecm")});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  const Json ecm = Json::parse(read_text(*folder_ / "ecm/ecm.json"));
+  for (const Json& meter : ecm["measures"][0]["meters"]) {
+    if (meter["unit"] != "kWh") continue;
+    const std::string name = meter["meter"];
+    const double truth = 0.5 * (energy_kWh(without, name) - energy_kWh(with, name));
+    EXPECT_NEAR(meter["saved"]["q50"].get<double>(), truth, 0.03 * meter["baseline"].get<double>())
+        << name;
+    EXPECT_LT(meter["saved"]["q05"].get<double>(), truth) << name;
+    EXPECT_GT(meter["saved"]["q95"].get<double>(), truth) << name;
+  }
+  // Asked again where there is no EnergyPlus, it says the same.
+  ::setenv("RECALD_ENERGYPLUS", "/nowhere", 1);
+  const Outcome again = run({"ecm", path("site.toml"), "--measure", path("lamps.toml"), "--json"});
+  ::setenv("RECALD_ENERGYPLUS", program_.c_str(), 1);
+  ASSERT_EQ(again.exit_code, kSuccess) << again.err;
+  EXPECT_EQ(Json::parse(again.out)["measures"], ecm["measures"]);
+}
+
+TEST_F(OnEnergyPlus, AMeasureThatTheModelHasNoPlaceForIsRefused) {
+  write_text(*folder_ / "nowhere.toml", edited(std::string{kLamps}, "Lights/*/watts_per_floor_area",
+                                               "Lights/*/watts_per_flor"));
+  EXPECT_THAT(run({"ecm", path("site.toml"), "--measure", path("nowhere.toml")}).err,
+              HasSubstr("watts_per_floor_area"));
+  write_text(*folder_ / "both.toml", edited(std::string{kLamps}, "targets", "# targets"));
+  EXPECT_THAT(run({"ecm", path("site.toml"), "--measure", path("both.toml")}).err,
+              HasSubstr("either as 'parameter'"));
 }
 
 TEST_F(OnEnergyPlus, RunsOfAModelThatWasEditedAreNotTaken) {

@@ -142,10 +142,11 @@ def main():
     out = pathlib.Path(os.environ.get("OUT") or tempfile.mkdtemp(prefix="recald-energyplus-"))
     print(f"Runs are kept in {out}")
     models = []
-    for kind in ("small_office", "laboratory"):
+    for kind in os.environ.get("KINDS", "small_office laboratory").split():
         own = out / f"{kind}-model"
         if not (own / "model.epJSON").exists():
-            subprocess.run([RECALD_SIM, "eplus", "--kind", kind, "--out", own], check=True)
+            subprocess.run([RECALD_SIM, "eplus", "--kind", kind, "--true", "--start", str(YEAR), "--years", "1", "--out", own],
+                           check=True)
         models.append((kind, own / "model.epJSON", next(own.glob("*.epw"))))
     examples = os.environ.get("EXAMPLES")
     if examples:

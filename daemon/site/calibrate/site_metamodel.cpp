@@ -235,6 +235,15 @@ std::unique_ptr<MonthlyModel> model_of(const FittedMetamodel& fitted,
 
 }  // namespace
 
+Result<regression::DesignData> data_in_site_months(const ModelledSite& modelled,
+                                                   const SiteCalibration& so_far,
+                                                   doe::DesignFolder design) {
+  const auto added = add_new_months(modelled.site.config, modelled.site.calendar, modelled.weather,
+                                    so_far, design);
+  if (!added) return tl::unexpected(added.error());
+  return data_of(design, so_far);
+}
+
 Result<PreparedSite> prepare_on_runs(const SiteConfig& site,
                                      const metering::LocalCalendar& calendar,
                                      const Recording& recording, const SiteWeather& weather,

@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include "core/regression/design_data.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
+#include "daemon/site/model/modelled_site.hpp"
 
 namespace recald::daemon {
 
@@ -19,5 +21,13 @@ namespace recald::daemon {
 [[nodiscard]] Result<PreparedSite> prepare_on_runs(
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
     const SiteWeather& weather, const std::vector<diagnosis::AddedEffect>& added);
+
+/// Runs as regressions read them: in the months and outputs of a site. Months that were not
+/// simulated are predicted from the runs' days.
+/// @param so_far  Its months and outputs.
+/// @return or not_enough_data, invalid_value: months or outputs that the runs do not have.
+[[nodiscard]] Result<regression::DesignData> data_in_site_months(const ModelledSite& modelled,
+                                                                 const SiteCalibration& so_far,
+                                                                 doe::DesignFolder design);
 
 }  // namespace recald::daemon

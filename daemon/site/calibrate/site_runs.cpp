@@ -43,12 +43,11 @@ std::string weather_text(const weather::WeatherSeries& series) {
   return text;
 }
 
-/// What months that were not simulated are predicted from: the runs' days, and their weather. The
-/// engine has the days of every run that it ever made, so none is made again.
+/// The engine has the days of every run that it ever made, so none is made again.
 Result<void> keep_days(const std::filesystem::path& folder, const doe::DesignPlan& plan,
-                       const doe::FolderEngine& runs, energyplus::EnergyPlusEngine& engine,
-                       const ForEachIndex& executor, const Engine::Observer& observer,
-                       const weather::WeatherSeries& weather) {
+                       const doe::FolderEngine& runs, Engine& run_by,
+                       const energyplus::EnergyPlusEngine& engine, const ForEachIndex& executor,
+                       const Engine::Observer& observer) {
   std::vector<int> ids;
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < plan.theta.rows(); ++i) {
@@ -57,19 +56,15 @@ Result<void> keep_days(const std::filesystem::path& folder, const doe::DesignPla
     ids.push_back(id);
     rows.push_back(i);
   }
-  const auto ran = engine.run(plan.theta(rows, Eigen::all), executor, observer);
+  const auto ran = run_by.run(plan.theta(rows, Eigen::all), executor, observer);
   if (!ran) return tl::unexpected(ran.error());
-  if (const auto failed = engine.failed_runs(); !failed.empty()) {
+  if (const auto failed = run_by.failed_runs(); !failed.empty()) {
     return failure(
         ErrorCode::invalid_value,
         fmt::format("run {} went well once and now fails: {}",
                     ids[static_cast<std::size_t>(failed.front().row)], failed.front().because));
   }
-  const doe::DesignDays days{engine.days(), engine.daily()};
-  if (auto written = doe::write_design_days(folder, ids, plan.output_names, days); !written) {
-    return written;
-  }
-  return system::write_file(folder / kRunsWeather, weather_text(weather));
+  return doe::write_design_days(folder, ids, plan.output_names, {engine.days(), engine.daily()});
 }
 
 constexpr const char* kModelNote = "model.json";
@@ -137,6 +132,44 @@ Result<void> require_runs_of(const ModelConfig& model) {
                              folder.string(), edited));
 }
 
+Result<system::FileLock> lock_runs(const std::filesystem::path& folder) {
+  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  auto lock = system::FileLock::take(folder / "lock");
+  if (lock || lock.error().code != ErrorCode::unsupported) return lock;
+  return failure(ErrorCode::unsupported,
+                 fmt::format("another recald is making runs in '{}'; wait for it, or give another "
+                             "folder",
+                             folder.string()));
+}
+
+Result<MadeRuns> make_planned_runs(const std::filesystem::path& folder, const doe::DesignPlan& plan,
+                                   Engine& run_by, const energyplus::EnergyPlusEngine& engine,
+                                   bool with_days, const ForEachIndex& executor,
+                                   const Engine::Observer& observer) {
+  auto runs = doe::FolderEngine::open(folder, plan, &run_by);
+  if (!runs) return tl::unexpected(runs.error());
+  MadeRuns made{.outputs = plan.output_names,
+                .months = plan.months.size(),
+                .total = static_cast<int>(plan.theta.rows()),
+                .before = runs->done_count()};
+  for (const Parameter& parameter : plan.parameters) made.parameters.push_back(parameter.name);
+  if (auto ran = runs->run(plan.theta, executor, observer); !ran) {
+    return tl::unexpected(ran.error());
+  }
+  made.failed = static_cast<int>(runs->failed().size());
+  if (made.failed == made.total) {
+    return failure(ErrorCode::invalid_value, fmt::format("every run failed, the first because: {}",
+                                                         runs->failed().begin()->second));
+  }
+  std::error_code ignored;
+  const bool has_days = std::filesystem::exists(doe::days_file(folder), ignored);
+  if (with_days && (made.before < made.total || !has_days)) {
+    auto kept = keep_days(folder, plan, *runs, run_by, engine, executor, observer);
+    if (!kept) return tl::unexpected(kept.error());
+  }
+  return made;
+}
+
 bool has_all_runs(const SiteConfig& site) {
   return require_runs_of(*site.model) &&
          doe::read_design_folder(site.model->energyplus->design).has_value();
@@ -156,20 +189,16 @@ Result<MadeRuns> make_runs(const ModelledSite& modelled, const RunsOptions& opti
   prepared.problem.month_names = prepared.so_far.month_names;
   std::ranges::sort(prepared.problem.month_names);
 
-  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
-  auto lock = system::FileLock::take(folder / "lock");
-  if (!lock) {
-    return failure(lock.error().code,
-                   lock.error().code == ErrorCode::unsupported
-                       ? fmt::format("another recald is making runs in '{}'; wait for it, or give "
-                                     "another folder",
-                                     folder.string())
-                       : lock.error().message);
-  }
-  MadeRuns made;
+  auto lock = lock_runs(folder);
+  if (!lock) return tl::unexpected(lock.error());
+  std::vector<std::string> notes;
+  auto months = begun->months.in_order();
+  auto weather =
+      write_weather_years(modelled.site, modelled.weather, months, folder / kWeatherYears);
+  if (!weather) return tl::unexpected(weather.error());
   auto engine = make_energyplus_engine(
-      modelled.site, modelled.weather, model, begun->months.in_order(),
-      [&] { return !observer || observer(0, 0); }, made.notes);
+      modelled.site, model, {std::move(months), std::move(*weather)}, {},
+      [&] { return !observer || observer(0, 0); }, notes);
   if (!engine) return tl::unexpected(engine.error());
   prepared.so_far.parameters = (*engine)->parameters();
   const doe::DesignPlan plan =
@@ -177,29 +206,16 @@ Result<MadeRuns> make_runs(const ModelledSite& modelled, const RunsOptions& opti
                              .seed = options.seed,
                              .at_corners = options.at_corners,
                              .fingerprint = (*engine)->fingerprint()});
-  auto runs = doe::FolderEngine::open(folder, plan, engine->get());
-  if (!runs) return tl::unexpected(runs.error());
-  made.before = runs->done_count();
-  if (auto ran = runs->run(plan.theta, executor, observer); !ran) {
-    return tl::unexpected(ran.error());
-  }
-  made.total = static_cast<int>(plan.theta.rows());
-  made.failed = static_cast<int>(runs->failed().size());
-  if (made.failed == made.total) {
-    return failure(ErrorCode::invalid_value, fmt::format("every run failed, the first because: {}",
-                                                         runs->failed().begin()->second));
-  }
-  std::error_code ignored;
-  const bool has_days = std::filesystem::exists(doe::days_file(folder), ignored);
-  if (!options.at_corners && (made.before < made.total || !has_days)) {
-    auto kept = keep_days(folder, plan, *runs, **engine, executor, observer,
-                          modelled.weather.filled.series);
-    if (!kept) return tl::unexpected(kept.error());
+  auto made =
+      make_planned_runs(folder, plan, **engine, **engine, !options.at_corners, executor, observer);
+  if (!made) return made;
+  if (!options.at_corners) {
+    const auto written =
+        system::write_file(folder / kRunsWeather, weather_text(modelled.weather.filled.series));
+    if (!written) return tl::unexpected(written.error());
   }
   if (auto noted = note_model(model); !noted) return tl::unexpected(noted.error());
-  for (const Parameter& parameter : plan.parameters) made.parameters.push_back(parameter.name);
-  made.outputs = plan.output_names;
-  made.months = plan.months.size();
+  made->notes = std::move(notes);
   return made;
 }
 

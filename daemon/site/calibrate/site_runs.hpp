@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "adapters/doe/design_writer.hpp"
+#include "adapters/energyplus/energyplus_engine.hpp"
+#include "adapters/ports/engine.hpp"
+#include "adapters/system/file_lock.hpp"
 #include "core/executor.hpp"
 #include "core/result.hpp"
 #include "daemon/site/model/modelled_site.hpp"
@@ -14,6 +18,8 @@ namespace recald::daemon {
 
 /// In the design's folder: the weather that its runs had, hourly means.
 inline constexpr const char* kRunsWeather = "weather.csv";
+/// Likewise: YEAR.epw, as EnergyPlus had it.
+inline constexpr const char* kWeatherYears = "weather";
 
 struct RunsOptions {
   std::filesystem::path folder;  ///< Empty: the model's own.
@@ -31,6 +37,22 @@ struct MadeRuns {
   int failed = 0;                  ///< They are named in failed.csv, and tried again next time.
   std::vector<std::string> notes;  ///< In words.
 };
+
+/// Only one process at a time makes runs in a folder.
+/// @return unsupported: another does.
+[[nodiscard]] Result<system::FileLock> lock_runs(const std::filesystem::path& folder);
+
+/// Runs what is missing of a plan.
+/// @param run_by     Runs the plan's rows on `engine`, or is it.
+/// @param with_days  Keeps the days of the runs too, which months that were not simulated are
+///                   predicted from.
+/// @return or invalid_value: every run failed, with EnergyPlus's words; cancelled: what was run is
+///         kept; as `FolderEngine`.
+[[nodiscard]] Result<MadeRuns> make_planned_runs(const std::filesystem::path& folder,
+                                                 const doe::DesignPlan& plan, Engine& run_by,
+                                                 const energyplus::EnergyPlusEngine& engine,
+                                                 bool with_days, const ForEachIndex& executor,
+                                                 const Engine::Observer& observer);
 
 /// Whether the runs in the site's design are of the model as the site file has it now: the same
 /// fields changed in the same way, the same reports of its outputs, and, where the model file is at

@@ -46,6 +46,20 @@ Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelD
   return found;
 }
 
+/// What a measure changes that is no parameter of the site file.
+Result<energyplus::TargetedParameter> find_changed(const energyplus::ModelDocument& model,
+                                                   const savings::Change& change) {
+  if (change.targets.empty()) {
+    return find_parameter_in(model, {.name = change.parameter, .prior = {}, .source = {}});
+  }
+  const double one = change.kind == model::ChangeKind::scale ? 1.0 : 0.0;
+  return find_parameter_in(model, {.name = change.targets.front(),
+                                   .prior = Prior{UniformPrior{one, one + 1.0}},
+                                   .source = {},
+                                   .targets = change.targets,
+                                   .change = change.kind});
+}
+
 void note_wide_targets(const std::vector<energyplus::TargetedParameter>& parameters,
                        std::vector<std::string>& notes) {
   for (const energyplus::TargetedParameter& one : parameters) {
@@ -178,38 +192,48 @@ Result<std::map<int, std::filesystem::path>> write_weather_years(
   return files;
 }
 
+std::optional<std::size_t> parameter_of(const ModelConfig& model, const savings::Change& change) {
+  const auto found = std::ranges::find(model.parameters, change.parameter, &ParameterConfig::name);
+  if (change.parameter.empty() || found == model.parameters.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - model.parameters.begin());
+}
+
 Result<std::unique_ptr<energyplus::EnergyPlusEngine>> make_energyplus_engine(
-    const OpenSite& site, const SiteWeather& weather, const ModelConfig& model,
-    const std::vector<Month>& months, const std::function<bool()>& keep_going,
+    const OpenSite& site, const ModelConfig& model, RunMonths months,
+    const std::vector<savings::Change>& changes, const std::function<bool()>& keep_going,
     std::vector<std::string>& notes) {
   if (auto runnable = require_runnable(model); !runnable) {
     return tl::unexpected(runnable.error());
   }
   auto opened = open_energyplus(*model.energyplus);
   if (!opened) return tl::unexpected(opened.error());
-  const std::filesystem::path& design = model.energyplus->design;
-  auto years = write_weather_years(site, weather, months, design / "weather");
-  if (!years) return tl::unexpected(years.error());
+  const std::filesystem::path runs = model.energyplus->design / "runs";
   const energyplus::RunLimits limits{.time_max = model.energyplus->time_max};
   std::vector<energyplus::ModelOutput> outputs = outputs_of(model);
-  const Month first = months.front();
+  const Month first = months.months.front();
   auto tried = energyplus::try_model(opened->model, energyplus::meters_of(outputs), first / 1,
-                                     years->at(static_cast<int>(first.year())), design / "runs",
+                                     months.weather.at(static_cast<int>(first.year())), runs,
                                      opened->program, limits, keep_going);
   if (!tried) return tl::unexpected(tried.error());
   note_left_sizes(tried->sizes, notes);
   auto parameters = find_parameters(tried->model, model);
   if (!parameters) return tl::unexpected(parameters.error());
+  for (const savings::Change& change : changes) {
+    if (parameter_of(model, change)) continue;
+    auto changed = find_changed(tried->model, change);
+    if (!changed) return tl::unexpected(changed.error());
+    parameters->push_back(std::move(*changed));
+  }
   note_wide_targets(*parameters, notes);
   return energyplus::EnergyPlusEngine::make({.model = std::move(tried->model),
                                              .parameters = std::move(*parameters),
                                              .outputs = std::move(outputs),
-                                             .months = months,
-                                             .weather = std::move(*years),
+                                             .months = std::move(months.months),
+                                             .weather = std::move(months.weather),
                                              .peak_window = site.config.interval,
                                              .program = std::move(opened->program),
                                              .limits = limits,
-                                             .folder = design / "runs"},
+                                             .folder = runs},
                                             site.calendar);
 }
 

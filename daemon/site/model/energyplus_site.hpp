@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "adapters/energyplus/program.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/result.hpp"
+#include "core/savings/measure.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 #include "daemon/site/replay/site_weather.hpp"
@@ -44,14 +47,25 @@ struct EnergyPlusSite {
     const OpenSite& site, const SiteWeather& weather, const std::vector<metering::Month>& months,
     const std::filesystem::path& folder);
 
-/// Tries the model for a day, freezes its sizes, and makes the engine. Runs, weather and the trial
-/// are kept in the model's design folder.
-/// @param months  Ascending.
-/// @param notes   Gets what should be known of the model, in words.
+/// Months to simulate, and an EPW file for each of their calendar years.
+struct RunMonths {
+  std::vector<metering::Month> months;  ///< Ascending.
+  std::map<int, std::filesystem::path> weather;
+};
+
+/// Tries the model for a day, freezes its sizes, and makes the engine. Runs and the trial are kept
+/// in the model's design folder.
+/// @param changes  Of measures; each that is of none of the model's parameters is a column behind
+///                 them, in this order.
+/// @param notes    Gets what should be known of the model, in words.
 /// @return or the errors of the steps; cancelled.
 [[nodiscard]] Result<std::unique_ptr<energyplus::EnergyPlusEngine>> make_energyplus_engine(
-    const OpenSite& site, const SiteWeather& weather, const ModelConfig& model,
-    const std::vector<metering::Month>& months, const std::function<bool()>& keep_going,
+    const OpenSite& site, const ModelConfig& model, RunMonths months,
+    const std::vector<savings::Change>& changes, const std::function<bool()>& keep_going,
     std::vector<std::string>& notes);
+
+/// Whether a change is of one of the model's parameters, and of which.
+[[nodiscard]] std::optional<std::size_t> parameter_of(const ModelConfig& model,
+                                                      const savings::Change& change);
 
 }  // namespace recald::daemon

@@ -52,6 +52,22 @@ void check_value(const Change& change, TomlReader& table) {
   }
 }
 
+/// Whether the fields are in the model is seen when it is run.
+void check_energyplus(const Change& change, const ModelConfig& model, TomlReader& table) {
+  if (change.parameter.empty() == change.targets.empty()) {
+    table.problem(
+        "say what the measure changes, either as 'parameter' (one of the site file's or of the "
+        "library) or as 'targets' in the EnergyPlus model, such as "
+        "\"Lights/*/watts_per_floor_area\"");
+    return;
+  }
+  const auto is_it = [&](const ParameterConfig& own) { return own.name == change.parameter; };
+  if (change.parameter.empty() || std::ranges::any_of(model.parameters, is_it)) return;
+  if (const auto found = model::find_parameter(change.parameter); !found) {
+    table.problem_at("parameter", found.error().message);
+  }
+}
+
 Change read_change(TomlReader& table, const SiteConfig& site) {
   Change change{.parameter = table.text_or("parameter", ""),
                 .targets = table.one_or_more("targets").value_or(std::vector<std::string>{}),
@@ -65,7 +81,9 @@ Change read_change(TomlReader& table, const SiteConfig& site) {
     table.problem("'change' is missing: \"set\", \"scale\" or \"add\"");
   }
   change.by = read_achieved(table);
-  if (table.has("targets")) {
+  if (site.model->energyplus) {
+    check_energyplus(change, *site.model, table);
+  } else if (table.has("targets")) {
     table.problem_at(
         "targets",
         fmt::format("'targets' are objects of an EnergyPlus file, and this site's model is {}; "

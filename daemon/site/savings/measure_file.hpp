@@ -15,6 +15,7 @@ namespace recald::daemon {
 /// @pre the site has a model of its building
 /// @return the measures, in order; or every problem of the file, such as a parameter that nobody
 ///         knows, targets for a model that recald has built in, or a value that is not possible.
+///         Targets in an EnergyPlus model are looked up when it is run.
 [[nodiscard]] tl::expected<std::vector<savings::Measure>, Problems> load_measures(
     const std::filesystem::path& file, const SiteConfig& site);
 

@@ -1,0 +1,19 @@
+/// Measures at a building whose model is a regression on runs of EnergyPlus.
+#pragma once
+
+#include "core/executor.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
+#include "daemon/site/savings/measured_model.hpp"
+
+namespace recald::daemon {
+
+/// What a measure changes is regressed on the parameters: the difference between runs with it and
+/// the same runs without. The regression's own error is drawn.
+/// @param finished  Calibrated on its runs; outlives the model, as do the measures and the
+/// executor.
+/// @return or not_found: runs with a measure are missing; or what reading and fitting find.
+[[nodiscard]] Result<std::unique_ptr<MeasuredModel>> make_runs_measures(
+    const FinishedCalibration& finished, const std::vector<savings::Measure>& measures,
+    const ForEachIndex& executor);
+
+}  // namespace recald::daemon
