@@ -97,9 +97,9 @@ calibration = {{ from = "{YEAR}-01", to = "{YEAR}-12" }}
 
 
 def measurements(truths, run, file, rng):
-    """The months of one run, with noise, as a design folder's measurements."""
+    """The months of one run, with noise, as a design folder's measurements: daily averages, as a site is fitted to."""
     rows = [row for row in csv.DictReader(open(truths / "doe_outputs.csv", encoding="utf-8")) if row["run"] == run]
-    names = [name for name in rows[0] if name not in ("run", "month")]
+    names = [name for name in rows[0] if "_daily_" in name]
     with open(file, "w", encoding="utf-8") as out:
         out.write("month," + ",".join(names) + "\n")
         for row in rows:
@@ -131,33 +131,38 @@ def study(name, model, weather, folder):
         file = folder / "measured.csv"
         measurements(folder / "truths", truth["run"], file, random.Random(int(truth["run"])))
         result = json.loads(recald("calibrate", "--doe", "runs", "--measurements", file, "--form", "monthly", "--json",
-                                   folder=folder))
+                                   "--sampler", "dram", folder=folder))
         for parameter in result["parameters"]:
             count += 1
             hits += parameter["q05"] <= float(truth[parameter["name"]]) <= parameter["q95"]
     return {"parameters": len(parameters), "seconds": seconds, "checks": checks, "hits": hits, "count": count}
 
 
-def main():
-    out = pathlib.Path(os.environ.get("OUT") or tempfile.mkdtemp(prefix="recald-energyplus-"))
+def models():
+    """(name, model, weather file, folder) of each."""
+    out = pathlib.Path(os.environ.get("OUT") or tempfile.mkdtemp(prefix="recald-energyplus-")).resolve()
     print(f"Runs are kept in {out}")
-    models = []
+    all_models = []
     for kind in os.environ.get("KINDS", "small_office laboratory").split():
         own = out / f"{kind}-model"
         if not (own / "model.epJSON").exists():
             subprocess.run([RECALD_SIM, "eplus", "--kind", kind, "--true", "--start", str(YEAR), "--years", "1", "--out", own],
                            check=True)
-        models.append((kind, own / "model.epJSON", next(own.glob("*.epw"))))
+        all_models.append((kind, own / "model.epJSON", next(own.glob("*.epw")), out / kind))
     examples = os.environ.get("EXAMPLES")
     if examples:
         weather = pathlib.Path(os.environ["WEATHER"]).resolve()
         for file in sorted(pathlib.Path(examples).resolve().glob("*.epJSON")):
             if file.stem in METERS:
-                models.append((file.stem, file, weather))
+                all_models.append((file.stem, file, weather, out / file.stem))
+    return all_models
+
+
+def main():
     print("| model | parameters | s a run | output | R2, median month | R2, worst month (its error) | CV at corners | truth in 90 % |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
-    for name, model, weather in models:
-        result = study(name, model, weather, out / name)
+    for name, model, weather, folder in models():
+        result = study(name, model, weather, folder)
         for output, check in result["checks"]["truths"].items():
             corner = result["checks"]["corners"][output]["cvrmse"]
             print(f"| {name} | {result['parameters']} | {result['seconds'] / RUNS:.1f} | {output} "
