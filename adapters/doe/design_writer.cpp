@@ -171,6 +171,12 @@ Result<DesignRunsSoFar> open_design(const fs::path& folder, const DesignPlan& pl
   return so_far;
 }
 
+std::string fingerprint_of(const fs::path& folder) {
+  const auto text = text_of(folder / kStateFile);
+  const auto state = nlohmann::json::parse(text.value_or(""), nullptr, /*allow_exceptions=*/false);
+  return state.is_object() ? state.value("fingerprint", "") : "";
+}
+
 Result<void> write_outputs(const fs::path& folder, const DesignPlan& plan,
                            const DesignRunsSoFar& runs) {
   if (auto written = write_failed_runs(folder, runs.failed); !written) return written;

@@ -42,6 +42,9 @@ struct DesignRunsSoFar {
 [[nodiscard]] Result<DesignRunsSoFar> open_design(const std::filesystem::path& folder,
                                                   const DesignPlan& plan);
 
+/// Of the plan that a folder was made from. Empty: it does not say.
+[[nodiscard]] std::string fingerprint_of(const std::filesystem::path& folder);
+
 /// Writes the finished runs to doe_outputs.csv and those that failed to failed.csv. After a crash
 /// the file is either new or unchanged.
 [[nodiscard]] Result<void> write_outputs(const std::filesystem::path& folder,

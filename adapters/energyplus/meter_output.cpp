@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <unordered_map>
 
 #include "adapters/sqlite/database.hpp"
 #include "core/text/nearest.hpp"
@@ -35,35 +36,7 @@ Result<std::vector<std::string>> names_in(Database& database) {
   }
 }
 
-/// The end of an interval as the table has it: hour 24 and minute 60 occur.
-Instant end_of(int year, int month, int day, int hour, int minute) {
-  using namespace std::chrono;
-  return sys_days{std::chrono::year{year} / month / day} + hours{hour} + minutes{minute};
-}
-
-Result<MeterOutput> read_meter(Database& database, const std::string& name,
-                               std::chrono::seconds utc_offset) {
-  auto statement = database.prepare(
-      "SELECT t.Year, t.Month, t.Day, t.Hour, t.Minute, t.Interval, d.Value "
-      "FROM ReportData d JOIN Time t ON t.TimeIndex = d.TimeIndex "
-      "JOIN ReportDataDictionary m ON m.ReportDataDictionaryIndex = d.ReportDataDictionaryIndex "
-      "JOIN EnvironmentPeriods e ON e.EnvironmentPeriodIndex = t.EnvironmentPeriodIndex "
-      "WHERE m.IsMeter = 1 AND m.Name = ?1 COLLATE NOCASE AND e.EnvironmentType = ?2 "
-      "AND coalesce(t.WarmupFlag, 0) = 0 AND m.ReportingFrequency LIKE '%Timestep' "
-      "ORDER BY d.TimeIndex");
-  if (!statement) return tl::unexpected(statement.error());
-  statement->bind(0, std::string_view{name}).bind(1, std::int64_t{kWeatherRun});
-  MeterOutput meter{name, {}, {}};
-  for (;;) {
-    const auto has_row = statement->step();
-    if (!has_row) return tl::unexpected(has_row.error());
-    if (!*has_row) break;
-    const auto whole = [&](int column) { return static_cast<int>(statement->integer(column)); };
-    const Instant end = end_of(whole(0), whole(1), whole(2), whole(3), whole(4));
-    meter.starts.push_back(end - std::chrono::minutes{whole(5)} - utc_offset);
-    meter.energy_kWh.push_back(statement->real(6) / kJoulePerKilowattHour);
-  }
-  if (!meter.starts.empty()) return meter;
+tl::unexpected<Error> no_such_meter(Database& database, const std::string& name) {
   const auto names = names_in(database);
   if (!names) return tl::unexpected(names.error());
   const std::vector<std::string_view> views{names->begin(), names->end()};
@@ -74,6 +47,66 @@ Result<MeterOutput> read_meter(Database& database, const std::string& name,
                                              : fmt::format("; did you mean '{}'?", nearest)));
 }
 
+/// The end of an interval as the table has it: hour 24 and minute 60 occur.
+Instant end_of(int year, int month, int day, int hour, int minute) {
+  using namespace std::chrono;
+  return sys_days{std::chrono::year{year} / month / day} + hours{hour} + minutes{minute};
+}
+
+/// Starts of the run's steps by their place in the table Time; absent: of a design day or warm-up.
+using Starts = std::unordered_map<std::int64_t, Instant>;
+
+Result<Starts> read_starts(Database& database, std::chrono::seconds utc_offset) {
+  auto statement = database.prepare(
+      "SELECT t.TimeIndex, t.Year, t.Month, t.Day, t.Hour, t.Minute, t.Interval FROM Time t "
+      "JOIN EnvironmentPeriods e ON e.EnvironmentPeriodIndex = t.EnvironmentPeriodIndex "
+      "WHERE e.EnvironmentType = ?1 AND coalesce(t.WarmupFlag, 0) = 0");
+  if (!statement) return tl::unexpected(statement.error());
+  statement->bind(0, std::int64_t{kWeatherRun});
+  Starts starts;
+  for (;;) {
+    const auto has_row = statement->step();
+    if (!has_row) return tl::unexpected(has_row.error());
+    if (!*has_row) return starts;
+    const auto whole = [&](int column) { return static_cast<int>(statement->integer(column)); };
+    const Instant end = end_of(whole(1), whole(2), whole(3), whole(4), whole(5));
+    starts.emplace(statement->integer(0), end - std::chrono::minutes{whole(6)} - utc_offset);
+  }
+}
+
+/// What a meter is called in the run's data, or that there is no such meter.
+Result<std::int64_t> meter_number(Database& database, const std::string& name) {
+  auto statement = database.prepare(
+      "SELECT ReportDataDictionaryIndex FROM ReportDataDictionary WHERE IsMeter = 1 AND Name = ?1 "
+      "COLLATE NOCASE AND ReportingFrequency LIKE '%Timestep'");
+  if (!statement) return tl::unexpected(statement.error());
+  statement->bind(0, std::string_view{name});
+  const auto has_row = statement->step();
+  if (!has_row) return tl::unexpected(has_row.error());
+  if (*has_row) return statement->integer(0);
+  return no_such_meter(database, name);
+}
+
+/// One pass over the data, which has no index but its order in time.
+Result<void> read_data(Database& database, const Starts& starts,
+                       const std::unordered_map<std::int64_t, MeterOutput*>& meters) {
+  auto statement = database.prepare(
+      "SELECT TimeIndex, ReportDataDictionaryIndex, Value FROM ReportData ORDER BY "
+      "ReportDataIndex");
+  if (!statement) return tl::unexpected(statement.error());
+  for (;;) {
+    const auto has_row = statement->step();
+    if (!has_row) return tl::unexpected(has_row.error());
+    if (!*has_row) return {};
+    const auto meter = meters.find(statement->integer(1));
+    if (meter == meters.end()) continue;
+    const auto start = starts.find(statement->integer(0));
+    if (start == starts.end()) continue;
+    meter->second->starts.push_back(start->second);
+    meter->second->energy_kWh.push_back(statement->real(2) / kJoulePerKilowattHour);
+  }
+}
+
 }  // namespace
 
 Result<std::vector<MeterOutput>> read_meters(const std::filesystem::path& file,
@@ -81,11 +114,21 @@ Result<std::vector<MeterOutput>> read_meters(const std::filesystem::path& file,
                                              std::chrono::seconds utc_offset) {
   auto database = open(file);
   if (!database) return tl::unexpected(database.error());
-  std::vector<MeterOutput> meters;
-  for (const std::string& name : names) {
-    auto meter = read_meter(*database, name, utc_offset);
-    if (!meter) return tl::unexpected(meter.error());
-    meters.push_back(std::move(*meter));
+  const auto starts = read_starts(*database, utc_offset);
+  if (!starts) return tl::unexpected(starts.error());
+  std::vector<MeterOutput> meters(names.size());
+  std::unordered_map<std::int64_t, MeterOutput*> by_number;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto number = meter_number(*database, names[i]);
+    if (!number) return tl::unexpected(number.error());
+    meters[i] = {names[i], {}, {}};
+    by_number[*number] = &meters[i];
+  }
+  if (auto read = read_data(*database, *starts, by_number); !read) {
+    return tl::unexpected(read.error());
+  }
+  for (const MeterOutput& meter : meters) {
+    if (meter.starts.empty()) return no_such_meter(*database, meter.name);
   }
   return meters;
 }

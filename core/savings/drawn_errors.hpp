@@ -59,7 +59,8 @@ struct ResponseErrors {
   [[nodiscard]] double of(assessment::Service service) const;
 };
 
-/// As found where the truth is known: tests/results/savings.md.
+/// Of built-in models as found where the truth is known (tests/results/savings.md), of EnergyPlus
+/// models assumed.
 [[nodiscard]] const ResponseErrors& response_errors(ModelKind kind);
 
 /// (draws x outputs) Factors of median 1 on what a measure saves, log-normal.

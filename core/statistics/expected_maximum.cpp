@@ -12,7 +12,7 @@ namespace {
 // integrand is smooth and flat at both ends, where the trapezoidal rule is exact to many digits.
 constexpr double kBelow = 5.0;
 constexpr double kAbove = 7.0;
-constexpr int kSteps = 96;
+constexpr int kSteps = 48;
 
 }  // namespace
 

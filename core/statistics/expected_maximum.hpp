@@ -13,7 +13,7 @@ namespace recald {
 ///
 /// @param means  At least one; those far below the largest do not matter.
 /// @param sd     At least 0; 0 gives the maximum itself.
-/// @note Allocates nothing; 96 error functions a value near the largest.
+/// @note Allocates nothing; 48 error functions a value near the largest.
 [[nodiscard]] double expected_maximum(std::span<const double> means, double sd);
 
 }  // namespace recald

@@ -161,9 +161,7 @@ std::vector<std::string> check_energyplus(const SiteConfig& site, const Console&
   if (!opened) return {opened.error().message};
   std::vector<std::string> problems;
   for (const ParameterConfig& config : model.parameters) {
-    ModelConfig alone = model;
-    alone.parameters = {config};
-    const auto found = find_parameters(opened->model, alone);
+    const auto found = find_parameters(opened->model, {config});
     if (found) {
       if (!json) print_parameter(found->front().parameter, console);
       continue;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "daemon/commands/calibration_options.hpp"
@@ -7,6 +8,7 @@
 #include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/savings/measure_columns.hpp"
 #include "daemon/site/savings/measure_file.hpp"
 #include "daemon/site/savings/measure_runs.hpp"
 #include "daemon/site/savings/savings_files.hpp"
@@ -73,15 +75,23 @@ int make_missing_runs(const ModelledSite& modelled, const std::vector<savings::M
                       const EcmArguments& arguments, const Console& console) {
   const ModelConfig& model = *modelled.site.config.model;
   if (!model.energyplus) return kSuccess;
-  for (const std::span<const savings::Measure> some : alone_and_together(measures)) {
+  auto all = alone_and_together(measures);
+  std::ranges::reverse(all);  // together first: what no model has is found before anything is run
+  for (const std::span<const savings::Measure> some : all) {
     if (has_measure_runs(model, some)) continue;
+    console.err << fmt::format("Runs with {}:\n",
+                               some.size() == 1 ? "'" + some.front().name + "'" : "all measures");
     const auto made = make_runs_aloud(
         [&](const ForEachIndex& executor, const Engine::Observer& observer) {
           return make_measure_runs(modelled, some, executor, observer);
         },
         arguments.threads, console);
     if (!made) return made.error();
-    for (const std::string& note : made->notes) console.err << note << "\n";
+    if (made->failed > 0) {
+      console.err << fmt::format("! {} of {} runs failed; {} says why.\n", made->failed,
+                                 made->total,
+                                 (measure_folder(model, some) / "failed.csv").string());
+    }
   }
   return kSuccess;
 }

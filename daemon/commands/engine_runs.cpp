@@ -83,7 +83,7 @@ tl::expected<ModelledSite, int> with_runs(
   if (!site.model || !site.model->energyplus || has_all_runs(site)) return modelled;
   const auto made = make_runs_aloud(*modelled, {.seed = seed}, threads, console);
   if (!made) return tl::unexpected(made.error());
-  // What was said of the data was said.
+  // What the data show was printed when the site was first opened.
   return open({console.out, console.err, console.is_terminal, Console::Detail::little});
 }
 

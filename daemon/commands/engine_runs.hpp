@@ -17,7 +17,7 @@ namespace recald::daemon {
 using MakeRuns =
     std::function<Result<MadeRuns>(const ForEachIndex& executor, const Engine::Observer& observer)>;
 
-/// The same of any runs.
+/// Shows progress and time left while runs are made; failures as above.
 [[nodiscard]] tl::expected<MadeRuns, int> make_runs_aloud(const MakeRuns& make, unsigned threads,
                                                           const Console& console);
 

@@ -91,9 +91,10 @@ struct NewMonths {
 };
 
 /// Continues the design into the site's other months, from the days of its runs.
+/// @param days_of  Asked if there are such months.
 Result<NewMonths> add_new_months(const SiteConfig& site, const metering::LocalCalendar& calendar,
                                  const SiteWeather& weather, const SiteCalibration& so_far,
-                                 doe::DesignFolder& design) {
+                                 const DaysOfDesign& days_of, doe::DesignFolder& design) {
   std::vector<metering::Month> wanted;
   for (const metering::Month month : so_far.months) {
     const auto name = metering::to_string(month);
@@ -111,7 +112,7 @@ Result<NewMonths> add_new_months(const SiteConfig& site, const metering::LocalCa
             design.folder.string(), metering::to_string(wanted.front()),
             wanted.size() == 1 ? "" : fmt::format(" and {} other months", wanted.size() - 1), why));
   };
-  const auto days = doe::read_design_days(design);
+  const auto days = days_of(design);
   if (!days) return cannot(days.error().message);
   const auto of_runs = weather_of_runs(design);
   if (!of_runs) return cannot(of_runs.error().message);
@@ -237,9 +238,10 @@ std::unique_ptr<MonthlyModel> model_of(const FittedMetamodel& fitted,
 
 Result<regression::DesignData> data_in_site_months(const ModelledSite& modelled,
                                                    const SiteCalibration& so_far,
-                                                   doe::DesignFolder design) {
+                                                   doe::DesignFolder design,
+                                                   const DaysOfDesign& days_of) {
   const auto added = add_new_months(modelled.site.config, modelled.site.calendar, modelled.weather,
-                                    so_far, design);
+                                    so_far, days_of, design);
   if (!added) return tl::unexpected(added.error());
   return data_of(design, so_far);
 }
@@ -264,7 +266,8 @@ Result<PreparedSite> prepare_on_runs(const SiteConfig& site,
   if (auto same = require_same_parameters(site, *design); !same) {
     return tl::unexpected(same.error());
   }
-  const auto added_months = add_new_months(site, calendar, weather, result, *design);
+  const auto added_months =
+      add_new_months(site, calendar, weather, result, doe::read_design_days, *design);
   if (!added_months) return tl::unexpected(added_months.error());
   add_prediction_errors(*added_months, *design, result);
   const auto data = data_of(*design, result);

@@ -1,8 +1,10 @@
 /// A site whose model is too slow to be sampled: its runs, and the regression that speaks for them.
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "adapters/doe/days_file.hpp"
 #include "core/regression/design_data.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/modelled_site.hpp"
@@ -22,12 +24,17 @@ namespace recald::daemon {
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
     const SiteWeather& weather, const std::vector<diagnosis::AddedEffect>& added);
 
+/// Gives the days of a design's runs.
+using DaysOfDesign = std::function<Result<doe::DesignDays>(const doe::DesignFolder& design)>;
+
 /// Runs as regressions read them: in the months and outputs of a site. Months that were not
 /// simulated are predicted from the runs' days.
-/// @param so_far  Its months and outputs.
+/// @param so_far   Its months and outputs.
+/// @param days_of  Asked if there are such months.
 /// @return or not_enough_data, invalid_value: months or outputs that the runs do not have.
 [[nodiscard]] Result<regression::DesignData> data_in_site_months(const ModelledSite& modelled,
                                                                  const SiteCalibration& so_far,
-                                                                 doe::DesignFolder design);
+                                                                 doe::DesignFolder design,
+                                                                 const DaysOfDesign& days_of);
 
 }  // namespace recald::daemon

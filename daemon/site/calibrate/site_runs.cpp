@@ -136,10 +136,9 @@ Result<system::FileLock> lock_runs(const std::filesystem::path& folder) {
   if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
   auto lock = system::FileLock::take(folder / "lock");
   if (lock || lock.error().code != ErrorCode::unsupported) return lock;
-  return failure(ErrorCode::unsupported,
-                 fmt::format("another recald is making runs in '{}'; wait for it, or give another "
-                             "folder",
-                             folder.string()));
+  return failure(
+      ErrorCode::unsupported,
+      fmt::format("another recald is making runs in '{}'; wait for it", folder.string()));
 }
 
 Result<MadeRuns> make_planned_runs(const std::filesystem::path& folder, const doe::DesignPlan& plan,

@@ -46,20 +46,6 @@ Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelD
   return found;
 }
 
-/// What a measure changes that is no parameter of the site file.
-Result<energyplus::TargetedParameter> find_changed(const energyplus::ModelDocument& model,
-                                                   const savings::Change& change) {
-  if (change.targets.empty()) {
-    return find_parameter_in(model, {.name = change.parameter, .prior = {}, .source = {}});
-  }
-  const double one = change.kind == model::ChangeKind::scale ? 1.0 : 0.0;
-  return find_parameter_in(model, {.name = change.targets.front(),
-                                   .prior = Prior{UniformPrior{one, one + 1.0}},
-                                   .source = {},
-                                   .targets = change.targets,
-                                   .change = change.kind});
-}
-
 void note_wide_targets(const std::vector<energyplus::TargetedParameter>& parameters,
                        std::vector<std::string>& notes) {
   for (const energyplus::TargetedParameter& one : parameters) {
@@ -161,14 +147,14 @@ Result<EnergyPlusSite> open_energyplus(const EnergyPlusConfig& config) {
 }
 
 Result<std::vector<energyplus::TargetedParameter>> find_parameters(
-    const energyplus::ModelDocument& document, const ModelConfig& model) {
-  std::vector<energyplus::TargetedParameter> parameters;
-  for (const ParameterConfig& parameter : model.parameters) {
+    const energyplus::ModelDocument& document, const std::vector<ParameterConfig>& parameters) {
+  std::vector<energyplus::TargetedParameter> all;
+  for (const ParameterConfig& parameter : parameters) {
     auto found = find_parameter_in(document, parameter);
     if (!found) return tl::unexpected(found.error());
-    parameters.push_back(std::move(*found));
+    all.push_back(std::move(*found));
   }
-  return parameters;
+  return all;
 }
 
 Result<std::map<int, std::filesystem::path>> write_weather_years(
@@ -192,15 +178,9 @@ Result<std::map<int, std::filesystem::path>> write_weather_years(
   return files;
 }
 
-std::optional<std::size_t> parameter_of(const ModelConfig& model, const savings::Change& change) {
-  const auto found = std::ranges::find(model.parameters, change.parameter, &ParameterConfig::name);
-  if (change.parameter.empty() || found == model.parameters.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - model.parameters.begin());
-}
-
 Result<std::unique_ptr<energyplus::EnergyPlusEngine>> make_energyplus_engine(
     const OpenSite& site, const ModelConfig& model, RunMonths months,
-    const std::vector<savings::Change>& changes, const std::function<bool()>& keep_going,
+    const std::vector<ParameterConfig>& beside, const std::function<bool()>& keep_going,
     std::vector<std::string>& notes) {
   if (auto runnable = require_runnable(model); !runnable) {
     return tl::unexpected(runnable.error());
@@ -216,14 +196,10 @@ Result<std::unique_ptr<energyplus::EnergyPlusEngine>> make_energyplus_engine(
                                      opened->program, limits, keep_going);
   if (!tried) return tl::unexpected(tried.error());
   note_left_sizes(tried->sizes, notes);
-  auto parameters = find_parameters(tried->model, model);
+  std::vector<ParameterConfig> columns = model.parameters;
+  columns.insert(columns.end(), beside.begin(), beside.end());
+  auto parameters = find_parameters(tried->model, columns);
   if (!parameters) return tl::unexpected(parameters.error());
-  for (const savings::Change& change : changes) {
-    if (parameter_of(model, change)) continue;
-    auto changed = find_changed(tried->model, change);
-    if (!changed) return tl::unexpected(changed.error());
-    parameters->push_back(std::move(*changed));
-  }
   note_wide_targets(*parameters, notes);
   return energyplus::EnergyPlusEngine::make({.model = std::move(tried->model),
                                              .parameters = std::move(*parameters),

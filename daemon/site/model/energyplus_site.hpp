@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,6 @@
 #include "adapters/energyplus/program.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/result.hpp"
-#include "core/savings/measure.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 #include "daemon/site/replay/site_weather.hpp"
@@ -37,7 +35,7 @@ struct EnergyPlusSite {
 /// Each parameter of the site file in the model.
 /// @return as `find_target`; not_found, unsupported: the model has no such quantity.
 [[nodiscard]] Result<std::vector<energyplus::TargetedParameter>> find_parameters(
-    const energyplus::ModelDocument& document, const ModelConfig& model);
+    const energyplus::ModelDocument& document, const std::vector<ParameterConfig>& parameters);
 
 /// The measured weather as an EPW file for each calendar year of these months. Hours of the year
 /// outside the weather repeat its nearest days: no month that is asked for has any.
@@ -55,17 +53,12 @@ struct RunMonths {
 
 /// Tries the model for a day, freezes its sizes, and makes the engine. Runs and the trial are kept
 /// in the model's design folder.
-/// @param changes  Of measures; each that is of none of the model's parameters is a column behind
-///                 them, in this order.
-/// @param notes    Gets what should be known of the model, in words.
+/// @param beside  Columns behind the model's parameters.
+/// @param notes   Gets what should be known of the model, in words.
 /// @return or the errors of the steps; cancelled.
 [[nodiscard]] Result<std::unique_ptr<energyplus::EnergyPlusEngine>> make_energyplus_engine(
     const OpenSite& site, const ModelConfig& model, RunMonths months,
-    const std::vector<savings::Change>& changes, const std::function<bool()>& keep_going,
+    const std::vector<ParameterConfig>& beside, const std::function<bool()>& keep_going,
     std::vector<std::string>& notes);
-
-/// Whether a change is of one of the model's parameters, and of which.
-[[nodiscard]] std::optional<std::size_t> parameter_of(const ModelConfig& model,
-                                                      const savings::Change& change);
 
 }  // namespace recald::daemon

@@ -148,8 +148,7 @@ Eigen::MatrixXd without_measures(const LightsKnown& known, const Columns& column
   return before;
 }
 
-/// The building with these measures. @param shares  (measures x draws) of what each change
-/// achieves.
+/// The building with these measures.
 Eigen::MatrixXd with_measures(Eigen::MatrixXd theta, const Columns& columns,
                               std::span<const Measure> measures,
                               std::span<const std::vector<Eigen::VectorXd>> achieved) {
@@ -189,21 +188,18 @@ std::string unknown_of(const SiteCalibration& result, const Columns& columns,
   const Index j = *columns.find(change.parameter);
   const std::string label = display::capitalised(display::parameter_words(change.parameter));
   if (j < columns.calibrated) {
-    if (assessment::is_identified(result, static_cast<std::size_t>(j))) return "";
-    return fmt::format("{}: the meters do not settle what it is today, so its prior stands.",
-                       label);
+    return assessment::is_identified(result, static_cast<std::size_t>(j)) ? ""
+                                                                          : prior_stands(label);
   }
   if (change.parameter == kElectric) return "";
   const bool is_shared = change.parameter == kLights || change.parameter == kPlugs;
   const Index drawn = is_shared ? *columns.find(kLights) : j;
   const Prior& prior = columns.parameters[static_cast<std::size_t>(drawn)].prior;
-  return is_shared
-             ? fmt::format(
-                   "The meter does not tell lights from plugs: by the installed power the "
-                   "lights take {:.1f} to {:.1f} times what the profile gives them.",
-                   prior.min(), prior.max())
-             : fmt::format("{} is not calibrated: what it is today is drawn from {:.3g} to {:.3g}.",
-                           label, prior.min(), prior.max());
+  if (!is_shared) return drawn_from(label, prior);
+  return fmt::format(
+      "The meter does not tell lights from plugs: by the installed power the lights "
+      "take {:.1f} to {:.1f} times what the profile gives them.",
+      prior.min(), prior.max());
 }
 
 class BuildingMeasures final : public MeasuredModel {

@@ -40,15 +40,17 @@ void check_value(const Change& change, TomlReader& table) {
   if (change.kind == ChangeKind::scale && change.by.min < 0.0) {
     table.problem_at("value", fmt::format("'value' is {}; a factor is at least 0", change.by.min));
   }
-  const auto definition = model::find_parameter(change.parameter);
-  if (change.kind != ChangeKind::set || !definition) return;
-  if (change.by.min < (*definition)->least || change.by.max > (*definition)->most) {
-    const bool is_low = change.by.min < (*definition)->least;
-    table.problem_at("value", fmt::format("'value' sets {} to {}, which is not possible: it is at "
-                                          "{} {}",
-                                          change.parameter, is_low ? change.by.min : change.by.max,
-                                          is_low ? "least" : "most",
-                                          is_low ? (*definition)->least : (*definition)->most));
+  const auto library = model::parameter_library();
+  const auto known =
+      std::ranges::find(library, change.parameter, &model::ParameterDefinition::name);
+  if (change.kind != ChangeKind::set || known == library.end()) return;
+  if (change.by.min < known->least || change.by.max > known->most) {
+    const bool is_low = change.by.min < known->least;
+    table.problem_at("value",
+                     fmt::format("'value' sets {} to {}, which is not possible: it is at "
+                                 "{} {}",
+                                 change.parameter, is_low ? change.by.min : change.by.max,
+                                 is_low ? "least" : "most", is_low ? known->least : known->most));
   }
 }
 
@@ -61,11 +63,12 @@ void check_energyplus(const Change& change, const ModelConfig& model, TomlReader
         "\"Lights/*/watts_per_floor_area\"");
     return;
   }
-  const auto is_it = [&](const ParameterConfig& own) { return own.name == change.parameter; };
-  if (change.parameter.empty() || std::ranges::any_of(model.parameters, is_it)) return;
-  if (const auto found = model::find_parameter(change.parameter); !found) {
-    table.problem_at("parameter", found.error().message);
+  const auto is_it = [&](const auto& known) { return known.name == change.parameter; };
+  if (change.parameter.empty() || std::ranges::any_of(model.parameters, is_it) ||
+      std::ranges::any_of(model::parameter_library(), is_it)) {
+    return;
   }
+  table.problem_at("parameter", model::find_parameter(change.parameter).error().message);
 }
 
 Change read_change(TomlReader& table, const SiteConfig& site) {

@@ -13,31 +13,20 @@
 
 namespace recald::daemon {
 
-/// Of the design's runs, those that are repeated with a measure. What it saves depends on the
-/// parameters less than the use does, so fewer are needed.
-inline constexpr int kMeasureRuns = 60;
-
-/// The changes of these measures, one after the other.
-[[nodiscard]] std::vector<savings::Change> changes_of(std::span<const savings::Measure> measures);
-
-/// Those whose extent is not known: columns of the design, behind the parameters.
-[[nodiscard]] std::vector<savings::Change> uncertain(std::vector<savings::Change> changes);
-
-/// Each measure by itself and, where there are several, all of them.
-[[nodiscard]] std::vector<std::span<const savings::Measure>> alone_and_together(
-    const std::vector<savings::Measure>& measures);
-
 /// Where the runs with these measures are: in the folder of the model's runs.
 [[nodiscard]] std::filesystem::path measure_folder(const ModelConfig& model,
                                                    std::span<const savings::Measure> measures);
 
+/// Whether they are there, with all that is kept of them.
 /// @pre the model is of kind energyplus
 [[nodiscard]] bool has_measure_runs(const ModelConfig& model,
                                     std::span<const savings::Measure> measures);
 
-/// Repeats the first of the design's runs, in its months and weather, with these measures carried
-/// out behind the run's own parameters. An extent that is not known is drawn anew for each run.
-/// @return as `make_runs`; not_found: the design is not there, or a target is not in the model.
+/// Repeats the first runs of the design, in its months and weather, with these measures carried out
+/// after the run's own parameters. An extent that is not known is drawn anew for each run.
+/// @return as `make_runs`; not_found: the design, or what a measure changes, is not there;
+///         unsupported: the model has no such quantity; invalid_value: the design's runs were made
+///         otherwise than they would be now.
 /// @pre the site's model is of kind energyplus
 [[nodiscard]] Result<MadeRuns> make_measure_runs(const ModelledSite& modelled,
                                                  std::span<const savings::Measure> measures,

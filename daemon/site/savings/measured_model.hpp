@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/prior.hpp"
 #include "core/random/rng.hpp"
 #include "core/result.hpp"
 #include "core/savings/drawn_errors.hpp"
@@ -27,9 +28,9 @@ class MeasuredModel {
   /// @param theta  (draws x q) Of the posterior.
   [[nodiscard]] virtual Eigen::MatrixXd buildings(const Eigen::MatrixXd& theta, Rng& rng) const = 0;
 
-  /// Leading columns of `buildings` and of theta that mean the same, and may be off.
+  /// How many of the leading columns of `buildings` are theta's.
   [[nodiscard]] virtual Eigen::Index calibrated() const = 0;
-  /// (q) Within them theta may be off.
+  /// (q) How far each of theta may be from what was drawn of it.
   [[nodiscard]] virtual std::vector<savings::Limits> limits() const = 0;
 
   /// Without measures. (draws x outputs * months), output-major, the calibration's months.
@@ -48,5 +49,9 @@ class MeasuredModel {
   [[nodiscard]] virtual std::vector<std::string> unknowns(
       const savings::Measure& measure) const = 0;
 };
+
+/// Sentences that models share. @param label  Of a quantity, as a sentence begins with it.
+[[nodiscard]] std::string prior_stands(const std::string& label);
+[[nodiscard]] std::string drawn_from(const std::string& label, const Prior& prior);
 
 }  // namespace recald::daemon

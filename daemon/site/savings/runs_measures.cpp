@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <set>
 #include <utility>
 
 #include "core/design/model_runs.hpp"
 #include "core/display/id_words.hpp"
 #include "core/model/metamodel/builders.hpp"
 #include "core/random/streams.hpp"
+#include "daemon/site/calibrate/design_outliers.hpp"
 #include "daemon/site/calibrate/site_metamodel.hpp"
+#include "daemon/site/savings/measure_columns.hpp"
 #include "daemon/site/savings/measure_runs.hpp"
 
 namespace recald::daemon {
@@ -26,53 +30,92 @@ constexpr double kNoChange = 1e-6;
 
 /// What one measure, or all of them, take off the outputs.
 struct Difference {
-  std::vector<Change> uncertain;
-  std::vector<Parameter> columns;       ///< The model's parameters, then the uncertain extents.
+  std::vector<Parameter> columns;  ///< The model's parameters, then the extents that are not known.
   std::unique_ptr<MonthlyModel> model;  ///< Of the outputs that move; null: none does.
   std::vector<Index> outputs;           ///< Which those are.
   std::vector<double> error_sd;         ///< (those outputs) In units.
 };
 
-/// The rows of both with the same parameters: without minus with. (rows x k * m)
-regression::DesignData difference_of(const regression::DesignData& without,
-                                     const regression::DesignData& with) {
-  const Index q = without.theta.cols();
-  std::vector<Index> first;
-  std::vector<Index> second;
-  for (Index i = 0; i < with.theta.rows(); ++i) {
-    for (Index j = 0; j < without.theta.rows(); ++j) {
-      if (without.theta.row(j) != with.theta.row(i).head(q)) continue;
-      first.push_back(j);
-      second.push_back(i);
+/// Runs with a measure and the same runs without.
+struct PairedRuns {
+  doe::DesignFolder without;
+  doe::DesignFolder with;
+  std::vector<Index> rows_without;
+  std::vector<Index> rows_with;
+};
+
+Result<PairedRuns> pair_runs(const ModelConfig& model, std::span<const Measure> measures) {
+  auto without = doe::read_design_folder(model.energyplus->design);
+  if (!without) return tl::unexpected(without.error());
+  auto with = doe::read_design_folder(measure_folder(model, measures));
+  if (!with) return tl::unexpected(with.error());
+  set_aside_outliers(*without);
+  set_aside_outliers(*with);
+  PairedRuns pairs{std::move(*without), std::move(*with), {}, {}};
+  const Index q = pairs.without.theta.cols();
+  for (Index i = 0; i < pairs.with.theta.rows(); ++i) {
+    for (Index j = 0; j < pairs.without.theta.rows(); ++j) {
+      if (pairs.without.theta.row(j) != pairs.with.theta.row(i).head(q)) continue;
+      pairs.rows_without.push_back(j);
+      pairs.rows_with.push_back(i);
       break;
     }
   }
-  regression::DesignData difference = with;
-  difference.theta = with.theta(second, Eigen::all);
-  difference.values = without.values(first, Eigen::all) - with.values(second, Eigen::all);
-  return difference;
+  const Index least = pairs.with.theta.cols() + 2;
+  if (std::ssize(pairs.rows_with) >= least) return pairs;
+  return failure(ErrorCode::not_enough_data,
+                 fmt::format("{} runs with '{}' can be compared with those without, and {} are "
+                             "needed; make more runs of fewer parameters, or see why they failed "
+                             "in {}",
+                             pairs.rows_with.size(), measures.front().name, least,
+                             (pairs.with.folder / "failed.csv").string()));
 }
 
-/// The outputs that a measure moves.
-std::vector<Index> moved_outputs(const regression::DesignData& difference,
-                                 const regression::DesignData& without) {
+MatrixXd stacked(const MatrixXd& above, const MatrixXd& below) {
+  MatrixXd both(above.rows() + below.rows(), above.cols());
+  both << above, below;
+  return both;
+}
+
+/// Both as one design, those without first: months that were not simulated are then predicted in
+/// one way, and what it is wrong by cancels.
+doe::DesignFolder as_one(const PairedRuns& pairs) {
+  doe::DesignFolder both = pairs.with;
+  const MatrixXd theta = pairs.with.theta(pairs.rows_with, Eigen::all);
+  both.theta = stacked(theta, theta);
+  both.outputs = stacked(pairs.without.outputs(pairs.rows_without, Eigen::all),
+                         pairs.with.outputs(pairs.rows_with, Eigen::all));
+  both.runs.resize(static_cast<std::size_t>(both.theta.rows()));
+  std::iota(both.runs.begin(), both.runs.end(), 1);
+  return both;
+}
+
+Result<doe::DesignDays> days_as_one(const PairedRuns& pairs) {
+  auto without = doe::read_design_days(pairs.without);
+  if (!without) return without;
+  const auto with = doe::read_design_days(pairs.with);
+  if (!with) return tl::unexpected(with.error());
+  without->values = stacked(without->values(pairs.rows_without, Eigen::all),
+                            with->values(pairs.rows_with, Eigen::all));
+  return without;
+}
+
+/// Takes the outputs out that a measure does not move. @return those that it does
+std::vector<Index> keep_moved(const regression::DesignData& both,
+                              regression::DesignData& difference) {
   std::vector<Index> moved;
-  for (Index k = 0; k < std::ssize(difference.outputs); ++k) {
-    const double least = kNoChange * without.output(k).cwiseAbs().maxCoeff();
-    if (difference.output(k).cwiseAbs().maxCoeff() > least) moved.push_back(k);
-  }
-  return moved;
-}
-
-void keep_outputs(const std::vector<Index>& kept, regression::DesignData& data) {
   std::vector<Index> columns;
   std::vector<std::string> names;
-  for (const Index k : kept) {
-    names.push_back(data.outputs[static_cast<std::size_t>(k)]);
-    for (Index i = 0; i < data.month_count(); ++i) columns.push_back(k * data.month_count() + i);
+  for (Index k = 0; k < std::ssize(difference.outputs); ++k) {
+    const double least = kNoChange * both.output(k).cwiseAbs().maxCoeff();
+    if (difference.output(k).cwiseAbs().maxCoeff() <= least) continue;
+    moved.push_back(k);
+    names.push_back(difference.outputs[static_cast<std::size_t>(k)]);
+    for (Index i = 0; i < both.month_count(); ++i) columns.push_back(k * both.month_count() + i);
   }
-  data.values = data.values(Eigen::all, columns).eval();
-  data.outputs = std::move(names);
+  difference.values = difference.values(Eigen::all, columns).eval();
+  difference.outputs = std::move(names);
+  return moved;
 }
 
 class RunsMeasures final : public MeasuredModel {
@@ -93,10 +136,8 @@ class RunsMeasures final : public MeasuredModel {
     auto plain = model::metamodel::model_of(*result_.design->fitted.monthly_form, months_);
     if (!plain) return tl::unexpected(plain.error());
     plain_ = std::make_unique<model::metamodel::QuadraticModel>(std::move(*plain));
-    const auto without = data_in_site_months(modelled, result_, result_.design->folder);
-    if (!without) return tl::unexpected(without.error());
     for (const std::span<const Measure> some : alone_and_together(measures_)) {
-      auto difference = fit_difference(modelled, some, *without);
+      auto difference = fit_difference(modelled, some);
       if (!difference) return tl::unexpected(difference.error());
       differences_.push_back(std::move(*difference));
     }
@@ -164,22 +205,32 @@ class RunsMeasures final : public MeasuredModel {
   }
 
   [[nodiscard]] std::vector<std::string> unknowns(const Measure& measure) const override {
-    std::vector<std::string> sentences;
-    for (const Change& change : measure.changes) {
-      const auto place = std::ranges::find(result_.parameters, change.parameter, &Parameter::name);
-      if (change.parameter.empty() || place == result_.parameters.end()) continue;
-      const auto j = static_cast<std::size_t>(place - result_.parameters.begin());
-      if (assessment::is_identified(result_, j)) continue;
-      sentences.push_back(
-          fmt::format("{}: the meters do not settle what it is today, so its prior stands.",
-                      display::capitalised(display::parameter_words(change.parameter))));
-    }
-    return sentences;
+    std::set<std::string> sentences;
+    for (const Change& change : measure.changes) sentences.insert(unknown_of(change));
+    sentences.erase("");
+    return {sentences.begin(), sentences.end()};
   }
 
  private:
   [[nodiscard]] const Parameter& parameter(Index j) const {
     return result_.design->folder.parameters[static_cast<std::size_t>(j)];
+  }
+
+  /// What is not known of what a change begins with; empty: the meters tell it.
+  [[nodiscard]] std::string unknown_of(const Change& change) const {
+    if (!change.targets.empty() || change.kind == model::ChangeKind::set) return "";
+    const std::string label = display::capitalised(display::parameter_words(change.parameter));
+    const auto free = std::ranges::find(result_.parameters, change.parameter, &Parameter::name);
+    if (free != result_.parameters.end()) {
+      const auto j = static_cast<std::size_t>(free - result_.parameters.begin());
+      return assessment::is_identified(result_, j) ? "" : prior_stands(label);
+    }
+    const auto& all = result_.design->folder.parameters;
+    const auto held = std::ranges::find(all, change.parameter, &Parameter::name);
+    return held == all.end()
+               ? fmt::format(
+                     "{} is no parameter of the site file: it is taken as the model has it.", label)
+               : drawn_from(label, held->prior);
   }
 
   /// From `buildings`, which has what is held behind what is calibrated.
@@ -195,21 +246,20 @@ class RunsMeasures final : public MeasuredModel {
   }
 
   [[nodiscard]] Result<Difference> fit_difference(const ModelledSite& modelled,
-                                                  std::span<const Measure> measures,
-                                                  const regression::DesignData& without) const {
-    auto design = doe::read_design_folder(measure_folder(*modelled.site.config.model, measures));
-    if (!design) return tl::unexpected(design.error());
-    Difference difference{.uncertain = uncertain(changes_of(measures)),
-                          .columns = design->parameters,
-                          .model = nullptr,
-                          .outputs = {},
-                          .error_sd = {}};
-    const auto with = data_in_site_months(modelled, result_, std::move(*design));
-    if (!with) return tl::unexpected(with.error());
-    regression::DesignData data = difference_of(without, *with);
-    difference.outputs = moved_outputs(data, without);
+                                                  std::span<const Measure> measures) const {
+    const auto pairs = pair_runs(*modelled.site.config.model, measures);
+    if (!pairs) return tl::unexpected(pairs.error());
+    const auto both =
+        data_in_site_months(modelled, result_, as_one(*pairs),
+                            [&](const doe::DesignFolder& /*both*/) { return days_as_one(*pairs); });
+    if (!both) return tl::unexpected(both.error());
+    regression::DesignData data = *both;
+    const Index runs = both->runs() / 2;
+    data.theta = both->theta.topRows(runs);
+    data.values = both->values.topRows(runs) - both->values.bottomRows(runs);
+    Difference difference{.columns = pairs->with.parameters, .model = nullptr};
+    difference.outputs = keep_moved(*both, data);
     if (difference.outputs.empty()) return difference;
-    keep_outputs(difference.outputs, data);
     Rng rng{kFoldSeed, streams::kFolds.first};
     const auto form = regression::fit_monthly_form(data, {}, rng);
     if (!form) return tl::unexpected(form.error());
