@@ -24,7 +24,6 @@ namespace {
 using Pointer = Json::json_pointer;
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kLeastDeadBand_K = 1.0;
 constexpr double kBelowOne = 0.99999;  // where EnergyPlus allows no 1
 /// Set-points outside these are ways to say "off".
 constexpr double kColdest_C = -40.0;
@@ -379,7 +378,8 @@ Result<KnownParameter> find_known_parameter(const ModelDocument& model, std::str
 void settle(const Json& nominal, Json& objects) {
   const DeadBand before = dead_band(nominal);
   const DeadBand after = dead_band(objects);
-  const double least_K = std::min(kLeastDeadBand_K, before.cooling_least_C - before.heating_most_C);
+  const double least_K =
+      std::min(model::kLeastDeadBand_K, before.cooling_least_C - before.heating_most_C);
   for (const Pointer& field : after.heating) {
     Json& node = objects.at(field);
     node = std::min(node.get<double>(), after.cooling_least_C - least_K);

@@ -14,8 +14,6 @@
 namespace recald::model {
 namespace {
 
-constexpr double kLeastDeadBand_K = 1.0;
-
 double one(const Building&) { return 1.0; }
 
 void scale_u(Building& b, double factor) {

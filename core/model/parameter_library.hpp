@@ -41,6 +41,9 @@ struct ParameterDefinition {
 
 [[nodiscard]] std::span<const ParameterDefinition> parameter_library();
 
+/// A heating set-point counts up to this below that of cooling, in every model.
+inline constexpr double kLeastDeadBand_K = 1.0;
+
 /// The seed's choice for the EPC: aggregated occupancy, outdoor airflow, cooling set-point.
 inline constexpr std::string_view kSeedParameters[] = {"occupancy_density", "outdoor_airflow",
                                                        "cooling_setpoint"};

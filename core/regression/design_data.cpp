@@ -148,6 +148,14 @@ Result<void> check_design(const DesignData& design) {
   return check_collinear(design);
 }
 
+Eigen::MatrixXd capped(Eigen::MatrixXd theta, std::span<const ParameterCap> caps) {
+  for (const ParameterCap& cap : caps) {
+    theta.col(cap.parameter) =
+        theta.col(cap.parameter).array().min(theta.col(cap.under).array() - cap.gap);
+  }
+  return theta;
+}
+
 std::vector<ColumnScale> column_scales(const Eigen::MatrixXd& columns) {
   std::vector<ColumnScale> scales;
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {

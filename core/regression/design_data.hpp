@@ -2,12 +2,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
 
 namespace recald::regression {
+
+/// A parameter whose value counts only as far as another leaves it: a simulation does not heat to
+/// above where it cools.
+struct ParameterCap {
+  int parameter;
+  int under;   ///< The other, which no cap is on.
+  double gap;  ///< It counts up to the other's value less this.
+};
+
+/// The values that count. @param theta  (rows x q)
+[[nodiscard]] Eigen::MatrixXd capped(Eigen::MatrixXd theta, std::span<const ParameterCap> caps);
 
 /// Runs of one building model at different parameter values, all for the same months.
 struct DesignData {
@@ -18,6 +30,7 @@ struct DesignData {
   Eigen::MatrixXd values;               ///< (runs x k * m), output-major, in the outputs' units.
   std::vector<std::string> inputs;      ///< (p) known month inputs, e.g. drybulb; may be empty.
   Eigen::MatrixXd month_inputs;         ///< (m x p) in the inputs' own units.
+  std::vector<ParameterCap> caps = {};
 
   [[nodiscard]] Eigen::Index runs() const { return theta.rows(); }
   [[nodiscard]] Eigen::Index month_count() const {

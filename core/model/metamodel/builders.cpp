@@ -197,6 +197,7 @@ Result<QuadraticModel> model_of(const regression::MonthlyForm& form,
                                 std::span<const std::string> months) {
   QuadraticCoefficients coefficients(form.parameter_scales, static_cast<int>(form.outputs.size()),
                                      static_cast<int>(months.size()));
+  coefficients.set_caps(form.caps);
   for (std::size_t i = 0; i < months.size(); ++i) {
     const int column = index_of(form.months, months[i]);
     if (column < 0) {
@@ -212,6 +213,9 @@ Result<QuadraticModel> model_of(const regression::MonthlyForm& form,
       const int output = static_cast<int>(k);
       const int month = static_cast<int>(i);
       coefficients.add_constant(output, month, scale.min + scale.range() * fit.intercepts(column));
+      if (const double width = fit.widths(column); width > 0.0) {
+        coefficients.set_width(output, month, scale.range() * width);
+      }
       for (std::size_t t = 0; t < fit.terms.size(); ++t) {
         coefficients.add(output, month, fit.terms[t],
                          scale.range() * fit.coefficients(static_cast<Eigen::Index>(t), column));

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
+#include "core/model/parameter_library.hpp"
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"
 
@@ -62,6 +64,15 @@ regression::DesignData design_data(const doe::DesignFolder& design) {
   data.values = design.outputs;
   data.inputs = design.inputs.names;
   data.month_inputs = design.design_inputs();
+  const auto place = [&](std::string_view name) {
+    return static_cast<int>(std::ranges::find(data.parameters, name) - data.parameters.begin());
+  };
+  const int heating = place("heating_setpoint");
+  const int cooling = place("cooling_setpoint");
+  const int count = static_cast<int>(data.parameters.size());
+  if (heating < count && cooling < count) {
+    data.caps.push_back({heating, cooling, model::kLeastDeadBand_K});
+  }
   return data;
 }
 

@@ -98,6 +98,7 @@ Json monthly_terms_json(const regression::MonthlyForm& form) {
       terms.push_back({{"output", form.outputs[k]}, {"term", term}, {"coefficients", by_month}});
     };
     add("(Intercept)", [&](Eigen::Index i) { return fit.intercepts[i]; });
+    if (!fit.widths.isZero(0.0)) add("(bend)", [&](Eigen::Index i) { return fit.widths[i]; });
     for (std::size_t t = 0; t < fit.terms.size(); ++t) {
       add(regression::term_name(fit.terms[t], form.parameters),
           [&](Eigen::Index i) { return fit.coefficients(static_cast<Eigen::Index>(t), i); });
