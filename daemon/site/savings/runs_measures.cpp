@@ -218,7 +218,7 @@ class RunsMeasures final : public MeasuredModel {
 
   /// What is not known of what a change begins with; empty: the meters tell it.
   [[nodiscard]] std::string unknown_of(const Change& change) const {
-    if (!change.targets.empty() || change.kind == model::ChangeKind::set) return "";
+    if (!change.targets.empty()) return "";
     const std::string label = display::capitalised(display::parameter_words(change.parameter));
     const auto free = std::ranges::find(result_.parameters, change.parameter, &Parameter::name);
     if (free != result_.parameters.end()) {
