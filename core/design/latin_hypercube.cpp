@@ -30,17 +30,33 @@ Eigen::MatrixXd plain_hypercube(std::span<const Parameter> parameters, int runs,
   return design;
 }
 
+/// Where a prior ends, or an open one all but ends.
+UniformPrior ends_of(const Prior& prior) {
+  constexpr double kTail = 0.001;
+  return {std::isfinite(prior.min()) ? prior.min() : prior.quantile(kTail),
+          std::isfinite(prior.max()) ? prior.max() : prior.quantile(1.0 - kTail)};
+}
+
 }  // namespace
 
+Eigen::MatrixXd wide_hypercube(std::span<const Parameter> parameters, int runs, Rng& rng) {
+  assert(runs >= 4);
+  std::vector<Parameter> even{parameters.begin(), parameters.end()};
+  for (Parameter& parameter : even) parameter.prior = Prior::make(ends_of(parameter.prior)).value();
+  const int evenly = runs / 2;
+  Eigen::MatrixXd design(runs, std::ssize(parameters));
+  design(Eigen::seq(0, Eigen::last, 2), Eigen::all) =
+      latin_hypercube(parameters, runs - evenly, rng);
+  design(Eigen::seq(1, Eigen::last, 2), Eigen::all) = latin_hypercube(even, evenly, rng);
+  return design;
+}
+
 Eigen::MatrixXd corners(std::span<const Parameter> parameters, int runs, Rng& rng) {
-  constexpr double kTail = 0.001;
   Eigen::MatrixXd design(runs, static_cast<Eigen::Index>(parameters.size()));
   for (Eigen::Index i = 0; i < design.rows(); ++i) {
     for (Eigen::Index j = 0; j < design.cols(); ++j) {
-      const Prior& prior = parameters[static_cast<std::size_t>(j)].prior;
-      const bool is_upper = rng.below(2) == 1;
-      const double end = is_upper ? prior.max() : prior.min();
-      design(i, j) = std::isfinite(end) ? end : prior.quantile(is_upper ? 1.0 - kTail : kTail);
+      const UniformPrior ends = ends_of(parameters[static_cast<std::size_t>(j)].prior);
+      design(i, j) = rng.below(2) == 1 ? ends.max : ends.min;
     }
   }
   return design;
@@ -73,6 +89,19 @@ Eigen::MatrixXd latin_hypercube(std::span<const Parameter> parameters, int runs,
     }
   }
   return best;
+}
+
+Eigen::MatrixXd draw_points(Points points, std::span<const Parameter> parameters, int runs,
+                            Rng& rng) {
+  switch (points) {
+    case Points::priors:
+      return latin_hypercube(parameters, runs, rng);
+    case Points::corners:
+      return corners(parameters, runs, rng);
+    case Points::wide:
+      break;
+  }
+  return wide_hypercube(parameters, runs, rng);
 }
 
 }  // namespace recald::design

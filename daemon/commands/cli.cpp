@@ -160,9 +160,14 @@ void add_doe(CLI::App& command, DoeArguments& arguments) {
   command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
   command.add_option("--threads", arguments.threads, "Number of threads; 0 for one per core")
       ->capture_default_str();
-  command.add_flag("--corners", arguments.at_corners,
-                   "Run corners of the priors, with which recald metamodel --check tests a "
-                   "regression");
+  CLI::Option* priors =
+      command.add_flag("--priors", arguments.from_priors,
+                       "Draw all runs from the priors, as truths with which recald metamodel "
+                       "--check tests a meta-model; a design has half of them evenly between ends");
+  command
+      .add_flag("--corners", arguments.at_corners,
+                "Run corners of the priors, with which --check tests where it is least sure")
+      ->excludes(priors);
 }
 
 /// What CLI11 cannot say of two options at once; empty where all is well.

@@ -87,7 +87,8 @@ struct DoeArguments : SiteArguments {
   std::optional<int> runs;         ///< Absent: as the site file says, else 200.
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  bool at_corners = false;  ///< Of the priors, in the place of a hypercube.
+  bool from_priors = false;  ///< To check a meta-model with: a Latin hypercube through them …
+  bool at_corners = false;   ///< … or their corners.
 };
 
 struct EngineArguments : SiteArguments {};

@@ -47,6 +47,11 @@ std::string design_words(const std::filesystem::path& folder, const MadeRuns& ma
   return text + display::warning_lines(warnings);
 }
 
+design::Points points_of(const DoeArguments& arguments) {
+  if (arguments.from_priors) return design::Points::priors;
+  return arguments.at_corners ? design::Points::corners : design::Points::wide;
+}
+
 /// A design of one of our own models.
 tl::expected<MadeRuns, int> make_built_in_runs(const ModelledSite& modelled,
                                                const DoeArguments& arguments,
@@ -61,7 +66,7 @@ tl::expected<MadeRuns, int> make_built_in_runs(const ModelledSite& modelled,
   const SiteDesignOptions options{
       .runs = arguments.runs.value_or(kUsualRuns),
       .seed = arguments.seed,
-      .at_corners = arguments.at_corners,
+      .points = points_of(arguments),
       .fingerprint = fmt::format("{} {} {}", version_name(*version, facts.model_version),
                                  facts.data_revision, facts.recald_version)};
   const doe::DesignPlan plan = plan_design(*prepared, options);
@@ -100,16 +105,16 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
   const std::filesystem::path folder =
       arguments.out.empty() && model.energyplus ? model.energyplus->design : arguments.out;
   if (folder.empty()) return console.misused("give the design folder with --out");
-  if (arguments.at_corners && arguments.out.empty()) {
+  if (points_of(arguments) != design::Points::wide && arguments.out.empty()) {
     return console.misused(
-        "corners check a design and are none: give a folder of theirs with --out");
+        "such runs check a design and are none: give a folder of theirs with --out");
   }
   display::Warnings warnings;
   auto made = model.energyplus ? make_runs_aloud(*modelled,
                                                  {.folder = folder,
                                                   .runs = arguments.runs.value_or(0),
                                                   .seed = arguments.seed,
-                                                  .at_corners = arguments.at_corners},
+                                                  .points = points_of(arguments)},
                                                  arguments.threads, console)
                                : make_built_in_runs(*modelled, arguments, console, warnings);
   if (!made) return made.error();

@@ -159,8 +159,7 @@ void SeedFormCampus(benchmark::State& state) {
 void MonthlyFormCampus(benchmark::State& state) {
   const auto design = campus_sized_design();
   for (auto _ : state) {
-    Rng rng(6);
-    benchmark::DoNotOptimize(regression::fit_monthly_form(design, {}, rng));
+    benchmark::DoNotOptimize(regression::fit_monthly_form(design));
   }
 }
 

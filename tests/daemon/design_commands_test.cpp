@@ -87,20 +87,23 @@ TEST_F(DesignCommands, MetamodelOffersBothFormsAndSaysWhichPredicts) {
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   EXPECT_EQ(read_text(folder_ / "out/metamodel.json"), outcome.out);
   const Json json = Json::parse(outcome.out);
-  for (const char* key : {"form", "terms", "r2_in_sample", "r2_left_out", "sigma_r", "scaling"}) {
+  for (const char* key :
+       {"form", "patterns", "r2_in_sample", "r2_left_out", "sigma_r", "scaling"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_EQ(json["form"], "monthly");
   EXPECT_GT(json["forms"]["monthly"]["r2_left_out"], json["forms"]["seed"]["r2_left_out"]);
   EXPECT_EQ(json["r2_left_out"], json["forms"]["monthly"]["r2_left_out"]);
   EXPECT_GT(json["sigma_r"]["chw_daily_kwh"], 0.0);
-  const Json& intercept = json["terms"][0];
-  EXPECT_EQ(intercept["output"], "chw_daily_kwh");
-  EXPECT_EQ(intercept["term"], "(Intercept)");
-  EXPECT_EQ(intercept["coefficients"].size(), 12U);
+  const Json& pattern = json["patterns"][0];
+  EXPECT_EQ(pattern["output"], "chw_daily_kwh");
+  EXPECT_EQ(pattern["loadings"].size(), 12U);
+  EXPECT_EQ(pattern["lengths"].size(), 4U);
 
   const Outcome table = on_design("metamodel");
-  EXPECT_THAT(table.out, HasSubstr("Chosen: monthly: on left-out runs one regression a month"));
+  EXPECT_THAT(table.out,
+              HasSubstr("Chosen: monthly: on left-out runs a Gaussian process of the design's "
+                        "months"));
   EXPECT_THAT(table.out, HasSubstr("It speaks of the design's months alone"));
 }
 
@@ -224,7 +227,7 @@ TEST_F(DesignCommands, CalibrationLeavesItsContract) {
   EXPECT_THAT(warnings_of(json),
               Contains(HasSubstr(
                   "January 2021 to March 2021 are not in the design: the bands there are too "
-                  "narrow. One regression a month says nothing of these months")));
+                  "narrow. The monthly form says nothing of these months")));
 }
 
 // The page and the months of a site's calibration, as far as the folder knows them.

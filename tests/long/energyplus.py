@@ -119,7 +119,7 @@ def study(name, model, weather, folder):
     begin = time.time()
     recald("doe", site, "--out", "runs", folder=folder)
     seconds = time.time() - begin
-    recald("doe", site, "--out", "truths", "--runs", TRUTHS, "--seed", 2, folder=folder)
+    recald("doe", site, "--out", "truths", "--priors", "--runs", TRUTHS, "--seed", 2, folder=folder)
     recald("doe", site, "--out", "corners", "--runs", CORNERS, "--corners", "--seed", 3, folder=folder)
     checks = {}
     for check in ("truths", "corners"):

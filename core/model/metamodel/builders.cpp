@@ -193,36 +193,21 @@ Result<QuadraticModel> model_of(const regression::SeedForm& form, const MonthInp
   return QuadraticModel(coefficients);
 }
 
-Result<QuadraticModel> model_of(const regression::MonthlyForm& form,
-                                std::span<const std::string> months) {
-  QuadraticCoefficients coefficients(form.parameter_scales, static_cast<int>(form.outputs.size()),
-                                     static_cast<int>(months.size()));
-  coefficients.set_caps(form.caps);
-  for (std::size_t i = 0; i < months.size(); ++i) {
-    const int column = index_of(form.months, months[i]);
-    if (column < 0) {
+Result<GaussianModel> model_of(const regression::MonthlyForm& form,
+                               std::span<const std::string> months) {
+  std::vector<int> places;
+  for (const std::string& month : months) {
+    const int place = index_of(form.months, month);
+    if (place < 0) {
       return failure(ErrorCode::not_found,
-                     "month " + months[i] + " is not in the design (" + form.months.front() +
-                         " to " + form.months.back() +
-                         "), and one regression a month says nothing about other months; use the "
-                         "seed's form for them");
+                     "month " + month + " is not in the design (" + form.months.front() + " to " +
+                         form.months.back() +
+                         "), and the monthly form says nothing about other months; use the seed's "
+                         "form for them");
     }
-    for (std::size_t k = 0; k < form.fits.size(); ++k) {
-      const regression::MonthlyFormOutput& fit = form.fits[k];
-      const ColumnScale& scale = form.output_scales[k];
-      const int output = static_cast<int>(k);
-      const int month = static_cast<int>(i);
-      coefficients.add_constant(output, month, scale.min + scale.range() * fit.intercepts(column));
-      if (const double width = fit.widths(column); width > 0.0) {
-        coefficients.set_width(output, month, scale.range() * width);
-      }
-      for (std::size_t t = 0; t < fit.terms.size(); ++t) {
-        coefficients.add(output, month, fit.terms[t],
-                         scale.range() * fit.coefficients(static_cast<Eigen::Index>(t), column));
-      }
-    }
+    places.push_back(place);
   }
-  return QuadraticModel(coefficients);
+  return GaussianModel(form, places);
 }
 
 std::vector<ColumnScale> prior_scales(std::span<const Parameter> parameters) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/metamodel/gaussian_model.hpp"
 #include "core/model/metamodel/quadratic_model.hpp"
 #include "core/model/parameter.hpp"
 #include "core/regression/monthly_form.hpp"
@@ -30,10 +31,10 @@ struct MonthInputs {
 [[nodiscard]] Result<QuadraticModel> model_of(const regression::SeedForm& form,
                                               const MonthInputs& inputs);
 
-/// One regression per month, for some of the design's months in any order.
+/// The monthly form, for some of the design's months in any order.
 /// @return the model, or not_found for a month outside the design.
-[[nodiscard]] Result<QuadraticModel> model_of(const regression::MonthlyForm& form,
-                                              std::span<const std::string> months);
+[[nodiscard]] Result<GaussianModel> model_of(const regression::MonthlyForm& form,
+                                             std::span<const std::string> months);
 
 /// A coefficient as a file names it: "(Intercept)", "drybulb", "drybulb:t_cool" or "t_cool^2".
 struct NamedCoefficient {

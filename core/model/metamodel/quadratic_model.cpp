@@ -4,8 +4,6 @@
 #include <cassert>
 #include <utility>
 
-#include "core/statistics/rectified_mean.hpp"
-
 namespace recald::model::metamodel {
 
 using regression::Term;
@@ -17,7 +15,6 @@ QuadraticCoefficients::QuadraticCoefficients(std::vector<regression::ColumnScale
       months_(months),
       terms_(regression::all_terms(static_cast<int>(scales_.size()), true)),
       constants_(Eigen::VectorXd::Zero(outputs * months)),
-      widths_(Eigen::VectorXd::Zero(outputs * months)),
       coefficients_(
           Eigen::MatrixXd::Zero(outputs * months, static_cast<Eigen::Index>(terms_.size()))) {}
 
@@ -41,15 +38,9 @@ void QuadraticCoefficients::add(int output, int month, Term term, double coeffic
   coefficients_(row(output, month), column(term)) += coefficient;
 }
 
-void QuadraticCoefficients::set_width(int output, int month, double width) {
-  assert(width > 0.0);
-  widths_(row(output, month)) = width;
-}
-
 QuadraticModel::QuadraticModel(const QuadraticCoefficients& coefficients)
     : outputs_(coefficients.outputs_),
       months_(coefficients.months_),
-      caps_(coefficients.caps_),
       constants_(coefficients.constants_) {
   std::vector<Eigen::Index> used;
   for (std::size_t j = 0; j < coefficients.terms_.size(); ++j) {
@@ -60,11 +51,6 @@ QuadraticModel::QuadraticModel(const QuadraticCoefficients& coefficients)
   }
   coefficients_ = coefficients.coefficients_(Eigen::all, used);
   basis_.resize(coefficients_.cols());
-  for (Eigen::Index row = 0; row < constants_.size(); ++row) {
-    if (coefficients.widths_(row) == 0.0) continue;
-    bent_.push_back(row);
-    widths_.push_back(coefficients.widths_(row));
-  }
 
   const auto q = static_cast<Eigen::Index>(coefficients.scales_.size());
   scaled_.resize(q);
@@ -83,20 +69,9 @@ std::unique_ptr<MonthlyModel> QuadraticModel::clone() const {
 }
 
 void QuadraticModel::evaluate(std::span<const double> theta, std::span<double> outputs) {
-  evaluate_straight(theta, outputs);
-  for (std::size_t b = 0; b < bent_.size(); ++b) {
-    double& value = outputs[static_cast<std::size_t>(bent_[b])];
-    value = rectified_mean(value, widths_[b]);
-  }
-}
-
-void QuadraticModel::evaluate_straight(std::span<const double> theta, std::span<double> outputs) {
   assert(static_cast<Eigen::Index>(theta.size()) == scaled_.size());
   assert(static_cast<Eigen::Index>(outputs.size()) == constants_.size());
   scaled_ = Eigen::Map<const Eigen::VectorXd>(theta.data(), scaled_.size());
-  for (const regression::ParameterCap& cap : caps_) {
-    scaled_(cap.parameter) = std::min(scaled_(cap.parameter), scaled_(cap.under) - cap.gap);
-  }
   scaled_ = (scaled_ - min_).cwiseProduct(inverse_range_);
   for (std::size_t j = 0; j < terms_.size(); ++j) {
     const Term& term = terms_[j];
@@ -110,7 +85,7 @@ void QuadraticModel::evaluate_straight(std::span<const double> theta, std::span<
 
 void QuadraticModel::evaluate_with_jacobian(std::span<const double> theta,
                                             std::span<double> outputs, std::span<double> jacobian) {
-  evaluate_straight(theta, outputs);
+  evaluate(theta, outputs);
   assert(static_cast<Eigen::Index>(jacobian.size()) == constants_.size() * scaled_.size());
   Eigen::Map<Eigen::MatrixXd> derivatives(jacobian.data(), constants_.size(), scaled_.size());
   derivatives.setZero();
@@ -123,19 +98,6 @@ void QuadraticModel::evaluate_with_jacobian(std::span<const double> theta,
     // For a square this adds the other half of 2 t.
     derivatives.col(term.second) +=
         (scaled_(term.first) * inverse_range_(term.second)) * coefficient;
-  }
-  // A parameter that is capped moves with the other.
-  for (const regression::ParameterCap& cap : caps_) {
-    const auto parameter = static_cast<std::size_t>(cap.parameter);
-    const auto under = static_cast<std::size_t>(cap.under);
-    if (theta[parameter] <= theta[under] - cap.gap) continue;
-    derivatives.col(cap.under) += derivatives.col(cap.parameter);
-    derivatives.col(cap.parameter).setZero();
-  }
-  for (std::size_t b = 0; b < bent_.size(); ++b) {
-    double& value = outputs[static_cast<std::size_t>(bent_[b])];
-    derivatives.row(bent_[b]) *= rectified_slope(value, widths_[b]);
-    value = rectified_mean(value, widths_[b]);
   }
 }
 

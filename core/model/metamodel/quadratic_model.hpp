@@ -24,9 +24,6 @@ class QuadraticCoefficients {
   void add_constant(int output, int month, double value);
   /// @param term  Main effect, square or product of scaled parameters, in either order.
   void add(int output, int month, regression::Term term, double coefficient);
-  /// A bend at zero (statistics/rectified_mean.hpp). @param width  In the output's unit, > 0.
-  void set_width(int output, int month, double width);
-  void set_caps(std::vector<regression::ParameterCap> caps) { caps_ = std::move(caps); }
 
  private:
   friend class QuadraticModel;
@@ -35,18 +32,15 @@ class QuadraticCoefficients {
   [[nodiscard]] Eigen::Index column(regression::Term term) const;
 
   std::vector<regression::ColumnScale> scales_;
-  std::vector<regression::ParameterCap> caps_;
   int outputs_;
   int months_;
   std::vector<regression::Term> terms_;  ///< All main effects, squares and products.
   Eigen::VectorXd constants_;            ///< (outputs * months), output-major.
-  Eigen::VectorXd widths_;               ///< Likewise; 0: no bend.
   Eigen::MatrixXd coefficients_;         ///< (outputs * months x terms)
 };
 
 /// f_i(theta) = c_i + sum_j b_ij t_j + sum_{j <= k} b_ijk t_j t_k for every output and month i,
-/// with t_j = (theta_j - min_j) / (max_j - min_j), in the outputs' own units. Where an output has a
-/// bend in a month, its value there is the mean of max(0, f_i + width e) of a standard normal e.
+/// with t_j = (theta_j - min_j) / (max_j - min_j), in the outputs' own units.
 ///
 /// Terms that no output uses are left out. `evaluate` is one product of a (rows x terms) matrix and
 /// a vector, and the Jacobian at most two; neither allocates.
@@ -68,21 +62,15 @@ class QuadraticModel final : public MonthlyModel {
   [[nodiscard]] std::span<const regression::Term> terms() const { return terms_; }
 
  private:
-  /// The polynomials alone.
-  void evaluate_straight(std::span<const double> theta, std::span<double> outputs);
-
   int outputs_;
   int months_;
   std::vector<regression::Term> terms_;
-  std::vector<regression::ParameterCap> caps_;
-  Eigen::VectorXd min_;             ///< (q)
-  Eigen::VectorXd inverse_range_;   ///< (q)
-  Eigen::VectorXd constants_;       ///< (rows)
-  std::vector<Eigen::Index> bent_;  ///< Rows that have a bend …
-  std::vector<double> widths_;      ///< … and how wide.
-  Eigen::MatrixXd coefficients_;    ///< (rows x terms)
-  Eigen::VectorXd scaled_;          ///< (q) t
-  Eigen::VectorXd basis_;           ///< (terms) products of t
+  Eigen::VectorXd min_;            ///< (q)
+  Eigen::VectorXd inverse_range_;  ///< (q)
+  Eigen::VectorXd constants_;      ///< (rows)
+  Eigen::MatrixXd coefficients_;   ///< (rows x terms)
+  Eigen::VectorXd scaled_;         ///< (q) t
+  Eigen::VectorXd basis_;          ///< (terms) products of t
 };
 
 }  // namespace recald::model::metamodel

@@ -108,13 +108,11 @@ MonthInputs after_design(const MonthInputs& all, std::size_t covered) {
 
 Result<Metamodel> metamodel_of(const FittedMetamodel& fitted, const MetamodelOptions& options,
                                const MonthInputs& covered, const MonthInputs& all) {
-  auto calibration = fitted.form == MetamodelForm::seed
-                         ? model::metamodel::model_of(*fitted.seed_form, covered)
-                         : model::metamodel::model_of(*fitted.monthly_form, covered.months);
+  auto calibration = model_over(fitted, covered);
   if (!calibration) return tl::unexpected(calibration.error());
   Metamodel result;
-  result.whole = calibration->clone();
-  result.calibration = on_heap(std::move(*calibration));
+  result.whole = (*calibration)->clone();
+  result.calibration = std::move(*calibration);
   result.sigma_calibration = fitted.sigma_r(fitted.form);
   const MonthInputs later = after_design(all, covered.months.size());
   if (!later.months.empty()) {
@@ -267,10 +265,10 @@ void say_how_months_are_modelled(const FittedMetamodel& fitted, const DesignCali
                                first == last ? display::month_words(first) + " is"
                                              : display::month_words(first) + " to " +
                                                    display::month_words(last) + " are"),
-       .details = fmt::format(
-           "One regression a month says nothing of these months, so the one for all months is "
-           "used (form seed), with a left-out R2 of {:.4f} in the design's own months.",
-           fitted.quality(MetamodelForm::seed).all.r2_left_out),
+       .details =
+           fmt::format("The monthly form says nothing of these months, so the seed's form is "
+                       "used (form seed), with a left-out R2 of {:.4f} in the design's own months.",
+                       fitted.quality(MetamodelForm::seed).all.r2_left_out),
        .share = static_cast<double>(months) / static_cast<double>(result.month_names.size())});
 }
 
@@ -288,7 +286,7 @@ std::vector<doe::DesignMonth> all_months(const doe::DesignFolder& design,
                                  "validate.",
                                  display::month_words(later.front().text()),
                                  display::month_words(later.back().text())),
-         .details = "One regression a month says nothing of them, and the seed's form cannot be "
+         .details = "The monthly form says nothing of them, and the seed's form cannot be "
                     "fitted.",
          .share = static_cast<double>(later.size()) /
                   static_cast<double>(months.size() + later.size())});

@@ -15,7 +15,7 @@ namespace {
 
 const char* description(MetamodelForm form) {
   return form == MetamodelForm::seed ? "one regression for all months (form seed)"
-                                     : "one regression a month";
+                                     : "a Gaussian process of the design's months (form monthly)";
 }
 
 /// Chooses among the forms that could be fitted, and says why.
@@ -89,12 +89,10 @@ model::metamodel::MonthInputs month_inputs(const doe::MonthlyTable& inputs,
 
 Result<FittedMetamodel> fit_metamodel(const regression::DesignData& design,
                                       const MetamodelOptions& options) {
-  // Both forms leave out the same runs, so that their figures compare.
-  Rng seed_rng{options.seed, streams::kFolds.first};
-  Rng monthly_rng{options.seed, streams::kFolds.first};
+  Rng rng{options.seed, streams::kFolds.first};
   auto seed_form =
-      regression::fit_seed_form(design, {.wind_in_degrees = options.wind_in_degrees}, seed_rng);
-  auto monthly_form = regression::fit_monthly_form(design, {}, monthly_rng);
+      regression::fit_seed_form(design, {.wind_in_degrees = options.wind_in_degrees}, rng);
+  auto monthly_form = regression::fit_monthly_form(design);
   const bool seed_is_needed = options.form == MetamodelForm::seed || !monthly_form;
   if (!seed_form && seed_is_needed) return tl::unexpected(seed_form.error());
   if (!monthly_form && options.form == MetamodelForm::monthly) {
@@ -109,11 +107,22 @@ Result<FittedMetamodel> fit_metamodel(const regression::DesignData& design,
   if (monthly_form) {
     fitted.monthly_form = std::move(*monthly_form);
   } else {
-    fitted.notes.push_back(
-        "One regression a month cannot be fitted: " + monthly_form.error().message + ".");
+    fitted.notes.push_back("The monthly form cannot be fitted: " + monthly_form.error().message +
+                           ".");
   }
   choose_form(fitted, options.form);
   return fitted;
+}
+
+Result<std::unique_ptr<MonthlyModel>> model_over(const FittedMetamodel& fitted,
+                                                 const model::metamodel::MonthInputs& months) {
+  const auto on_heap = [](auto&& model) -> Result<std::unique_ptr<MonthlyModel>> {
+    if (!model) return tl::unexpected(model.error());
+    return model->clone();
+  };
+  return fitted.form == MetamodelForm::seed
+             ? on_heap(model::metamodel::model_of(*fitted.seed_form, months))
+             : on_heap(model::metamodel::model_of(*fitted.monthly_form, months.months));
 }
 
 Result<std::vector<regression::CheckedOutput>> check_metamodel(
@@ -125,15 +134,12 @@ Result<std::vector<regression::CheckedOutput>> check_metamodel(
                    "the runs to check with are of other parameters, outputs or months than the "
                    "design's; make both from one site file");
   }
-  auto model = fitted.form == MetamodelForm::seed
-                   ? model::metamodel::model_of(*fitted.seed_form,
-                                                {design.inputs, design.months, design.month_inputs})
-                   : model::metamodel::model_of(*fitted.monthly_form, design.months);
+  auto model = model_over(fitted, {design.inputs, design.months, design.month_inputs});
   if (!model) return tl::unexpected(model.error());
   Eigen::MatrixXd predicted(check.values.rows(), check.values.cols());
   for (Eigen::Index i = 0; i < predicted.rows(); ++i) {
     const std::vector<double> theta{check.theta.row(i).begin(), check.theta.row(i).end()};
-    const std::vector<double> outputs = evaluate(*model, theta);
+    const std::vector<double> outputs = evaluate(**model, theta);
     predicted.row(i) = Eigen::Map<const Eigen::RowVectorXd>(outputs.data(), predicted.cols());
   }
   return regression::check_predictions(check, predicted);

@@ -21,7 +21,7 @@ namespace recald::daemon {
 
 enum class MetamodelForm {
   seed,     ///< One regression a meter over all months: also speaks of months outside the design.
-  monthly,  ///< One regression a month: more exact, and only for the design's months.
+  monthly,  ///< Gaussian processes: more exact, and only for the design's months.
 };
 
 [[nodiscard]] std::string_view to_string(MetamodelForm form);
@@ -56,6 +56,10 @@ struct FittedMetamodel {
 /// asked for, or when neither can be fitted.
 [[nodiscard]] Result<FittedMetamodel> fit_metamodel(const regression::DesignData& design,
                                                     const MetamodelOptions& options);
+
+/// The chosen form's model of some months. @return or not_found, not_finite: see builders.hpp
+[[nodiscard]] Result<std::unique_ptr<MonthlyModel>> model_over(
+    const FittedMetamodel& fitted, const model::metamodel::MonthInputs& months);
 
 /// How the regression predicts another design of the same model, such as corners of the prior.
 /// @return (outputs) or invalid_value: other parameters, outputs or months.

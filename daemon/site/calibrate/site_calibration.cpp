@@ -520,8 +520,7 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
   CalibrateOptions how = options;
   if (options.discrepancy == DiscrepancyForm::sound) {
     add_model_errors(site, *prepared);
-    // Whoever names a sampler gets the model itself in the chains; a regression is a polynomial
-    // already.
+    // Whoever names a sampler gets the model itself in the chains; a meta-model is fast already.
     how.calibration.emulate = options.calibration.sampling.sampler == nullptr &&
                               facts_of(site.model->kind).is_of_building;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/design/latin_hypercube.hpp"
 #include "core/random/streams.hpp"
 
 namespace recald::daemon {
@@ -47,8 +46,7 @@ doe::DesignPlan plan_design(const PreparedSite& site, const SiteDesignOptions& o
   doe::DesignPlan plan;
   plan.parameters = so_far.parameters;
   Rng rng{options.seed, streams::kHypercube.first};
-  plan.theta = options.at_corners ? design::corners(plan.parameters, options.runs, rng)
-                                  : design::latin_hypercube(plan.parameters, options.runs, rng);
+  plan.theta = design::draw_points(options.points, plan.parameters, options.runs, rng);
   for (const assessment::OutputCalibration& output : so_far.outputs)
     plan.output_names.push_back(output.name);
   const std::vector<doe::DesignMonth> months = design_months(so_far.month_names);

@@ -6,6 +6,7 @@
 
 #include "adapters/doe/design_writer.hpp"
 #include "adapters/engines/built_in_engine.hpp"
+#include "core/design/latin_hypercube.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 
 namespace recald::daemon {
@@ -13,7 +14,7 @@ namespace recald::daemon {
 struct SiteDesignOptions {
   int runs = 200;
   std::uint64_t seed = 1;
-  bool at_corners = false;  ///< Of the priors, in the place of a hypercube.
+  design::Points points = design::Points::wide;
   std::string fingerprint;  ///< Of site file, data and program: what a run depends on.
 };
 

@@ -229,9 +229,8 @@ std::unique_ptr<MonthlyModel> model_of(const FittedMetamodel& fitted,
                                        std::span<const std::string> months,
                                        const std::vector<double>& means,
                                        const std::vector<int>& free) {
-  auto regression = model::metamodel::model_of(*fitted.monthly_form, months).value();
-  return std::make_unique<FixedParametersModel>(
-      std::make_unique<model::metamodel::QuadraticModel>(std::move(regression)), means, free);
+  const auto all = model::metamodel::model_of(*fitted.monthly_form, months).value();
+  return std::make_unique<FixedParametersModel>(all.clone(), means, free);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace recald::daemon {
 
-/// Screens the design in the model's folder, fits one regression a month, and makes a model of the
+/// Screens the design in the model's folder, fits the monthly form, and makes a model of the
 /// influential parameters out of it. The others stay at their prior means; what they could move an
 /// output is an error common to its months.
 /// @param added  Effects of the version in force, which such a model cannot have.

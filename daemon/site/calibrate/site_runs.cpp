@@ -15,7 +15,6 @@
 #include "adapters/system/file_lock.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/write_file.hpp"
-#include "core/design/latin_hypercube.hpp"
 #include "core/random/streams.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/calibrate/site_design.hpp"
@@ -203,12 +202,13 @@ Result<MadeRuns> make_runs(const ModelledSite& modelled, const RunsOptions& opti
   const doe::DesignPlan plan =
       plan_design(prepared, {.runs = options.runs > 0 ? options.runs : model.energyplus->runs,
                              .seed = options.seed,
-                             .at_corners = options.at_corners,
+                             .points = options.points,
                              .fingerprint = (*engine)->fingerprint()});
-  auto made =
-      make_planned_runs(folder, plan, **engine, **engine, !options.at_corners, executor, observer);
+  // Runs to check with are not calibrated on.
+  const bool is_design = options.points == design::Points::wide;
+  auto made = make_planned_runs(folder, plan, **engine, **engine, is_design, executor, observer);
   if (!made) return made;
-  if (!options.at_corners) {
+  if (is_design) {
     const auto written =
         system::write_file(folder / kRunsWeather, weather_text(modelled.weather.filled.series));
     if (!written) return tl::unexpected(written.error());

@@ -10,6 +10,7 @@
 #include "adapters/energyplus/energyplus_engine.hpp"
 #include "adapters/ports/engine.hpp"
 #include "adapters/system/file_lock.hpp"
+#include "core/design/latin_hypercube.hpp"
 #include "core/executor.hpp"
 #include "core/result.hpp"
 #include "daemon/site/model/modelled_site.hpp"
@@ -25,7 +26,7 @@ struct RunsOptions {
   std::filesystem::path folder;  ///< Empty: the model's own.
   int runs = 0;                  ///< 0: as the site file says.
   std::uint64_t seed = 1;
-  bool at_corners = false;  ///< Of the priors, to check a meta-model where it is least sure.
+  design::Points points = design::Points::wide;
 };
 
 struct MadeRuns {
@@ -65,7 +66,7 @@ struct MadeRuns {
 /// @pre the site's model is of kind energyplus
 [[nodiscard]] bool has_all_runs(const SiteConfig& site);
 
-/// Runs what is missing of a Latin hypercube over the site's months. Only one process at a time
+/// Runs what is missing of a design over the site's months. Only one process at a time
 /// works in a folder.
 /// @param observer  As `Engine::Observer`.
 /// @return or the errors of `make_energyplus_engine`; unsupported: another process runs there;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -86,25 +87,30 @@ Json seed_terms_json(const regression::SeedForm& form) {
   return terms;
 }
 
-Json monthly_terms_json(const regression::MonthlyForm& form) {
-  Json terms = Json::array();
+/// What a parameter's length is: how much of its range changes a pattern much.
+Json patterns_json(const regression::MonthlyForm& form) {
+  Json patterns = Json::array();
   for (std::size_t k = 0; k < form.fits.size(); ++k) {
-    const regression::MonthlyFormOutput& fit = form.fits[k];
-    const auto add = [&](const std::string& term, const auto& coefficient) {
-      Json by_month = Json::object();
+    for (const regression::MonthPattern& pattern : form.fits[k].patterns) {
+      const regression::Kernel& kernel = pattern.amount.kernel;
+      Json loadings = Json::object();
       for (std::size_t i = 0; i < form.months.size(); ++i) {
-        by_month[form.months[i]] = coefficient(static_cast<Eigen::Index>(i));
+        loadings[form.months[i]] = pattern.loadings(static_cast<Eigen::Index>(i));
       }
-      terms.push_back({{"output", form.outputs[k]}, {"term", term}, {"coefficients", by_month}});
-    };
-    add("(Intercept)", [&](Eigen::Index i) { return fit.intercepts[i]; });
-    if (!fit.widths.isZero(0.0)) add("(bend)", [&](Eigen::Index i) { return fit.widths[i]; });
-    for (std::size_t t = 0; t < fit.terms.size(); ++t) {
-      add(regression::term_name(fit.terms[t], form.parameters),
-          [&](Eigen::Index i) { return fit.coefficients(static_cast<Eigen::Index>(t), i); });
+      Json lengths = Json::object();
+      for (std::size_t j = 0; j < form.parameters.size(); ++j) {
+        lengths[form.parameters[j]] =
+            1.0 / std::sqrt(kernel.relevance(static_cast<Eigen::Index>(j)));
+      }
+      patterns.push_back({{"output", form.outputs[k]},
+                          {"loadings", loadings},
+                          {"lengths", lengths},
+                          {"linear", kernel.linear},
+                          {"quadratic", kernel.quadratic},
+                          {"noise", kernel.noise}});
     }
   }
-  return terms;
+  return patterns;
 }
 
 Json scaling_json(const FittedMetamodel& fitted) {
@@ -119,15 +125,15 @@ Json scaling_json(const FittedMetamodel& fitted) {
           {"outputs", scales_json(form.outputs, form.output_scales)}};
 }
 
-std::size_t term_count(const FittedMetamodel& fitted, MetamodelForm form) {
+std::size_t count_terms(const regression::SeedForm& form) {
   std::size_t count = 0;
-  if (form == MetamodelForm::seed) {
-    for (const auto& meter : fitted.seed_form->meters) count += meter.terms.size();
-  } else {
-    for (const auto& fit : fitted.monthly_form->fits) {
-      count += fit.terms.size() * fitted.monthly_form->months.size();
-    }
-  }
+  for (const auto& meter : form.meters) count += meter.terms.size();
+  return count;
+}
+
+std::size_t count_patterns(const regression::MonthlyForm& form) {
+  std::size_t count = 0;
+  for (const auto& fit : form.fits) count += fit.patterns.size();
   return count;
 }
 
@@ -226,19 +232,25 @@ std::string metamodel_json(const FittedMetamodel& fitted, const std::vector<std:
   for (const MetamodelForm form : {MetamodelForm::seed, MetamodelForm::monthly}) {
     if (!has(fitted, form)) continue;
     Json entry = form_json(fitted.quality(form));
-    entry["coefficients"] = term_count(fitted, form);
+    if (form == MetamodelForm::seed) {
+      entry["coefficients"] = count_terms(*fitted.seed_form);
+    } else {
+      entry["patterns"] = count_patterns(*fitted.monthly_form);
+    }
     forms[std::string{to_string(form)}] = std::move(entry);
   }
-  const bool monthly = fitted.form == MetamodelForm::monthly;
   Json json = {{"form", to_string(fitted.form)},
                {"why", fitted.why},
                {"r2_in_sample", quality.all.r2_in_sample},
                {"r2_left_out", quality.all.r2_left_out},
                {"sigma_r", sigma_r},
                {"forms", forms},
-               {"scaling", scaling_json(fitted)},
-               {"terms", monthly ? monthly_terms_json(*fitted.monthly_form)
-                                 : seed_terms_json(*fitted.seed_form)}};
+               {"scaling", scaling_json(fitted)}};
+  if (fitted.form == MetamodelForm::seed) {
+    json["terms"] = seed_terms_json(*fitted.seed_form);
+  } else {
+    json["patterns"] = patterns_json(*fitted.monthly_form);
+  }
   for (const regression::CheckedOutput& output : checked) {
     json["check"][output.name] = {{"cvrmse", output.cvrmse},
                                   {"r2_median_month", output.r2_median_month},
@@ -259,7 +271,10 @@ std::string metamodel_table(const FittedMetamodel& fitted, const std::vector<std
   for (const MetamodelForm form : {MetamodelForm::seed, MetamodelForm::monthly}) {
     if (!has(fitted, form)) continue;
     const DesignQuality& quality = fitted.quality(form);
-    text += fmt::format("form {}: {} coefficients\n", to_string(form), term_count(fitted, form));
+    text += form == MetamodelForm::seed
+                ? fmt::format("form seed: {} coefficients\n", count_terms(*fitted.seed_form))
+                : fmt::format("form monthly: {} patterns of months\n",
+                              count_patterns(*fitted.monthly_form));
     text += fmt::format("{:<{}}{:>14}{:>14}{:>16}{:>12}\n", "output", width, "R2 in sample",
                         "R2 left out", "within months", "sigma_r");
     const auto line = [&](const std::string& name, const FitQuality& fit,

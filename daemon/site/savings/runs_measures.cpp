@@ -10,7 +10,6 @@
 #include "core/design/model_runs.hpp"
 #include "core/display/id_words.hpp"
 #include "core/model/metamodel/builders.hpp"
-#include "core/random/streams.hpp"
 #include "daemon/site/calibrate/design_outliers.hpp"
 #include "daemon/site/calibrate/site_metamodel.hpp"
 #include "daemon/site/savings/measure_columns.hpp"
@@ -24,7 +23,6 @@ using Eigen::MatrixXd;
 using savings::Change;
 using savings::Measure;
 
-constexpr std::uint64_t kFoldSeed = 1;  // folds: the same answer whenever it is asked
 /// Of the largest use of a month: less is a rounding of the runs' figures, and no change.
 constexpr double kNoChange = 1e-6;
 
@@ -135,7 +133,7 @@ class RunsMeasures final : public MeasuredModel {
   Result<void> fit(const ModelledSite& modelled) {
     auto plain = model::metamodel::model_of(*result_.design->fitted.monthly_form, months_);
     if (!plain) return tl::unexpected(plain.error());
-    plain_ = std::make_unique<model::metamodel::QuadraticModel>(std::move(*plain));
+    plain_ = plain->clone();
     for (const std::span<const Measure> some : alone_and_together(measures_)) {
       auto difference = fit_difference(modelled, some);
       if (!difference) return tl::unexpected(difference.error());
@@ -260,12 +258,11 @@ class RunsMeasures final : public MeasuredModel {
     Difference difference{.columns = pairs->with.parameters, .model = nullptr};
     difference.outputs = keep_moved(*both, data);
     if (difference.outputs.empty()) return difference;
-    Rng rng{kFoldSeed, streams::kFolds.first};
-    const auto form = regression::fit_monthly_form(data, {}, rng);
+    const auto form = regression::fit_monthly_form(data);
     if (!form) return tl::unexpected(form.error());
     auto model = model::metamodel::model_of(*form, months_);
     if (!model) return tl::unexpected(model.error());
-    difference.model = std::make_unique<model::metamodel::QuadraticModel>(std::move(*model));
+    difference.model = model->clone();
     for (const auto& output : form->quality.outputs) difference.error_sd.push_back(output.sigma_r);
     return difference;
   }

@@ -68,6 +68,23 @@ TEST(LatinHypercube, MeansAreThoseOfThePriors) {
   }
 }
 
+TEST(WideHypercube, IsInTurnFromThePriorsAndEvenBetweenTheirEnds) {
+  Rng rng(3);
+  const Eigen::MatrixXd design = wide_hypercube(parameters(), 400, rng);
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    const Prior prior = parameters()[static_cast<std::size_t>(j)].prior;
+    const auto sd_of = [&](Eigen::Index first) {
+      const Eigen::ArrayXd values = design.col(j)(Eigen::seq(first, Eigen::last, 2)).array();
+      return std::sqrt((values - values.mean()).square().mean());
+    };
+    EXPECT_NEAR(sd_of(0), std::sqrt(prior.variance()), 0.01 * std::sqrt(prior.variance()));
+    const double range = prior.max() - prior.min();
+    EXPECT_NEAR(sd_of(1), range / std::sqrt(12.0), 0.01 * range);
+    EXPECT_GE(design.col(j).minCoeff(), prior.min());
+    EXPECT_LE(design.col(j).maxCoeff(), prior.max());
+  }
+}
+
 TEST(Corners, EachParameterStandsAtAnEndOfItsPrior) {
   std::vector<Parameter> all = parameters();
   all.push_back({"open", "-", Prior{TruncatedNormalPrior{5.0, 1.0}}});

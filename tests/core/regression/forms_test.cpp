@@ -116,41 +116,81 @@ TEST(SeedForm, SaysWhatItNeeds) {
 }
 
 TEST(MonthlyForm, RecoversAPolynomialOfSecondDegree) {
-  Rng rng(6);
-  const auto form = fit_monthly_form(made_design(60, 5, 0.0), {}, rng);
+  const auto form = fit_monthly_form(made_design(60, 5, 0.0));
   ASSERT_TRUE(form.has_value()) << form.error().message;
-  EXPECT_GT(form->quality.all.r2_left_out, 1.0 - 1e-9);
-  std::vector<std::string> names;
-  for (const Term& term : form->fits[2].terms) names.push_back(term_name(term, form->parameters));
-  EXPECT_THAT(names, ::testing::ElementsAre("outdoor_air", "occupancy"));
+  EXPECT_GT(form->quality.all.r2_left_out, 1.0 - 1e-5);
+  // Steam goes by warmth times air, and by air and people alike in all months: two patterns.
+  EXPECT_EQ(form->fits[2].patterns.size(), 2U);
 }
 
 TEST(MonthlyForm, JudgesItselfByRunsItHasNotSeen) {
   const DesignData design = made_design(40, 12, 0.05);
-  Rng rng(12);
-  const auto form = fit_monthly_form(design, {}, rng);
+  const auto form = fit_monthly_form(design);
   ASSERT_TRUE(form.has_value()) << form.error().message;
   for (const OutputQuality& output : form->quality.outputs) {
     EXPECT_LT(output.fit.r2_left_out, output.fit.r2_in_sample);
   }
   // Of a noise of 200 kWh/day a fit that has seen the run would leave less than 200.
-  EXPECT_GT(form->quality.outputs[0].sigma_r, 204.0);
+  EXPECT_GT(form->quality.outputs[0].sigma_r, 200.0);
   EXPECT_LT(form->quality.outputs[0].sigma_r, 240.0);
 }
 
-TEST(MonthlyForm, TakesFewerRunsThanTerms) {
+/// A load that stops where nothing is needed, of two of the parameters, in months of more and less.
+DesignData bent_design(int runs, std::uint64_t seed) {
+  DesignData design = made_design(runs, 6, 0.0, seed);
+  for (Eigen::Index r = 0; r < design.runs(); ++r) {
+    const double set_point = (design.theta(r, 0) - 20.0) / 8.0;
+    const double air = (design.theta(r, 1) - 0.3) / 0.9;
+    for (int i = 0; i < 6; ++i) {
+      const double hot = 0.3 * i - 0.5 + air - 1.5 * set_point;
+      design.values(r, i) = 1000.0 * std::log1p(std::exp(4.0 * hot));
+    }
+  }
+  return design;
+}
+
+TEST(MonthlyForm, FollowsALoadThatStops) {
+  const DesignData design = bent_design(120, 1);
+  const DesignData check = bent_design(40, 2);
+  const auto form = fit_monthly_form(design);
+  ASSERT_TRUE(form.has_value()) << form.error().message;
+  const Eigen::MatrixXd points = scale_columns(check.theta, form->parameter_scales);
+  Eigen::MatrixXd predicted = form->fits[0].means.transpose().replicate(40, 1);
+  for (const MonthPattern& pattern : form->fits[0].patterns) {
+    const Eigen::VectorXd amounts =
+        kernel_values(pattern.amount.kernel, points, form->points) * pattern.amount.weights;
+    predicted += amounts * pattern.loadings.transpose();
+  }
+  predicted = predicted.array() * form->output_scales[0].range() + form->output_scales[0].min;
+  const double error = std::sqrt((predicted - check.output(0)).cwiseAbs2().mean());
+  EXPECT_LT(error, 0.01 * check.output(0).mean());
+  // What it says of itself is what is found.
+  EXPECT_GT(form->quality.outputs[0].sigma_r, 0.5 * error);
+  EXPECT_LT(form->quality.outputs[0].sigma_r, 2.0 * error);
+  EXPECT_GT(form->quality.outputs[0].fit.r2_left_out_within_months, 0.999);
+}
+
+TEST(MonthlyForm, TakesFewerRunsThanTermsOfSecondDegree) {
   DesignData design = made_design(30, 6, 0.02);
   Rng rng(7);
-  for (int extra = 0; extra < 9; ++extra) {  // 12 parameters: 90 candidates
+  for (int extra = 0; extra < 9; ++extra) {  // 12 parameters: 90 terms
     design.parameters.push_back("idle" + std::to_string(extra));
     design.theta.conservativeResize(30, design.theta.cols() + 1);
     for (double& x : design.theta.rightCols<1>().reshaped()) x = rng.uniform();
   }
-  const auto form = fit_monthly_form(design, {}, rng);
+  const auto form = fit_monthly_form(design);
   ASSERT_TRUE(form.has_value()) << form.error().message;
-  EXPECT_EQ(form->candidates, 90);
-  EXPECT_LE(form->fits[0].terms.size(), 12U);
   EXPECT_GT(form->quality.all.r2_left_out, 0.97);
+}
+
+// As a month that a meter does not see: nothing in all runs.
+TEST(MonthlyForm, TakesAnOutputThatNoParameterMoves) {
+  DesignData design = made_design(30, 6, 0.0);
+  for (int i = 0; i < 6; ++i) design.values.col(i).setConstant(100.0 * i);
+  const auto form = fit_monthly_form(design);
+  ASSERT_TRUE(form.has_value()) << form.error().message;
+  EXPECT_TRUE(form->fits[0].patterns.empty());
+  EXPECT_NEAR(form->quality.outputs[0].sigma_r, 0.0, 1e-9);
 }
 
 // R 4.2.2: step(lm(y ~ .^2), direction = "both") on the 9 600 long-form rows ends with 49 terms at
@@ -186,15 +226,16 @@ TEST(SeedForm, KeepsUpWithPlainLeastSquaresOnTheCampusLaboratory) {
   }
 }
 
-TEST(MonthlyForm, KeepsUpWithMainEffectsAndSquaresOnTheCampusLaboratory) {
+// A polynomial of second degree for each month, its terms chosen stepwise, explained 0.92, 0.95 and
+// 0.99 of what the parameters do within months.
+TEST(MonthlyForm, IsBetterThanPolynomialsOnTheCampusLaboratory) {
   const auto folder = data_folder() / "dynamic_doe" / "campus_lab" / "design";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
-  Rng rng(10);
-  const auto form = fit_monthly_form(read_design(folder), {}, rng);
+  const auto form = fit_monthly_form(read_design(folder));
   ASSERT_TRUE(form.has_value()) << form.error().message;
-  EXPECT_GE(form->quality.meters[0].fit.r2_left_out, 0.9965);
-  EXPECT_GE(form->quality.meters[1].fit.r2_left_out, 0.9985);
-  EXPECT_GE(form->quality.meters[2].fit.r2_left_out, 0.985);
+  EXPECT_GE(form->quality.meters[0].fit.r2_left_out_within_months, 0.97);
+  EXPECT_GE(form->quality.meters[1].fit.r2_left_out_within_months, 0.96);
+  EXPECT_GE(form->quality.meters[2].fit.r2_left_out_within_months, 0.99);
 }
 
 }  // namespace

@@ -19,8 +19,7 @@ constexpr int kOutputs = 2;
 constexpr int kMonths = 24;
 constexpr int kRows = kOutputs * kMonths;
 
-/// Every term in every row, on axes of different lengths; every other month bent at zero, and a
-/// parameter that another caps.
+/// Every term in every row, on axes of different lengths.
 QuadraticModel random_model(std::uint64_t seed, bool squares) {
   Rng rng(seed);
   std::vector<regression::ColumnScale> scales;
@@ -30,13 +29,11 @@ QuadraticModel random_model(std::uint64_t seed, bool squares) {
   for (int k = 0; k < kOutputs; ++k) {
     for (int i = 0; i < kMonths; ++i) {
       coefficients.add_constant(k, i, rng.normal());
-      if (i % 2 == 0) coefficients.set_width(k, i, rng.uniform(0.5, 2.0));
       for (const Term& term : regression::all_terms(kParameters, squares)) {
         coefficients.add(k, i, term, rng.normal());
       }
     }
   }
-  coefficients.set_caps({{2, 3, 1.0}});
   return QuadraticModel(coefficients);
 }
 
@@ -65,26 +62,6 @@ TEST(QuadraticModel, EvaluatesByHand) {
   EXPECT_DOUBLE_EQ(outputs[1], 3.0 + 1.0 + 0.625 + 0.4375);
   EXPECT_THAT(jacobian, ::testing::ElementsAre(0.0, (2.0 + 1.25) / 10.0,  // by x
                                                0.0, (2.5 + 3.5) / 4.0));  // by y
-}
-
-TEST(QuadraticModel, ABendTurnsWhatWouldBeNegativeIntoNothing) {
-  QuadraticCoefficients coefficients({{0.0, 1.0}}, 1, 1);
-  coefficients.add(0, 0, {0}, 10.0);
-  coefficients.set_width(0, 0, 2.0);
-  QuadraticModel model(coefficients);
-  const auto at = [&](double theta) { return recald::evaluate(model, std::vector{theta}).front(); };
-  EXPECT_NEAR(at(3.0), 30.0, 1e-6);
-  EXPECT_NEAR(at(0.0), 2.0 * 0.39894228, 1e-7);
-  EXPECT_NEAR(at(-3.0), 0.0, 1e-6);
-}
-
-TEST(QuadraticModel, AParameterCountsUpToItsCap) {
-  QuadraticCoefficients coefficients({{0.0, 1.0}, {0.0, 1.0}}, 1, 1);
-  coefficients.add(0, 0, {0}, 1.0);
-  coefficients.set_caps({{0, 1, 1.0}});
-  QuadraticModel model(coefficients);
-  EXPECT_DOUBLE_EQ(recald::evaluate(model, std::vector{20.0, 22.0}).front(), 20.0);
-  EXPECT_DOUBLE_EQ(recald::evaluate(model, std::vector{23.0, 22.0}).front(), 21.0);
 }
 
 TEST(QuadraticModel, JacobianAgreesWithCentralDifferences) {
