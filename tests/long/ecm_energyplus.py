@@ -102,13 +102,13 @@ def study(name, model, weather, folder):
     measures = [measure for measure in MEASURES if measure[1] in priors][:A_MODEL]
     write_measures(folder / "measures.toml", measures)
     site = site_of(folder, name, model, weather, priors)
-    energyplus.recald("doe", site, "--out", "ecm-truths", "--runs", TRUTHS, "--seed", 4, folder=folder)
+    energyplus.recald("doe", site, "--out", "ecm-truths", "--priors", "--runs", TRUTHS, "--seed", 4, folder=folder)
     plain = figures(folder / "ecm-truths")
     after = {}
     for measure, some in [(one[0], [one]) for one in measures] + [(TOGETHER, measures)]:
         out = f"ecm-truths-{len(after)}"
         site = site_of(folder, name, model, weather, with_measures(priors, some))
-        energyplus.recald("doe", site, "--out", out, "--runs", TRUTHS, "--seed", 4, folder=folder)
+        energyplus.recald("doe", site, "--out", out, "--priors", "--runs", TRUTHS, "--seed", 4, folder=folder)
         after[measure] = figures(folder / out)
     rows = []
     for run, truth in plain.items():

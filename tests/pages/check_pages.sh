@@ -14,7 +14,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 [ "$#" -gt 0 ] ||
-  set -- full design readings-only meters young-meters diagnosis empty-handed drift status
+  set -- full design readings-only meters young-meters diagnosis empty-handed drift savings saved status
 for name in "$@"; do
   if [ "$name" = status ]; then
     "$write_status" "$folder/$name.html"

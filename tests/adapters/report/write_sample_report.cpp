@@ -8,10 +8,12 @@
 #include "adapters/report/drift_page.hpp"
 #include "adapters/report/meters_page.hpp"
 #include "adapters/report/report.hpp"
+#include "adapters/report/savings_page.hpp"
 #include "tests/adapters/report/sample_diagnosis.hpp"
 #include "tests/adapters/report/sample_drift.hpp"
 #include "tests/adapters/report/sample_meters.hpp"
 #include "tests/adapters/report/sample_report.hpp"
+#include "tests/adapters/report/sample_savings.hpp"
 
 namespace {
 
@@ -28,6 +30,8 @@ const std::map<std::string, Page>& pages() {
       {"meters", [] { return render_meters(sample_meters()); }},
       {"young-meters", [] { return render_meters(young_meters()); }},
       {"drift", [] { return render_drift(sample_drift()); }},
+      {"savings", [] { return render_savings(sample_savings()); }},
+      {"saved", [] { return render_savings(realised_savings()); }},
       {"empty-handed", [] { return render_diagnosis(empty_handed_diagnosis()); }},
   };
   return kPages;
