@@ -99,7 +99,9 @@ std::string difference(const fs::path& folder, const DesignPlan& plan) {
   const auto priors = text_of(folder / "priors.csv");
   if (priors && *priors != priors_csv(plan.parameters)) return "was made for other priors";
   const auto runs = text_of(folder / "doe_inputs.csv");
-  if (runs && *runs != runs_csv(plan)) return "was made with another seed or number of runs";
+  if (runs && *runs != runs_csv(plan))
+    return "has other runs: by another seed or number, by --priors or --corners, or by another "
+           "version";
   if (*state == state_json(plan)) return "";
   return "was made from another site file, other readings or weather, or by another version";
 }

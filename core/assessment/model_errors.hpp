@@ -16,7 +16,8 @@ namespace recald::assessment {
 enum class Service { electricity, cooling, heating };
 [[nodiscard]] Service service_of(metering::Utility utility);
 
-/// Sizes of a model's own errors, learnt on buildings with nothing hidden.
+/// Sizes of a model's own errors: learnt on buildings with nothing hidden, or assumed where there
+/// are none to learn on.
 struct ModelErrorSizes {
   /// c: a parameter that fits the model best is not quite the building's, since one number stands
   /// for many thermostats, fans and habits; by so many of its prior's standard deviations.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace recald::design {
@@ -30,11 +31,13 @@ Eigen::MatrixXd plain_hypercube(std::span<const Parameter> parameters, int runs,
   return design;
 }
 
-/// Where a prior ends, or an open one all but ends.
+/// Where a prior ends, or one with tails all but ends.
 UniformPrior ends_of(const Prior& prior) {
   constexpr double kTail = 0.001;
-  return {std::isfinite(prior.min()) ? prior.min() : prior.quantile(kTail),
-          std::isfinite(prior.max()) ? prior.max() : prior.quantile(1.0 - kTail)};
+  const bool has_tails = std::holds_alternative<TruncatedNormalPrior>(prior.distribution()) ||
+                         std::holds_alternative<LogNormalPrior>(prior.distribution());
+  if (!has_tails) return {prior.min(), prior.max()};
+  return {prior.quantile(kTail), prior.quantile(1.0 - kTail)};
 }
 
 }  // namespace
@@ -42,7 +45,7 @@ UniformPrior ends_of(const Prior& prior) {
 Eigen::MatrixXd wide_hypercube(std::span<const Parameter> parameters, int runs, Rng& rng) {
   assert(runs >= 4);
   std::vector<Parameter> even{parameters.begin(), parameters.end()};
-  for (Parameter& parameter : even) parameter.prior = Prior::make(ends_of(parameter.prior)).value();
+  for (Parameter& parameter : even) parameter.prior = ends_of(parameter.prior);
   const int evenly = runs / 2;
   Eigen::MatrixXd design(runs, std::ssize(parameters));
   design(Eigen::seq(0, Eigen::last, 2), Eigen::all) =

@@ -29,15 +29,15 @@ namespace recald::design {
 /// hypercube through the priors and from one that is even between their ends. Triangles leave the
 /// corners of a box of sixteen parameters all but empty, and a calibration may move there. An
 /// office's chilled water, simulated at random corners, was 5.6 % off with runs from the priors
-/// alone and 4.4 % with these; where the priors are high it cost nothing.
-/// An open end counts from its quantile of one in a thousand.
+/// alone and 4.4 % with these; where the prior density is high it cost nothing.
+/// A prior with tails counts between its quantiles of one in a thousand.
 /// @param runs  >= 4.
 /// @return (runs x q) in the parameters' own units.
 [[nodiscard]] Eigen::MatrixXd wide_hypercube(std::span<const Parameter> parameters, int runs,
                                              Rng& rng);
 
 /// Random corners of the prior box, where a meta-model is least sure: each parameter at one end of
-/// its prior, or at the quantile of one in a thousand where the prior is open.
+/// its prior, or at its quantile of one in a thousand where it has tails.
 /// @return (runs x q) in the parameters' own units.
 [[nodiscard]] Eigen::MatrixXd corners(std::span<const Parameter> parameters, int runs, Rng& rng);
 
@@ -47,7 +47,7 @@ enum class Points {
   corners,  ///< To check one where it is least sure.
 };
 
-/// By the function above that is meant.
+/// Draws by the function above of that name.
 [[nodiscard]] Eigen::MatrixXd draw_points(Points points, std::span<const Parameter> parameters,
                                           int runs, Rng& rng);
 

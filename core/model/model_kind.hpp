@@ -14,8 +14,8 @@ namespace recald {
 enum class ModelKind : std::uint8_t {
   epc,         ///< Monthly quasi-steady state.
   hourly,      ///< Zones hour by hour, with air handlers and plant.
-  metamodel,   ///< A regression of another model's runs.
-  energyplus,  ///< A client's EnergyPlus model, through a regression of its runs.
+  metamodel,   ///< What another model's runs say.
+  energyplus,  ///< A client's EnergyPlus model, through a meta-model of its runs.
 };
 
 struct ModelKindFacts {

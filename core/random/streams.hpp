@@ -34,8 +34,8 @@ inline constexpr Block kPilots{1ULL << 33, kChainsMax};  ///< One a chain.
 /// New ones after each doubling.
 inline constexpr Block kPopulations{1ULL << 34, kPopulationRoundsMax* kChainsMax};
 inline constexpr Block kBridge{1ULL << 35, 1};
-inline constexpr Block kCut{1ULL << 36, kChainsMax};          ///< Chains given draws of an effect.
-inline constexpr Block kHypercube{1ULL << 37, 1};             ///< Of `recald doe`.
+inline constexpr Block kCut{1ULL << 36, kChainsMax};  ///< Chains given draws of an effect.
+inline constexpr Block kHypercube{1ULL << 37, 2};  ///< Of `recald doe`: a design, runs to check it.
 inline constexpr Block kPredictions{1ULL << 38, kChainsMax};  ///< Of measured points, one a chain.
 inline constexpr Block kSavings{1ULL << 39, 3};  ///< Of measures, at a calibration's draws.
 inline constexpr Block kCauses{1ULL << 40, 1};   ///< Of an alarm.

@@ -12,9 +12,9 @@ namespace recald::regression {
 /// Of one output, or of all outputs of one meter taken together on the normalised scale.
 struct FitQuality {
   double r2_in_sample = 0.0;  ///< 1 - residual / total squares about the mean of all runs, months.
-  double r2_left_out = 0.0;   ///< The same, each run predicted by a fit that has not seen it.
+  double r2_left_out = 0.0;   ///< The same, each run predicted without it.
   /// Left out, about each month's own mean: most of an output's spread is the weather's, which the
-  /// regression knows; this is what it knows of the parameters.
+  /// meta-model knows; this is what it knows of the parameters.
   double r2_left_out_within_months = 0.0;
 };
 
@@ -69,7 +69,7 @@ struct CheckedOutput {
   double error_of_worst;  ///< That month's root mean square error over its mean.
 };
 
-/// @param check      Runs that the regression has not seen.
+/// @param check      Runs that the meta-model has not seen.
 /// @param predicted  (runs x k * m) in the outputs' units.
 [[nodiscard]] std::vector<CheckedOutput> check_predictions(const DesignData& check,
                                                            const Eigen::MatrixXd& predicted);

@@ -5,14 +5,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "core/statistics/minimise.hpp"
 
 namespace recald::regression {
 namespace {
 
-using Eigen::ArrayXXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -144,9 +142,16 @@ GaussianProcess fit_gaussian_process(const MatrixXd& points, const VectorXd& res
       .kernel = Unlikelihood::kernel_of(minimise(unlikelihood, Unlikelihood::logs_of(begin))),
       .weights = {},
       .left_out = {}};
-  MatrixXd k = kernel_values(process.kernel, points, points);
-  k.diagonal().array() += process.kernel.noise;
-  const MatrixXd inverse = Eigen::LLT<MatrixXd>{k}.solve(MatrixXd::Identity(k.rows(), k.cols()));
+  const MatrixXd smooth = kernel_values(process.kernel, points, points);
+  Eigen::LLT<MatrixXd> factor;
+  // Rows that the kernel was not chosen by may be too near each other for so little noise.
+  for (bool is_first = true; is_first || factor.info() != Eigen::Success; is_first = false) {
+    if (!is_first) process.kernel.noise *= 10.0;
+    MatrixXd k = smooth;
+    k.diagonal().array() += process.kernel.noise;
+    factor.compute(k);
+  }
+  const MatrixXd inverse = factor.solve(MatrixXd::Identity(points.rows(), points.rows()));
   process.weights = inverse * response;
   process.left_out = process.weights.cwiseQuotient(inverse.diagonal());
   return process;

@@ -13,7 +13,7 @@ namespace recald::regression {
 /// with c = x - 1/2, x on [0, 1]. The first part bends as the values ask for and forgets them
 /// beyond the points; the polynomials carry on.
 struct Kernel {
-  Eigen::VectorXd relevance;  ///< (q) 1 / length^2: 0, the function does not hang on x_j.
+  Eigen::VectorXd relevance;  ///< (q) 1 / length^2: 0, the function does not depend on x_j.
   double linear = 1.0;
   double quadratic = 0.01;
   double noise = 1e-3;
@@ -43,7 +43,7 @@ struct GaussianProcess {
 
 inline constexpr Eigen::Index kRowsForKernel = 250;
 
-/// Lengths of two and a half ranges. @param parameters  q
+/// Lengths of 2.7 ranges, which bend little. @param parameters  q
 [[nodiscard]] Kernel usual_kernel(Eigen::Index parameters);
 
 /// (rows of a x rows of b), without the noise.

@@ -12,6 +12,8 @@
 
 namespace recald::regression {
 
+inline constexpr Eigen::Index kRunsUsedMax = 1000;
+
 /// A pattern of an output's months that the runs have more or less of.
 struct MonthPattern {
   Eigen::VectorXd loadings;  ///< (months) on the output's normalised scale, of one sd of the runs.
@@ -27,7 +29,7 @@ struct MonthlyForm {
   std::vector<std::string> parameters;
   std::vector<ParameterCap> caps;             ///< As the design's.
   std::vector<ColumnScale> parameter_scales;  ///< Of the design's runs, capped.
-  Eigen::MatrixXd points;                     ///< (runs x q) by those scales.
+  Eigen::MatrixXd points;                     ///< (runs used x q) by those scales.
   std::vector<std::string> months;            ///< The only ones it can speak of.
   std::vector<std::string> outputs;
   std::vector<ColumnScale> output_scales;
@@ -38,13 +40,16 @@ struct MonthlyForm {
 /// The months of an output are sums of few patterns, the principal components of the runs' months
 /// about their means; how much there is of each is a Gaussian process of the parameters.
 ///
-/// A polynomial of second degree for each month, its terms chosen stepwise, which was here before,
-/// left 0.26 % of the spread of a data centre's cooling unknown in the median month; this leaves
-/// 0.09 %. Heating and cooling stop where nothing is needed, which no polynomial does.
+/// Heating and cooling stop where nothing is needed, which no polynomial does. Patterns that
+/// left-out runs are predicted no better with are left out.
 ///
-/// Left-out figures are of rows left out one at a time, the kernels being those of all rows.
+/// Left-out figures are of runs left out one at a time, patterns and kernels being those of all
+/// runs, so with few runs of many parameters they are a little better than unseen runs are
+/// predicted.
 ///
 /// @return the processes, or what `check_design` finds.
+/// @note   Of more than `kRunsUsedMax` runs so many are used, taken at random; it costs a cube of
+///         their number a pattern.
 [[nodiscard]] Result<MonthlyForm> fit_monthly_form(const DesignData& design);
 
 }  // namespace recald::regression

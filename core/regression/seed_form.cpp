@@ -159,7 +159,7 @@ Result<void> check_inputs(const DesignData& design, const NamedColumns& columns)
   if (design.inputs.empty()) {
     return failure(ErrorCode::not_enough_data,
                    "the seed's form of the meta-model needs month inputs such as the mean dry "
-                   "bulb; provide inputs.csv or use one regression per month");
+                   "bulb; provide inputs.csv or use the monthly form");
   }
   for (const auto& name : columns.names) {
     if (name != kOutputType) continue;
@@ -174,7 +174,7 @@ Result<void> check_inputs(const DesignData& design, const NamedColumns& columns)
         "the design covers " + std::to_string(design.month_count()) + " months; with " +
             std::to_string(columns.names.size()) +
             " columns of month inputs the seed's form of the meta-model needs at least " +
-            std::to_string(needed) + "; remove inputs or use one regression per month");
+            std::to_string(needed) + "; remove inputs or use the monthly form");
   }
   return {};
 }

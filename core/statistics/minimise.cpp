@@ -1,6 +1,6 @@
 #include "core/statistics/minimise.hpp"
 
-#include <cassert>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -30,7 +30,7 @@ VectorXd minimise(const SmoothFunction& function, VectorXd x) {
   const Eigen::Index n = x.size();
   VectorXd gradient(n);
   double value = function(x, gradient);
-  assert(std::isfinite(value));
+  if (!std::isfinite(value)) return x;
   MatrixXd inverse_hessian = MatrixXd::Identity(n, n) / std::max(1.0, gradient.norm());
   VectorXd next_gradient(n);
   for (int i = 0; i < kMostSteps; ++i) {
@@ -38,6 +38,7 @@ VectorXd minimise(const SmoothFunction& function, VectorXd x) {
     if (step.dot(gradient) >= 0.0) step = -gradient;  // rounding has spoilt the Hessian
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestStep) step *= kLongestStep / longest;
+    if (-step.dot(gradient) < kNothing) break;
     double gain = 0.0;
     for (int halving = 0; halving < kMostHalvings; ++halving, step *= 0.5) {
       const VectorXd next = x + step;

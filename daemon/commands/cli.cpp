@@ -102,7 +102,8 @@ void add_form(CLI::App& command, DesignArguments& arguments) {
   command
       .add_option(
           "--form", arguments.form,
-          "One regression for all months (seed) or one per month; the better one by default")
+          "One regression for all months (seed) or Gaussian processes of the design's (monthly); "
+          "the better one by default")
       ->check(CLI::IsMember({"seed", "monthly"}));
   command
       .add_option("--wind-direction", arguments.wind_direction,
@@ -162,11 +163,11 @@ void add_doe(CLI::App& command, DoeArguments& arguments) {
       ->capture_default_str();
   CLI::Option* priors =
       command.add_flag("--priors", arguments.from_priors,
-                       "Draw all runs from the priors, as truths with which recald metamodel "
-                       "--check tests a meta-model; a design has half of them evenly between ends");
+                       "Draw all runs from the priors, to check a meta-model with metamodel "
+                       "--check; otherwise half are drawn evenly between the priors' ends");
   command
       .add_flag("--corners", arguments.at_corners,
-                "Run corners of the priors, with which --check tests where it is least sure")
+                "Run random corners of the priors, where a meta-model is least sure")
       ->excludes(priors);
 }
 
@@ -404,9 +405,8 @@ void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& v
 }
 
 void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* doe =
-      app.add_subcommand("doe", "Run the site's model over a Latin hypercube of its parameters")
-          ->group(kDesigns);
+  CLI::App* doe = app.add_subcommand("doe", "Run the site's model over a design of its parameters")
+                      ->group(kDesigns);
   add_doe(*doe, given.doe);
   verbs.push_back({doe, [&](const Console& console) { return run_doe(given.doe, console); }});
 
@@ -417,7 +417,7 @@ void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs)
       {screen, [&](const Console& console) { return run_screen(given.screen, console); }});
 
   CLI::App* metamodel =
-      app.add_subcommand("metamodel", "Fit a regression to the runs of a design")->group(kDesigns);
+      app.add_subcommand("metamodel", "Fit a meta-model to the runs of a design")->group(kDesigns);
   add_screen(*metamodel, given.metamodel);
   add_form(*metamodel, given.metamodel.design);
   metamodel->add_option("--check", given.metamodel.check,

@@ -204,7 +204,7 @@ int run_screen(const ScreenArguments& arguments, const Console& console);
 int run_metamodel(const MetamodelArguments& arguments, const Console& console);
 /// What the site's EnergyPlus model reports, and what in it could be varied.
 int run_engine_show(const EngineArguments& arguments, const Console& console);
-/// Runs the site's model over a Latin hypercube into a design folder, or goes on with one.
+/// Runs the site's model over a design into its folder, or goes on with one.
 int run_doe(const DoeArguments& arguments, const Console& console);
 /// Locates, names and shows what the model lacks; with `apply` the model gets it.
 int run_diagnose(const DiagnoseArguments& arguments, const Console& console);

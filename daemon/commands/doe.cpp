@@ -107,7 +107,8 @@ int run_doe(const DoeArguments& arguments, const Console& console) {
   if (folder.empty()) return console.misused("give the design folder with --out");
   if (points_of(arguments) != design::Points::wide && arguments.out.empty()) {
     return console.misused(
-        "such runs check a design and are none: give a folder of theirs with --out");
+        "--priors and --corners make runs that check a design; give them a folder of their own "
+        "with --out");
   }
   display::Warnings warnings;
   auto made = model.energyplus ? make_runs_aloud(*modelled,

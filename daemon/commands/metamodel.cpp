@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <chrono>
+#include <utility>
+#include <vector>
 
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
@@ -9,7 +12,7 @@
 namespace recald::daemon {
 namespace {
 
-/// The design with some of its parameters; what the others do becomes error of the regression.
+/// The design with some of its parameters; what the others do becomes its error.
 Result<regression::DesignData> chosen_data(const doe::DesignFolder& design,
                                            const std::string& parameters) {
   regression::DesignData data = design_data(design);
@@ -21,6 +24,16 @@ Result<regression::DesignData> chosen_data(const doe::DesignFolder& design,
   for (const int j : *chosen) {
     data.parameters.push_back(design.parameters[static_cast<std::size_t>(j)].name);
   }
+  const auto place_of = [&](int parameter) {
+    return static_cast<int>(std::ranges::find(*chosen, parameter) - chosen->begin());
+  };
+  const int count = static_cast<int>(chosen->size());
+  std::vector<regression::ParameterCap> caps;
+  for (const regression::ParameterCap& cap : data.caps) {
+    const regression::ParameterCap moved{place_of(cap.parameter), place_of(cap.under), cap.gap};
+    if (moved.parameter < count && moved.under < count) caps.push_back(moved);
+  }
+  data.caps = std::move(caps);
   return data;
 }
 

@@ -102,9 +102,20 @@ TEST_F(DesignCommands, MetamodelOffersBothFormsAndSaysWhichPredicts) {
 
   const Outcome table = on_design("metamodel");
   EXPECT_THAT(table.out,
-              HasSubstr("Chosen: monthly: on left-out runs a Gaussian process of the design's "
+              HasSubstr("Chosen: monthly: on left-out runs Gaussian processes of the design's "
                         "months"));
   EXPECT_THAT(table.out, HasSubstr("It speaks of the design's months alone"));
+}
+
+// A heating set-point counts up to that of cooling, where both are there.
+TEST_F(DesignCommands, OneOfTwoSetPointsCanBeChosen) {
+  for (const char* file : {"priors.csv", "doe_inputs.csv"}) {
+    change(file, "set_point", "cooling_setpoint");
+    change(file, "air", "heating_setpoint");
+  }
+  const Outcome outcome = on_design("metamodel", {"--parameters", "heating_setpoint", "--json"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_GT(Json::parse(outcome.out)["forms"]["monthly"]["r2_left_out"], 0.3);
 }
 
 /// Multiplies the peaks of some runs by eight, as a simulation that failed may leave them.
@@ -423,6 +434,7 @@ TEST_F(DesignCommands, WrongUsageIsTwo) {
       {"calibrate", "--doe", doe, "--hyper-prior", "none"},
       {"calibrate", "--doe", doe, "--sampler", "dram", "--draws", "200", "--burn-in", "300"},
       {"doe", "site.toml", "--corners", "--runs", "1"},
+      {"doe", "site.toml", "--out", "x", "--priors", "--corners"},
       {"doe", "site.toml", "--out", "x", "--runs", "3"},
   };
   for (const auto& arguments : misuses) {

@@ -1,8 +1,14 @@
-/// `recald doe`: a small site's model over a Latin hypercube, and the commands that live on it.
+/// `recald doe`: a small site's model over a design, and the commands that live on it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "command_line.hpp"
 #include "depot_year.hpp"
@@ -67,7 +73,28 @@ TEST_F(DoeCommand, LeavesAFolderThatTheOthersWorkOn) {
   EXPECT_FALSE(result["after"]["validation"]["district_heat_daily_kWh"]["cvrmse"].is_null());
 }
 
-TEST_F(DoeCommand, CornersOfThePriorsCheckTheRegression) {
+/// Lines of a file without the run's number.
+std::set<std::string> values_of_runs(const std::string& text) {
+  std::set<std::string> rows;
+  std::istringstream lines{text};
+  for (std::string line; std::getline(lines, line);) rows.insert(line.substr(line.find(',')));
+  return rows;
+}
+
+TEST_F(DoeCommand, RunsFromThePriorsAreNoneOfTheDesign) {
+  ASSERT_EQ(doe("design").exit_code, kSuccess);
+  const Outcome made =
+      run({"doe", path("site.toml"), "--priors", "--runs", "25", "--out", path("truths")});
+  ASSERT_EQ(made.exit_code, kSuccess) << made.err;
+  const auto design = values_of_runs(read_text(folder_ / "design/doe_inputs.csv"));
+  const auto truths = values_of_runs(read_text(folder_ / "truths/doe_inputs.csv"));
+  std::vector<std::string> common;
+  std::ranges::set_intersection(design, truths, std::back_inserter(common));
+  EXPECT_EQ(common.size(), 1U);  // the header
+  EXPECT_EQ(truths.size(), 26U);
+}
+
+TEST_F(DoeCommand, CornersOfThePriorsCheckTheMetaModel) {
   ASSERT_EQ(doe("design").exit_code, kSuccess);
   ASSERT_EQ(doe("corners", {"--corners"}).exit_code, kSuccess);
   const Outcome checked =
@@ -114,7 +141,8 @@ TEST_F(DoeCommand, RefusesTheFolderOfAnotherDesign) {
   EXPECT_EQ(seed.exit_code, kFailure);
   EXPECT_EQ(seed.err.substr(seed.err.find("recald: ")),
             "recald: '" + path("design") +
-                "' holds a design that was made with another seed or number of runs; delete it, or "
+                "' holds a design that has other runs: by another seed or number, by --priors or "
+                "--corners, or by another version; delete it, or "
                 "give another --out\n");
   write_text(folder_ / "site.toml", edited(sample_site(), "max = 2.6", "max = 2.8"));
   EXPECT_THAT(doe("design").err, HasSubstr("holds a design that was made for other priors;"));

@@ -1,5 +1,5 @@
 #!/bin/sh
-# How well a regression stands in for EnergyPlus models, and whether calibrations on it hold the truth: left-out runs, corners
+# How well a meta-model stands in for EnergyPlus models, and whether calibrations on it hold the truth: left-out runs, corners
 # of the priors, synthetic measurements. Goes on where it was stopped. Models: recald-sim's own, and those of a folder.
 #   KINDS     of recald-sim's own, one after the other (default "small_office laboratory")
 #   EXAMPLES  folder with *.epJSON (5ZoneAutoDXVAV, the ASHRAE warehouse, a data centre with an economiser); default: none

@@ -1,4 +1,4 @@
-/// Builds a model of given months from a fitted or given regression.
+/// Builds a model of given months from a fitted meta-model or a given regression.
 #pragma once
 
 #include <Eigen/Core>

@@ -16,7 +16,8 @@ namespace recald::model::metamodel {
 /// outputs' own units (`regression::fit_monthly_form`).
 ///
 /// With n runs, q parameters and P patterns over all outputs a run costs 2 P n q flops and P n
-/// exponentials, the Jacobian as much again; neither allocates.
+/// exponentials, the Jacobian 2 P n q flops more. Both go through the runs in blocks, so that a
+/// block's share stays in the cache, and neither allocates.
 class GaussianModel final : public MonthlyModel {
  public:
   /// @param months  Places in the form's months, in any order.
@@ -33,23 +34,14 @@ class GaussianModel final : public MonthlyModel {
                               std::span<double> jacobian) override;
 
  private:
-  /// How much there is of a pattern, t being the scaled parameters and c = t - 1/2:
-  /// sum_i weight_i exp(-|p_i - root t|^2 / 2) + constant + linear . c + c' quadratic c.
-  struct Amount {
-    Eigen::VectorXd root;        ///< (q) square root of the relevance.
-    Eigen::MatrixXd points;      ///< (n x q) p, scaled by `root`.
-    Eigen::VectorXd half_norms;  ///< (n) |p|^2 / 2
-    Eigen::VectorXd weights;     ///< (n)
-    double constant;
-    Eigen::VectorXd linear;     ///< (q)
-    Eigen::MatrixXd quadratic;  ///< (q x q), symmetric.
-    Eigen::Index first_row;     ///< Of its output.
-    Eigen::VectorXd loadings;   ///< (months) in units, of one.
+  /// An output's patterns, which follow each other.
+  struct Output {
+    Eigen::Index first;        ///< Pattern.
+    Eigen::MatrixXd loadings;  ///< (months x its patterns) in units, of one of each.
   };
 
-  void scale(std::span<const double> theta);
-  /// @return how much; leaves each run's part of it in `parts_`.
-  double amount_at_scaled(const Amount& amount);
+  /// How much there is of each pattern. @param slopes  By the scaled parameters; null: not wanted.
+  void find_amounts(std::span<const double> theta, Eigen::MatrixXd* slopes);
 
   int outputs_;
   int months_;
@@ -57,12 +49,26 @@ class GaussianModel final : public MonthlyModel {
   Eigen::VectorXd min_;            ///< (q)
   Eigen::VectorXd inverse_range_;  ///< (q)
   Eigen::VectorXd means_;          ///< (outputs * months)
-  std::vector<Amount> amounts_;
-  Eigen::VectorXd scaled_;   ///< (q) t
-  Eigen::VectorXd centred_;  ///< (q) c
-  Eigen::VectorXd rooted_;   ///< (q) root t
-  Eigen::VectorXd slope_;    ///< (q) of an amount by t.
-  Eigen::VectorXd parts_;    ///< (n)
+  std::vector<Output> patterns_;   ///< (outputs)
+
+  // Of pattern p at scaled parameters t, c = t - 1/2, there is
+  // sum_i weight_ip exp(-1/2 sum_j relevance_jp (x_ij - t_j)^2) + constant_p + linear_p . c
+  // + c' quadratic_p c.
+  Eigen::MatrixXd points_;     ///< (n x q) x
+  Eigen::MatrixXd relevance_;  ///< (q x P)
+  Eigen::MatrixXd weights_;    ///< (n x P)
+  Eigen::VectorXd constants_;  ///< (P)
+  Eigen::MatrixXd linear_;     ///< (q x P)
+  Eigen::MatrixXd quadratic_;  ///< (P * q x q), symmetric, one below the other.
+
+  Eigen::VectorXd scaled_;       ///< (q) t
+  Eigen::VectorXd centred_;      ///< (q) c
+  Eigen::VectorXd bent_;         ///< (P * q) quadratic c
+  Eigen::VectorXd amounts_;      ///< (P)
+  Eigen::MatrixXd differences_;  ///< (block x q) x - t
+  Eigen::MatrixXd squares_;      ///< (block x q)
+  Eigen::MatrixXd parts_;        ///< (block x P) each run's part of each amount.
+  Eigen::MatrixXd slopes_;       ///< (q x P)
 };
 
 }  // namespace recald::model::metamodel

@@ -239,7 +239,7 @@ void fix_the_others(const std::vector<Parameter>& parameters, const std::vector<
   }
 }
 
-/// The regression's own error in each output and month.
+/// The meta-model's own error in each output and month.
 void add_model_variances(const Metamodel& metamodel, std::size_t calibration_months,
                          DesignCalibration& result) {
   const std::size_t n = result.month_names.size();

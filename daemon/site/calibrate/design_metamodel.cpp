@@ -15,7 +15,7 @@ namespace {
 
 const char* description(MetamodelForm form) {
   return form == MetamodelForm::seed ? "one regression for all months (form seed)"
-                                     : "a Gaussian process of the design's months (form monthly)";
+                                     : "Gaussian processes of the design's months (form monthly)";
 }
 
 /// Chooses among the forms that could be fitted, and says why.

@@ -1,4 +1,4 @@
-/// The regression that stands in for a design's simulation: fitted in both forms, one chosen.
+/// The meta-model that stands in for a design's simulation: fitted in both forms, one chosen.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ enum class MetamodelForm {
 struct MetamodelOptions {
   std::optional<MetamodelForm> form;  ///< Absent: what predicts left-out runs better.
   bool wind_in_degrees = false;       ///< The seed's plain number instead of sine and cosine.
-  std::uint64_t seed = 1;             ///< Deals the runs into folds.
+  std::uint64_t seed = 1;             ///< Deals the runs into the folds of the seed's form.
 };
 
 struct FittedMetamodel {
@@ -45,7 +45,7 @@ struct FittedMetamodel {
   [[nodiscard]] std::vector<double> sigma_r(MetamodelForm of) const;
 };
 
-/// The design as regressions read it.
+/// The design as fits read it.
 [[nodiscard]] regression::DesignData design_data(const doe::DesignFolder& design);
 
 /// Some months' model inputs. @pre each month has a row in `inputs`
@@ -61,7 +61,7 @@ struct FittedMetamodel {
 [[nodiscard]] Result<std::unique_ptr<MonthlyModel>> model_over(
     const FittedMetamodel& fitted, const model::metamodel::MonthInputs& months);
 
-/// How the regression predicts another design of the same model, such as corners of the prior.
+/// How the meta-model predicts another design of the same model, such as corners of the prior.
 /// @return (outputs) or invalid_value: other parameters, outputs or months.
 [[nodiscard]] Result<std::vector<regression::CheckedOutput>> check_metamodel(
     const FittedMetamodel& fitted, const regression::DesignData& design,

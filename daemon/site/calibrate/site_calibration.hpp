@@ -24,7 +24,7 @@
 
 namespace recald::daemon {
 
-/// Runs of a site's model, and the regression that speaks for it.
+/// Runs of a site's model, and the meta-model that speaks for it.
 struct SiteDesign {
   doe::DesignFolder folder;
   screening::Screening screening;

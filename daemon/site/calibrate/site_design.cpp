@@ -45,7 +45,8 @@ doe::DesignPlan plan_design(const PreparedSite& site, const SiteDesignOptions& o
   const SiteCalibration& so_far = site.so_far;
   doe::DesignPlan plan;
   plan.parameters = so_far.parameters;
-  Rng rng{options.seed, streams::kHypercube.first};
+  // Runs to check a design with are never its own.
+  Rng rng{options.seed, streams::kHypercube[options.points == design::Points::wide ? 0 : 1]};
   plan.theta = design::draw_points(options.points, plan.parameters, options.runs, rng);
   for (const assessment::OutputCalibration& output : so_far.outputs)
     plan.output_names.push_back(output.name);

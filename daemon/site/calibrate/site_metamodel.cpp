@@ -22,7 +22,7 @@
 namespace recald::daemon {
 namespace {
 
-constexpr std::uint64_t kSeed = 1;  // screening and folds: the same answer at each calibration
+constexpr std::uint64_t kSeed = 1;  // screening: the same answer at each calibration
 
 /// The runs, or in words what to do to get them.
 Result<doe::DesignFolder> read_runs(const SiteConfig& site) {
@@ -146,7 +146,7 @@ void add_prediction_errors(const NewMonths& added, const doe::DesignFolder& desi
   }
 }
 
-/// The design in the site's outputs and months, as regressions read it.
+/// The design in the site's outputs and months, as fits read it.
 Result<regression::DesignData> data_of(const doe::DesignFolder& design,
                                        const SiteCalibration& so_far) {
   regression::DesignData all = design_data(design);
@@ -215,8 +215,8 @@ void take_parameters(const SiteConfig& site, const doe::DesignFolder& design,
   }
 }
 
-/// The regression's own error.
-void add_regression_errors(const FittedMetamodel& fitted, PreparedSite& prepared) {
+/// The meta-model's own error.
+void add_metamodel_errors(const FittedMetamodel& fitted, PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
   const std::vector<double> sigma = fitted.sigma_r(fitted.form);
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
@@ -283,7 +283,7 @@ Result<PreparedSite> prepare_on_runs(const SiteConfig& site,
                    "something else");
   }
   take_parameters(site, *design, free, result);
-  auto fitted = fit_metamodel(*data, {.form = MetamodelForm::monthly, .seed = kSeed});
+  auto fitted = fit_metamodel(*data, {.form = MetamodelForm::monthly});
   if (!fitted) return tl::unexpected(fitted.error());
   result.metamodel = assessment::MetamodelFacts{.form = std::string{to_string(fitted->form)},
                                                 .why = fitted->why,
@@ -297,7 +297,7 @@ Result<PreparedSite> prepare_on_runs(const SiteConfig& site,
   prepared.whole_model = model_of(*fitted, names, means, free);
   prepared.problem = assessment::problem_of(result, calibration_months);
   add_inputs(calendar, weather, begun->months, prepared);
-  add_regression_errors(*fitted, prepared);
+  add_metamodel_errors(*fitted, prepared);
   auto all_parameters = model::metamodel::model_of(*fitted->monthly_form, names).value();
   add_common_errors(assessment::held_parameter_errors(all_parameters, design->parameters, free), {},
                     prepared);

@@ -1,4 +1,4 @@
-/// A site whose model is too slow to be sampled: its runs, and the regression that speaks for them.
+/// A site whose model is too slow to be sampled: its runs, and the meta-model that speaks for them.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,7 @@ namespace recald::daemon {
 /// Gives the days of a design's runs.
 using DaysOfDesign = std::function<Result<doe::DesignDays>(const doe::DesignFolder& design)>;
 
-/// Runs as regressions read them: in the months and outputs of a site. Months that were not
+/// Runs as fits read them: in the months and outputs of a site. Months that were not
 /// simulated are predicted from the runs' days.
 /// @param so_far   Its months and outputs.
 /// @param days_of  Asked if there are such months.

@@ -531,7 +531,7 @@ EnergyPlusConfig read_energyplus(TomlReader& table, const SiteConfig& site,
   }
   const std::string design = table.text_or("design", site.file.stem().string() + "-doe");
   config.design = resolve(site.file, design, "design", table);
-  config.runs = table.whole_number_or("runs", config.runs, {2, 100'000});
+  config.runs = table.whole_number_or("runs", config.runs, {4, 100'000});
   config.time_max = table.duration("time_max").value_or(config.time_max);
   config.interval_noise = table.number_or("interval_noise", 0.0, {0.0, 0.5});
   if (auto reports = table.table("reports")) {

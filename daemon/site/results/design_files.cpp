@@ -87,7 +87,7 @@ Json seed_terms_json(const regression::SeedForm& form) {
   return terms;
 }
 
-/// What a parameter's length is: how much of its range changes a pattern much.
+/// A length is the share of a parameter's range over which a pattern changes much.
 Json patterns_json(const regression::MonthlyForm& form) {
   Json patterns = Json::array();
   for (std::size_t k = 0; k < form.fits.size(); ++k) {

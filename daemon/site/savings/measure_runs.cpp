@@ -26,7 +26,7 @@ constexpr std::size_t kNameDigits = 16;
 /// Runs that are repeated with a measure: what it saves depends less on the parameters than the use
 /// does, so fewer are needed than in the design.
 constexpr Index kMeasureRuns = 60;
-/// More than the columns that what is saved is regressed on.
+/// More than the columns that what is saved is fitted to.
 constexpr Index kSpareRuns = 20;
 
 /// EnergyPlus with measures: a row has the model's parameters and the extents that are not known.

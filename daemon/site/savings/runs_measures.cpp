@@ -156,7 +156,7 @@ class RunsMeasures final : public MeasuredModel {
 
   [[nodiscard]] Index calibrated() const override { return std::ssize(free_); }
 
-  /// A regression says nothing beyond its runs.
+  /// A meta-model says nothing beyond its runs.
   [[nodiscard]] std::vector<savings::Limits> limits() const override {
     std::vector<savings::Limits> limits;
     for (const Parameter& one : result_.parameters) {

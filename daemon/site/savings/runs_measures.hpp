@@ -1,4 +1,4 @@
-/// Measures at a building whose model is a regression on runs of EnergyPlus.
+/// Measures at a building whose model is a meta-model of EnergyPlus runs.
 #pragma once
 
 #include "core/executor.hpp"
@@ -7,8 +7,8 @@
 
 namespace recald::daemon {
 
-/// What a measure changes is regressed on the parameters: the difference between runs with it and
-/// the same runs without. The regression's own error is drawn.
+/// What a measure changes is a function of the parameters, fitted to the differences between runs
+/// with it and the same runs without. The fit's own error is drawn.
 /// @param finished  Calibrated on its runs; outlives the model, as do the measures and the
 /// executor.
 /// @return or not_found: runs with a measure are missing; or what reading and fitting find.

@@ -142,7 +142,8 @@ TEST_F(OtherDesign, IsRefusedWithWhatDiffers) {
   plan = sample_plan();
   plan.theta(3, 1) += 1e-12;
   EXPECT_EQ(refusal(plan),
-            "'DIR' holds a design that was made with another seed or number of runs; delete it, or "
+            "'DIR' holds a design that has other runs: by another seed or number, by --priors or "
+            "--corners, or by another version; delete it, or "
             "give another --out");
   plan = sample_plan();
   plan.fingerprint = "abd";

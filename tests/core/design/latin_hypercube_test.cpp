@@ -85,6 +85,18 @@ TEST(WideHypercube, IsInTurnFromThePriorsAndEvenBetweenTheirEnds) {
   }
 }
 
+// A bell whose bounds are far away, and one that begins at 0, where no chiller is.
+TEST(WideHypercube, StaysWhereAPriorWithTailsHasWeight) {
+  const std::vector<Parameter> tails{
+      {"narrow", "-", Prior{TruncatedNormalPrior{5.0, 0.1, 0.0, 100.0}}},
+      {"cop", "-", Prior{LogNormalPrior{4.0, 0.2}}}};
+  Rng rng(3);
+  const Eigen::MatrixXd design = wide_hypercube(tails, 100, rng);
+  EXPECT_NEAR(design.col(0)(Eigen::seq(1, Eigen::last, 2)).minCoeff(), 5.0 - 0.309, 0.02);
+  EXPECT_NEAR(design.col(0)(Eigen::seq(1, Eigen::last, 2)).maxCoeff(), 5.0 + 0.309, 0.02);
+  EXPECT_GT(design.col(1).minCoeff(), 2.0);
+}
+
 TEST(Corners, EachParameterStandsAtAnEndOfItsPrior) {
   std::vector<Parameter> all = parameters();
   all.push_back({"open", "-", Prior{TruncatedNormalPrior{5.0, 1.0}}});

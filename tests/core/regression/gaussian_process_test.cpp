@@ -52,6 +52,49 @@ TEST(GaussianProcess, LeavesRowsOutAsIfTheyHadNeverBeen) {
   EXPECT_NEAR(process.left_out(0), y(0) - predicted, 1e-6);
 }
 
+/// Minus the logarithm of likelihood and priors, written out.
+double unlikelihood(const MatrixXd& points, const VectorXd& y, const Kernel& kernel) {
+  MatrixXd k = kernel_values(kernel, points, points);
+  k.diagonal().array() += kernel.noise;
+  const auto factor = k.fullPivLu();
+  const double count = static_cast<double>(y.size());
+  const auto score = [](double value, double mean, double sd) {
+    return 0.5 * std::pow((std::log(value) - mean) / sd, 2);
+  };
+  double value = 0.5 * count * std::log(y.dot(factor.solve(y)) / count) +
+                 0.5 * factor.matrixLU().diagonal().array().abs().log().sum() +
+                 score(kernel.linear, 0.0, 4.0) + score(kernel.quadratic, 0.0, 4.0) +
+                 score(kernel.noise, -9.0, 4.0);
+  for (const double relevance : kernel.relevance) value += score(relevance, -2.0, 2.0);
+  return value;
+}
+
+// A wrong slope of any of them would end the search beside the top.
+TEST(GaussianProcess, ItsKernelIsTheMostLikelyOne) {
+  const MatrixXd points = random_points(60, 3, 5);
+  Rng rng(6);
+  VectorXd y = values(points);
+  for (double& one : y) one += 0.05 * rng.normal();
+  const Kernel best = fit_gaussian_process(points, y, usual_kernel(3)).kernel;
+  const double least = unlikelihood(points, y, best);
+  for (const double factor : {std::exp(-0.5), std::exp(0.5)}) {
+    Kernel other = best;
+    other.linear *= factor;
+    EXPECT_GT(unlikelihood(points, y, other), least - 1e-3);
+    other = best;
+    other.quadratic *= factor;
+    EXPECT_GT(unlikelihood(points, y, other), least - 1e-3);
+    other = best;
+    other.noise *= factor;
+    EXPECT_GT(unlikelihood(points, y, other), least - 1e-3);
+    for (Index j = 0; j < 3; ++j) {
+      other = best;
+      other.relevance(j) *= factor;
+      EXPECT_GT(unlikelihood(points, y, other), least - 1e-3);
+    }
+  }
+}
+
 // By hand: points 0 and 1/2 of one parameter, relevance 4: exp(-1/2), c . c' = 0.
 TEST(GaussianProcess, KernelByHand) {
   const Kernel kernel{

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <string>
 
 #include "tests/core/regression/design_folder.hpp"
 #include "tests/core/regression/made_design.hpp"
@@ -106,6 +107,52 @@ TEST(MetaModel, OfTheMonthlyFormPredictsSomeMonthsInAnyOrder) {
   const Eigen::MatrixXd predicted = predictions(*model_of(*form, two), design.theta);
   EXPECT_LT((predicted.col(0) - of_all.col(4)).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((predicted.col(3) - of_all.col(6 + 1)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+/// A load that stops where nothing is needed, of two of the parameters, in months of more and less.
+DesignData bent_design(int runs, std::uint64_t seed) {
+  DesignData design = regression::made_design(runs, 6, 0.0, seed);
+  for (Eigen::Index r = 0; r < design.runs(); ++r) {
+    const double set_point = (design.theta(r, 0) - 20.0) / 8.0;
+    const double air = (design.theta(r, 1) - 0.3) / 0.9;
+    for (int i = 0; i < 6; ++i) {
+      const double hot = 0.3 * i - 0.5 + air - 1.5 * set_point;
+      design.values(r, i) = 1000.0 * std::log1p(std::exp(4.0 * hot));
+    }
+  }
+  return design;
+}
+
+TEST(MetaModel, OfTheMonthlyFormFollowsALoadThatStops) {
+  const DesignData check = bent_design(40, 2);
+  const auto form = regression::fit_monthly_form(bent_design(120, 1));
+  ASSERT_TRUE(form.has_value()) << form.error().message;
+  const Eigen::MatrixXd predicted = predictions(*model_of(*form, check.months), check.theta);
+  const double error = std::sqrt((predicted.leftCols(6) - check.output(0)).cwiseAbs2().mean());
+  EXPECT_LT(error, 0.01 * check.output(0).mean());
+  // What it says of itself is what is found.
+  EXPECT_GT(form->quality.outputs[0].sigma_r, 0.5 * error);
+  EXPECT_LT(form->quality.outputs[0].sigma_r, 2.0 * error);
+}
+
+// The first runs of a design with all the parameters of a building, as measures are fitted to.
+TEST(MetaModel, OfTheMonthlyFormKnowsItsErrorWithFewRunsOfManyParameters) {
+  const auto with_idle = [](int runs, std::uint64_t seed) {
+    DesignData design = bent_design(runs, seed);
+    Rng rng(seed);
+    for (int extra = 0; extra < 13; ++extra) {
+      design.parameters.push_back("idle" + std::to_string(extra));
+      design.theta.conservativeResize(runs, design.theta.cols() + 1);
+      for (double& x : design.theta.rightCols<1>().reshaped()) x = rng.uniform();
+    }
+    return design;
+  };
+  const DesignData check = with_idle(100, 2);
+  const auto form = regression::fit_monthly_form(with_idle(40, 1));
+  ASSERT_TRUE(form.has_value()) << form.error().message;
+  const Eigen::MatrixXd predicted = predictions(*model_of(*form, check.months), check.theta);
+  const double error = std::sqrt((predicted.leftCols(6) - check.output(0)).cwiseAbs2().mean());
+  EXPECT_GT(form->quality.outputs[0].sigma_r, 0.6 * error);
 }
 
 TEST(MetaModel, OfTheMonthlyFormRefusesOtherMonths) {
