@@ -66,9 +66,9 @@ std::string outputs_csv(const DesignPlan& plan, const DesignRunsSoFar& runs) {
   return text;
 }
 
-std::string state_json(const DesignPlan& plan) {
+std::string state_json(const DesignPlan& plan, Eigen::Index runs) {
   const nlohmann::ordered_json state = {{"made_by", "recald doe"},
-                                        {"runs", plan.theta.rows()},
+                                        {"runs", runs},
                                         {"seed", plan.seed},
                                         {"fingerprint", plan.fingerprint}};
   return state.dump(2) + "\n";
@@ -99,10 +99,14 @@ std::string difference(const fs::path& folder, const DesignPlan& plan) {
   const auto priors = text_of(folder / "priors.csv");
   if (priors && *priors != priors_csv(plan.parameters)) return "was made for other priors";
   const auto runs = text_of(folder / "doe_inputs.csv");
-  if (runs && *runs != runs_csv(plan))
+  if (runs && !runs_csv(plan).starts_with(*runs)) {
     return "has other runs: by another seed or number, by --priors or --corners, or by another "
            "version";
-  if (*state == state_json(plan)) return "";
+  }
+  const auto said = nlohmann::json::parse(*state, nullptr, /*allow_exceptions=*/false);
+  const Eigen::Index before =
+      said.is_object() ? said.value("runs", plan.theta.rows()) : plan.theta.rows();
+  if (*state == state_json(plan, before)) return "";
   return "was made from another site file, other readings or weather, or by another version";
 }
 
@@ -112,7 +116,7 @@ Result<void> write_plan(const fs::path& folder, const DesignPlan& plan) {
     return system::write_file(folder / name, text);
   };
   // Written first, so that any other file in the folder can be traced to its plan.
-  if (auto w = write(kStateFile, state_json(plan)); !w) return w;
+  if (auto w = write(kStateFile, state_json(plan, plan.theta.rows())); !w) return w;
   if (auto w = write("priors.csv", priors_csv(plan.parameters)); !w) return w;
   if (auto w = write("doe_inputs.csv", runs_csv(plan)); !w) return w;
   if (auto w = write("inputs.csv", monthly_csv(plan.inputs)); !w) return w;

@@ -36,7 +36,7 @@ struct DesignRunsSoFar {
 };
 
 /// Writes everything but the outputs into a new folder. If the folder already holds this design,
-/// reads its finished runs instead.
+/// or its first runs, reads the finished ones.
 /// @return invalid_value when the folder holds another design, saying how it differs;
 ///         malformed when this program did not write its outputs; io_failed.
 [[nodiscard]] Result<DesignRunsSoFar> open_design(const std::filesystem::path& folder,

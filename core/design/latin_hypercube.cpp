@@ -44,6 +44,12 @@ UniformPrior ends_of(const Prior& prior) {
 
 Eigen::MatrixXd wide_hypercube(std::span<const Parameter> parameters, int runs, Rng& rng) {
   assert(runs >= 4);
+  if (const int rest = runs - kWideBlock; rest >= 4) {
+    Eigen::MatrixXd design(runs, std::ssize(parameters));
+    design.topRows(kWideBlock) = wide_hypercube(parameters, kWideBlock, rng);
+    design.bottomRows(rest) = wide_hypercube(parameters, rest, rng);
+    return design;
+  }
   std::vector<Parameter> even{parameters.begin(), parameters.end()};
   for (Parameter& parameter : even) parameter.prior = ends_of(parameter.prior);
   const int evenly = runs / 2;

@@ -25,12 +25,16 @@ namespace recald::design {
 [[nodiscard]] Eigen::MatrixXd latin_hypercube(std::span<const Parameter> parameters, int runs,
                                               Rng& rng, int candidates = 50);
 
+inline constexpr int kWideBlock = 200;
+
 /// Runs for a meta-model that has to hold at the priors' ends too: rows in turn from a Latin
 /// hypercube through the priors and from one that is even between their ends. Triangles leave the
 /// corners of a box of sixteen parameters all but empty, and a calibration may move there. An
 /// office's chilled water, simulated at random corners, was 5.6 % off with runs from the priors
 /// alone and 4.4 % with these; where the prior density is high it cost nothing.
 /// A prior with tails counts between its quantiles of one in a thousand.
+/// More than `kWideBlock` runs are several such designs, one behind the other, so that a design can
+/// be continued: its first runs are those of a smaller one.
 /// @param runs  >= 4.
 /// @return (runs x q) in the parameters' own units.
 [[nodiscard]] Eigen::MatrixXd wide_hypercube(std::span<const Parameter> parameters, int runs,

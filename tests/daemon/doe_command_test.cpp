@@ -73,6 +73,23 @@ TEST_F(DoeCommand, LeavesAFolderThatTheOthersWorkOn) {
   EXPECT_FALSE(result["after"]["validation"]["district_heat_daily_kWh"]["cvrmse"].is_null());
 }
 
+TEST_F(DoeCommand, ADesignCanBeContinued) {
+  const auto runs = [&](const char* count, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"doe",   path("site.toml"), "--runs", count,
+                                          "--out", path("design"),    "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  ASSERT_EQ(runs("200").exit_code, kSuccess);
+  const std::string before = read_text(folder_ / "design/doe_outputs.csv");
+  const Outcome more = runs("240");
+  ASSERT_EQ(more.exit_code, kSuccess) << more.err;
+  EXPECT_EQ(Json::parse(more.out)["runs_before"], 200);
+  EXPECT_EQ(Json::parse(more.out)["runs"], 240);
+  EXPECT_THAT(read_text(folder_ / "design/doe_outputs.csv"), ::testing::StartsWith(before));
+  EXPECT_EQ(runs("240", {"--seed", "2"}).exit_code, kFailure);
+}
+
 /// Lines of a file without the run's number.
 std::set<std::string> values_of_runs(const std::string& text) {
   std::set<std::string> rows;

@@ -85,6 +85,15 @@ TEST(WideHypercube, IsInTurnFromThePriorsAndEvenBetweenTheirEnds) {
   }
 }
 
+TEST(WideHypercube, ALargerOneBeginsAsASmallerOne) {
+  Rng some(3);
+  Rng more(3);
+  const Eigen::MatrixXd first = wide_hypercube(parameters(), kWideBlock, some);
+  const Eigen::MatrixXd design = wide_hypercube(parameters(), kWideBlock + 50, more);
+  EXPECT_EQ(design.topRows(kWideBlock), first);
+  EXPECT_EQ(design.rows(), kWideBlock + 50);
+}
+
 // A bell whose bounds are far away, and one that begins at 0, where no chiller is.
 TEST(WideHypercube, StaysWhereAPriorWithTailsHasWeight) {
   const std::vector<Parameter> tails{
