@@ -87,12 +87,12 @@ Result<void> check_output(const OutputMeasurements& output, const CalibrationPro
 
 Result<void> check_model_error(const CalibrationProblem& problem) {
   const auto& sds = problem.model_error_sd;
-  const bool usable =
-      std::all_of(sds.begin(), sds.end(), [](double sd) { return std::isfinite(sd) && sd >= 0.0; });
-  if (usable && (sds.empty() || sds.size() == problem.outputs.size())) return {};
+  const std::size_t points = problem.outputs.size() * problem.month_names.size();
+  const bool usable = sds.allFinite() && (sds.array() >= 0.0).all();
+  if (usable && (sds.size() == 0 || sds.size() == static_cast<Eigen::Index>(points))) return {};
   return failure(ErrorCode::invalid_value,
                  "the model's own error needs a finite, non-negative standard deviation for each "
-                 "output, or none at all");
+                 "output and month, or none at all");
 }
 
 Result<void> check_inputs(const CalibrationProblem& problem) {
@@ -172,12 +172,14 @@ PosteriorData normalise_problem(const CalibrationProblem& problem,
   for (std::size_t k = 0; k < problem.outputs.size(); ++k) {
     const OutputMeasurements& output = problem.outputs[k];
     const OutputScale& scale = normalisation.scales[k];
-    const double model_sd = problem.model_error_sd.empty() ? 0.0 : problem.model_error_sd[k];
     if (output.measured_months() > 0) weight_max = std::max(weight_max, output.weight);
     for (int i = 0; i < months; ++i) {
       const auto month = static_cast<std::size_t>(i);
       if (std::isnan(output.values[month])) continue;
       const double known = output.extra_variances.empty() ? 0.0 : output.extra_variances[month];
+      const Eigen::Index place = static_cast<Eigen::Index>(k) * months + i;
+      const double model_sd =
+          problem.model_error_sd.size() == 0 ? 0.0 : problem.model_error_sd(place);
       data.points.push_back({static_cast<int>(k), i});
       values.push_back(scale.normalise(output.values[month]));
       variances.push_back(scale.normalise_variance(model_sd * model_sd + known));

@@ -30,8 +30,9 @@ struct CalibrationProblem {
   /// df/dshare * 0.15 for the share of a profile that heats the zone. Each (output_count * months),
   /// output-major.
   std::vector<Eigen::VectorXd> common_errors;
-  /// (output_count) sd of a meta-model's own error in output units; empty: the model is exact.
-  std::vector<double> model_error_sd;
+  /// (output_count * month_count) sd of a meta-model's own error in output units, output-major;
+  /// empty: the model is exact.
+  Eigen::VectorXd model_error_sd;
 };
 
 /// θ and the two variances: with fewer points than unknowns the result would be just the prior.

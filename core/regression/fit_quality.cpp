@@ -91,8 +91,13 @@ DesignQuality assess_fit(const DesignData& design, const std::vector<ColumnScale
     all.push_back(static_cast<int>(k));
     const Squares squares = squares_of({static_cast<int>(k)});
     const double cells = static_cast<double>(design.runs() * months);
+    const auto of_output = Eigen::seqN(static_cast<Eigen::Index>(k) * months, months);
+    const Eigen::VectorXd by_month =
+        (truth(Eigen::all, of_output) - left_out(Eigen::all, of_output)).colwise().squaredNorm() /
+        static_cast<double>(design.runs());
     quality.outputs.push_back({design.outputs[k], squares.quality(),
-                               std::sqrt(squares.left_out / cells) * scales[k].range()});
+                               std::sqrt(squares.left_out / cells) * scales[k].range(),
+                               by_month.cwiseSqrt() * scales[k].range()});
   }
   for (const MeterOutputs& meter : group_by_meter(design.outputs)) {
     quality.meters.push_back({meter.meter, squares_of(meter.existing()).quality()});

@@ -23,6 +23,7 @@ struct OutputQuality {
   FitQuality fit;
   double
       sigma_r;  ///< Meta-model error of eq. (1): root mean square left-out residual, output unit.
+  Eigen::VectorXd sigma_by_month;  ///< (m) The same of each month's runs.
 };
 
 struct MeterQuality {

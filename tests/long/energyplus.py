@@ -139,6 +139,22 @@ def study(name, model, weather, folder):
     return {"parameters": len(parameters), "seconds": seconds, "checks": checks, "hits": hits, "count": count}
 
 
+def directions(name, folder):
+    """What one standard deviation of a parameter does to daily averages, of those that explain a hundredth of one."""
+    screened = json.loads(recald("screen", "--doe", "runs", "--json", folder=folder))
+    totals = {}
+    for row in csv.DictReader(open(folder / "runs" / "doe_outputs.csv", encoding="utf-8")):
+        for output in row:
+            if "_daily_" in output:
+                totals.setdefault(output, []).append(float(row[output]))
+    for parameter in screened["parameters"]:
+        moves = [f"{output.split('_daily_')[0]} {100 * effect['change_mean'] / (sum(values) / len(values)):+.1f} %"
+                 for output, values in totals.items()
+                 if (effect := parameter["effects"].get(output, {"share": 0}))["share"] >= 0.01]
+        if moves:
+            print(f"- {name}, {parameter['name']}: {', '.join(moves)}", flush=True)
+
+
 def models():
     """(name, model, weather file, folder) of each."""
     out = pathlib.Path(os.environ.get("OUT") or tempfile.mkdtemp(prefix="recald-energyplus-")).resolve()
@@ -170,6 +186,7 @@ def main():
                   f"| {check['r2_median_month']:.4f} | {check['r2_worst_month']:.4f} "
                   f"({100 * check['error_of_worst_month']:.2f} %) | {100 * corner:.1f} % "
                   f"| {binomial(result['hits'], result['count'])} |", flush=True)
+        directions(name, folder)
 
 
 if __name__ == "__main__":

@@ -28,9 +28,9 @@ using model::metamodel::QuadraticModel;
 struct Metamodel {
   std::unique_ptr<MonthlyModel> calibration;  ///< The design's months.
   std::unique_ptr<MonthlyModel> whole;        ///< The design's months, then those that validate.
-  std::vector<double> sigma_calibration;      ///< (outputs) or empty: free of error.
-  std::vector<double> sigma_validation;
-  calibration::ModelInputs inputs;  ///< Of all months, for the discrepancy.
+  Eigen::VectorXd sigma_calibration;          ///< (outputs * months), or empty: free of error.
+  std::vector<double> sigma_validation;       ///< (outputs)
+  calibration::ModelInputs inputs;            ///< Of all months, for the discrepancy.
   assessment::MetamodelFacts facts;
 };
 
@@ -113,7 +113,7 @@ Result<Metamodel> metamodel_of(const FittedMetamodel& fitted, const MetamodelOpt
   Metamodel result;
   result.whole = (*calibration)->clone();
   result.calibration = std::move(*calibration);
-  result.sigma_calibration = fitted.sigma_r(fitted.form);
+  result.sigma_calibration = fitted.error_sd();
   const MonthInputs later = after_design(all, covered.months.size());
   if (!later.months.empty()) {
     auto validation = model::metamodel::model_of(*fitted.seed_form, later);
@@ -127,7 +127,7 @@ Result<Metamodel> metamodel_of(const FittedMetamodel& fitted, const MetamodelOpt
   result.facts = {.form = std::string{to_string(fitted.form)},
                   .why = fitted.why,
                   .r2_left_out = fitted.quality().all.r2_left_out,
-                  .sigma_r = result.sigma_calibration};
+                  .sigma_r = fitted.sigma_r(fitted.form)};
   return result;
 }
 
@@ -246,9 +246,13 @@ void add_model_variances(const Metamodel& metamodel, std::size_t calibration_mon
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     std::vector<double> variances(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
-      const auto& sigma =
-          i < calibration_months ? metamodel.sigma_calibration : metamodel.sigma_validation;
-      if (!sigma.empty()) variances[i] += sigma[k] * sigma[k];
+      double sigma = 0.0;
+      if (i >= calibration_months && !metamodel.sigma_validation.empty()) {
+        sigma = metamodel.sigma_validation[k];
+      } else if (i < calibration_months && metamodel.sigma_calibration.size() > 0) {
+        sigma = metamodel.sigma_calibration(static_cast<Eigen::Index>(k * calibration_months + i));
+      }
+      variances[i] = sigma * sigma;
     }
     result.outputs[k].model_variances = std::move(variances);
   }

@@ -55,6 +55,21 @@ std::vector<double> FittedMetamodel::sigma_r(MetamodelForm of) const {
   return sd;
 }
 
+Eigen::VectorXd FittedMetamodel::error_sd() const {
+  const auto& outputs = quality().outputs;
+  const Eigen::Index months = outputs.front().sigma_by_month.size();
+  Eigen::VectorXd sd(std::ssize(outputs) * months);
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    auto of_output = sd.segment(static_cast<Eigen::Index>(k) * months, months);
+    if (form == MetamodelForm::seed) {
+      of_output.setConstant(outputs[k].sigma_r);
+    } else {
+      of_output = outputs[k].sigma_by_month;
+    }
+  }
+  return sd;
+}
+
 regression::DesignData design_data(const doe::DesignFolder& design) {
   regression::DesignData data;
   for (const Parameter& parameter : design.parameters) data.parameters.push_back(parameter.name);

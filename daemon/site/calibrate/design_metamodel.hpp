@@ -43,6 +43,9 @@ struct FittedMetamodel {
   [[nodiscard]] const regression::DesignQuality& quality() const { return quality(form); }
   /// (outputs) error of a form in output units.
   [[nodiscard]] std::vector<double> sigma_r(MetamodelForm of) const;
+  /// (outputs * months) error of the chosen form in output units, output-major. The seed's is the
+  /// same in all months, as in its eq. (1).
+  [[nodiscard]] Eigen::VectorXd error_sd() const;
 };
 
 /// The design as fits read it.

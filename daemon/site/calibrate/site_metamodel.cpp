@@ -9,6 +9,7 @@
 #include "adapters/csv/weather_csv.hpp"
 #include "adapters/doe/days_file.hpp"
 #include "core/assessment/common_errors.hpp"
+#include "core/assessment/model_errors.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/warning.hpp"
 #include "core/model/metamodel/builders.hpp"
@@ -218,11 +219,15 @@ void take_parameters(const SiteConfig& site, const doe::DesignFolder& design,
 /// The meta-model's own error.
 void add_metamodel_errors(const FittedMetamodel& fitted, PreparedSite& prepared) {
   SiteCalibration& result = prepared.so_far;
-  const std::vector<double> sigma = fitted.sigma_r(fitted.form);
+  const Eigen::VectorXd sd = fitted.error_sd();
+  const auto months = std::ssize(result.month_names);
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
-    result.outputs[k].model_variances.assign(result.months.size(), sigma[k] * sigma[k]);
+    const Eigen::VectorXd of_output = sd.segment(static_cast<Eigen::Index>(k) * months, months);
+    const Eigen::VectorXd variances = of_output.cwiseAbs2();
+    result.outputs[k].model_variances.assign(variances.begin(), variances.end());
   }
-  prepared.problem.model_error_sd = sigma;
+  prepared.problem.model_error_sd =
+      assessment::leading_months(sd, months, std::ssize(prepared.problem.month_names));
 }
 
 std::unique_ptr<MonthlyModel> model_of(const FittedMetamodel& fitted,

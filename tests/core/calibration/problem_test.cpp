@@ -70,9 +70,13 @@ const Fault kFaults[] = {
      ErrorCode::invalid_value, "meter_0 needs one value, and one extra variance or none"},
     {"model_error_negative",
      [](CalibrationProblem& p) {
-       p.model_error_sd = {0.1, -0.1};
+       p.model_error_sd = Eigen::VectorXd::Constant(24, 0.1);
+       p.model_error_sd(7) = -0.1;
      },
      ErrorCode::invalid_value, "the model's own error"},
+    {"model_error_short",
+     [](CalibrationProblem& p) { p.model_error_sd = Eigen::VectorXd::Ones(2); },
+     ErrorCode::invalid_value, "for each output and month"},
     {"common_error_short",
      [](CalibrationProblem& p) { p.common_errors.push_back(Eigen::VectorXd::Ones(12)); },
      ErrorCode::invalid_value, "a common error needs a finite value for each of the 24"},
@@ -98,7 +102,9 @@ TEST(CalibrationProblem, NormalisesValuesVariancesAndCommonErrors) {
   CalibrationProblem problem = toy_problem(2, 12);
   problem.outputs[0].values[3] = kMissing;
   problem.outputs[1].extra_variances.assign(12, 25.0);
-  problem.model_error_sd = {0.0, 12.0};
+  problem.model_error_sd = Eigen::VectorXd::Zero(24);
+  problem.model_error_sd.tail(12).setConstant(12.0);
+  problem.model_error_sd(13) = 24.0;
   problem.common_errors = {Eigen::VectorXd::Constant(24, 5.0)};
   const Normalisation normalisation{{{100.0, 300.0}, {50.0, 60.0}}, 0.05};
 
@@ -109,6 +115,7 @@ TEST(CalibrationProblem, NormalisesValuesVariancesAndCommonErrors) {
   EXPECT_DOUBLE_EQ(data.values(0), (problem.outputs[0].values[0] - 100.0) / 200.0);
   EXPECT_EQ(data.extra_variances(0), 0.0);
   EXPECT_DOUBLE_EQ(data.extra_variances(11), (25.0 + 144.0) / 100.0);
+  EXPECT_DOUBLE_EQ(data.extra_variances(12), (25.0 + 576.0) / 100.0);
   EXPECT_DOUBLE_EQ(data.common_errors(0, 0), 5.0 / 200.0);
   EXPECT_DOUBLE_EQ(data.common_errors(11, 0), 5.0 / 10.0);
   EXPECT_DOUBLE_EQ(data.month_inputs.minCoeff(), 0.0);

@@ -25,5 +25,20 @@ TEST(CheckPredictions, TellsParametersFromMonths) {
   EXPECT_NEAR(outputs[0].error_of_worst, std::sqrt(1.0 / 3.0) / 11.0, 1e-12);
 }
 
+TEST(AssessFit, TellsTheErrorOfEachMonth) {
+  DesignData design;
+  design.theta = Eigen::MatrixXd::Zero(2, 1);
+  design.outputs = {"heat"};
+  design.months = {"2021-01", "2021-07"};
+  design.values = (Eigen::MatrixXd(2, 2) << 100, 0, 200, 0).finished();
+  const Eigen::MatrixXd exact = design.values / 200.0;  // on the output's scale
+  Eigen::MatrixXd left_out = exact;
+  left_out(0, 0) += 0.1;  // 20 of 200
+  const auto quality = assess_fit(design, {{0.0, 200.0}}, exact, left_out);
+  EXPECT_NEAR(quality.outputs[0].sigma_by_month(0), 20.0 / std::sqrt(2.0), 1e-9);
+  EXPECT_EQ(quality.outputs[0].sigma_by_month(1), 0.0);
+  EXPECT_NEAR(quality.outputs[0].sigma_r, 10.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace recald::regression
