@@ -253,7 +253,8 @@ def tables(results):
 prepare()
 results = {kind: calibrate(kind) for kind in ("epc", "energyplus")}
 words = (f"# The seed, again\n\nA campus laboratory in EnergyPlus with hidden true parameters (seed {seed}), {runs} runs, "
-         "calibrated on 2011 and 2012, held against 2013. Repeat with `sh tests/run.sh --long seed`.\n\n"
+         "calibrated on 2011 and 2012, held against 2013. Repeat with `sh tests/run.sh --long seed`. What the paper's figures "
+         "2 to 6 show is in `report.html` of the folders `energyplus` and `epc` that it leaves.\n\n"
          + tables(results))
 (out / "seed.md").write_text(words)
 print(words)
