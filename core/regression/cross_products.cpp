@@ -56,14 +56,4 @@ CentredProducts centre(const CrossProducts& products) {
   return centred;
 }
 
-CentredProducts some_responses(const CentredProducts& products, Eigen::Index first,
-                               Eigen::Index count) {
-  return {products.rows,
-          products.x_mean,
-          products.y_mean.segment(first, count),
-          products.xx,
-          products.xy.middleCols(first, count),
-          products.yy.segment(first, count)};
-}
-
 }  // namespace recald::regression

@@ -41,8 +41,4 @@ struct CentredProducts {
 /// @pre rows > 0
 [[nodiscard]] CentredProducts centre(const CrossProducts& products);
 
-/// The same with some neighbouring responses alone.
-[[nodiscard]] CentredProducts some_responses(const CentredProducts& products, Eigen::Index first,
-                                             Eigen::Index count);
-
 }  // namespace recald::regression

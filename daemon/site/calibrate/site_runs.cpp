@@ -15,7 +15,6 @@
 #include "adapters/system/file_lock.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/write_file.hpp"
-#include "core/random/streams.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/calibrate/site_design.hpp"
 #include "daemon/site/model/energyplus_site.hpp"
