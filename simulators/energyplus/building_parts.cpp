@@ -59,15 +59,29 @@ void add_window(Json& model, const std::string& surface, const std::array<Point,
 }
 
 std::string_view type_of(Face face, const Beyond& beyond) {
-  if (face == ceiling) return beyond.what == Beyond::What::room ? "Ceiling" : "Roof";
+  if (face == ceiling) return beyond.what == Beyond::What::outdoors ? "Roof" : "Ceiling";
   return face == floor_face ? "Floor" : "Wall";
 }
 
 std::string_view construction_of(Face face, const Beyond& beyond) {
   if (beyond.what == Beyond::What::ground) return "Ground slab";
   const bool is_flat = face == ceiling || face == floor_face;
-  if (beyond.what == Beyond::What::room) return is_flat ? "Floor slab" : "Partition";
+  if (beyond.what != Beyond::What::outdoors) return is_flat ? "Floor slab" : "Partition";
   return is_flat ? "Roof" : "Wall";
+}
+
+std::string_view boundary_of(Beyond::What what) {
+  switch (what) {
+    case Beyond::What::outdoors:
+      return "Outdoors";
+    case Beyond::What::ground:
+      return "Ground";
+    case Beyond::What::room:
+      return "Surface";
+    case Beyond::What::alike:
+      break;
+  }
+  return "Adiabatic";
 }
 
 void add_surface(Json& model, const Room& room, Face face) {
@@ -78,9 +92,7 @@ void add_surface(Json& model, const Room& room, Face face) {
   Json surface = {{"surface_type", type_of(face, beyond)},
                   {"construction_name", construction_of(face, beyond)},
                   {"zone_name", room.name},
-                  {"outside_boundary_condition", is_outdoors                           ? "Outdoors"
-                                                 : beyond.what == Beyond::What::ground ? "Ground"
-                                                                                       : "Surface"},
+                  {"outside_boundary_condition", boundary_of(beyond.what)},
                   {"sun_exposure", is_outdoors ? "SunExposed" : "NoSun"},
                   {"wind_exposure", is_outdoors ? "WindExposed" : "NoWind"},
                   {"number_of_vertices", 4}};
@@ -168,10 +180,14 @@ std::string add_constant(Json& model, const std::string& name, double value) {
   return name;
 }
 
-std::string add_weekly(Json& model, const std::string& name, const WeeklyShares& shares) {
+std::string add_weekly(Json& model, const std::string& name, const WeeklyShares& shares,
+                       ColdDesignDay cold) {
   Json data = Json::array();
   data.push_back({{"field", "Through: 12/31"}});
-  append_day(data, "Weekdays", shares.workday);
+  append_day(data,
+             cold == ColdDesignDay::working ? "Weekdays SummerDesignDay WinterDesignDay"
+                                            : "Weekdays SummerDesignDay",
+             shares.workday);
   append_day(data, "Saturday", shares.saturday);
   append_day(data, "AllOtherDays", shares.sunday);
   model["Schedule:Compact"][name] = {{"schedule_type_limits_name", kAnyNumber}, {"data", data}};
@@ -202,6 +218,7 @@ void add_constructions(Json& model, const Envelope& envelope) {
 
 void add_room(Json& model, const Room& room) {
   model["Zone"][room.name] = {{"volume", room.volume_m3()}};
+  if (room.multiplier > 1) model["Zone"][room.name]["multiplier"] = room.multiplier;
   for (std::size_t face = 0; face < kFaces; ++face) {
     add_surface(model, room, static_cast<Face>(face));
   }

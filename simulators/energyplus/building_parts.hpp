@@ -31,8 +31,13 @@ struct WeeklyShares {
   HourlyShares sunday;  ///< And holidays.
 };
 
-/// The same week all year, and its name.
-std::string add_weekly(Json& model, const std::string& name, const WeeklyShares& shares);
+/// What the coldest day that sizes are made for is like: heated like a working day, but no heat
+/// from people and machines is counted on.
+enum class ColdDesignDay { working, free };
+
+/// The same week all year, and its name. The hottest design day is a working day.
+std::string add_weekly(Json& model, const std::string& name, const WeeklyShares& shares,
+                       ColdDesignDay cold = ColdDesignDay::free);
 
 /// Insulation stands in layers without mass, so that a change of it leaves the mass alone.
 struct Envelope {
@@ -52,9 +57,9 @@ void add_constructions(Json& model, const Envelope& envelope);
 enum Face : std::size_t { south, north, east, west, ceiling, floor_face };
 inline constexpr std::size_t kFaces = 6;
 
-/// What a room's face looks at.
+/// What a room's face looks at. `alike`: a room as warm as this one, so no heat passes.
 struct Beyond {
-  enum class What { outdoors, ground, room } what = What::outdoors;
+  enum class What { outdoors, ground, room, alike } what = What::outdoors;
   std::string room = {};      ///< The room behind it.
   double window_share = 0.0;  ///< Of a facade.
 };
@@ -65,6 +70,7 @@ struct Room {
   std::array<double, 2> y_m;  ///< South to north.
   std::array<double, 2> z_m;
   std::array<Beyond, kFaces> beyond;
+  int multiplier = 1;  ///< So many such rooms there are.
 
   [[nodiscard]] double floor_m2() const { return (x_m[1] - x_m[0]) * (y_m[1] - y_m[0]); }
   [[nodiscard]] double volume_m3() const { return floor_m2() * (z_m[1] - z_m[0]); }

@@ -125,18 +125,27 @@ def study(name, model, weather, folder):
     for check in ("truths", "corners"):
         result = recald("metamodel", "--doe", "runs", "--form", "monthly", "--check", check, "--json", folder=folder)
         checks[check] = json.loads(result)["check"]
-    truths = list(csv.DictReader(open(folder / "truths" / "doe_inputs.csv", encoding="utf-8")))
-    hits = count = 0
+    inside = coverage(folder)
+    return {"parameters": len(parameters), "seconds": seconds, "checks": checks, "hits": sum(inside), "count": len(inside)}
+
+
+def coverage(folder):
+    """Whether each parameter of each truth lies in its 90 % interval. Truths done are kept: a study that stopped goes on."""
+    kept = folder / "coverage.json"
+    done = json.loads(kept.read_text()) if kept.exists() else {}
     ran = {row["run"] for row in csv.DictReader(open(folder / "truths" / "doe_outputs.csv", encoding="utf-8"))}
-    for truth in [truth for truth in truths if truth["run"] in ran]:  # others failed in EnergyPlus
+    for truth in csv.DictReader(open(folder / "truths" / "doe_inputs.csv", encoding="utf-8")):
+        run = truth["run"]
+        if run in done or run not in ran:  # others failed in EnergyPlus
+            continue
         file = folder / "measured.csv"
-        measurements(folder / "truths", truth["run"], file, random.Random(int(truth["run"])))
+        measurements(folder / "truths", run, file, random.Random(int(run)))
         result = json.loads(recald("calibrate", "--doe", "runs", "--measurements", file, "--form", "monthly", "--json",
                                    "--sampler", "dram", folder=folder))
-        for parameter in result["parameters"]:
-            count += 1
-            hits += parameter["q05"] <= float(truth[parameter["name"]]) <= parameter["q95"]
-    return {"parameters": len(parameters), "seconds": seconds, "checks": checks, "hits": hits, "count": count}
+        done[run] = [parameter["q05"] <= float(truth[parameter["name"]]) <= parameter["q95"]
+                     for parameter in result["parameters"]]
+        kept.write_text(json.dumps(done))
+    return [one for run in done.values() for one in run]
 
 
 def directions(name, folder):

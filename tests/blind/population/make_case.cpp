@@ -11,6 +11,7 @@
 #include "adapters/system/write_file.hpp"
 #include "simulators/feed/feed_files.hpp"
 #include "simulators/scenario/scenario_files.hpp"
+#include "tests/blind/population/moved_share.hpp"
 #include "tests/blind/population/strength_search.hpp"
 #include "tests/blind/population/twin_gauge.hpp"
 
@@ -41,34 +42,6 @@ struct Footprint {
     return largest;
   }
 };
-
-/// Interval to its month, kind of day and four hours of the day, counted through the year.
-std::vector<std::size_t> blocks_of(const Recording& recording,
-                                   const metering::LocalCalendar& calendar) {
-  std::vector<std::size_t> blocks;
-  for (std::size_t slot = 0; slot < recording.power.size(); ++slot) {
-    const metering::LocalTime local = calendar.local_time(recording.start_of(slot));
-    const auto month = static_cast<std::size_t>(static_cast<unsigned>(local.date.month())) - 1;
-    const std::chrono::weekday weekday{std::chrono::sys_days{local.date}};
-    const std::size_t weekend = weekday.iso_encoding() >= 6 ? 1 : 0;
-    blocks.push_back((month * 2 + weekend) * 6 +
-                     static_cast<std::size_t>(local.minute_of_day / 240));
-  }
-  return blocks;
-}
-
-/// Sum over blocks of |footprint| against the meter's sum. Within a block a thermostat that
-/// switches some minutes later takes and gives back: that is no effect, and it grows with no
-/// strength.
-double moved_share(const std::vector<double>& footprint_kW, const std::vector<std::size_t>& blocks,
-                   double whole_kW) {
-  std::array<double, 144> sum_kW{};
-  for (std::size_t slot = 0; slot < blocks.size(); ++slot)
-    sum_kW[blocks[slot]] += footprint_kW[slot];
-  double moved_kW = 0.0;
-  for (const double block_kW : sum_kW) moved_kW += std::abs(block_kW);
-  return whole_kW > 0.0 ? moved_kW / whole_kW : 0.0;
-}
 
 Footprint shares_of(const std::vector<std::vector<double>>& footprint_kW, const Simulated& twin,
                     const std::vector<MeterPlate>& plates, const std::vector<std::size_t>& blocks) {

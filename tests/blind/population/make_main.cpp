@@ -2,6 +2,7 @@
 //
 //   blind_make --population sealed --seed N --out DIR [--cases 1-20] [--twins] [--threads 0]
 //   blind_make --population plain --uses office,shop --count 60 --seed N --out DIR
+//   blind_make --world energyplus --population development --seed N --out DIR
 
 #include <fmt/format.h>
 
@@ -9,11 +10,13 @@
 #include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <mutex>
 
 #include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
+#include "tests/blind/energyplus/eplus_case.hpp"
 #include "tests/blind/population/make_case.hpp"
 #include "tests/blind/scoring/case_range.hpp"
 #include "tests/blind/scoring/seal.hpp"
@@ -24,6 +27,7 @@ using namespace recald;
 using namespace recald::blind;
 
 struct Arguments {
+  std::string world = "own";
   std::string population;
   std::uint64_t seed = 1;
   std::filesystem::path out;
@@ -39,10 +43,17 @@ int failed(const std::string& sentence, int code = 1) {
   return code;
 }
 
-/// Makes those of the plans that have no answer yet; a run that was stopped goes on where it was.
+/// One case to be made, whatever world it is of.
+struct Task {
+  std::string id;
+  /// Writes case and answer. @param scratch  A folder that need not be there; nothing of it stays.
+  /// @return how many simulations it took.
+  std::function<Result<int>(const std::filesystem::path& scratch)> make;
+};
+
+/// Makes those that have no answer yet; a run that was stopped goes on where it was.
 class Maker {
  public:
-  /// @param scratch  For the twins that strengths are measured at; nothing of it stays.
   Maker(const CaseFolders& folders, std::filesystem::path scratch, std::size_t total)
       : folders_(folders), scratch_(std::move(scratch)), total_(total) {}
   ~Maker() {
@@ -52,23 +63,21 @@ class Maker {
   Maker(const Maker&) = delete;
   Maker& operator=(const Maker&) = delete;
 
-  void make(const CasePlan& plan) {
-    if (stopped_ || std::filesystem::exists(folders_.answers / (plan.id + ".json"))) return;
-    const std::filesystem::path twin = scratch_ / plan.id;
-    auto settled = settle(plan, twin);
+  void make(const Task& task) {
+    if (stopped_ || std::filesystem::exists(folders_.answers / (task.id + ".json"))) return;
+    const std::filesystem::path own = scratch_ / task.id;
+    const auto made = task.make(own);
     std::error_code whatever;
-    std::filesystem::remove_all(twin, whatever);
-    const auto written = settled ? write_case(plan, *settled, folders_)
-                                 : Result<void>(tl::unexpected(settled.error()));
+    std::filesystem::remove_all(own, whatever);
     const std::lock_guard lock(mutex_);
-    if (!written) {
+    if (!made) {
       stopped_ = true;
-      error_ = plan.id + ": " + written.error().message;
+      error_ = task.id + ": " + made.error().message;
       return;
     }
     // Neither block nor effect is said: whoever makes a sealed population must not learn it.
     std::cerr << fmt::format("\r{} of {} ({} simulations)   ", ++made_, total_,
-                             simulations_ += settled->simulations + 1);
+                             simulations_ += *made);
   }
 
   [[nodiscard]] const std::string& error() const { return error_; }
@@ -84,21 +93,53 @@ class Maker {
   std::string error_;
 };
 
-/// What is asked for, in words and as plans.
+/// What is asked for, in words and as work.
 struct Population {
   std::string name;
-  std::vector<CasePlan> plans;
+  std::vector<Task> tasks;
 };
 
-Result<Population> plan_what_is_asked(const Arguments& given) {
+Result<Population> of_own_world(std::string name, const std::vector<CasePlan>& plans,
+                                const CaseFolders& folders) {
+  Population population{std::move(name), {}};
+  for (const CasePlan& plan : plans) {
+    population.tasks.push_back(
+        {plan.id, [plan, folders](const std::filesystem::path& scratch) -> Result<int> {
+           const auto settled = settle(plan, scratch);
+           if (!settled) return tl::unexpected(settled.error());
+           const auto written = write_case(plan, *settled, folders);
+           if (!written) return tl::unexpected(written.error());
+           return settled->simulations + 1;
+         }});
+  }
+  return population;
+}
+
+Result<Population> of_energyplus(const Arguments& given, const CaseFolders& folders) {
+  const auto kind = eplus_population(given.population);
+  if (!kind) return tl::unexpected(kind.error());
+  const auto engine = Engine::find();
+  if (!engine) return tl::unexpected(engine.error());
+  Population population{"energyplus " + kind->name, {}};
+  for (const EplusCasePlan& plan : plan_eplus(*kind, given.seed)) {
+    population.tasks.push_back(
+        {plan.building.id, [plan, folders, engine = *engine](const std::filesystem::path& scratch) {
+           return make_eplus_case(plan, engine, scratch, folders);
+         }});
+  }
+  return population;
+}
+
+Result<Population> plan_what_is_asked(const Arguments& given, const CaseFolders& folders) {
   const bool plain = given.population == "plain";
-  const auto kind = population_kind(given.population);
-  if (!plain && !kind) return tl::unexpected(kind.error());
+  if (!plain && (!given.uses.empty() || given.count > 0)) {
+    return failure(ErrorCode::invalid_value, "--uses and --count are of --population plain");
+  }
+  if (given.world == "energyplus") return of_energyplus(given, folders);
   if (!plain) {
-    if (!given.uses.empty() || given.count > 0) {
-      return failure(ErrorCode::invalid_value, "--uses and --count are of --population plain");
-    }
-    return Population{kind->name, plan_population(*kind, given.seed)};
+    const auto kind = population_kind(given.population);
+    if (!kind) return tl::unexpected(kind.error());
+    return of_own_world(kind->name, plan_population(*kind, given.seed), folders);
   }
   const auto uses = uses_named(given.uses);
   if (!uses) return tl::unexpected(uses.error());
@@ -111,7 +152,7 @@ Result<Population> plan_what_is_asked(const Arguments& given) {
   for (const simulators::Use use : *uses) {
     list += (list.empty() ? "" : ", ") + std::string(to_string(use));
   }
-  return Population{"plain (" + list + ")", plan_plain(*uses, given.count, given.seed)};
+  return of_own_world("plain (" + list + ")", plan_plain(*uses, given.count, given.seed), folders);
 }
 
 /// The folder belongs to one population and seed from its first case on.
@@ -129,17 +170,17 @@ Result<void> claim(const Arguments& given, const std::string& name) {
 }
 
 int make(const Arguments& given) {
-  const auto population = plan_what_is_asked(given);
-  if (!population) return failed(population.error().message, 2);
-  const std::vector<CasePlan>& plans = population->plans;
-  const auto range = case_range_of(given.cases, plans.size());
-  if (!range) {
-    return failed(fmt::format("--cases {}: give one number or two with a dash, 1 to {}",
-                              given.cases, plans.size()),
-                  2);
-  }
   const CaseFolders folders{given.out / "cases", given.out / "answers",
                             given.twins ? given.out / "twins" : std::filesystem::path()};
+  const auto population = plan_what_is_asked(given, folders);
+  if (!population) return failed(population.error().message, 2);
+  const std::vector<Task>& tasks = population->tasks;
+  const auto range = case_range_of(given.cases, tasks.size());
+  if (!range) {
+    return failed(fmt::format("--cases {}: give one number or two with a dash, 1 to {}",
+                              given.cases, tasks.size()),
+                  2);
+  }
   for (const auto& folder : {folders.cases, folders.answers}) {
     if (const auto made = system::make_folder(folder); !made) return failed(made.error().message);
   }
@@ -149,16 +190,16 @@ int make(const Arguments& given) {
   if (const auto same = claim(given, population->name); !same) return failed(same.error().message);
   Maker maker(folders, given.out / "scratch", range->size());
   system::parallel_for(given.threads)(
-      range->size(), [&](std::size_t i) { maker.make(plans[range->first - 1 + i]); });
+      range->size(), [&](std::size_t i) { maker.make(tasks[range->first - 1 + i]); });
   std::cerr << '\n';
   if (!maker.error().empty()) return failed(maker.error());
-  if (range->size() < plans.size()) {
+  if (range->size() < tasks.size()) {
     std::cout << "part of the population, not sealed\n";
     return 0;
   }
   const auto hash = seal_answers(folders.answers);
   if (!hash) return failed(hash.error().message);
-  std::cout << fmt::format("{} cases of {} with seed {} in {}; answers sealed: {}\n", plans.size(),
+  std::cout << fmt::format("{} cases of {} with seed {} in {}; answers sealed: {}\n", tasks.size(),
                            population->name, given.seed, folders.cases.string(), *hash);
   return 0;
 }
@@ -169,7 +210,12 @@ int main(int argc, char** argv) {
   CLI::App app{"Draws a blind population: feeds and site files, answers apart and sealed.",
                "blind_make"};
   Arguments given;
-  app.add_option("--population", given.population, "smoke, training, sealed or plain")->required();
+  app.add_option("--world", given.world, "whose buildings: own or energyplus")
+      ->check(CLI::IsMember({"own", "energyplus"}));
+  app.add_option("--population", given.population,
+                 "smoke, training, sealed or plain; of EnergyPlus smoke, development, learning or "
+                 "sealed")
+      ->required();
   app.add_option("--uses", given.uses, "of a plain population, such as office,shop")
       ->delimiter(',');
   app.add_option("--count", given.count, "of a plain population: how many cases");

@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <cmath>
+
+#include "simulators/energyplus/changes/changes.hpp"
+
+namespace recald::simulators::energyplus::changes {
+namespace {
+
+bool takes_outdoor_air(const BuildingYear& building) {
+  Json model = building.model();
+  return scale_outdoor_air(model, 1.0) > 0;
+}
+
+/// The flows that a handler's controller moves between are known.
+bool has_damper(const BuildingYear& building) {
+  bool found = false;
+  Json model = building.model();
+  for_each_object(model, "Controller:OutdoorAir", [&](const std::string& /*name*/, Json& object) {
+    found |= object.contains("maximum_outdoor_air_flow_rate") &&
+             object["maximum_outdoor_air_flow_rate"].is_number();
+  });
+  return found;
+}
+
+bool has_scheduled_outdoor_air(const BuildingYear& building) {
+  return building.has(Role::outdoor_air) && building.has(Role::presence);
+}
+
+bool has_economiser(const BuildingYear& building) {
+  bool found = false;
+  Json model = building.model();
+  for_each_object(model, "Controller:OutdoorAir", [&](const std::string& /*name*/, Json& object) {
+    found |= object.value("economizer_control_type", "NoEconomizer") != "NoEconomizer";
+  });
+  return found;
+}
+
+bool has_fixed_changeover(const BuildingYear& building) {
+  bool found = false;
+  Json model = building.model();
+  for_each_object(model, "Controller:OutdoorAir", [&](const std::string& /*name*/, Json& object) {
+    found |= object.value("economizer_control_type", "") == "FixedDryBulb";
+  });
+  return found;
+}
+
+bool has_slowing_fans(const BuildingYear& building) {
+  return has_object(building.model(), "Fan:VariableVolume");
+}
+
+bool has_slowing_pumps(const BuildingYear& building) {
+  return has_object(building.model(), "Pump:VariableSpeed");
+}
+
+bool has_supply_schedule(const BuildingYear& building) {
+  return building.has(Role::supply_temperature);
+}
+
+bool has_reset(const BuildingYear& building) {
+  for (const std::string& name : building.names_of(Role::supply_temperature)) {
+    const auto [least, most] = std::ranges::minmax(building.schedule(name));
+    if (most - least >= 1.5) return true;
+  }
+  return false;
+}
+
+bool has_heaters_in_cold_air(const BuildingYear& building) {
+  return has_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat") ||
+         has_object(building.model(), "ZoneHVAC:FourPipeFanCoil");
+}
+
+void outdoor_air_amount(BuildingYear& building, double share, Rng /*rng*/) {
+  scale_outdoor_air(building.model(), 1.0 + share);
+}
+
+void damper_stuck_open(BuildingYear& building, double share, Rng /*rng*/) {
+  for_each_object(building.model(), "Controller:OutdoorAir",
+                  [&](const std::string& /*name*/, Json& controller) {
+                    const Json& most = controller["maximum_outdoor_air_flow_rate"];
+                    Json& least = controller["minimum_outdoor_air_flow_rate"];
+                    if (!most.is_number() || !least.is_number()) return;
+                    least = std::max(least.get<double>(), share * most.get<double>());
+                  });
+  building.change(Role::outdoor_air, [](std::size_t, std::size_t, double) { return 1.0; });
+}
+
+void demand_ventilation(BuildingYear& building, double share, Rng /*rng*/) {
+  const Quarters presence = building.schedule(building.names_of(Role::presence).front());
+  const double most = std::max(*std::ranges::max_element(presence), 1e-6);
+  building.change(Role::outdoor_air, [&](std::size_t day, std::size_t quarter, double value) {
+    return value * (1.0 - share + share * presence[day * kQuartersPerDay + quarter] / most);
+  });
+}
+
+void economiser_failed(BuildingYear& building, double /*share*/, Rng /*rng*/) {
+  for_each_object(building.model(), "Controller:OutdoorAir",
+                  [&](const std::string& /*name*/, Json& controller) {
+                    controller["economizer_control_type"] = "NoEconomizer";
+                  });
+}
+
+void economiser_changeover(BuildingYear& building, double shift_K, Rng /*rng*/) {
+  for_each_object(building.model(), "Controller:OutdoorAir",
+                  [&](const std::string& /*name*/, Json& controller) {
+                    if (controller.value("economizer_control_type", "") != "FixedDryBulb") return;
+                    Json& limit = controller["economizer_maximum_limit_dry_bulb_temperature"];
+                    limit = limit.get<double>() + shift_K;
+                  });
+}
+
+/// A curve of part load that leans towards full power at all loads.
+void lean_to_full(Json& object, const char* first, std::initializer_list<const char*> rest,
+                  double share) {
+  object[first] = (1.0 - share) * object.value(first, 0.0) + share;
+  for (const char* coefficient : rest) {
+    object[coefficient] = (1.0 - share) * object.value(coefficient, 0.0);
+  }
+}
+
+void constant_speed_fans(BuildingYear& building, double share, Rng /*rng*/) {
+  for_each_object(building.model(), "Fan:VariableVolume",
+                  [&](const std::string& /*name*/, Json& fan) {
+                    lean_to_full(fan, "fan_power_coefficient_1",
+                                 {"fan_power_coefficient_2", "fan_power_coefficient_3",
+                                  "fan_power_coefficient_4", "fan_power_coefficient_5"},
+                                 share);
+                  });
+}
+
+void constant_flow_pumps(BuildingYear& building, double share, Rng /*rng*/) {
+  for_each_object(building.model(), "Pump:", [&](const std::string& /*name*/, Json& pump) {
+    if (share > 0.5) pump["pump_control_type"] = "Continuous";
+  });
+  for_each_object(building.model(), "Pump:VariableSpeed",
+                  [&](const std::string& /*name*/, Json& pump) {
+                    // What is left out is a straight line through nothing.
+                    if (!pump.contains("coefficient_2_of_the_part_load_performance_curve")) {
+                      pump["coefficient_2_of_the_part_load_performance_curve"] = 1.0;
+                    }
+                    lean_to_full(pump, "coefficient_1_of_the_part_load_performance_curve",
+                                 {"coefficient_2_of_the_part_load_performance_curve",
+                                  "coefficient_3_of_the_part_load_performance_curve",
+                                  "coefficient_4_of_the_part_load_performance_curve"},
+                                 share);
+                  });
+}
+
+void deep_drying(BuildingYear& building, double colder_K, Rng /*rng*/) {
+  constexpr double kHumid_kg_kg = 0.0095;
+  building.change(Role::supply_temperature,
+                  [&](std::size_t day, std::size_t quarter, double value) {
+                    const bool is_humid =
+                        building.weather_at(day, quarter).at_end.air.humidity_kg_kg > kHumid_kg_kg;
+                    return is_humid ? value - colder_K : value;
+                  });
+}
+
+void simultaneous_heating_cooling(BuildingYear& building, double share, Rng /*rng*/) {
+  const auto leak = [&](Json& object, const char* most, const char* least) {
+    if (object.contains(most) && object[most].is_number()) {
+      object[least] = share * object[most].get<double>();
+    }
+  };
+  for_each_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat",
+                  [&](const std::string& /*name*/, Json& box) {
+                    leak(box, "maximum_hot_water_or_steam_flow_rate",
+                         "minimum_hot_water_or_steam_flow_rate");
+                  });
+  for_each_object(building.model(), "ZoneHVAC:FourPipeFanCoil",
+                  [&](const std::string& /*name*/, Json& coil) {
+                    leak(coil, "maximum_hot_water_flow_rate", "minimum_hot_water_flow_rate");
+                  });
+}
+
+void supply_reset_missing(BuildingYear& building, double colder_K, Rng /*rng*/) {
+  for (const std::string& name : building.names_of(Role::supply_temperature)) {
+    Quarters& quarters = building.schedule(name);
+    const double least = *std::ranges::min_element(quarters);
+    for (double& value : quarters) value = std::max(value - colder_K, least);
+  }
+}
+
+}  // namespace
+
+void add_air_changes(std::vector<HiddenChange>& all) {
+  all.insert(all.end(), {{.id = "outdoor_air_amount",
+                          .least = -0.6,
+                          .most = 1.5,
+                          .unit = "share added to the designed outdoor air",
+                          .dated = true,
+                          .possible = takes_outdoor_air,
+                          .apply = outdoor_air_amount},
+                         {.id = "damper_stuck_open",
+                          .least = 0.25,
+                          .most = 0.9,
+                          .unit = "share of the supply air",
+                          .possible = has_damper,
+                          .apply = damper_stuck_open},
+                         {.id = "demand_ventilation",
+                          .least = 0.3,
+                          .most = 1.0,
+                          .unit = "share of the outdoor air",
+                          .possible = has_scheduled_outdoor_air,
+                          .apply = demand_ventilation},
+                         {.id = "economiser_failed",
+                          .least = 1.0,
+                          .most = 1.0,
+                          .unit = "share of the free cooling",
+                          .possible = has_economiser,
+                          .apply = economiser_failed},
+                         {.id = "economiser_changeover",
+                          .least = -8.0,
+                          .most = 8.0,
+                          .unit = "K",
+                          .possible = has_fixed_changeover,
+                          .apply = economiser_changeover},
+                         {.id = "constant_speed_fans",
+                          .least = 0.3,
+                          .most = 1.0,
+                          .unit = "share of the fans",
+                          .possible = has_slowing_fans,
+                          .apply = constant_speed_fans},
+                         {.id = "constant_flow_pumps",
+                          .least = 0.3,
+                          .most = 1.0,
+                          .unit = "share of the pumps",
+                          .possible = has_slowing_pumps,
+                          .apply = constant_flow_pumps},
+                         {.id = "deep_drying",
+                          .least = 1.0,
+                          .most = 4.0,
+                          .unit = "K",
+                          .possible = has_supply_schedule,
+                          .apply = deep_drying},
+                         {.id = "simultaneous_heating_cooling",
+                          .least = 0.02,
+                          .most = 0.3,
+                          .unit = "share of the heaters' largest flow",
+                          .possible = has_heaters_in_cold_air,
+                          .apply = simultaneous_heating_cooling},
+                         {.id = "supply_reset_missing",
+                          .least = 1.0,
+                          .most = 4.0,
+                          .unit = "K",
+                          .possible = has_reset,
+                          .apply = supply_reset_missing}});
+}
+
+}  // namespace recald::simulators::energyplus::changes

@@ -1,0 +1,80 @@
+#include <algorithm>
+
+#include "simulators/energyplus/changes/changes.hpp"
+
+namespace recald::simulators::energyplus::changes {
+namespace {
+
+bool has_lights(const BuildingYear& building) { return building.has(Role::lights); }
+
+bool has_equipment(const BuildingYear& building) { return building.has(Role::equipment); }
+
+/// By day at the strength, at night at a third of it.
+void equipment_step(BuildingYear& building, double W_m2, Rng /*rng*/) {
+  if (W_m2 < 0.0) {
+    constexpr double kUsual_W_m2 = 9.0;  // Of lamps; what goes is lamps exchanged for better ones.
+    scale_lights(building.model(), std::max(1.0 + W_m2 / kUsual_W_m2, 0.2));
+    return;
+  }
+  Quarters shares;
+  for (std::size_t i = 0; i < building.days().size() * kQuartersPerDay; ++i) {
+    const std::size_t quarter = i % kQuartersPerDay;
+    const bool by_day =
+        building.kind_of(i / kQuartersPerDay) == DayKind::workday && quarter >= 32 && quarter < 72;
+    shares.push_back(by_day ? 1.0 : 1.0 / 3.0);
+  }
+  add_equipment(building, "New equipment", W_m2,
+                building.add_schedule("New equipment on", std::move(shares)));
+}
+
+void exterior_lighting(BuildingYear& building, double W_m2, Rng /*rng*/) {
+  const std::string always_on = building.add_schedule(
+      "Lamps outside", Quarters(building.days().size() * kQuartersPerDay, 1.0));
+  building.model()["Exterior:Lights"]["More lamps outside"] = {
+      {"schedule_name", always_on},
+      {"design_level", W_m2 * building.around().floor_m2},
+      {"control_option", "AstronomicalClock"}};
+}
+
+void plug_growth(BuildingYear& building, double share, Rng /*rng*/) {
+  scale_equipment(building.model(), 1.0 + share);
+}
+
+void server_room(BuildingYear& building, double W_m2, Rng /*rng*/) {
+  add_equipment(
+      building, "Servers", W_m2,
+      building.add_schedule("Servers on", Quarters(building.days().size() * kQuartersPerDay, 1.0)));
+}
+
+}  // namespace
+
+void add_electrical_changes(std::vector<HiddenChange>& all) {
+  all.insert(all.end(), {{.id = "equipment_step",
+                          .least = -5.0,
+                          .most = 8.0,
+                          .unit = "W/m2 of floor",
+                          .dated = true,
+                          .possible = has_lights,
+                          .apply = equipment_step},
+                         {.id = "exterior_lighting",
+                          .least = 0.3,
+                          .most = 5.0,
+                          .unit = "W/m2 of floor",
+                          .possible = always,
+                          .apply = exterior_lighting},
+                         {.id = "plug_growth",
+                          .least = -0.2,
+                          .most = 0.4,
+                          .unit = "share a year",
+                          .course = Course::steadily,
+                          .possible = has_equipment,
+                          .apply = plug_growth},
+                         {.id = "server_room",
+                          .least = 0.3,
+                          .most = 8.0,
+                          .unit = "W/m2 of floor",
+                          .possible = always,
+                          .apply = server_room}});
+}
+
+}  // namespace recald::simulators::energyplus::changes

@@ -1,0 +1,25 @@
+/// EnergyPlus buildings as owners might have them, in two families that share no use, no shape and
+/// no air system: one to learn from, one to judge with.
+#pragma once
+
+#include <span>
+
+#include "core/random/rng.hpp"
+#include "simulators/energyplus/templated_building.hpp"
+
+namespace recald::blind {
+
+enum class Family { learning, judging };
+
+[[nodiscard]] std::string_view to_string(Family family);
+
+/// What a family's buildings may be. A test holds that two families have nothing in common.
+[[nodiscard]] std::span<const simulators::Use> uses_of(Family family);
+[[nodiscard]] std::span<const simulators::energyplus::Shape> shapes_of(Family family);
+[[nodiscard]] std::span<const simulators::energyplus::AirSystem> systems_of(Family family);
+
+/// In any climate; small enough for EnergyPlus to need some seconds a year.
+[[nodiscard]] simulators::energyplus::TemplatedBuilding draw_eplus_building(Family family,
+                                                                            Rng& rng);
+
+}  // namespace recald::blind

@@ -1,0 +1,359 @@
+#include "tests/blind/energyplus/eplus_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "adapters/system/write_file.hpp"
+#include "simulators/feed/feed_files.hpp"
+#include "tests/blind/population/moved_share.hpp"
+
+namespace recald::blind {
+namespace {
+
+using namespace simulators;
+using energyplus::HiddenChange;
+using OrderedJson = nlohmann::ordered_json;
+using std::chrono::days;
+using std::chrono::sys_days;
+
+constexpr std::array kMeterEffects{"clock_offset", "dst_misapplied", "phase_lost", "scale_fault",
+                                   "stuck_meter"};
+
+const EffectKind& kind_of(std::string_view id) {
+  const auto kinds = effect_kinds();
+  return *std::ranges::find(kinds, id, &EffectKind::id);
+}
+
+bool is_in_catalogue(std::string_view id) {
+  return kind_of(id).group != EffectClass::outside_catalogue;
+}
+
+std::vector<std::string> kinds_in_catalogue(bool in_catalogue) {
+  std::vector<std::string> kinds;
+  for (const HiddenChange& change : energyplus::hidden_changes()) {
+    if (is_in_catalogue(change.id) == in_catalogue) kinds.emplace_back(change.id);
+  }
+  if (in_catalogue) kinds.insert(kinds.end(), kMeterEffects.begin(), kMeterEffects.end());
+  return kinds;
+}
+
+template <class T>
+void shuffle(std::vector<T>& values, Rng& rng) {
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[rng.below(i)]);
+}
+
+/// One effect in one building, whether in its model or in its meters.
+struct Candidate {
+  const EffectKind* kind;
+  const HiddenChange* change;  ///< Null: in the meters.
+  double least, most;          ///< Sizes of the strength; both have its sign.
+  std::optional<metering::Day> from, to;
+  std::optional<Utility> meter;
+
+  [[nodiscard]] bool is_whole() const { return least == most; }
+};
+
+/// Size and sign are drawn, and when it begins.
+Candidate draw_candidate(const std::string& id, const EplusCasePlan& plan,
+                         const SimulatedBuilding& building, Rng& rng) {
+  constexpr double kFaintest = 0.02;  // Of what an engineer would call obvious.
+  Candidate candidate{.kind = &kind_of(id), .change = energyplus::hidden_change(id)};
+  const StrengthRange& range = candidate.kind->strength;
+  const bool in_meters = candidate.change == nullptr;
+  double low = in_meters ? range.min : candidate.change->least;
+  double high = in_meters ? range.max : candidate.change->most;
+  const bool negative = rng.uniform() < 0.5 && low < 0.0;
+  if (negative) high = low;
+  const bool is_whole =
+      in_meters ? candidate.kind->all_or_nothing || id == "phase_lost" : low == high;
+  candidate.most = high;
+  candidate.least = is_whole ? high : low > 0.0 ? low : kFaintest * high;
+  const sys_days first{std::chrono::year{plan.building.first_year} / 1 / 1};
+  const double length_days = 365.25 * plan.building.years;
+  const double share = plan.begins_in_forecast_year
+                           ? 1.0 - rng.uniform(0.5, 0.98) / plan.building.years
+                           : rng.uniform(0.25, 0.6);
+  const auto begin = first + days{static_cast<int>(length_days * share)};
+  const auto length = days{static_cast<int>(rng.uniform(50.0, 200.0))};
+  const bool dated = in_meters ? candidate.kind->dated : candidate.change->dated;
+  if (dated || plan.begins_in_forecast_year) candidate.from = metering::Day{begin};
+  if (!in_meters && candidate.change->course == energyplus::Course::for_a_while) {
+    candidate.to = metering::Day{begin + length};
+  }
+  const auto& meters = building.meters();
+  const Utility drawn = meters[rng.below(meters.size())].utility;
+  if (candidate.kind->of_one_meter)
+    candidate.meter = id == "phase_lost" ? Utility::electricity : drawn;
+  return candidate;
+}
+
+/// What is hidden, as it came out.
+struct Hidden {
+  Candidate candidate;
+  double strength;
+  std::vector<double> share_of_meter;  ///< Signed, by meter.
+  std::vector<double> moved_share;
+  Loads loads;  ///< Before the meters.
+
+  [[nodiscard]] double most_moved() const { return *std::ranges::max_element(moved_share); }
+};
+
+class Hider {
+ public:
+  Hider(const EplusCasePlan& plan, const SimulatedBuilding& building)
+      : plan_(plan),
+        building_(building),
+        twin_(building.recording_of(building.twin())),
+        blocks_(blocks_of(twin_, building.calendar())) {}
+
+  /// @return nothing if no candidate can move a meter so much.
+  Result<std::optional<Hidden>> hide(Rng rng) {
+    for (const std::string& id : plan_.candidates) {
+      const HiddenChange* const change = energyplus::hidden_change(id);
+      const Candidate candidate = draw_candidate(id, plan_, building_, rng);
+      if (change != nullptr && !building_.could_have(*change)) continue;
+      auto hidden = at_share(candidate);
+      if (!hidden || *hidden) return hidden;
+    }
+    return std::optional<Hidden>{};
+  }
+
+  [[nodiscard]] HiddenEffects in_meters(const Candidate& candidate, double strength) const {
+    HiddenEffects effects;
+    if (candidate.change != nullptr) return effects;
+    effects.push_back(candidate.kind->make({.strength = strength,
+                                            .from = candidate.from,
+                                            .to = candidate.to,
+                                            .meter = candidate.meter,
+                                            .calendar = &building_.calendar(),
+                                            .rng = stream_of(plan_.building.seed, Stream::effects)},
+                                           plan_.building.building.drawings));
+    return effects;
+  }
+
+  [[nodiscard]] int years_run() const { return years_run_; }
+
+ private:
+  /// The strength that moves the wanted share, by power laws.
+  Result<std::optional<Hidden>> at_share(const Candidate& candidate) {
+    constexpr int kTries = 3;
+    const double wanted = std::sqrt(plan_.wanted.least * plan_.wanted.most);
+    double strength =
+        std::copysign(std::sqrt(std::abs(candidate.least * candidate.most)), candidate.most);
+    for (int i = 0; i < kTries; ++i) {
+      auto hidden = at(candidate, strength);
+      if (!hidden) return tl::unexpected(hidden.error());
+      const double share = hidden->most_moved();
+      if (share >= plan_.wanted.least && share < plan_.wanted.most) return std::optional{*hidden};
+      if (candidate.is_whole() || share <= 0.0) break;
+      const double next = std::clamp(std::abs(strength) * wanted / share, std::abs(candidate.least),
+                                     std::abs(candidate.most));
+      if (std::abs(next - std::abs(strength)) < 0.02 * next) break;
+      strength = std::copysign(next, candidate.most);
+    }
+    return std::optional<Hidden>{};
+  }
+
+  Result<Hidden> at(const Candidate& candidate, double strength) {
+    Hidden hidden{candidate, strength, {}, {}, building_.twin()};
+    if (candidate.change != nullptr) {
+      auto loads = building_.with({candidate.change, strength, candidate.from, candidate.to});
+      if (!loads) return tl::unexpected(loads.error());
+      hidden.loads = std::move(*loads);
+      years_run_ += plan_.building.years;
+    }
+    const Recording with = building_.recording_of(hidden.loads);
+    const HiddenEffects effects = in_meters(candidate, strength);
+    for (std::size_t meter = 0; meter < building_.meters().size(); ++meter) {
+      std::vector<double> footprint_kW =
+          metered_kW(with, building_.meters()[meter].utility, effects, building_.calendar());
+      double whole_kW = 0.0;
+      double net_kW = 0.0;
+      for (std::size_t slot = 0; slot < footprint_kW.size(); ++slot) {
+        footprint_kW[slot] -= building_.twin()[meter][slot];
+        whole_kW += building_.twin()[meter][slot];
+        net_kW += footprint_kW[slot];
+      }
+      hidden.share_of_meter.push_back(whole_kW > 0.0 ? net_kW / whole_kW : 0.0);
+      hidden.moved_share.push_back(moved_share(footprint_kW, blocks_, whole_kW));
+    }
+    return hidden;
+  }
+
+  const EplusCasePlan& plan_;
+  const SimulatedBuilding& building_;
+  Recording twin_;
+  std::vector<std::size_t> blocks_;
+  int years_run_ = 0;
+};
+
+OrderedJson date_of(const std::optional<metering::Day>& day) {
+  return day ? OrderedJson(metering::to_string(*day)) : OrderedJson(nullptr);
+}
+
+OrderedJson effects_json(const std::optional<Hidden>& hidden, const SimulatedBuilding& building) {
+  OrderedJson list = OrderedJson::array();
+  if (!hidden) return list;
+  OrderedJson shares = OrderedJson::object();
+  OrderedJson moved = OrderedJson::object();
+  for (std::size_t meter = 0; meter < building.meters().size(); ++meter) {
+    shares[building.meters()[meter].sum.id] = hidden->share_of_meter[meter];
+    moved[building.meters()[meter].sum.id] = hidden->moved_share[meter];
+  }
+  const Candidate& candidate = hidden->candidate;
+  list.push_back({{"effect", candidate.kind->id},
+                  {"class", to_string(candidate.kind->group)},
+                  {"in_catalogue", candidate.kind->group != EffectClass::outside_catalogue},
+                  {"strength", hidden->strength},
+                  {"unit", candidate.change != nullptr ? candidate.change->unit
+                                                       : candidate.kind->strength.unit},
+                  {"from", date_of(candidate.from)},
+                  {"to", date_of(candidate.to)},
+                  {"share_of_meter", shares},
+                  {"moved_share", moved}});
+  return list;
+}
+
+OrderedJson answer_json(const EplusCasePlan& plan, const SimulatedBuilding& building,
+                        const std::optional<Hidden>& hidden) {
+  const energyplus::TemplatedBuilding& built = plan.building.building;
+  // Nothing was found that moves a meter so much: then nothing is hidden.
+  const Block block = hidden || plan.block == Block::no_effect ? plan.block : Block::no_effect;
+  return {{"case", plan.building.id},
+          {"world", "energyplus"},
+          {"block", block_name(block)},
+          {"grain", {{"detectability", nullptr}}},
+          {"effects", effects_json(hidden, building)},
+          {"decoys", OrderedJson::array()},
+          {"climate", name_of(built.drawings.climate)},
+          {"use", to_string(built.drawings.use)},
+          {"family", to_string(plan.family)},
+          {"shape", to_string(built.shape)},
+          {"system", to_string(built.system)},
+          {"gaps", plan.care == MeterCare::gaps},
+          {"true_parameters", OrderedJson::object()},
+          {"prior_sd", OrderedJson::object()},
+          {"differs_from_drawings", building.truth()}};
+}
+
+}  // namespace
+
+Result<EplusPopulation> eplus_population(std::string_view name) {
+  constexpr ShareBin kBelow{0.005, 0.03};
+  constexpr ShareBin kMiddle{0.03, 0.1};
+  constexpr ShareBin kAbove{0.1, 0.5};
+  if (name == "smoke") {
+    return EplusPopulation{"smoke", Family::learning, 2, {{kMiddle, 2}, {kAbove, 2}}, 0, 2};
+  }
+  if (name == "development") {
+    return EplusPopulation{
+        "development", Family::learning, 30, {{kBelow, 20}, {kMiddle, 35}, {kAbove, 35}}, 10, 2};
+  }
+  if (name == "learning") {
+    return EplusPopulation{
+        "learning", Family::learning, 80, {{kBelow, 60}, {kMiddle, 90}, {kAbove, 90}}, 20, 2};
+  }
+  if (name == "sealed") {
+    return EplusPopulation{
+        "sealed", Family::judging, 100, {{kBelow, 40}, {kMiddle, 60}, {kAbove, 60}}, 20, 2};
+  }
+  return failure(ErrorCode::not_found,
+                 fmt::format("unknown population {}; in the world of EnergyPlus there are smoke, "
+                             "development, learning and sealed",
+                             name));
+}
+
+std::vector<EplusCasePlan> plan_eplus(const EplusPopulation& population, std::uint64_t seed) {
+  std::uint64_t own = 14695981039346656037ULL ^ seed;
+  for (const char c : "energyplus " + population.name) {
+    own = (own ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  }
+  struct Slot {
+    Block block;
+    ShareBin wanted;
+  };
+  std::vector<Slot> slots(static_cast<std::size_t>(population.none), {Block::no_effect, {}});
+  for (const auto& [bin, count] : population.singles) {
+    slots.insert(slots.end(), static_cast<std::size_t>(count), {Block::single, bin});
+  }
+  slots.insert(slots.end(), static_cast<std::size_t>(population.outside_catalogue),
+               {Block::out_of_catalogue, {0.03, 0.5}});
+  Rng order{own, 1};
+  shuffle(slots, order);
+  const std::vector<std::string> known = kinds_in_catalogue(true);
+  const std::vector<std::string> unknown = kinds_in_catalogue(false);
+  std::vector<EplusCasePlan> plans;
+  std::size_t known_dealt = 0;
+  std::size_t unknown_dealt = 0;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    Rng rng{own, 1000 + i};
+    EplusCasePlan plan{.building = {},
+                       .family = population.family,
+                       .block = slots[i].block,
+                       .care = {},
+                       .wanted = slots[i].wanted,
+                       .candidates = {}};
+    plan.building.id = fmt::format("{}-eplus-{:03}", population.name, i + 1);
+    plan.building.seed = rng.below(std::uint64_t{1} << 53U);
+    plan.building.building = draw_eplus_building(population.family, rng);
+    plan.building.building.drawings.id = plan.building.id;
+    plan.building.first_year = 2013 + static_cast<int>(rng.below(14));
+    plan.building.years = population.years;
+    plan.care = rng.uniform() < 1.0 / 3.0 ? MeterCare::gaps : MeterCare::perfect;
+    if (plan.block != Block::no_effect) {
+      plan.begins_in_forecast_year = rng.uniform() < 0.25;
+      const bool is_known = plan.block == Block::single;
+      // Every kind is wanted once before any is wanted again; the others stand by.
+      plan.candidates = is_known ? known : unknown;
+      std::size_t& dealt = is_known ? known_dealt : unknown_dealt;
+      std::swap(plan.candidates.front(), plan.candidates[dealt++ % plan.candidates.size()]);
+      std::vector<std::string> others(plan.candidates.begin() + 1, plan.candidates.end());
+      shuffle(others, rng);
+      std::ranges::copy(others, plan.candidates.begin() + 1);
+    }
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+Result<int> make_eplus_case(const EplusCasePlan& plan, const Engine& engine,
+                            const std::filesystem::path& scratch, const CaseFolders& folders) {
+  const std::string& id = plan.building.id;
+  const auto building = SimulatedBuilding::make(plan.building, engine, scratch);
+  if (!building) return tl::unexpected(building.error());
+  Hider hider(plan, *building);
+  std::optional<Hidden> hidden;
+  if (plan.block != Block::no_effect) {
+    auto found = hider.hide(stream_of(plan.building.seed, Stream::decoys));
+    if (!found) return tl::unexpected(found.error());
+    hidden = std::move(*found);
+  }
+  const Recording recording = building->recording_of(hidden ? hidden->loads : building->twin());
+  const HiddenEffects effects =
+      hidden ? hider.in_meters(hidden->candidate, hidden->strength) : HiddenEffects{};
+  const std::vector<MeterPlate> plates = building->plates();
+  std::vector<MeterFeed> feeds;
+  for (const MeterPlate& plate : plates) {
+    feeds.push_back(
+        read_meter(recording, plate, plan.care, plan.building.seed, effects, building->calendar()));
+  }
+  const std::filesystem::path folder = folders.cases / id;
+  if (const auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  auto written = system::write_file(folder / "readings.csv", readings_csv(recording, feeds));
+  if (written) written = system::write_file(folder / "weather.csv", building->weather_text());
+  if (written) written = system::write_file(folder / "site.toml", building->site_text(plates));
+  if (written) {
+    written = system::write_file(folders.answers / (id + ".json"),
+                                 answer_json(plan, *building, hidden).dump(1) + "\n");
+  }
+  std::error_code whatever;  // Files that stay cost room and nothing else.
+  std::filesystem::remove_all(scratch, whatever);
+  if (!written) return tl::unexpected(written.error());
+  return plan.building.years + hider.years_run();
+}
+
+}  // namespace recald::blind
