@@ -17,6 +17,8 @@ namespace {
 constexpr std::array<std::string_view, 4> kBlocks{"no_effect", "single", "out_of_catalogue",
                                                   "pair"};
 
+constexpr std::array<std::string_view, 2> kWorlds{"own", "energyplus"};
+
 Block block_of(std::string_view name) {
   const auto found = std::ranges::find(kBlocks, name);
   return found == kBlocks.end() ? Block::no_effect : static_cast<Block>(found - kBlocks.begin());
@@ -102,6 +104,7 @@ Result<Answer> parse_answer(std::string_view text, const std::string& expected_c
     fields.fail("'case' is '" + answer.case_id + "', must be the file's name");
   }
   answer.block = block_of(fields.word("block", kBlocks));
+  if (fields.has("world")) answer.world = fields.word("world", kWorlds);
   fields.object("grain", [&](JsonFields& grain) {
     if (grain.has("detectability")) {
       answer.detectability = grain.number("detectability", {.min = 0.0});
@@ -158,6 +161,17 @@ std::string most_affected_meter(const Answer& answer) {
   const auto most = std::ranges::max_element(
       total, {}, [](const auto& meter_and_share) { return meter_and_share.second; });
   return most == total.end() || most->second == 0.0 ? "" : most->first;
+}
+
+double largest_share(const Answer& answer) {
+  std::optional<double> weakest;
+  for (const HiddenEffect& effect : answer.effects) {
+    const auto& shares = effect.moved_share.empty() ? effect.share_of_meter : effect.moved_share;
+    double largest = 0.0;
+    for (const auto& [meter, share] : shares) largest = std::max(largest, std::abs(share));
+    weakest = std::min(weakest.value_or(largest), largest);
+  }
+  return weakest.value_or(0.0);
 }
 
 }  // namespace recald::blind

@@ -33,6 +33,7 @@ struct HiddenEffect {
 struct Answer {
   std::string case_id;
   Block block = Block::no_effect;
+  std::string world = "own";            ///< Whose buildings: "own" or "energyplus".
   std::optional<double> detectability;  ///< d* (of the weaker one in a pair); absent: not measured.
   std::vector<HiddenEffect> effects;
   std::vector<std::string> decoys;  ///< Drivers on offer that cause nothing.
@@ -60,5 +61,9 @@ using AnswerKey = std::map<std::string, Answer>;
 
 /// The meter that the hidden effects move most; empty when there is none.
 [[nodiscard]] std::string most_affected_meter(const Answer& answer);
+
+/// What is moved of the meter that is moved most; of two effects, by the weaker one. 0 where
+/// nothing is hidden.
+[[nodiscard]] double largest_share(const Answer& answer);
 
 }  // namespace recald::blind

@@ -76,8 +76,8 @@ void score_reductions(const ScoredCases& cases, const OracleGaps& oracles, GapSc
     if (!is_catalogued(scored)) continue;
     const GapReduction reduction = gap_reduction(scored, oracles);
     all.add(reduction);
-    if (!has_addition(scored) || !is_detectable(*scored.answer)) continue;
-    ++scores.detectable_named;
+    if (!has_addition(scored) || !is_large(*scored.answer)) continue;
+    ++scores.large_named;
     claimed.add(reduction);
   }
   scores.cvrmse = median_score(std::move(claimed.cvrmse));

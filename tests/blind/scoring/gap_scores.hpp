@@ -40,7 +40,7 @@ struct BiasScores {
 };
 
 struct GapScores {
-  int detectable_named = 0;     ///< Cases at d* >= 8 with an effect of the catalogue, one added.
+  int large_named = 0;          ///< Cases with large effects of the catalogue, one added.
   std::optional<Score> cvrmse;  ///< Median R over those whose R is known.
   std::optional<Score> log_score;
   std::optional<Score> cvrmse_all;  ///< The same over all cases with an effect, named or not.

@@ -79,21 +79,23 @@ Gap closing(double share) {
           .oracle = fit(0.1, -2.0)};
 }
 
-// Named and detectable: 0.2, 0.6, 0.9; the median is 0.6. Over all with an effect also 0 (none
-// said) and 0.4 (d* = 4): median of 0, 0.2, 0.4, 0.6, 0.9 is 0.4. A false name does not enter.
+// Named and large: 0.2, 0.6, 0.9; the median is 0.6. Over all with an effect also 0 (none
+// said) and 0.4 (it moves 2 %): median of 0, 0.2, 0.4, 0.6, 0.9 is 0.4. A false name does not
+// enter.
 TEST(GapScores, MediansByHand) {
   made_up::Population population;
+  HiddenEffect small = effect("A");
+  small.moved_share = {{"electricity", 0.0}, {"steam", 0.02}};
   population.add(made_up::single("a", effect("A")), with_gap(named("a", {"A"}), closing(0.2)));
-  population.add(made_up::single("b", effect("A"), 16.0),
-                 with_gap(named("b", {"A"}), closing(0.6)));
+  population.add(made_up::single("b", effect("A")), with_gap(named("b", {"A"}), closing(0.6)));
   population.add(made_up::pair("c", effect("A"), effect("B")),
                  with_gap(named("c", {"A"}), closing(0.9)));
   population.add(made_up::single("d", effect("A")), with_gap(said("d", Outcome::none), closing(0)));
-  population.add(made_up::single("e", effect("A"), 4.0), with_gap(named("e", {"A"}), closing(0.4)));
+  population.add(made_up::single("e", small), with_gap(named("e", {"A"}), closing(0.4)));
   population.add(made_up::nothing_hidden("f"), with_gap(named("f", {"A"}), closing(1.0)));
   population.add(made_up::single("g", effect("A")), named("g", {"A"}));
   const GapScores scores = gap_scores(population.cases(), {});
-  EXPECT_EQ(scores.detectable_named, 4);  // a, b, c, g
+  EXPECT_EQ(scores.large_named, 4);  // a, b, c, g
   EXPECT_EQ(scores.cvrmse->cases, 3);
   EXPECT_NEAR(scores.cvrmse->value, 0.6, 1e-12);
   EXPECT_NEAR(scores.log_score->value, 0.6, 1e-12);

@@ -33,10 +33,16 @@ inline Answer nothing_hidden(std::string case_id) {
           .prior_sd = {{"cooling_setpoint_C", 2.0}, {"occupancy", 0.5}}};
 }
 
-inline Answer single(std::string case_id, HiddenEffect hidden, double detectability = 8.0) {
+/// An effect that moves so much of electricity.
+inline HiddenEffect moving(std::string id, double share) {
+  HiddenEffect hidden = effect(std::move(id));
+  hidden.moved_share = {{"electricity", share}, {"steam", 0.0}};
+  return hidden;
+}
+
+inline Answer single(std::string case_id, HiddenEffect hidden) {
   Answer answer = nothing_hidden(std::move(case_id));
   answer.block = Block::single;
-  answer.detectability = detectability;
   answer.effects = {std::move(hidden)};
   return answer;
 }
@@ -44,7 +50,6 @@ inline Answer single(std::string case_id, HiddenEffect hidden, double detectabil
 inline Answer pair(std::string case_id, HiddenEffect one, HiddenEffect other) {
   Answer answer = nothing_hidden(std::move(case_id));
   answer.block = Block::pair;
-  answer.detectability = 8.0;
   answer.effects = {std::move(one), std::move(other)};
   return answer;
 }

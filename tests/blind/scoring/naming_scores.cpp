@@ -1,10 +1,8 @@
 #include "tests/blind/scoring/naming_scores.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <functional>
-#include <set>
 
 namespace recald::blind {
 namespace {
@@ -23,6 +21,18 @@ bool is_right(const ScoredCase& scored) { return scored.judgement.right; }
 bool has_wrong_name(const ScoredCase& scored) { return scored.judgement.wrong_name; }
 bool has_effect(const ScoredCase& scored) { return !scored.answer->effects.empty(); }
 bool is_named(const ScoredCase& scored) { return scored.result->outcome == Outcome::named; }
+
+struct ShareBin {
+  double from;
+  const char* group;
+};
+constexpr std::array kShareBins{
+    ShareBin{0.1, "single, above 10 %"}, ShareBin{0.03, "single, 3 to 10 %"},
+    ShareBin{0.01, "single, 1 to 3 %"}, ShareBin{0.0, "single, below 1 %"}};
+
+const ShareBin& bin_of(double share) {
+  return *std::ranges::find_if(kShareBins, [&](const ShareBin& bin) { return share >= bin.from; });
+}
 
 GroupScores group_scores(const ScoredCases& cases, std::string group, const Predicate& member) {
   const Predicate catalogued = [&](const ScoredCase& scored) {
@@ -43,7 +53,7 @@ GroupScores group_scores(const ScoredCases& cases, std::string group, const Pred
           .said_none = share_of(cases, member, said(Outcome::none))};
 }
 
-/// The blocks, and below "single" each detectability that occurs.
+/// The blocks, and below "single" each size that occurs, the largest first.
 std::vector<GroupScores> all_groups(const ScoredCases& cases) {
   std::vector<GroupScores> groups;
   const auto add = [&](std::string group, const Predicate& member) {
@@ -53,13 +63,10 @@ std::vector<GroupScores> all_groups(const ScoredCases& cases) {
   };
   add("no effect", in_block(Block::no_effect));
   add(kAllSingles, in_block(Block::single));
-  std::set<std::optional<double>> grades;
-  for (const ScoredCase& scored : cases) {
-    if (scored.answer->block == Block::single) grades.insert(scored.answer->detectability);
-  }
-  for (const auto& grade : grades) {
-    add(single_group(grade), [grade](const ScoredCase& scored) {
-      return scored.answer->block == Block::single && scored.answer->detectability == grade;
+  for (const ShareBin& bin : kShareBins) {
+    add(bin.group, [&bin](const ScoredCase& scored) {
+      return scored.answer->block == Block::single &&
+             &bin_of(largest_share(*scored.answer)) == &bin;
     });
   }
   add("pair", in_block(Block::pair));
@@ -74,13 +81,13 @@ PairScores pair_scores(const ScoredCases& cases) {
     });
   };
   const auto both = [](const ScoredCase& scored) { return scored.judgement.hidden_named == 2; };
-  const auto detectable = [](const ScoredCase& scored) {
-    return scored.answer->block == Block::pair && is_detectable(*scored.answer);
+  const auto large = [](const ScoredCase& scored) {
+    return scored.answer->block == Block::pair && is_large(*scored.answer);
   };
   return {.both = naming(2),
           .only_one = naming(1),
           .neither = naming(0),
-          .both_detectable = share_of(cases, detectable, both)};
+          .both_large = share_of(cases, large, both)};
 }
 
 PlaceScores place_scores(const ScoredCases& cases) {
@@ -129,9 +136,7 @@ std::vector<Breakdown> breakdowns(const ScoredCases& cases) {
 
 }  // namespace
 
-std::string single_group(const std::optional<double>& detectability) {
-  return detectability ? fmt::format("single, d* = {:g}", *detectability) : "single, d* not stated";
-}
+std::string single_group(double share) { return bin_of(share).group; }
 
 NamingScores naming_scores(const ScoredCases& cases) {
   const Predicate no_effect = in_block(Block::no_effect);
@@ -144,6 +149,7 @@ NamingScores naming_scores(const ScoredCases& cases) {
   scores.false_alarms = share_of(cases, no_effect, [](const ScoredCase& scored) {
     return scored.result->outcome != Outcome::none;
   });
+  scores.wrong_names = share_of(cases, has_effect, has_wrong_name);
   scores.out_of_catalogue_wrong_name = share_of(cases, outside, is_named);
   scores.out_of_catalogue_unknown = share_of(
       cases, [&](const ScoredCase& scored) { return outside(scored) && has_effect(scored); },

@@ -11,9 +11,9 @@
 
 namespace recald::blind {
 
-/// Scores of one block, or of the single effects of one detectability.
+/// Scores of one block, or of the single effects of like size.
 struct GroupScores {
-  std::string group;  ///< "single, d* = 8".
+  std::string group;  ///< "single, 3 to 10 %".
   int cases = 0;
   std::optional<Score> right;  ///< Outcome and names exactly the true ones.
   std::optional<Score> top1;
@@ -25,17 +25,17 @@ struct GroupScores {
   std::optional<Score> said_none;
 };
 
-/// The group of all single effects, whatever their detectability.
+/// The group of all single effects, whatever their size.
 inline constexpr const char* kAllSingles = "single, all";
 
-/// The group of those of one detectability; without one, of those that state none.
-[[nodiscard]] std::string single_group(const std::optional<double>& detectability);
+/// The group of those that move a meter by so much.
+[[nodiscard]] std::string single_group(double share);
 
 struct PairScores {
   std::optional<Score> both;  ///< Both added, whatever else was.
   std::optional<Score> only_one;
   std::optional<Score> neither;
-  std::optional<Score> both_detectable;  ///< Both added, of those at d* >= 8.
+  std::optional<Score> both_large;  ///< Both added, of those that are large.
 };
 
 /// Where the residual pointed, for cases with an effect whose result gives `located`.
@@ -61,6 +61,7 @@ struct NamingScores {
   std::vector<GroupScores> groups;    ///< Those with cases only.
   std::optional<Score> false_names;   ///< No effect hidden, yet one added.
   std::optional<Score> false_alarms;  ///< No effect hidden, and anything but "none" said.
+  std::optional<Score> wrong_names;   ///< An effect hidden, and one added that is not there.
   std::optional<Score> out_of_catalogue_wrong_name;
   std::optional<Score> out_of_catalogue_unknown;  ///< Cases with an effect; decoys alone are none.
   std::optional<Score> confusable_has_truth;      ///< Of the confusable sets at a hidden effect.

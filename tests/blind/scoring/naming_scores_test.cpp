@@ -30,7 +30,7 @@ std::vector<Answer> one_of_each() {
           made_up::nothing_hidden("n2"),
           made_up::single("s1", effect("setback", "schedules")),
           made_up::single("s2", effect("holiday", "schedules")),
-          made_up::single("s3", effect("infiltration", "envelope"), 16.0),
+          made_up::single("s3", effect("infiltration", "envelope")),
           made_up::pair("p1", effect("setback", "schedules"), effect("economiser", "outdoor_air")),
           made_up::outside("o1", "ev_charging"),
           made_up::decoy_only("o2")};
@@ -164,7 +164,7 @@ TEST(NamingScores, PairsAreCountedByHowManyWereNamed) {
   add("p6", said("p6", Outcome::unknown));
   const NamingScores scores = naming_scores(population.cases());
   EXPECT_EQ(counts(scores.pairs.both), (Counts{2, 6}));  // p1, p5
-  EXPECT_EQ(counts(scores.pairs.both_detectable), (Counts{2, 6}));
+  EXPECT_EQ(counts(scores.pairs.both_large), (Counts{2, 6}));
   EXPECT_EQ(counts(scores.pairs.only_one), (Counts{2, 6}));  // p2, p3
   EXPECT_EQ(counts(scores.pairs.neither), (Counts{2, 6}));   // p4, p6
   EXPECT_EQ(counts(scores.right), (Counts{1, 6}));           // p1
@@ -174,19 +174,17 @@ TEST(NamingScores, PairsAreCountedByHowManyWereNamed) {
   EXPECT_EQ(scores.confusion.at("A + B").at("unknown"), 1);
 }
 
-// What claims d* >= 8 must have been measured to be so.
-TEST(NamingScores, DetectableIsWhatStatesSo) {
-  Answer answer = made_up::pair("p", effect("A"), effect("B"));
-  EXPECT_TRUE(is_detectable(answer));
-  answer.detectability = 4.0;
-  EXPECT_FALSE(is_detectable(answer));
-  answer.detectability = std::nullopt;
-  EXPECT_FALSE(is_detectable(answer));
+TEST(NamingScores, OfTwoEffectsTheWeakerOneCounts) {
+  EXPECT_TRUE(is_large(made_up::pair("p", effect("A"), effect("B"))));
+  EXPECT_FALSE(is_large(made_up::nothing_hidden("n")));
+  const Answer answer = made_up::pair("p", made_up::moving("A", 0.2), made_up::moving("B", 0.02));
+  EXPECT_EQ(largest_share(answer), 0.02);
+  EXPECT_FALSE(is_large(answer));
   made_up::Population population;
   population.add(answer, named("p", {"A", "B"}));
   const NamingScores scores = naming_scores(population.cases());
   EXPECT_EQ(counts(scores.pairs.both), (Counts{1, 1}));
-  EXPECT_FALSE(scores.pairs.both_detectable);
+  EXPECT_FALSE(scores.pairs.both_large);
 }
 
 // The class of a name that is hidden nowhere comes from the list; a name without a class is wrong.
@@ -210,20 +208,21 @@ TEST(NamingScores, TwoClassesOfOneEffectAreAnError) {
             "answer b: effect A is of class plant, but of class schedules elsewhere");
 }
 
-TEST(NamingScores, SinglesAreScoredByDetectability) {
+TEST(NamingScores, SinglesAreScoredByTheShareThatTheyMove) {
   made_up::Population population;
-  population.add(made_up::single("a", effect("A"), 8.0), named("a", {"A"}));
-  population.add(made_up::single("b", effect("B"), 8.0), named("b", {"A"}));
-  population.add(made_up::single("c", effect("C"), 16.0), named("c", {"C"}));
-  Answer unmeasured = made_up::single("d", effect("D"));
-  unmeasured.detectability = std::nullopt;
-  population.add(unmeasured, said("d", Outcome::unknown));
+  population.add(made_up::single("a", made_up::moving("A", 0.03)), named("a", {"A"}));
+  population.add(made_up::single("b", made_up::moving("B", 0.099)), named("b", {"A"}));
+  population.add(made_up::single("c", made_up::moving("C", 0.1)), named("c", {"C"}));
+  population.add(made_up::single("d", made_up::moving("D", 0.009)), said("d", Outcome::unknown));
+  // Without moved shares the net ones count: steam -10 %.
+  population.add(made_up::single("e", effect("E")), named("e", {"E"}));
   const NamingScores scores = naming_scores(population.cases());
-  EXPECT_EQ(counts(group_of(scores, "single, d* = 8").top1), (Counts{1, 2}));
-  EXPECT_EQ(counts(group_of(scores, "single, d* = 8").wrong_name), (Counts{1, 2}));
-  EXPECT_EQ(counts(group_of(scores, "single, d* = 16").top1), (Counts{1, 1}));
-  EXPECT_EQ(counts(group_of(scores, "single, d* not stated").said_unknown), (Counts{1, 1}));
-  EXPECT_EQ(counts(group_of(scores, kAllSingles).top1), (Counts{2, 4}));
+  EXPECT_EQ(counts(group_of(scores, "single, 3 to 10 %").top1), (Counts{1, 2}));
+  EXPECT_EQ(counts(group_of(scores, "single, 3 to 10 %").wrong_name), (Counts{1, 2}));
+  EXPECT_EQ(counts(group_of(scores, "single, above 10 %").top1), (Counts{2, 2}));
+  EXPECT_EQ(counts(group_of(scores, "single, below 1 %").said_unknown), (Counts{1, 1}));
+  EXPECT_EQ(counts(group_of(scores, kAllSingles).top1), (Counts{3, 5}));
+  EXPECT_EQ(counts(scores.wrong_names), (Counts{1, 5}));
 }
 
 TEST(NamingScores, AConfusableSetIsTheOneGivenOrTheProbableNames) {

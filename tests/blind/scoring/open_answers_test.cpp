@@ -204,7 +204,7 @@ TEST_F(OpeningAnswers, FailuresStandByCaseWithTruthAndWhatWasSaid) {
   write_results({"a", "b"}, wrong.dump() + "\n");
   (void)opened();
   EXPECT_THAT(page(), HasSubstr("| c | single | night_setback_missing, 3 K from 2022-03-01, "
-                                "+1.0 % of electricity, +9.0 % of steam (d* = 8) | "
+                                "+1.0 % of electricity, +9.0 % of steam (moves 9.0 %) | "
                                 "holiday_missing (P 0.83) |\n"));
   EXPECT_THAT(page(), Not(HasSubstr("| b | single |")));
   EXPECT_EQ(scores()["failures"][0]["case"], "c");

@@ -9,6 +9,7 @@ namespace recald::blind {
 namespace {
 
 constexpr double kSure = 0.8;
+constexpr std::size_t kSlopes = 81;
 constexpr std::array kThresholds{0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99};
 
 /// The most probable answer of a case.
@@ -71,6 +72,43 @@ void score_truths(const std::vector<TopAnswer>& tops, ProbabilityScores& scores)
   }
   scores.brier = mean_score(std::move(briers));
   scores.log_loss = mean_score(std::move(losses));
+}
+
+/// Log losses of one case for each slope that is tried.
+using LossesBySlope = std::array<double, kSlopes>;
+
+double slope_at(std::size_t i) {
+  constexpr double kLeast = 0.2;
+  constexpr double kMost = 5.0;
+  return kLeast * std::pow(kMost / kLeast, static_cast<double>(i) / (kSlopes - 1.0));
+}
+
+LossesBySlope losses_by_slope(const CaseResult& result, const std::string& truth) {
+  LossesBySlope losses{};
+  for (std::size_t i = 0; i < kSlopes; ++i) {
+    double sum = 0.0;
+    for (const auto& [name, probability] : result.probabilities) {
+      sum += std::pow(std::max(probability, kProbabilityFloor), slope_at(i));
+    }
+    const double of_truth = std::max(probability_of(result, truth), kProbabilityFloor);
+    losses[i] = std::log(sum) - slope_at(i) * std::log(of_truth);
+  }
+  return losses;
+}
+
+std::optional<Score> best_slope(const std::vector<TopAnswer>& tops) {
+  std::vector<LossesBySlope> losses;
+  for (const TopAnswer& top : tops) {
+    const std::vector<std::string> truth = true_answers(*top.scored->answer);
+    if (truth.size() == 1) losses.push_back(losses_by_slope(*top.scored->result, truth.front()));
+  }
+  return bootstrap_score(losses.size(), [&](std::span<const std::size_t> rows) {
+    LossesBySlope sum{};
+    for (const std::size_t row : rows) {
+      for (std::size_t i = 0; i < kSlopes; ++i) sum[i] += losses[row][i];
+    }
+    return slope_at(static_cast<std::size_t>(std::ranges::min_element(sum) - sum.begin()));
+  });
 }
 
 std::size_t bin_of(double probability, int bins) {
@@ -172,6 +210,7 @@ ProbabilityScores probability_scores(const ScoredCases& cases, int bins) {
   scores.cases = static_cast<int>(tops.size());
   if (tops.empty()) return scores;
   score_truths(tops, scores);
+  scores.slope = best_slope(tops);
   scores.bins = reliability(tops, bins);
   scores.ece = calibration_error(tops, bins);
   scores.kinds = by_kind(tops);

@@ -39,8 +39,11 @@ struct AbstentionPoint {
 struct ProbabilityScores {
   int cases = 0;               ///< With probabilities; the others are not scored here.
   std::optional<Score> brier;  ///< Mean over cases of sum_k (p_k - y_k)^2, 0 to 2. Without pairs.
-  std::optional<Score> log_loss;     ///< Mean of -ln P(truth), floored. Without pairs.
-  int floored = 0;                   ///< Cases whose truth had less than the floor.
+  std::optional<Score> log_loss;  ///< Mean of -ln P(truth), floored. Without pairs.
+  int floored = 0;                ///< Cases whose truth had less than the floor.
+  /// The s at which probabilities in proportion to p^s would have had the best log loss: 1 where
+  /// they are as sure as they may be, below 1 where they are too sure. Without pairs.
+  std::optional<Score> slope;
   std::vector<ReliabilityBin> bins;  ///< Equal widths over 0 … 1.
   std::optional<Score> ece;          ///< sum_b n_b/n |right_b - mean probability_b|.
   std::vector<ReliabilityOfKind> kinds;

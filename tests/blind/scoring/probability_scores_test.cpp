@@ -184,5 +184,22 @@ TEST(ProbabilityScores, AMethodWithoutProbabilitiesHasNone) {
   EXPECT_FALSE(scores.ece);
 }
 
+// Said with 0.9 and right in 3 of 4: p^s / (p^s + (1 - p)^s) = 0.75 at s = ln 3 / ln 9 = 0.5.
+TEST(ProbabilityScores, TheSlopeTellsHowMuchTooSureTheyAre) {
+  const auto slope_of = [](double p, int right, int all) {
+    made_up::Population population;
+    for (int i = 0; i < all; ++i) {
+      const auto id = fmt::format("s{:03}", i);
+      population.add(
+          made_up::single(id, effect("A")),
+          said(id, Outcome::none, {{i < right ? "A" : "B", p}, {i < right ? "B" : "A", 1.0 - p}}));
+    }
+    return probability_scores(population.cases(), 5).slope->value;
+  };
+  EXPECT_NEAR(slope_of(0.9, 75, 100), 0.5, 0.02);
+  EXPECT_NEAR(slope_of(0.9, 90, 100), 1.0, 0.04);
+  EXPECT_NEAR(slope_of(0.7, 90, 100), std::log(9.0) / std::log(7.0 / 3.0), 0.06);
+}
+
 }  // namespace
 }  // namespace recald::blind

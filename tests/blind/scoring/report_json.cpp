@@ -33,10 +33,13 @@ Json list_of(const Items& items, Row row) {
 }
 
 Json of_target(const Target& target) {
-  return {
-      {"quantity", target.quantity},        {"score", of(target.score)},
-      {"minimum", target.minimum_text},     {"minimum_verdict", verdict_name(target.minimum)},
-      {"excellent", target.excellent_text}, {"excellent_verdict", verdict_name(target.excellent)}};
+  return {{"world", target.world},
+          {"quantity", target.quantity},
+          {"score", of(target.score)},
+          {"minimum", target.minimum_text},
+          {"minimum_verdict", verdict_name(target.minimum)},
+          {"excellent", target.excellent_text},
+          {"excellent_verdict", verdict_name(target.excellent)}};
 }
 
 Json of_group(const GroupScores& group) {
@@ -60,13 +63,14 @@ Json of_naming(const NamingScores& naming) {
           {"groups", list_of(naming.groups, of_group)},
           {"false_names", of(naming.false_names)},
           {"false_alarms", of(naming.false_alarms)},
+          {"wrong_names", of(naming.wrong_names)},
           {"out_of_catalogue_wrong_name", of(naming.out_of_catalogue_wrong_name)},
           {"out_of_catalogue_unknown", of(naming.out_of_catalogue_unknown)},
           {"confusable_has_truth", of(naming.confusable_has_truth)},
           {"pair_both", of(naming.pairs.both)},
           {"pair_only_one", of(naming.pairs.only_one)},
           {"pair_neither", of(naming.pairs.neither)},
-          {"pair_both_detectable", of(naming.pairs.both_detectable)},
+          {"pair_both_large", of(naming.pairs.both_large)},
           {"decoys",
            {{"cases", naming.decoys.cases},
             {"right", of(naming.decoys.right)},
@@ -101,6 +105,7 @@ Json of_probability(const ProbabilityScores& probability) {
           {"brier", of(probability.brier)},
           {"log_loss", of(probability.log_loss)},
           {"log_loss_floored", probability.floored},
+          {"slope", of(probability.slope)},
           {"ece", of(probability.ece)},
           {"reliability", list_of(probability.bins, bin)},
           {"reliability_by_kind", list_of(probability.kinds, kind)},
@@ -109,7 +114,7 @@ Json of_probability(const ProbabilityScores& probability) {
 }
 
 Json of_gap(const GapScores& gap) {
-  return {{"detectable_named", gap.detectable_named},
+  return {{"large_named", gap.large_named},
           {"reduction_cvrmse", of(gap.cvrmse)},
           {"reduction_log_score", of(gap.log_score)},
           {"reduction_cvrmse_all", of(gap.cvrmse_all)},

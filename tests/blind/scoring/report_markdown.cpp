@@ -26,18 +26,18 @@ std::string head(const Scores& scores, const Circumstances& circumstances) {
 }
 
 std::string target_section(const Scores& scores) {
-  MarkdownTable table({"quantity", "measured", "minimum", "", "excellent", ""});
+  MarkdownTable table({"world", "quantity", "measured", "target", "", "aim", ""});
   for (const Target& target : scores.targets) {
     table.add(
-        {target.quantity,
+        {target.world, target.quantity,
          target.decimals ? number_cell(target.score, *target.decimals) : share_cell(target.score),
          target.minimum_text, std::string(verdict_name(target.minimum)), target.excellent_text,
          std::string(verdict_name(target.excellent))});
   }
   return "## Targets\n\n" + table.text() +
          "Met: the estimate reaches the target and the one-sided 95 % bound clears it. Met, not "
-         "shown at this size: the estimate alone does. Without a hidden effect the bound decides: "
-         "one false name in 60 misses 5 %.\n\n";
+         "shown at this size: the estimate alone does. Per cent are those of the meter that is "
+         "moved most.\n\n";
 }
 
 std::string naming_section(const NamingScores& naming) {
@@ -64,6 +64,8 @@ std::string special_section(const NamingScores& naming) {
   table.add({"nothing hidden, yet an effect named",
              share_cell(naming.false_names) + upper_bound(naming.false_names)});
   table.add({"nothing hidden, yet not said so", share_cell(naming.false_alarms)});
+  table.add(
+      {"something hidden, and an effect named that is not there", share_cell(naming.wrong_names)});
   table.add({"out of the catalogue, yet an effect named",
              share_cell(naming.out_of_catalogue_wrong_name)});
   table.add({"out of the catalogue, flagged unknown", share_cell(naming.out_of_catalogue_unknown)});
@@ -102,6 +104,8 @@ std::string probability_section(const ProbabilityScores& probability) {
   summary.add({"log loss, nats (without pairs)", number_cell(probability.log_loss, 3)});
   summary.add({fmt::format("cases whose truth had less than {:g}", kProbabilityFloor),
                std::to_string(probability.floored)});
+  summary.add(
+      {"slope that would be best (1: as sure as they may be)", number_cell(probability.slope, 2)});
   summary.add({"calibration error (ECE)", number_cell(probability.ece, 3)});
   summary.add({"name said with P >= 0.8 is right", share_cell(probability.sure_names_right)});
 
@@ -119,7 +123,7 @@ std::string probability_section(const ProbabilityScores& probability) {
 
 std::string gap_section(const GapScores& gap) {
   MarkdownTable table({"quantity", "median or share"});
-  table.add({"gap closed, R by CV(RMSE) of the most affected meter (d* >= 8, named)",
+  table.add({"gap closed, R by CV(RMSE) of the most affected meter (3 % and more, named)",
              number_cell(gap.cvrmse)});
   table.add({"the same by log score of all meters", number_cell(gap.log_score)});
   table.add({"R by CV(RMSE), all cases with an effect, named or not", number_cell(gap.cvrmse_all)});
@@ -132,11 +136,11 @@ std::string gap_section(const GapScores& gap) {
   std::string text = "## What it was good for\n\n" + table.text() +
                      "R: 0 closes nothing of the gap on held months, 1 as much as a refit with the "
                      "true effect.\n\n";
-  if (gap.cvrmse && gap.cvrmse->cases < gap.detectable_named) {
+  if (gap.cvrmse && gap.cvrmse->cases < gap.large_named) {
     text += fmt::format(
         "R is known for {} of {} named cases; the others lack a fit, or the true "
         "effect closes nothing.\n\n",
-        gap.cvrmse->cases, gap.detectable_named);
+        gap.cvrmse->cases, gap.large_named);
   }
   if (gap.additions_without_harm_figures > 0) {
     text += fmt::format("{} additions came without figures for other meters.\n\n",

@@ -8,7 +8,7 @@
 namespace recald::blind {
 namespace {
 
-constexpr double kDetectable = 8.0;
+constexpr double kLarge = 0.03;
 constexpr double kSetMemberMin = 0.1;
 
 bool contains(std::span<const std::string> list, std::string_view name) {
@@ -115,9 +115,7 @@ Judgement judge(const Answer& answer, const CaseResult& result, const EffectClas
   return judgement;
 }
 
-bool is_detectable(const Answer& answer) {
-  return answer.detectability.value_or(0.0) >= kDetectable;
-}
+bool is_large(const Answer& answer) { return largest_share(answer) >= kLarge; }
 
 ScoredCases cases_of_method(const AnswerKey& key, std::span<const CaseResult> results,
                             const std::string& method, const EffectClasses& classes) {

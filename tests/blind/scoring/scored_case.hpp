@@ -51,8 +51,8 @@ using ScoredCases = std::vector<ScoredCase>;
 [[nodiscard]] Judgement judge(const Answer& answer, const CaseResult& result,
                               const EffectClasses& classes);
 
-/// Whether the case counts for claims at d* >= 8. One that states no detectability does not.
-[[nodiscard]] bool is_detectable(const Answer& answer);
+/// Whether what is hidden moves a meter by 3 % or more: what claims about large effects count.
+[[nodiscard]] bool is_large(const Answer& answer);
 
 /// Joins results of one method with the answers. Cases without a result are left out.
 [[nodiscard]] ScoredCases cases_of_method(const AnswerKey& key, std::span<const CaseResult> results,

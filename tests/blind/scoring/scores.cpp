@@ -44,7 +44,8 @@ std::string truth_in_full(const Answer& answer) {
   for (const HiddenEffect& effect : answer.effects) effects.push_back(effect_text(effect));
   std::string text = effects.empty() ? "none" : fmt::format("{}", fmt::join(effects, "; "));
   if (!answer.decoys.empty()) text += fmt::format("; decoy {}", fmt::join(answer.decoys, ", "));
-  return answer.detectability ? text + fmt::format(" (d* = {:g})", *answer.detectability) : text;
+  if (answer.effects.empty()) return text;
+  return text + fmt::format(" (moves {:.1f} %)", 100.0 * largest_share(answer));
 }
 
 std::vector<Failure> failures_of(const ScoredCases& cases) {
@@ -57,6 +58,22 @@ std::vector<Failure> failures_of(const ScoredCases& cases) {
                         .said = said_text(scored)});
   }
   return failures;
+}
+
+/// Worlds side by side: a result in one alone is half a result.
+std::vector<Target> targets_by_world(const ScoredCases& cases, const OracleGaps& oracles,
+                                     const ScoringOptions& options) {
+  std::map<std::string, ScoredCases> worlds;
+  for (const ScoredCase& scored : cases) worlds[scored.answer->world].push_back(scored);
+  std::vector<Target> all;
+  for (const auto& [world, of] : worlds) {
+    for (Target& each :
+         targets(world, naming_scores(of), probability_scores(of, options.reliability_bins),
+                 gap_scores(of, oracles), cost_scores(of))) {
+      all.push_back(std::move(each));
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -72,7 +89,7 @@ Scores compute_scores(const AnswerKey& key, std::span<const CaseResult> results,
   scores.probability = probability_scores(cases, options.reliability_bins);
   scores.gap = gap_scores(cases, oracle_gaps(results));
   scores.cost = cost_scores(cases);
-  scores.targets = targets(scores.naming, scores.probability, scores.gap, scores.cost);
+  scores.targets = targets_by_world(cases, oracle_gaps(results), options);
   scores.methods = compare_methods(key, results, options.method, classes);
   scores.failures = failures_of(cases);
   return scores;

@@ -29,23 +29,24 @@ enum class Verdict {
 struct Goal {
   double min;
   double max;
-  bool by_bound_alone = false;  ///< The estimate reaches it only by having no hit, or by the bound.
 };
 
 /// `exact` scores (a largest run time) are met or missed; nothing is to be shown.
 [[nodiscard]] Verdict verdict_of(const std::optional<Score>& score, const Goal& goal, bool exact);
 
 struct Target {
+  std::string world;  ///< Whose buildings it is about.
   std::string quantity;
   std::optional<Score> score;
-  std::string minimum_text;  ///< "at least 75 %".
-  std::string excellent_text;
+  std::string minimum_text;    ///< "at least 75 %".
+  std::string excellent_text;  ///< "-" where no more is aimed at.
   Verdict minimum = Verdict::no_cases;
   Verdict excellent = Verdict::no_cases;
   std::optional<int> decimals;  ///< Of a figure that is not a share; shares are in per cent.
 };
 
-[[nodiscard]] std::vector<Target> targets(const NamingScores& naming,
+/// Those of one world. @param world  As in the answers.
+[[nodiscard]] std::vector<Target> targets(const std::string& world, const NamingScores& naming,
                                           const ProbabilityScores& probability,
                                           const GapScores& gap, const CostScores& cost);
 
