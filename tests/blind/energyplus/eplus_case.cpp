@@ -9,6 +9,7 @@
 
 #include "adapters/system/write_file.hpp"
 #include "simulators/feed/feed_files.hpp"
+#include "tests/blind/energyplus/foreign_building.hpp"
 #include "tests/blind/population/moved_share.hpp"
 
 namespace recald::blind {
@@ -19,6 +20,9 @@ using energyplus::HiddenChange;
 using OrderedJson = nlohmann::ordered_json;
 using std::chrono::days;
 using std::chrono::sys_days;
+
+/// Of the buildings to judge with, those that others wrote.
+constexpr double kForeignShare = 0.5;
 
 constexpr std::array kMeterEffects{"clock_offset", "dst_misapplied", "phase_lost", "scale_fault",
                                    "stuck_meter"};
@@ -102,6 +106,9 @@ struct Hidden {
   [[nodiscard]] double most_moved() const { return *std::ranges::max_element(moved_share); }
 };
 
+/// EnergyPlus does not simulate everything that can be drawn.
+bool was_refused(const Error& error) { return error.code == ErrorCode::invalid_value; }
+
 class Hider {
  public:
   Hider(const EplusCasePlan& plan, const SimulatedBuilding& building)
@@ -117,6 +124,7 @@ class Hider {
       const Candidate candidate = draw_candidate(id, plan_, building_, rng);
       if (change != nullptr && !building_.could_have(*change)) continue;
       auto hidden = at_share(candidate);
+      if (!hidden && was_refused(hidden.error())) continue;
       if (!hidden || *hidden) return hidden;
     }
     return std::optional<Hidden>{};
@@ -223,21 +231,22 @@ OrderedJson answer_json(const EplusCasePlan& plan, const SimulatedBuilding& buil
   const energyplus::TemplatedBuilding& built = plan.building.building;
   // Nothing was found that moves a meter so much: then nothing is hidden.
   const Block block = hidden || plan.block == Block::no_effect ? plan.block : Block::no_effect;
-  return {{"case", plan.building.id},
-          {"world", "energyplus"},
-          {"block", block_name(block)},
-          {"grain", {{"detectability", nullptr}}},
-          {"effects", effects_json(hidden, building)},
-          {"decoys", OrderedJson::array()},
-          {"climate", name_of(built.drawings.climate)},
-          {"use", to_string(built.drawings.use)},
-          {"family", to_string(plan.family)},
-          {"shape", to_string(built.shape)},
-          {"system", to_string(built.system)},
-          {"gaps", plan.care == MeterCare::gaps},
-          {"true_parameters", OrderedJson::object()},
-          {"prior_sd", OrderedJson::object()},
-          {"differs_from_drawings", building.truth()}};
+  return {
+      {"case", plan.building.id},
+      {"world", "energyplus"},
+      {"block", block_name(block)},
+      {"grain", {{"detectability", nullptr}}},
+      {"effects", effects_json(hidden, building)},
+      {"decoys", OrderedJson::array()},
+      {"climate", name_of(built.drawings.climate)},
+      {"use", to_string(built.drawings.use)},
+      {"family", to_string(plan.family)},
+      {"shape", plan.building.foreign.empty() ? to_string(built.shape) : "of others"},
+      {"system", plan.building.foreign.empty() ? to_string(built.system) : plan.building.foreign},
+      {"gaps", plan.care == MeterCare::gaps},
+      {"true_parameters", OrderedJson::object()},
+      {"prior_sd", OrderedJson::object()},
+      {"differs_from_drawings", building.truth()}};
 }
 
 }  // namespace
@@ -300,6 +309,12 @@ std::vector<EplusCasePlan> plan_eplus(const EplusPopulation& population, std::ui
     plan.building.id = fmt::format("{}-eplus-{:03}", population.name, i + 1);
     plan.building.seed = rng.below(std::uint64_t{1} << 53U);
     plan.building.building = draw_eplus_building(population.family, rng);
+    if (population.family == Family::judging && rng.uniform() < kForeignShare) {
+      const ForeignModel& foreign = foreign_models()[rng.below(foreign_models().size())];
+      plan.building.foreign = foreign.file;
+      plan.building.building.drawings.use = foreign.like;
+      plan.building.building.drawings.calendar = foreign.like;
+    }
     plan.building.building.drawings.id = plan.building.id;
     plan.building.first_year = 2013 + static_cast<int>(rng.below(14));
     plan.building.years = population.years;
@@ -320,10 +335,32 @@ std::vector<EplusCasePlan> plan_eplus(const EplusPopulation& population, std::ui
   return plans;
 }
 
-Result<int> make_eplus_case(const EplusCasePlan& plan, const Engine& engine,
+namespace {
+
+/// The building as planned, or another draw of it where EnergyPlus refuses it; at last one of ours
+/// in the place of one of others.
+Result<SimulatedBuilding> make_building(EplusPlan& plan, const Engine& engine,
+                                        const std::filesystem::path& scratch) {
+  constexpr std::uint64_t kAttempts = 6;
+  const std::uint64_t first = plan.seed;
+  for (std::uint64_t attempt = 0;; ++attempt) {
+    plan.seed = attempt == 0 ? first : Rng{first, attempt}.below(std::uint64_t{1} << 53U);
+    if (attempt >= kAttempts / 2) plan.foreign = {};
+    auto building = SimulatedBuilding::make(plan, engine, scratch);
+    const bool is_settled = building || !was_refused(building.error());
+    if (is_settled || attempt + 1 == kAttempts) return building;
+    std::error_code whatever;  // What stays is overwritten.
+    std::filesystem::remove_all(scratch, whatever);
+  }
+}
+
+}  // namespace
+
+Result<int> make_eplus_case(const EplusCasePlan& planned, const Engine& engine,
                             const std::filesystem::path& scratch, const CaseFolders& folders) {
+  EplusCasePlan plan = planned;
   const std::string& id = plan.building.id;
-  const auto building = SimulatedBuilding::make(plan.building, engine, scratch);
+  const auto building = make_building(plan.building, engine, scratch);
   if (!building) return tl::unexpected(building.error());
   Hider hider(plan, *building);
   std::optional<Hidden> hidden;

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "simulators/scenario/archetypes.hpp"
+#include "tests/blind/energyplus/foreign_building.hpp"
 #include "tests/support/installed_energyplus.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -82,6 +83,34 @@ TEST(EplusPlans, HaveTheSizesOfTheProtocol) {
   EXPECT_EQ(eplus_population("secret").error().message,
             "unknown population secret; in the world of EnergyPlus there are smoke, development, "
             "learning and sealed");
+}
+
+TEST(EplusPlans, JudgeWithModelsOfOthersToo) {
+  int foreign = 0;
+  for (const EplusCasePlan& plan : plans_of("sealed", 3))
+    foreign += plan.building.foreign.empty() ? 0 : 1;
+  EXPECT_NEAR(foreign, 140, 30);
+  for (const char* name : {"smoke", "development", "learning"}) {
+    for (const EplusCasePlan& plan : plans_of(name, 3)) EXPECT_TRUE(plan.building.foreign.empty());
+  }
+}
+
+TEST(Foreign, ModelsGrowWithTheirTotals) {
+  Json model;
+  model["Zone"]["Room"] = {{"x_origin", 2.0}, {"z_origin", 3.0}};
+  model["BuildingSurface:Detailed"]["Wall"]["vertices"] = {
+      {{"vertex_x_coordinate", 10.0}, {"vertex_y_coordinate", 0.0}, {"vertex_z_coordinate", 3.0}}};
+  model["Exterior:Lights"]["Lamp"]["design_level"] = 100.0;
+  const Json larger = altered(model, Rng{4, 1});
+  EXPECT_EQ(larger, altered(model, Rng{4, 1}));
+  EXPECT_NE(larger, altered(model, Rng{5, 1}));
+  const double length = larger["Zone"]["Room"]["x_origin"].get<double>() / 2.0;
+  EXPECT_NE(length, 1.0);
+  EXPECT_EQ(larger["Zone"]["Room"]["z_origin"], 3.0);
+  const Json& corner = larger["BuildingSurface:Detailed"]["Wall"]["vertices"][0];
+  EXPECT_EQ(corner["vertex_x_coordinate"], 10.0 * length);
+  EXPECT_EQ(corner["vertex_z_coordinate"], 3.0);
+  EXPECT_NEAR(larger["Exterior:Lights"]["Lamp"]["design_level"], 100.0 * length * length, 1e-9);
 }
 
 TEST(EplusPlans, WantEveryKindBeforeAnyTwice) {

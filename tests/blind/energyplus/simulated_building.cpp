@@ -7,6 +7,7 @@
 
 #include "adapters/system/write_file.hpp"
 #include "simulators/climate/normals.hpp"
+#include "tests/blind/energyplus/foreign_building.hpp"
 
 namespace recald::blind {
 namespace {
@@ -16,6 +17,9 @@ using simulators::Utility;
 using std::chrono::sys_days;
 
 constexpr double kDaysAYear = 365.25;
+/// Streams of a case's seed that are no simulator's.
+constexpr std::uint64_t kAlterations = 76;
+constexpr std::uint64_t kMemory = 77;
 
 double quantile_of(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -94,8 +98,6 @@ Result<SimulatedBuilding> SimulatedBuilding::make(const EplusPlan& plan, const E
   if (const auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
 
   const auto offset = building.calendar_->standard_offset(std::chrono::year{plan.first_year});
-  Json templated = templated_model(plan.building);
-  add_design_days(templated, design_hours(building.hours_, drawings.place, offset));
   const simulators::Calendar holidays(drawings.calendar);
   std::size_t hour = 0;
   for (int year = plan.first_year; year < plan.first_year + plan.years; ++year) {
@@ -113,10 +115,7 @@ Result<SimulatedBuilding> SimulatedBuilding::make(const EplusPlan& plan, const E
         epw_text(building.hours_, year, drawings.place, *building.calendar_, free));
     if (!written) return tl::unexpected(written.error());
   }
-  const auto expanded = engine.expand(templated, folder / "expand");
-  if (!expanded) return tl::unexpected(expanded.error());
-  auto sized =
-      engine.size(*expanded, folder / fmt::format("{}.epw", plan.first_year), folder / "size");
+  auto sized = size(plan, engine, design_hours(building.hours_, drawings.place, offset), folder);
   if (!sized) return tl::unexpected(sized.error());
   building.sized_ = std::move(*sized);
   building.meters_ = meters_of(building.sized_.model);
@@ -142,6 +141,29 @@ Result<SimulatedBuilding> SimulatedBuilding::make(const EplusPlan& plan, const E
     building.years_.push_back(std::move(year));
   }
   return building;
+}
+
+Result<SizedModel> SimulatedBuilding::size(const EplusPlan& plan, const Engine& engine,
+                                           const DesignHours& hours,
+                                           const std::filesystem::path& folder) {
+  const std::filesystem::path weather = folder / fmt::format("{}.epw", plan.first_year);
+  if (plan.foreign.empty()) {
+    Json templated = templated_model(plan.building);
+    add_design_days(templated, hours);
+    auto expanded = engine.expand(templated, folder / "expand");
+    if (!expanded) return tl::unexpected(expanded.error());
+    return engine.size(std::move(*expanded), weather, folder / "size");
+  }
+  auto model = read_foreign_model(plan.foreign);
+  if (!model) return tl::unexpected(model.error());
+  for (const char* theirs :
+       {"Site:Location", "SizingPeriod:DesignDay", "SizingPeriod:WeatherFileDays",
+        "SizingPeriod:WeatherFileConditionType"}) {
+    model->erase(theirs);
+  }
+  add_design_days(*model, hours);
+  return engine.size(altered(std::move(*model), Rng{plan.seed, kAlterations}), weather,
+                     folder / "size");
 }
 
 Result<Loads> SimulatedBuilding::run_year(const BuildingYear& year, const std::string& name) const {
@@ -243,8 +265,10 @@ std::string SimulatedBuilding::site_text(const std::vector<simulators::MeterPlat
   const simulators::Drawings& drawings = plan_.building.drawings;
   SiteFacts facts{
       .id = plan_.id,
-      .title = fmt::format("{}, {} plan, {}", to_string(drawings.use),
-                           to_string(plan_.building.shape), to_string(plan_.building.system)),
+      .title = plan_.foreign.empty()
+                   ? fmt::format("{}, {} plan, {}", to_string(drawings.use),
+                                 to_string(plan_.building.shape), to_string(plan_.building.system))
+                   : std::string{"A building of others"},
       .time_zone = drawings.time_zone,
       .place = drawings.place,
       .first_year = plan_.first_year,
@@ -255,7 +279,7 @@ std::string SimulatedBuilding::site_text(const std::vector<simulators::MeterPlat
   for (const auto& around : around_) {
     facts.holidays.insert(facts.holidays.end(), around->holidays.begin(), around->holidays.end());
   }
-  return blind::site_text(facts, sized_, drawn_.front(), plates, Rng{plan_.seed, 77});
+  return blind::site_text(facts, sized_, drawn_.front(), plates, Rng{plan_.seed, kMemory});
 }
 
 }  // namespace recald::blind

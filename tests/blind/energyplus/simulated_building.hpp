@@ -15,6 +15,8 @@ struct EplusPlan {
   std::string id;
   std::uint64_t seed;  ///< Of the truth, the weather, the people and the meters.
   simulators::energyplus::TemplatedBuilding building;
+  /// Of others: this one is simulated, and of `building` only place and closing days count.
+  std::string_view foreign = {};
   int first_year;
   int years;
 };
@@ -56,6 +58,9 @@ class SimulatedBuilding {
 
  private:
   SimulatedBuilding() = default;
+  [[nodiscard]] static Result<SizedModel> size(const EplusPlan& plan, const Engine& engine,
+                                               const simulators::energyplus::DesignHours& hours,
+                                               const std::filesystem::path& folder);
   [[nodiscard]] Result<Loads> run_year(const simulators::energyplus::BuildingYear& year,
                                        const std::string& name) const;
 
