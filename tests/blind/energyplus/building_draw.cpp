@@ -13,9 +13,6 @@ using simulators::Use;
 using simulators::energyplus::AirSystem;
 using simulators::energyplus::Shape;
 
-constexpr std::array kLearningUses{Use::laboratory, Use::office, Use::school, Use::hotel,
-                                   Use::warehouse};
-constexpr std::array kJudgingUses{Use::shop, Use::clinic, Use::restaurant, Use::gym};
 constexpr std::array kLearningShapes{Shape::deep, Shape::bar, Shape::hall};
 constexpr std::array kJudgingShapes{Shape::row, Shape::court, Shape::wings};
 constexpr std::array kLearningSystems{AirSystem::vav_reheat, AirSystem::fan_coils,
@@ -56,15 +53,6 @@ std::size_t most_storeys(Shape shape) {
 }
 
 }  // namespace
-
-std::string_view to_string(Family family) {
-  return family == Family::learning ? "learning" : "judging";
-}
-
-std::span<const Use> uses_of(Family family) {
-  if (family == Family::learning) return kLearningUses;
-  return kJudgingUses;
-}
 
 std::span<const Shape> shapes_of(Family family) {
   if (family == Family::learning) return kLearningShapes;

@@ -6,15 +6,11 @@
 
 #include "core/random/rng.hpp"
 #include "simulators/energyplus/templated_building.hpp"
+#include "tests/blind/population/population_kind.hpp"
 
 namespace recald::blind {
 
-enum class Family { learning, judging };
-
-[[nodiscard]] std::string_view to_string(Family family);
-
-/// What a family's buildings may be. A test holds that two families have nothing in common.
-[[nodiscard]] std::span<const simulators::Use> uses_of(Family family);
+/// What a family's buildings may be, besides their uses.
 [[nodiscard]] std::span<const simulators::energyplus::Shape> shapes_of(Family family);
 [[nodiscard]] std::span<const simulators::energyplus::AirSystem> systems_of(Family family);
 

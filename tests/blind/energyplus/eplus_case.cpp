@@ -11,6 +11,7 @@
 #include "simulators/feed/feed_files.hpp"
 #include "tests/blind/energyplus/foreign_building.hpp"
 #include "tests/blind/population/moved_share.hpp"
+#include "tests/blind/population/share_search.hpp"
 
 namespace recald::blind {
 namespace {
@@ -57,8 +58,6 @@ struct Candidate {
   double least, most;          ///< Sizes of the strength; both have its sign.
   std::optional<metering::Day> from, to;
   std::optional<Utility> meter;
-
-  [[nodiscard]] bool is_whole() const { return least == most; }
 };
 
 /// Size and sign are drawn, and when it begins.
@@ -146,24 +145,19 @@ class Hider {
   [[nodiscard]] int years_run() const { return years_run_; }
 
  private:
-  /// The strength that moves the wanted share, by power laws.
   Result<std::optional<Hidden>> at_share(const Candidate& candidate) {
     constexpr int kTries = 3;
-    const double wanted = std::sqrt(plan_.wanted.least * plan_.wanted.most);
-    double strength =
-        std::copysign(std::sqrt(std::abs(candidate.least * candidate.most)), candidate.most);
-    for (int i = 0; i < kTries; ++i) {
-      auto hidden = at(candidate, strength);
-      if (!hidden) return tl::unexpected(hidden.error());
-      const double share = hidden->most_moved();
-      if (share >= plan_.wanted.least && share < plan_.wanted.most) return std::optional{*hidden};
-      if (candidate.is_whole() || share <= 0.0) break;
-      const double next = std::clamp(std::abs(strength) * wanted / share, std::abs(candidate.least),
-                                     std::abs(candidate.most));
-      if (std::abs(next - std::abs(strength)) < 0.02 * next) break;
-      strength = std::copysign(next, candidate.most);
-    }
-    return std::optional<Hidden>{};
+    std::optional<Hidden> last;
+    const auto strength = strength_in(plan_.wanted, {candidate.least, candidate.most}, kTries,
+                                      [&](double tried) -> Result<double> {
+                                        auto hidden = at(candidate, tried);
+                                        if (!hidden) return tl::unexpected(hidden.error());
+                                        last = std::move(*hidden);
+                                        return last->most_moved();
+                                      });
+    if (!strength) return tl::unexpected(strength.error());
+    if (!*strength) last.reset();
+    return last;
   }
 
   Result<Hidden> at(const Candidate& candidate, double strength) {
@@ -251,46 +245,18 @@ OrderedJson answer_json(const EplusCasePlan& plan, const SimulatedBuilding& buil
 
 }  // namespace
 
-Result<EplusPopulation> eplus_population(std::string_view name) {
-  constexpr ShareBin kBelow{0.005, 0.03};
-  constexpr ShareBin kMiddle{0.03, 0.1};
-  constexpr ShareBin kAbove{0.1, 0.5};
-  if (name == "smoke") {
-    return EplusPopulation{"smoke", Family::learning, 2, {{kMiddle, 2}, {kAbove, 2}}, 0, 2};
-  }
-  if (name == "development") {
-    return EplusPopulation{
-        "development", Family::learning, 30, {{kBelow, 20}, {kMiddle, 35}, {kAbove, 35}}, 10, 2};
-  }
-  if (name == "learning") {
-    return EplusPopulation{
-        "learning", Family::learning, 80, {{kBelow, 60}, {kMiddle, 90}, {kAbove, 90}}, 20, 2};
-  }
-  if (name == "sealed") {
-    return EplusPopulation{
-        "sealed", Family::judging, 100, {{kBelow, 40}, {kMiddle, 60}, {kAbove, 60}}, 20, 2};
-  }
-  return failure(ErrorCode::not_found,
-                 fmt::format("unknown population {}; in the world of EnergyPlus there are smoke, "
-                             "development, learning and sealed",
-                             name));
-}
-
-std::vector<EplusCasePlan> plan_eplus(const EplusPopulation& population, std::uint64_t seed) {
-  std::uint64_t own = 14695981039346656037ULL ^ seed;
-  for (const char c : "energyplus " + population.name) {
-    own = (own ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  }
+std::vector<EplusCasePlan> plan_eplus(const PopulationKind& population, std::uint64_t seed) {
+  const std::uint64_t own = own_seed("energyplus " + population.name, seed);
   struct Slot {
     Block block;
     ShareBin wanted;
   };
-  std::vector<Slot> slots(static_cast<std::size_t>(population.none), {Block::no_effect, {}});
+  std::vector<Slot> slots(static_cast<std::size_t>(population.no_effect), {Block::no_effect, {}});
   for (const auto& [bin, count] : population.singles) {
     slots.insert(slots.end(), static_cast<std::size_t>(count), {Block::single, bin});
   }
-  slots.insert(slots.end(), static_cast<std::size_t>(population.outside_catalogue),
-               {Block::out_of_catalogue, {0.03, 0.5}});
+  slots.insert(slots.end(), static_cast<std::size_t>(population.out_of_catalogue),
+               {Block::out_of_catalogue, kAbove3});
   Rng order{own, 1};
   shuffle(slots, order);
   const std::vector<std::string> known = kinds_in_catalogue(true);

@@ -7,12 +7,6 @@
 
 namespace recald::blind {
 
-/// Shares of the meter that is moved most.
-struct ShareBin {
-  double least;
-  double most;
-};
-
 struct EplusCasePlan {
   EplusPlan building;
   Family family;
@@ -24,21 +18,8 @@ struct EplusCasePlan {
   bool begins_in_forecast_year = false;
 };
 
-struct EplusPopulation {
-  std::string name;
-  Family family;
-  int none;
-  std::vector<std::pair<ShareBin, int>> singles;
-  int outside_catalogue;
-  int years;
-};
-
-/// "smoke", "development" and "learning" of the learning family, "sealed" of the judging one.
-/// @return not_found with the names for any other.
-[[nodiscard]] Result<EplusPopulation> eplus_population(std::string_view name);
-
 /// The same name and seed give the same plans.
-[[nodiscard]] std::vector<EplusCasePlan> plan_eplus(const EplusPopulation& population,
+[[nodiscard]] std::vector<EplusCasePlan> plan_eplus(const PopulationKind& population,
                                                     std::uint64_t seed);
 
 /// Simulates the building, finds the strength, writes case and answer.

@@ -23,7 +23,7 @@ using simulators::energyplus::hidden_change;
 using ::testing::HasSubstr;
 
 std::vector<EplusCasePlan> plans_of(const char* name, std::uint64_t seed) {
-  return plan_eplus(*eplus_population(name), seed);
+  return plan_eplus(*population_kind("energyplus", name), seed);
 }
 
 template <class Values>
@@ -80,9 +80,9 @@ TEST(EplusPlans, HaveTheSizesOfTheProtocol) {
   EXPECT_GE(bins[0.03], 60);
   EXPECT_GE(bins[0.005], 40);
   EXPECT_NEAR(in_forecast_year, 0.25 * hidden, 25.0);
-  EXPECT_EQ(eplus_population("secret").error().message,
-            "unknown population secret; in the world of EnergyPlus there are smoke, development, "
-            "learning and sealed");
+  EXPECT_EQ(population_kind("energyplus", "secret").error().message,
+            "unknown population secret; there are smoke, development, learning, sealed and, of our "
+            "own world, plain");
 }
 
 TEST(EplusPlans, JudgeWithModelsOfOthersToo) {

@@ -25,39 +25,6 @@ double rounded(double value, int digits) {
   return std::round(value * scale) / scale;
 }
 
-struct Demands {
-  bool chiller = false;
-  bool economiser = false;
-  bool heat_meter = false;
-  bool timetable = false;
-  bool skylight = false;
-  std::optional<HeatingPlant> heating;
-};
-
-Demands demands_of(const std::vector<EffectNeeds>& needs) {
-  Demands all;
-  for (const EffectNeeds& one : needs) {
-    all.chiller |= one.own_chiller;
-    all.economiser |= one.economiser;
-    all.heat_meter |= one.heat_meter;
-    all.timetable |= one.timetable;
-    all.skylight |= one.skylight;
-    if (one.heat_pump) all.heating = HeatingPlant::heat_pump;
-    if (one.fuel) all.heating = HeatingPlant::boiler;
-  }
-  return all;
-}
-
-HeatingPlant draw_heating(const Demands& demands, Rng& rng) {
-  const auto drawn =
-      draw_one<HeatingPlant, 4>({HeatingPlant::district_steam, HeatingPlant::district_water,
-                                 HeatingPlant::boiler, HeatingPlant::heat_pump},
-                                {0.2, 0.32, 0.36, 0.12}, rng);
-  if (demands.heating) return *demands.heating;
-  const bool unmetered = drawn == HeatingPlant::heat_pump && demands.heat_meter;
-  return unmetered ? HeatingPlant::district_water : drawn;
-}
-
 struct Range {
   double least, most;
 
@@ -110,30 +77,6 @@ Drawings draw_building_of(Use use, Rng& rng) {
                                 stock.heating, rng);
   brief.vintage = draw_one<Vintage, 3>({Vintage::of_1980s, Vintage::of_2000s, Vintage::of_2010s},
                                        {0.35, 0.40, 0.25}, rng);
-  return draw_up(brief);
-}
-
-Drawings draw_building(const std::vector<EffectNeeds>& needs, Rng& rng) {
-  const Demands demands = demands_of(needs);
-  Brief brief;
-  // Every draw is made whatever is demanded: what is hidden must not shift the building's chance.
-  brief.use = draw_one<Use, 3>({Use::office, Use::laboratory, Use::school}, {0.5, 0.25, 0.25}, rng);
-  brief.climate = kClimateKinds[rng.below(kClimateKinds.size())];
-  brief.storeys = brief.use == Use::school ? 1 + rng.below(3) : 1 + rng.below(9);
-  brief.length_m = std::round(rng.uniform(34.0, 90.0));
-  brief.width_m = std::round(rng.uniform(18.0, 44.0));
-  brief.window_share = rounded(rng.uniform(0.18, 0.55), 2);
-  brief.heavy = rng.uniform() < 0.6;
-  const double skylight_share = rounded(rng.uniform(0.06, 0.18), 2);
-  const bool has_skylight = rng.uniform() < 0.15;
-  const bool own_chiller = rng.uniform() < 0.4;
-  brief.heating = draw_heating(demands, rng);
-  if (demands.economiser && brief.climate == ClimateKind::hot_humid) {
-    brief.climate = ClimateKind::mixed;
-  }
-  if (demands.timetable && brief.use == Use::laboratory) brief.use = Use::office;
-  brief.skylight_share = has_skylight || demands.skylight ? skylight_share : 0.0;
-  brief.cooling = own_chiller || demands.chiller ? CoolingPlant::chiller : CoolingPlant::district;
   return draw_up(brief);
 }
 

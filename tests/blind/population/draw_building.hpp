@@ -2,16 +2,9 @@
 #pragma once
 
 #include "core/random/rng.hpp"
-#include "simulators/effects/effect_kind.hpp"
 #include "simulators/scenario/archetypes.hpp"
 
 namespace recald::blind {
-
-/// A building that has what the effects need. @param needs  may contradict only as plants do: a
-/// heat
-///        pump and a gas boiler; the last one asked for wins
-[[nodiscard]] simulators::Drawings draw_building(const std::vector<simulators::EffectNeeds>& needs,
-                                                 Rng& rng);
 
 /// A building of this use with the sizes, plants and age that such buildings have, in any climate.
 [[nodiscard]] simulators::Drawings draw_building_of(simulators::Use use, Rng& rng);

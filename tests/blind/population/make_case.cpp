@@ -2,18 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/write_file.hpp"
 #include "simulators/feed/feed_files.hpp"
 #include "simulators/scenario/scenario_files.hpp"
 #include "tests/blind/population/moved_share.hpp"
-#include "tests/blind/population/strength_search.hpp"
-#include "tests/blind/population/twin_gauge.hpp"
+#include "tests/blind/population/share_search.hpp"
 
 namespace recald::blind {
 namespace {
@@ -21,26 +18,10 @@ namespace {
 using namespace simulators;
 using Json = nlohmann::ordered_json;
 
-// A building that lost or gained more than this would be another building.
-constexpr double kMovedShareMax = 0.4;
-// Detectabilities that populations are scored at.
-constexpr std::array kGrades{2.0, 4.0, 8.0, 16.0};
-
-/// What an effect does to each meter, as shares of the meter's own sum, and how visible that is.
+/// What an effect does to each meter, as shares of the meter's own sum.
 struct Footprint {
   std::vector<double> signed_share;
   std::vector<double> moved_share;
-  diagnosis::Detectability detectability;
-  double repeatable = 0.0;  ///< d* of what repeats of the footprint.
-
-  /// Of the meter that it moves most, four hours at a time.
-  [[nodiscard]] double largest_move() const {
-    double largest = 0.0;
-    for (const diagnosis::MeterMove& move : detectability.meters) {
-      largest = std::max(largest, move.moved_share);
-    }
-    return largest;
-  }
 };
 
 Footprint shares_of(const std::vector<std::vector<double>>& footprint_kW, const Simulated& twin,
@@ -59,25 +40,6 @@ Footprint shares_of(const std::vector<std::vector<double>>& footprint_kW, const 
   return shares;
 }
 
-/// A phase is lost or it is not: what counts is that it shows at least as much as asked.
-StrengthFound whole_effect(double target, double strength, const Visibility& visibility) {
-  const double reached = visibility(strength);
-  return {.strength = strength,
-          .reached = reached,
-          .attained = reached >= 0.95 * target,
-          .evaluations = 1};
-}
-
-/// The same building with a slightly other envelope: thermostats switch at other minutes, while an
-/// effect does what it does.
-Scenario nearly(Scenario scenario) {
-  constexpr double kOther = 1.03;
-  scenario.drawings.wall_u_W_m2K *= kOther;
-  scenario.drawings.window_u_W_m2K *= kOther;
-  scenario.drawings.leakage_cm2_m2 *= kOther;
-  return scenario;
-}
-
 /// A building without effects, ready to be compared with itself.
 struct Plain {
   Scenario scenario;
@@ -94,18 +56,14 @@ Result<Plain> run_plain(Scenario scenario, std::uint64_t seed,
 /// Settles one effect of a case after the other.
 class Settler {
  public:
-  /// @param nearly  `plain` with a slightly other envelope.
-  Settler(const CasePlan& plan, const metering::LocalCalendar& calendar, const Plain& plain,
-          const Plain& nearly, const TwinGauge& gauge)
+  Settler(const CasePlan& plan, const metering::LocalCalendar& calendar, const Plain& plain)
       : plan_(plan),
         calendar_(calendar),
         plain_(plain),
-        nearly_(nearly),
-        gauge_(gauge),
         plates_(plates_of(plain.twin.building.truth().drawings)),
         blocks_(blocks_of(plain.twin.recording, calendar)) {
     settled_.scenario = plan.scenario;
-    settled_.simulations = 2;
+    settled_.simulations = 1;
   }
 
   Result<void> settle(const Wanted& wanted) {
@@ -113,7 +71,7 @@ class Settler {
       Scenario together = settled_.scenario;
       together.effects.push_back(candidate);
       if (!check_effects(together)) continue;
-      auto found = search(candidate, wanted.target);
+      auto found = search(candidate, wanted.share);
       if (!found) return tl::unexpected(found.error());
       if (*found) {
         settled_.scenario.effects.push_back((*found)->choice);
@@ -123,100 +81,57 @@ class Settler {
       settled_.refused.emplace_back(candidate.kind->id);
     }
     return failure(ErrorCode::not_enough_data,
-                   fmt::format("{}: nothing like {} has d* = {:g} in this building; draw the "
-                               "population with another --seed",
-                               plan_.id, wanted.candidates.front().kind->id, wanted.target));
+                   fmt::format("{}: nothing like {} moves {:g} to {:g} % of a meter in this "
+                               "building; draw the population with another --seed",
+                               plan_.id, wanted.candidates.front().kind->id,
+                               100.0 * wanted.share.least, 100.0 * wanted.share.most));
   }
 
   [[nodiscard]] SettledCase result() && { return std::move(settled_); }
 
  private:
   /// The effect as strong as asked; nothing where no strength is.
-  Result<std::optional<HiddenAtStrength>> search(const HiddenChoice& candidate, double target) {
-    std::map<double, Footprint> seen;
-    std::optional<Error> error;
-    const auto visibility = [&](double strength) {
-      auto footprint = try_out(candidate, strength);
-      if (!footprint) {
-        error = footprint.error();
-        return 0.0;
-      }
-      return seen.emplace(strength, std::move(*footprint)).first->second.repeatable;
-    };
-    const StrengthFound found =
-        candidate.kind->all_or_nothing
-            ? whole_effect(target, candidate.kind->strength.typical, visibility)
-            : strength_for(target, candidate.strength, visibility);
-    if (error) return tl::unexpected(*error);
-    Footprint& footprint = seen.at(found.strength);
-    if (!found.attained || footprint.largest_move() > kMovedShareMax) return std::nullopt;
+  Result<std::optional<HiddenAtStrength>> search(const HiddenChoice& candidate,
+                                                 const ShareBin& share) {
+    constexpr double kFaintest = 0.005;  // Of the strongest.
+    constexpr int kTries = 6;
+    const StrengthRange& range = candidate.kind->strength;
+    const bool is_whole = candidate.kind->all_or_nothing || candidate.kind->id == "phase_lost";
+    const double most = is_whole ? range.typical : candidate.strength;
+    std::optional<Footprint> last;
+    const auto strength = strength_in(share, {is_whole ? most : kFaintest * most, most}, kTries,
+                                      [&](double tried) -> Result<double> {
+                                        auto footprint = try_out(candidate, tried);
+                                        if (!footprint) return tl::unexpected(footprint.error());
+                                        last = std::move(*footprint);
+                                        return *std::ranges::max_element(last->moved_share);
+                                      });
+    if (!strength) return tl::unexpected(strength.error());
+    if (!*strength) return std::nullopt;
     HiddenAtStrength result{.choice = candidate,
-                            .target = target,
-                            .repeatable = footprint.repeatable,
-                            .reached = std::move(footprint.detectability),
-                            .share_of_meter = std::move(footprint.signed_share),
-                            .moved_share = std::move(footprint.moved_share)};
-    result.choice.strength = found.strength;
+                            .share_of_meter = std::move(last->signed_share),
+                            .moved_share = std::move(last->moved_share)};
+    result.choice.strength = **strength;
     return result;
   }
 
   Result<Footprint> try_out(HiddenChoice choice, double strength) {
     choice.strength = strength;
-    const auto here_kW = added_kW(plain_, choice);
-    if (!here_kW) return tl::unexpected(here_kW.error());
-    const auto nearby_kW = added_kW(nearly_, choice);
-    if (!nearby_kW) return tl::unexpected(nearby_kW.error());
-    const auto& recording = plain_.twin.recording;
-    auto detectability = gauge_.measure(*here_kW, plates_, recording);
-    if (!detectability) return tl::unexpected(detectability.error());
-    const auto repeatable = gauge_.repeatable(*here_kW, *nearby_kW, plates_, recording);
-    if (!repeatable) return tl::unexpected(repeatable.error());
-    Footprint footprint = shares_of(*here_kW, plain_.twin, plates_, blocks_);
-    footprint.detectability = std::move(*detectability);
-    footprint.repeatable = *repeatable;
-    return footprint;
-  }
-
-  /// By plate, then interval.
-  Result<std::vector<std::vector<double>>> added_kW(const Plain& plain,
-                                                    const HiddenChoice& choice) {
-    Scenario alone = plain.scenario;
+    Scenario alone = plain_.scenario;
     alone.effects = {choice};
     const auto with = simulate(alone, plan_.seed, calendar_);
     if (!with) return tl::unexpected(with.error());
     ++settled_.simulations;
-    return footprint_kW(*with, plain.twin, calendar_);
+    return shares_of(footprint_kW(*with, plain_.twin, calendar_), plain_.twin, plates_, blocks_);
   }
 
   const CasePlan& plan_;
   const metering::LocalCalendar& calendar_;
   const Plain& plain_;
-  const Plain& nearly_;
-  const TwinGauge& gauge_;
   std::vector<MeterPlate> plates_;
   std::vector<std::size_t> blocks_;
   SettledCase settled_;
 };
-
-/// The highest grade that was reached within 5 %: what an effect that is there whole or not at all
-/// has beyond it cannot be taken away.
-double grade_of(double detectability) {
-  double grade = 0.0;
-  for (const double one : kGrades) {
-    if (detectability >= 0.95 * one) grade = one;
-  }
-  return grade;
-}
-
-/// Grade and d* of the weakest effect; null where none is hidden.
-Json grain_json(const SettledCase& settled) {
-  if (settled.effects.empty()) return {{"detectability", nullptr}};
-  double weakest = std::numeric_limits<double>::infinity();
-  for (const HiddenAtStrength& hidden : settled.effects) {
-    weakest = std::min(weakest, hidden.repeatable);
-  }
-  return {{"detectability", grade_of(weakest)}, {"measured", weakest}};
-}
 
 Json date_of(const std::optional<metering::Day>& day) {
   return day ? Json(metering::to_string(*day)) : Json(nullptr);
@@ -241,15 +156,7 @@ Json effects_json(const SettledCase& settled) {
                     {"from", date_of(hidden.choice.from)},
                     {"to", date_of(hidden.choice.to)},
                     {"share_of_meter", shares},
-                    {"moved_share", moved},
-                    {"target", hidden.target},
-                    {"repeatable", hidden.repeatable},
-                    {"detectability", hidden.reached.d_star},
-                    {"unscaled",
-                     {{"month", hidden.reached.month.detectability},
-                      {"day", hidden.reached.day.detectability},
-                      {"block", hidden.reached.block.detectability}}},
-                    {"absorbed_share", hidden.reached.block.absorbed_share}});
+                    {"moved_share", moved}});
   }
   return list;
 }
@@ -268,7 +175,6 @@ Json answer_json(const CasePlan& plan, const SettledCase& settled, const Truth& 
   const double air_m3_s = drawings.outdoor_air_m3_s();
   return {{"case", plan.id},
           {"block", block_name(plan.block)},
-          {"grain", grain_json(settled)},
           {"effects", effects_json(settled)},
           {"decoys", decoys},
           {"climate", name_of(drawings.climate)},
@@ -322,7 +228,7 @@ Result<void> write_twin(const std::filesystem::path& folder, const CasePlan& pla
 
 }  // namespace
 
-Result<SettledCase> settle(const CasePlan& plan, const std::filesystem::path& twin_folder) {
+Result<SettledCase> settle(const CasePlan& plan) {
   const auto calendar = metering::LocalCalendar::open(plan.scenario.drawings.time_zone);
   if (!calendar) return tl::unexpected(calendar.error());
   if (plan.wanted.empty()) {
@@ -332,13 +238,7 @@ Result<SettledCase> settle(const CasePlan& plan, const std::filesystem::path& tw
   }
   const auto plain = run_plain(plan.scenario, plan.seed, *calendar);
   if (!plain) return tl::unexpected(plain.error());
-  const auto other = run_plain(nearly(plan.scenario), plan.seed, *calendar);
-  if (!other) return tl::unexpected(other.error());
-  auto written = write_feed(twin_folder, plan, plan.scenario, plain->twin, *calendar);
-  if (!written) return tl::unexpected(written.error());
-  const auto gauge = TwinGauge::open(twin_folder / "site.toml");
-  if (!gauge) return tl::unexpected(gauge.error());
-  Settler settler(plan, *calendar, *plain, *other, *gauge);
+  Settler settler(plan, *calendar, *plain);
   for (const Wanted& wanted : plan.wanted) {
     if (auto settled = settler.settle(wanted); !settled) return tl::unexpected(settled.error());
   }

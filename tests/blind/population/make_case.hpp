@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "core/diagnosis/detectability.hpp"
 #include "simulators/scenario/twin.hpp"
 #include "tests/blind/population/plan.hpp"
 
@@ -12,11 +11,8 @@ namespace recald::blind {
 /// One effect as it came out.
 struct HiddenAtStrength {
   simulators::HiddenChoice choice;
-  double target = 0.0;                    ///< d* that it should have, what repeats of it.
-  double repeatable = 0.0;                ///< d* that it has, likewise; see `TwinGauge`.
-  diagnosis::Detectability reached = {};  ///< Alone, at the case's twin.
-  std::vector<double> share_of_meter;     ///< Signed, in the order of `plates_of`.
-  std::vector<double> moved_share;        ///< By months and parts of the day; likewise.
+  std::vector<double> share_of_meter;  ///< Signed, in the order of `plates_of`.
+  std::vector<double> moved_share;     ///< By months and parts of the day; likewise.
 };
 
 struct SettledCase {
@@ -27,13 +23,10 @@ struct SettledCase {
   int simulations = 0;
 };
 
-/// Finds for each wanted effect the strength at which it has the d* asked for, within 5 %, while it
-/// moves no meter by more than 40 %; or a stand-in that has one.
-/// @param twin_folder  Gets the twin's files, for the model to be calibrated to.
-/// @return not_found if the system has no zone files; not_enough_data where no stand-in has such a
-///         strength; io_failed; or what the calibration to the twin refuses.
-[[nodiscard]] Result<SettledCase> settle(const CasePlan& plan,
-                                         const std::filesystem::path& twin_folder);
+/// Finds for each wanted effect a strength at which it moves as much as asked; or a stand-in that
+/// does.
+/// @return not_found if the system has no zone files; not_enough_data where no stand-in does.
+[[nodiscard]] Result<SettledCase> settle(const CasePlan& plan);
 
 struct CaseFolders {
   std::filesystem::path cases;    ///< Gets `<id>/` with readings.csv, weather.csv, site.toml.

@@ -104,8 +104,8 @@ Result<Population> of_own_world(std::string name, const std::vector<CasePlan>& p
   Population population{std::move(name), {}};
   for (const CasePlan& plan : plans) {
     population.tasks.push_back(
-        {plan.id, [plan, folders](const std::filesystem::path& scratch) -> Result<int> {
-           const auto settled = settle(plan, scratch);
+        {plan.id, [plan, folders](const std::filesystem::path& /*scratch*/) -> Result<int> {
+           const auto settled = settle(plan);
            if (!settled) return tl::unexpected(settled.error());
            const auto written = write_case(plan, *settled, folders);
            if (!written) return tl::unexpected(written.error());
@@ -116,7 +116,7 @@ Result<Population> of_own_world(std::string name, const std::vector<CasePlan>& p
 }
 
 Result<Population> of_energyplus(const Arguments& given, const CaseFolders& folders) {
-  const auto kind = eplus_population(given.population);
+  const auto kind = population_kind("energyplus", given.population);
   if (!kind) return tl::unexpected(kind.error());
   const auto engine = Engine::find();
   if (!engine) return tl::unexpected(engine.error());
@@ -137,7 +137,7 @@ Result<Population> plan_what_is_asked(const Arguments& given, const CaseFolders&
   }
   if (given.world == "energyplus") return of_energyplus(given, folders);
   if (!plain) {
-    const auto kind = population_kind(given.population);
+    const auto kind = population_kind("own", given.population);
     if (!kind) return tl::unexpected(kind.error());
     return of_own_world(kind->name, plan_population(*kind, given.seed), folders);
   }
@@ -213,8 +213,7 @@ int main(int argc, char** argv) {
   app.add_option("--world", given.world, "whose buildings: own or energyplus")
       ->check(CLI::IsMember({"own", "energyplus"}));
   app.add_option("--population", given.population,
-                 "smoke, training, sealed or plain; of EnergyPlus smoke, development, learning or "
-                 "sealed")
+                 "smoke, development, learning, sealed; of our own world also plain")
       ->required();
   app.add_option("--uses", given.uses, "of a plain population, such as office,shop")
       ->delimiter(',');

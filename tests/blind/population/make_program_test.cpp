@@ -19,9 +19,7 @@ namespace fs = std::filesystem;
 using recald::testing::read_text;
 using recald::testing::TemporaryFolder;
 using recald::testing::write_text;
-using ::testing::AnyOf;
 using ::testing::HasSubstr;
-using ::testing::Optional;
 using Json = nlohmann::json;
 
 struct Ran {
@@ -57,7 +55,6 @@ class Smoke : public ::testing::Test {
   void is_sealed_before_anybody_reads_a_case();
   void every_case_is_one_that_recald_takes();
   void a_twin_has_the_same_weather_and_site_and_a_footprint_where_something_is_hidden();
-  void recald_measures_the_detectability_that_the_answer_states();
   void same_seed_same_bytes_even_in_pieces();
   void refuses_in_one_sentence();
   void is_diagnosed_and_scored();
@@ -92,13 +89,12 @@ void Smoke::is_sealed_before_anybody_reads_a_case() {
     const std::string site = read_text(whole() / "cases" / id / "site.toml");
     for (const HiddenEffect& hidden : answer.effects) {
       EXPECT_EQ(site.find(hidden.effect), std::string::npos);
-      for (const auto& [meter, share] : hidden.share_of_meter) EXPECT_LE(std::abs(share), 0.4);
+      for (const auto& [meter, share] : hidden.share_of_meter) EXPECT_LE(std::abs(share), 0.5);
     }
-    // A grade that the scorer knows; d* itself stands beside it.
-    if (answer.effects.empty()) {
-      EXPECT_EQ(answer.detectability, std::nullopt) << id;
-    } else {
-      EXPECT_THAT(answer.detectability, AnyOf(Optional(8.0), Optional(16.0))) << id;
+    // As much as the block promises; of two effects, each.
+    if (!answer.effects.empty()) {
+      EXPECT_GE(largest_share(answer), 0.03) << id;
+      EXPECT_LT(largest_share(answer), 0.5) << id;
     }
     EXPECT_FALSE(fs::exists(whole() / "cases" / id / "truth.json"));
   }
@@ -130,30 +126,6 @@ void Smoke::a_twin_has_the_same_weather_and_site_and_a_footprint_where_something
   }
 }
 
-// What was measured in process against what a user would be told of the same twin. The footprint
-// file is rounded to watts.
-void Smoke::recald_measures_the_detectability_that_the_answer_states() {
-  int seen = 0;
-  const auto answers = read_answers(whole() / "answers");
-  for (const auto& [id, answer] : *answers) {
-    if (answer.block != Block::single) continue;
-    SCOPED_TRACE(id);
-    const fs::path twin = whole() / "twins" / id;
-    const Ran measured = run(*folder_, std::string(RECALD_PROGRAM) + " detectability --json " +
-                                           (twin / "site.toml").string() + " --footprint " +
-                                           (twin / "footprint.csv").string());
-    ASSERT_EQ(measured.exit_code, 0) << measured.err;
-    const double found = Json::parse(measured.out)["detectability"];
-    const Json stated = Json::parse(read_text(whole() / "answers" / (id + ".json")));
-    EXPECT_NEAR(found, stated["effects"][0]["detectability"], 0.01 * found);
-    // What repeats of it is what the case is graded by.
-    EXPECT_GE(stated["grain"]["measured"], 0.95 * *answer.detectability);
-    EXPECT_EQ(stated["grain"]["measured"], stated["effects"][0]["repeatable"]);
-    ++seen;
-  }
-  EXPECT_EQ(seen, 5);
-}
-
 void Smoke::same_seed_same_bytes_even_in_pieces() {
   const std::string out = (*folder_ / "pieces").string();
   const std::string one = "--population smoke --seed 1 --twins --threads 1 --out " + out;
@@ -174,7 +146,7 @@ void Smoke::refuses_in_one_sentence() {
   EXPECT_EQ(make(*folder_, "--population smoke" + out).exit_code, 2);
   const Ran unknown = make(*folder_, "--population secret --seed 1" + out);
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("there are smoke, training, sealed and plain"));
+  EXPECT_THAT(unknown.err, HasSubstr("there are smoke, development, learning, sealed"));
   const Ran beyond = make(*folder_, "--population smoke --seed 1 --cases 5-13" + out);
   EXPECT_EQ(beyond.exit_code, 2);
   EXPECT_THAT(beyond.err, HasSubstr("1 to 12"));
@@ -225,7 +197,6 @@ TEST_F(Smoke, IsSealedRepeatableTakenByRecaldAndScored) {
   is_sealed_before_anybody_reads_a_case();
   every_case_is_one_that_recald_takes();
   a_twin_has_the_same_weather_and_site_and_a_footprint_where_something_is_hidden();
-  recald_measures_the_detectability_that_the_answer_states();
   same_seed_same_bytes_even_in_pieces();
   refuses_in_one_sentence();
   is_diagnosed_and_scored();

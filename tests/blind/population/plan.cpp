@@ -17,26 +17,10 @@ using namespace simulators;
 using std::chrono::days;
 using std::chrono::sys_days;
 
-constexpr double kPlain = 8.0;
-constexpr double kStrong = 16.0;
-// A strength is found within 5 %, and neither effect of a pair may fall below 8.
-constexpr double kInPair = 8.43;
 constexpr int kStandIns = 12;
 
 /// Streams of one population's seed. A case's own numbers come from its index.
 enum class Chance : std::uint64_t { order = 1, cases = 1'000 };
-
-std::uint64_t seed_of(std::string_view population, std::uint64_t seed) {
-  std::uint64_t hash = 14695981039346656037ULL ^ seed;
-  for (const char c : population) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
-}
-
-// Populations are dealt from these first, so that a seed goes on giving the buildings it gave
-// before kinds came in order of their names.
-constexpr auto kDealtFirst = std::to_array<std::string_view>(
-    {"night_setback_missing", "weekend_operation", "missing_holidays", "after_hours", "early_start",
-     "round_the_clock_zone", "semester_calendar", "vacancy", "hybrid_work"});
 
 std::vector<const EffectKind*> kinds_in_catalogue(bool in_catalogue) {
   std::vector<const EffectKind*> kinds;
@@ -44,9 +28,6 @@ std::vector<const EffectKind*> kinds_in_catalogue(bool in_catalogue) {
     if (kind.group == EffectClass::operators) continue;  // a base parameter's, no effect is missing
     if ((kind.group != EffectClass::outside_catalogue) == in_catalogue) kinds.push_back(&kind);
   }
-  std::ranges::stable_sort(kinds, {}, [](const EffectKind* kind) {
-    return std::ranges::find(kDealtFirst, kind->id) - kDealtFirst.begin();
-  });
   return kinds;
 }
 
@@ -54,22 +35,32 @@ void shuffle(std::vector<const EffectKind*>& kinds, Rng& rng) {
   for (std::size_t i = kinds.size(); i > 1; --i) std::swap(kinds[i - 1], kinds[rng.below(i)]);
 }
 
-/// Deals all kinds in random order, then again in another, for as long as asked.
+/// Deals all kinds in random order, then again in another, for as long as asked. A kind that a
+/// building cannot have waits for the next one.
 class Deck {
  public:
   Deck(bool in_catalogue, Rng& rng) : kinds_(kinds_in_catalogue(in_catalogue)), rng_(rng) {}
 
-  const EffectKind* deal() {
-    if (next_ == 0) shuffle(kinds_, rng_);
-    const EffectKind* kind = kinds_[next_];
-    next_ = (next_ + 1) % kinds_.size();
-    return kind;
+  template <class Possible>
+  const EffectKind* deal(const Possible& possible) {
+    for (int round = 0; round < 2; ++round) {
+      const auto found =
+          std::ranges::find_if(waiting_, [&](const EffectKind* kind) { return possible(*kind); });
+      if (found != waiting_.end()) {
+        const EffectKind* const kind = *found;
+        waiting_.erase(found);
+        return kind;
+      }
+      shuffle(kinds_, rng_);
+      waiting_.insert(waiting_.end(), kinds_.begin(), kinds_.end());
+    }
+    return nullptr;
   }
 
  private:
   std::vector<const EffectKind*> kinds_;
   Rng& rng_;
-  std::size_t next_ = 0;
+  std::vector<const EffectKind*> waiting_;
 };
 
 Utility draw_meter(const EffectKind& kind, const Drawings& drawings, Rng& rng) {
@@ -79,48 +70,61 @@ Utility draw_meter(const EffectKind& kind, const Drawings& drawings, Rng& rng) {
   return current_transformers ? Utility::electricity : drawn;
 }
 
-/// Dates in the middle of the period, so that there is a before and an after.
-HiddenChoice draw_choice(const EffectKind& kind, const Scenario& scenario, Rng& rng) {
-  const sys_days first{std::chrono::year{scenario.period.start_year} / 1 / 1};
-  const double length_days = 365.25 * scenario.period.years;
-  const auto begin = first + days{static_cast<int>(length_days * rng.uniform(0.25, 0.6))};
+/// In the middle of the period, so that there is a before and an after; or in its last year, which
+/// is forecast.
+struct Begin {
+  sys_days day;
+  bool is_in_last_year;
+};
+
+Begin draw_begin(const Period& period, Rng& rng) {
+  constexpr double kInForecastYear = 0.25;
+  const sys_days first{std::chrono::year{period.start_year} / 1 / 1};
+  const bool last = period.years > 1 && rng.uniform() < kInForecastYear;
+  const double share = last ? 1.0 - rng.uniform(0.4, 0.98) / period.years : rng.uniform(0.25, 0.6);
+  return {first + days{static_cast<int>(365.25 * period.years * share)}, last};
+}
+
+HiddenChoice draw_choice(const EffectKind& kind, const Scenario& scenario, const Begin& begin,
+                         Rng& rng) {
   const auto length = days{static_cast<int>(rng.uniform(50.0, 200.0))};
   const bool negative = rng.uniform() < 0.5;
   const Utility meter = draw_meter(kind, scenario.drawings, rng);
   HiddenChoice choice{
       .kind = &kind, .strength = kind.strength.max, .from = {}, .to = {}, .meter = {}};
   if (negative && kind.strength.min < 0.0) choice.strength = kind.strength.min;
-  if (kind.dated) choice.from = begin;
-  if (kind.id == "vacancy") choice.to = begin + length;
+  if (kind.dated || begin.is_in_last_year) choice.from = begin.day;
+  if (kind.id == "vacancy") choice.to = begin.day + length;
   if (kind.of_one_meter) choice.meter = meter;
   return choice;
 }
 
-struct Hidden {
+/// What a case is to hide.
+struct Slot {
   Block block;
-  std::vector<const EffectKind*> kinds;  ///< To be there together.
-  double target = kPlain;                ///< d* of each.
-  std::optional<Decoy> decoy;
+  ShareBin share = kAbove3;
+  bool of_one_class = false;  ///< A pair's.
+  std::optional<Decoy> decoy = {};
 };
 
-std::vector<EffectNeeds> needs_of(const std::vector<const EffectKind*>& kinds) {
-  std::vector<EffectNeeds> needs;
-  for (const EffectKind* kind : kinds) needs.push_back(kind->needs);
-  return needs;
+/// Whether the building can have it, beside what it has.
+bool can_have(const Scenario& scenario, const HiddenChoice& choice) {
+  Scenario with = scenario;
+  with.effects.push_back(choice);
+  return check_effects(with).has_value();
 }
 
 /// The effect itself, then others of the same block that the building could have as well.
-std::vector<HiddenChoice> with_stand_ins(const EffectKind& kind, const Scenario& scenario,
-                                         Rng& rng) {
-  const bool in_catalogue = kind.group != EffectClass::outside_catalogue;
+std::vector<HiddenChoice> with_stand_ins(const HiddenChoice& first, const Scenario& scenario,
+                                         const Begin& begin, Rng& rng) {
+  const bool in_catalogue = first.kind->group != EffectClass::outside_catalogue;
   std::vector<const EffectKind*> others = kinds_in_catalogue(in_catalogue);
   shuffle(others, rng);
-  std::vector<HiddenChoice> candidates{draw_choice(kind, scenario, rng)};
+  std::vector<HiddenChoice> candidates{first};
   for (const EffectKind* other : others) {
-    Scenario alone = scenario;
-    alone.effects = {draw_choice(*other, scenario, rng)};
-    if (other == &kind || !check_effects(alone)) continue;
-    candidates.push_back(alone.effects.front());
+    const HiddenChoice choice = draw_choice(*other, scenario, begin, rng);
+    if (other == first.kind || !can_have(scenario, choice)) continue;
+    candidates.push_back(choice);
     if (candidates.size() > kStandIns) break;
   }
   return candidates;
@@ -128,26 +132,46 @@ std::vector<HiddenChoice> with_stand_ins(const EffectKind& kind, const Scenario&
 
 Period draw_period(int years, Rng& rng) { return {2012 + static_cast<int>(rng.below(18)), years}; }
 
-CasePlan plan_case(const PopulationKind& kind, std::uint64_t population_seed, std::size_t index,
-                   const Hidden& hidden) {
-  Rng rng{population_seed, static_cast<std::uint64_t>(Chance::cases) + index};
+/// A building of the family, drawn before anybody knows what it will hide: what is hidden must not
+/// show in what is built.
+CasePlan plan_building(const PopulationKind& kind, std::uint64_t population_seed, std::size_t index,
+                       const Slot& slot, Rng& rng) {
   CasePlan plan;
   plan.id = fmt::format("{}-{:03}", kind.name, index + 1);
-  plan.block = hidden.block;
+  plan.block = slot.block;
+  rng = Rng{population_seed, static_cast<std::uint64_t>(Chance::cases) + index};
   plan.seed = rng.below(std::uint64_t{1} << 53U);
   Scenario& scenario = plan.scenario;
-  scenario.drawings = draw_building(needs_of(hidden.kinds), rng);
+  const auto uses = uses_of(kind.family);
+  scenario.drawings = draw_building_of(uses[rng.below(uses.size())], rng);
   scenario.drawings.id = plan.id;
   scenario.period = draw_period(kind.years, rng);
   scenario.step = kInterval;
   const bool gaps = rng.uniform() < 1.0 / 3.0;
   scenario.care = gaps ? MeterCare::gaps : MeterCare::perfect;
-  if (hidden.decoy) scenario.decoys.push_back(*hidden.decoy);
+  if (slot.decoy) scenario.decoys.push_back(*slot.decoy);
   plan.as_believed = misremembered(scenario.drawings, rng);
-  for (const EffectKind* effect : hidden.kinds) {
-    plan.wanted.push_back({with_stand_ins(*effect, scenario, rng), hidden.target});
-  }
   return plan;
+}
+
+/// Half of the pairs from one class, as the likeliest to be taken for each other.
+void want(CasePlan& plan, const Slot& slot, Deck& deck, Rng& rng) {
+  const Begin begin = draw_begin(plan.scenario.period, rng);
+  Scenario with = plan.scenario;
+  const std::size_t count = slot.block == Block::pair ? 2 : 1;
+  while (plan.wanted.size() < count) {
+    const auto fits = [&](const EffectKind& kind, bool any_class) {
+      Rng tried = rng;
+      const bool same = !with.effects.empty() && kind.group == with.effects.front().kind->group;
+      const bool is_wanted = with.effects.empty() || any_class || same == slot.of_one_class;
+      return is_wanted && can_have(with, draw_choice(kind, with, begin, tried));
+    };
+    const EffectKind* kind = deck.deal([&](const EffectKind& one) { return fits(one, false); });
+    if (kind == nullptr) kind = deck.deal([&](const EffectKind& one) { return fits(one, true); });
+    const HiddenChoice choice = draw_choice(*kind, with, begin, rng);
+    plan.wanted.push_back({with_stand_ins(choice, with, begin, rng), slot.share});
+    with.effects.push_back(choice);
+  }
 }
 
 CasePlan plan_plain_case(std::uint64_t population_seed, std::size_t index, Use use) {
@@ -166,68 +190,26 @@ CasePlan plan_plain_case(std::uint64_t population_seed, std::size_t index, Use u
   return plan;
 }
 
-bool can_stand_together(const EffectKind& one, const EffectKind& other) {
-  const bool plants_clash = (one.needs.heat_pump && (other.needs.fuel || other.needs.heat_meter)) ||
-                            (other.needs.heat_pump && (one.needs.fuel || one.needs.heat_meter));
-  return &one != &other && one.turns != other.turns && !plants_clash;
-}
-
-/// Half of the pairs from one class, as the likeliest to be taken for each other.
-Hidden draw_pair(bool same_class, Deck& deck) {
-  for (;;) {
-    const EffectKind* one = deck.deal();
-    for (int attempt = 0; attempt < 60; ++attempt) {
-      const EffectKind* other = deck.deal();
-      const bool wanted = (one->group == other->group) == same_class;
-      if (wanted && can_stand_together(*one, *other))
-        return {Block::pair, {one, other}, kInPair, {}};
-    }
-  }
-}
-
-std::vector<Hidden> deal_blocks(const BlockSizes& sizes, Rng& rng) {
-  Deck known(true, rng);
-  Deck unknown(false, rng);
-  std::vector<Hidden> all;
-  for (int i = 0; i < sizes.no_effect; ++i) all.push_back({Block::no_effect, {}, kPlain, {}});
-  for (const Singles& singles : sizes.singles) {
-    for (int i = 0; i < singles.count; ++i) {
-      all.push_back({Block::single, {known.deal()}, singles.detectability, {}});
-    }
+std::vector<Slot> slots_of(const PopulationKind& kind, Rng& rng) {
+  std::vector<Slot> all(static_cast<std::size_t>(kind.no_effect), {Block::no_effect});
+  for (const Singles& singles : kind.singles) {
+    all.insert(all.end(), static_cast<std::size_t>(singles.count), {Block::single, singles.share});
   }
   // One in five hides nothing but offers a driver that causes nothing.
-  for (int i = 0; i < sizes.out_of_catalogue; ++i) {
+  for (int i = 0; i < kind.out_of_catalogue; ++i) {
+    Slot slot{Block::out_of_catalogue};
     if (i % 5 == 4) {
-      const Decoy decoy = i % 2 == 0 ? Decoy::wind_of_another_year : Decoy::neighbour_meter;
-      all.push_back({Block::out_of_catalogue, {}, kPlain, decoy});
-    } else {
-      const double target = i % 2 == 0 ? kStrong : kPlain;
-      all.push_back({Block::out_of_catalogue, {unknown.deal()}, target, {}});
+      slot.decoy = i % 2 == 0 ? Decoy::wind_of_another_year : Decoy::neighbour_meter;
     }
+    all.push_back(slot);
   }
-  for (int i = 0; i < sizes.pairs; ++i) all.push_back(draw_pair(i % 2 == 0, known));
+  for (int i = 0; i < kind.pairs; ++i) all.push_back({Block::pair, kAbove3, i % 2 == 0});
   // The order must not tell the block.
   for (std::size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[rng.below(i)]);
   return all;
 }
 
 }  // namespace
-
-Result<PopulationKind> population_kind(std::string_view name) {
-  if (name == "smoke") {
-    return PopulationKind{"smoke", {3, {{kPlain, 3}, {kStrong, 2}}, 2, 2}, 1};
-  }
-  if (name == "training") {
-    const std::vector<Singles> singles{{2.0, 25}, {4.0, 25}, {kPlain, 25}, {kStrong, 25}};
-    return PopulationKind{"training", {60, singles, 20, 20}, 3};
-  }
-  if (name == "sealed") {
-    return PopulationKind{"sealed", {60, {{kPlain, 60}, {kStrong, 40}}, 20, 20}, 3};
-  }
-  return failure(
-      ErrorCode::not_found,
-      fmt::format("unknown population {}; there are smoke, training, sealed and plain", name));
-}
 
 Result<std::vector<Use>> uses_named(const std::vector<std::string>& names) {
   if (names.empty()) {
@@ -253,7 +235,7 @@ std::vector<CasePlan> plan_plain(const std::vector<Use>& uses, std::size_t count
                                  std::uint64_t seed) {
   std::string name = "plain";
   for (const Use use : uses) name += " " + std::string(to_string(use));
-  const std::uint64_t own = seed_of(name, seed);
+  const std::uint64_t own = own_seed(name, seed);
   std::vector<CasePlan> plans;
   for (std::size_t i = 0; i < count; ++i) {
     plans.push_back(plan_plain_case(own, i, uses[i % uses.size()]));
@@ -262,12 +244,17 @@ std::vector<CasePlan> plan_plain(const std::vector<Use>& uses, std::size_t count
 }
 
 std::vector<CasePlan> plan_population(const PopulationKind& kind, std::uint64_t seed) {
-  const std::uint64_t own = seed_of(kind.name, seed);
-  Rng rng{own, static_cast<std::uint64_t>(Chance::order)};
-  const std::vector<Hidden> hidden = deal_blocks(kind.sizes, rng);
+  const std::uint64_t own = own_seed(kind.name, seed);
+  Rng order{own, static_cast<std::uint64_t>(Chance::order)};
+  const std::vector<Slot> slots = slots_of(kind, order);
+  Deck known(true, order);
+  Deck unknown(false, order);
   std::vector<CasePlan> plans;
-  for (std::size_t i = 0; i < hidden.size(); ++i) {
-    plans.push_back(plan_case(kind, own, i, hidden[i]));
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    Rng rng{own, 0};
+    plans.push_back(plan_building(kind, own, i, slots[i], rng));
+    if (slots[i].block == Block::no_effect || slots[i].decoy) continue;
+    want(plans.back(), slots[i], slots[i].block == Block::out_of_catalogue ? unknown : known, rng);
   }
   return plans;
 }

@@ -1,19 +1,20 @@
-/// What stands in each case of a blind population, before any strength is known.
+/// What stands in each case of our own world, before any strength is known.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "simulators/scenario/scenario.hpp"
+#include "tests/blind/population/population_kind.hpp"
 #include "tests/blind/scoring/answers.hpp"
 
 namespace recald::blind {
 
-/// One effect that a case wants: the first of `candidates` that can be made to show enough is
-/// taken, the others stand by.
+/// One effect that a case wants: the first of `candidates` that can move so much is taken, the
+/// others stand by.
 struct Wanted {
   std::vector<simulators::HiddenChoice> candidates;  ///< Strengths are limits: the sign is drawn.
-  double target;                                     ///< d* that it shall have, alone.
+  ShareBin share;                                    ///< That it shall move, alone.
 };
 
 struct CasePlan {
@@ -24,31 +25,6 @@ struct CasePlan {
   simulators::Drawings as_believed;  ///< What the site file says: the drawings, in part mistaken.
   std::vector<Wanted> wanted;
 };
-
-/// So many single effects at this d*.
-struct Singles {
-  double detectability;
-  int count;
-};
-
-struct BlockSizes {
-  int no_effect;
-  std::vector<Singles> singles;
-  int out_of_catalogue;
-  int pairs;
-};
-
-/// Populations differ in name, and with it in every seed, building and weather.
-struct PopulationKind {
-  std::string name;
-  BlockSizes sizes;
-  int years;
-};
-
-/// "smoke" (12 cases of a year), "training" and "sealed" (200 of three years); "plain" is planned
-/// by `plan_plain`.
-/// @return not_found with the names for any other.
-[[nodiscard]] Result<PopulationKind> population_kind(std::string_view name);
 
 /// The same kind and seed give the same plans; case i does not depend on how many follow.
 [[nodiscard]] std::vector<CasePlan> plan_population(const PopulationKind& kind, std::uint64_t seed);

@@ -105,11 +105,6 @@ Result<Answer> parse_answer(std::string_view text, const std::string& expected_c
   }
   answer.block = block_of(fields.word("block", kBlocks));
   if (fields.has("world")) answer.world = fields.word("world", kWorlds);
-  fields.object("grain", [&](JsonFields& grain) {
-    if (grain.has("detectability")) {
-      answer.detectability = grain.number("detectability", {.min = 0.0});
-    }
-  });
   fields.each("effects", [&](const std::string&, JsonFields& effect) {
     answer.effects.push_back(read_effect(effect));
   });

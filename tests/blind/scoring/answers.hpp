@@ -33,8 +33,7 @@ struct HiddenEffect {
 struct Answer {
   std::string case_id;
   Block block = Block::no_effect;
-  std::string world = "own";            ///< Whose buildings: "own" or "energyplus".
-  std::optional<double> detectability;  ///< d* (of the weaker one in a pair); absent: not measured.
+  std::string world = "own";  ///< Whose buildings: "own" or "energyplus".
   std::vector<HiddenEffect> effects;
   std::vector<std::string> decoys;  ///< Drivers on offer that cause nothing.
   std::string climate;

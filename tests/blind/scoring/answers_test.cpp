@@ -16,7 +16,7 @@ TEST(Answers, ASingleIsReadWhole) {
   ASSERT_TRUE(answer.has_value()) << answer.error().message;
   EXPECT_EQ(answer->case_id, "sealed-017");
   EXPECT_EQ(answer->block, Block::single);
-  EXPECT_EQ(answer->detectability, 8.0);
+  EXPECT_EQ(answer->world, "own");
   ASSERT_EQ(answer->effects.size(), 1u);
   const HiddenEffect& effect = answer->effects.front();
   EXPECT_EQ(effect.effect, "night_setback_missing");
@@ -31,12 +31,12 @@ TEST(Answers, ASingleIsReadWhole) {
   EXPECT_EQ(most_affected_meter(*answer), "steam");
 }
 
-TEST(Answers, DetectabilityMayBeUnmeasured) {
+TEST(Answers, MayBeOfAnotherWorld) {
   json text = made_up::answer_json("a");
-  text["grain"]["detectability"] = nullptr;
+  text["world"] = "energyplus";
   const auto answer = parse_answer(text.dump(), "a");
   ASSERT_TRUE(answer.has_value()) << answer.error().message;
-  EXPECT_EQ(answer->detectability, std::nullopt);
+  EXPECT_EQ(answer->world, "energyplus");
 }
 
 // The two effects of a pair may pull one meter apart; what counts is how much each moves it.
@@ -90,8 +90,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"BadDay", [](json& a) { a["effects"][0]["from"] = "March 2022"; },
                 "'from' is 'March 2022', must be a day as in 2022-03-01"},
         Mistake{"BadFlag", [](json& a) { a["gaps"] = 0; }, "'gaps' is 0, must be true or false"},
-        Mistake{"NegativeDetectability", [](json& a) { a["grain"]["detectability"] = -8; },
-                "'grain.detectability' is -8, must be at least 0"},
+        Mistake{"OtherWorld", [](json& a) { a["world"] = "mars"; },
+                "'world' is \"mars\", must be one of own, energyplus"},
         Mistake{"NoEffectInSingle", [](json& a) { a["effects"] = json::array(); },
                 "block 'single' with 0 effects, 0 of them in the catalogue; it must hide one of "
                 "the catalogue"},

@@ -114,7 +114,6 @@ class Population {
 inline nlohmann::json answer_json(const std::string& case_id) {
   return {{"case", case_id},
           {"block", "single"},
-          {"grain", {{"detectability", 8}}},
           {"effects",
            {{{"effect", "night_setback_missing"},
              {"class", "schedules"},
