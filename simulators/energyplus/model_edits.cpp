@@ -88,13 +88,13 @@ std::size_t scale_cooling_cop(Json& model, double factor) {
 
 std::size_t scale_solar_gain(Json& model, double factor) {
   std::size_t count = 0;
-  for_each_object(
-      model, "WindowMaterial:SimpleGlazingSystem", [&](const std::string& /*name*/, Json& glazing) {
-        constexpr double kMost = 0.87;
-        double& gain = *glazing["solar_heat_gain_coefficient"].get_ptr<Json::number_float_t*>();
-        gain = std::min(factor * gain, kMost);
-        ++count;
-      });
+  for_each_object(model, "WindowMaterial:SimpleGlazingSystem",
+                  [&](const std::string& /*name*/, Json& glazing) {
+                    constexpr double kMost = 0.87;
+                    Json& gain = glazing["solar_heat_gain_coefficient"];
+                    gain = std::min(factor * gain.get<double>(), kMost);
+                    ++count;
+                  });
   return count;
 }
 

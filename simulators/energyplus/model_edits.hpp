@@ -8,12 +8,12 @@
 
 namespace recald::simulators::energyplus {
 
-/// `change(name, object)` for all objects whose type begins so.
-template <class Change>
-void for_each_object(Json& model, std::string_view type, const Change& change) {
+/// `visit(name, object)` for all objects whose type begins so. @param model  `Json`, const or not
+template <class Model, class Visit>
+void for_each_object(Model& model, std::string_view type, const Visit& visit) {
   for (auto& [of, objects] : model.items()) {
     if (!of.starts_with(type)) continue;
-    for (auto& [name, object] : objects.items()) change(name, object);
+    for (auto& [name, object] : objects.items()) visit(name, object);
   }
 }
 

@@ -14,11 +14,11 @@ bool takes_outdoor_air(const BuildingYear& building) {
 /// The flows that a handler's controller moves between are known.
 bool has_damper(const BuildingYear& building) {
   bool found = false;
-  Json model = building.model();
-  for_each_object(model, "Controller:OutdoorAir", [&](const std::string& /*name*/, Json& object) {
-    found |= object.contains("maximum_outdoor_air_flow_rate") &&
-             object["maximum_outdoor_air_flow_rate"].is_number();
-  });
+  for_each_object(building.model(), "Controller:OutdoorAir",
+                  [&](const std::string& /*name*/, const Json& object) {
+                    found |= object.contains("maximum_outdoor_air_flow_rate") &&
+                             object["maximum_outdoor_air_flow_rate"].is_number();
+                  });
   return found;
 }
 
@@ -28,19 +28,20 @@ bool has_scheduled_outdoor_air(const BuildingYear& building) {
 
 bool has_economiser(const BuildingYear& building) {
   bool found = false;
-  Json model = building.model();
-  for_each_object(model, "Controller:OutdoorAir", [&](const std::string& /*name*/, Json& object) {
-    found |= object.value("economizer_control_type", "NoEconomizer") != "NoEconomizer";
-  });
+  for_each_object(building.model(), "Controller:OutdoorAir",
+                  [&](const std::string& /*name*/, const Json& object) {
+                    found |=
+                        object.value("economizer_control_type", "NoEconomizer") != "NoEconomizer";
+                  });
   return found;
 }
 
 bool has_fixed_changeover(const BuildingYear& building) {
   bool found = false;
-  Json model = building.model();
-  for_each_object(model, "Controller:OutdoorAir", [&](const std::string& /*name*/, Json& object) {
-    found |= object.value("economizer_control_type", "") == "FixedDryBulb";
-  });
+  for_each_object(building.model(), "Controller:OutdoorAir",
+                  [&](const std::string& /*name*/, const Json& object) {
+                    found |= object.value("economizer_control_type", "") == "FixedDryBulb";
+                  });
   return found;
 }
 

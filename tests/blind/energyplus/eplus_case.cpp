@@ -303,6 +303,42 @@ std::vector<EplusCasePlan> plan_eplus(const PopulationKind& population, std::uin
 
 namespace {
 
+/// What a user would have.
+Result<void> write_feed(const std::filesystem::path& folder, const EplusCasePlan& plan,
+                        const SimulatedBuilding& building, const Loads& loads,
+                        const HiddenEffects& effects) {
+  const Recording recording = building.recording_of(loads);
+  const std::vector<MeterPlate> plates = building.plates();
+  std::vector<MeterFeed> feeds;
+  for (const MeterPlate& plate : plates) {
+    feeds.push_back(
+        read_meter(recording, plate, plan.care, plan.building.seed, effects, building.calendar()));
+  }
+  auto written = system::make_folder(folder);
+  if (written)
+    written = system::write_file(folder / "readings.csv", readings_csv(recording, feeds));
+  if (written) written = system::write_file(folder / "weather.csv", building.weather_text());
+  if (written) written = system::write_file(folder / "site.toml", building.site_text(plates));
+  return written;
+}
+
+/// What the effects add to each meter, free of noise and gaps.
+std::string footprint_text(const SimulatedBuilding& building, const Loads& loads,
+                           const HiddenEffects& effects) {
+  const Recording with = building.recording_of(loads);
+  const Recording without = building.recording_of(building.twin());
+  const std::vector<MeterPlate> plates = building.plates();
+  std::vector<std::vector<double>> added_kW;
+  for (const MeterPlate& plate : plates) {
+    std::vector<double>& added =
+        added_kW.emplace_back(metered_kW(with, plate.utility, effects, building.calendar()));
+    for (std::size_t slot = 0; slot < added.size(); ++slot) {
+      added[slot] -= without.power[slot][plate.utility];
+    }
+  }
+  return footprint_csv(with, plates, added_kW);
+}
+
 /// The building as planned, or another draw of it where EnergyPlus refuses it; at last one of ours
 /// in the place of one of others.
 Result<SimulatedBuilding> make_building(EplusPlan& plan, const Engine& engine,
@@ -335,20 +371,18 @@ Result<int> make_eplus_case(const EplusCasePlan& planned, const Engine& engine,
     if (!found) return tl::unexpected(found.error());
     hidden = std::move(*found);
   }
-  const Recording recording = building->recording_of(hidden ? hidden->loads : building->twin());
+  const Loads& loads = hidden ? hidden->loads : building->twin();
   const HiddenEffects effects =
       hidden ? hider.in_meters(hidden->candidate, hidden->strength) : HiddenEffects{};
-  const std::vector<MeterPlate> plates = building->plates();
-  std::vector<MeterFeed> feeds;
-  for (const MeterPlate& plate : plates) {
-    feeds.push_back(
-        read_meter(recording, plate, plan.care, plan.building.seed, effects, building->calendar()));
+  auto written = write_feed(folders.cases / id, plan, *building, loads, effects);
+  if (written && !folders.twins.empty()) {
+    const std::filesystem::path twin = folders.twins / id;
+    written = write_feed(twin, plan, *building, building->twin(), {});
+    if (written) {
+      written =
+          system::write_file(twin / "footprint.csv", footprint_text(*building, loads, effects));
+    }
   }
-  const std::filesystem::path folder = folders.cases / id;
-  if (const auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
-  auto written = system::write_file(folder / "readings.csv", readings_csv(recording, feeds));
-  if (written) written = system::write_file(folder / "weather.csv", building->weather_text());
-  if (written) written = system::write_file(folder / "site.toml", building->site_text(plates));
   if (written) {
     written = system::write_file(folders.answers / (id + ".json"),
                                  answer_json(plan, *building, hidden).dump(1) + "\n");

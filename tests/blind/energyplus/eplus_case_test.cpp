@@ -264,9 +264,10 @@ TEST_F(InEnergyPlus, ACaseIsMadeByteForByteAgain) {
   wanted.building.id = "case";
   const auto make = [&](const char* name) {
     const std::filesystem::path out = *folder_ / name;
-    const CaseFolders folders{out / "cases", out / "answers", {}};
-    for (const auto& each : {folders.cases, folders.answers})
+    const CaseFolders folders{out / "cases", out / "answers", out / "twins"};
+    for (const auto& each : {folders.cases, folders.answers}) {
       std::filesystem::create_directories(each);
+    }
     const auto made = make_eplus_case(wanted, *engine_, out / "scratch", folders);
     EXPECT_TRUE(made.has_value()) << made.error().message;
     EXPECT_FALSE(std::filesystem::exists(out / "scratch"));
@@ -277,6 +278,12 @@ TEST_F(InEnergyPlus, ACaseIsMadeByteForByteAgain) {
     return all;
   };
   const std::string once = make("once");
+  EXPECT_EQ(read_text(*folder_ / "once/cases/case/site.toml"),
+            read_text(*folder_ / "once/twins/case/site.toml"));
+  EXPECT_NE(read_text(*folder_ / "once/cases/case/readings.csv"),
+            read_text(*folder_ / "once/twins/case/readings.csv"));
+  EXPECT_THAT(read_text(*folder_ / "once/twins/case/footprint.csv"),
+              HasSubstr("timestamp,meter,value,unit\n"));
   EXPECT_EQ(once, make("again"));
   const auto answer = parse_answer(read_text(*folder_ / "once/answers/case.json"), "case");
   ASSERT_TRUE(answer.has_value()) << answer.error().message;

@@ -83,7 +83,10 @@ Result<void> write_scores(const OpenRequest& request, const Scores& scores,
   auto json = system::write_file(request.out, scores_json(scores, circumstances));
   if (!json) return json;
   std::filesystem::path page = request.out;
-  return system::write_file(page.replace_extension(".md"), scores_markdown(scores, circumstances));
+  auto written =
+      system::write_file(page.replace_extension(".md"), scores_markdown(scores, circumstances));
+  if (!written) return written;
+  return system::write_file(page.replace_extension(".html"), scores_html(scores, circumstances));
 }
 
 }  // namespace

@@ -24,4 +24,8 @@ struct Circumstances {
 /// scores.md, a page of tables: what was asked, what came out, and every failure by case.
 [[nodiscard]] std::string scores_markdown(const Scores& scores, const Circumstances& circumstances);
 
+/// scores.html, the same as figures: rates with their intervals in each world, and how often what
+/// was said with a probability is true. It loads nothing.
+[[nodiscard]] std::string scores_html(const Scores& scores, const Circumstances& circumstances);
+
 }  // namespace recald::blind

@@ -98,5 +98,20 @@ TEST(Report, BrokenTextIsReplaced) {
   EXPECT_TRUE(nlohmann::json::accept(text));
 }
 
+TEST(Report, ThePageShowsEachWorldByItself) {
+  made_up::Population population;
+  Answer other = made_up::single("b", made_up::moving("B<", 0.2));
+  other.world = "energyplus";
+  population.add(made_up::single("a", made_up::moving("A", 0.2)), named("a", {"A"}, {{"A", 1.0}}));
+  population.add(other, named("b", {"C"}, {{"C", 0.9}, {"none", 0.1}}));
+  const std::string page = scores_html(scores_of(population), {});
+  EXPECT_THAT(page, HasSubstr("Buildings of our own simulator: 1 cases"));
+  EXPECT_THAT(page, HasSubstr("Buildings of EnergyPlus: 1 cases"));
+  EXPECT_THAT(page, HasSubstr("right: single, above 10 %, 1 of 1"));
+  EXPECT_THAT(page, HasSubstr("wrong name, something hidden, 1 of 1"));
+  EXPECT_THAT(page, HasSubstr("<td>B&lt;</td><td>C (1)</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("http")));
+}
+
 }  // namespace
 }  // namespace recald::blind

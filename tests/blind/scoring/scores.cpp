@@ -61,19 +61,19 @@ std::vector<Failure> failures_of(const ScoredCases& cases) {
 }
 
 /// Worlds side by side: a result in one alone is half a result.
-std::vector<Target> targets_by_world(const ScoredCases& cases, const OracleGaps& oracles,
-                                     const ScoringOptions& options) {
+void score_worlds(const ScoredCases& cases, const OracleGaps& oracles,
+                  const ScoringOptions& options, Scores& scores) {
   std::map<std::string, ScoredCases> worlds;
   for (const ScoredCase& scored : cases) worlds[scored.answer->world].push_back(scored);
-  std::vector<Target> all;
   for (const auto& [world, of] : worlds) {
+    const WorldScores& one = scores.worlds.emplace_back(
+        WorldScores{world, static_cast<int>(of.size()), naming_scores(of),
+                    probability_scores(of, options.reliability_bins)});
     for (Target& each :
-         targets(world, naming_scores(of), probability_scores(of, options.reliability_bins),
-                 gap_scores(of, oracles), cost_scores(of))) {
-      all.push_back(std::move(each));
+         targets(world, one.naming, one.probability, gap_scores(of, oracles), cost_scores(of))) {
+      scores.targets.push_back(std::move(each));
     }
   }
-  return all;
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ Scores compute_scores(const AnswerKey& key, std::span<const CaseResult> results,
   scores.probability = probability_scores(cases, options.reliability_bins);
   scores.gap = gap_scores(cases, oracle_gaps(results));
   scores.cost = cost_scores(cases);
-  scores.targets = targets_by_world(cases, oracle_gaps(results), options);
+  score_worlds(cases, oracle_gaps(results), options, scores);
   scores.methods = compare_methods(key, results, options.method, classes);
   scores.failures = failures_of(cases);
   return scores;

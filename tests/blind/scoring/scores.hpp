@@ -23,6 +23,14 @@ struct Failure {
   std::string said;
 };
 
+/// What was said in one world.
+struct WorldScores {
+  std::string world;
+  int cases = 0;
+  NamingScores naming;
+  ProbabilityScores probability;
+};
+
 struct Scores {
   std::string method;
   int cases = 0;                        ///< Scored.
@@ -32,6 +40,7 @@ struct Scores {
   ProbabilityScores probability;
   GapScores gap;
   CostScores cost;
+  std::vector<WorldScores> worlds;  ///< Side by side; the scores above are of all cases together.
   std::vector<Target> targets;
   std::vector<MethodRow> methods;
   std::vector<Failure> failures;
