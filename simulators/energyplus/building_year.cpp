@@ -6,6 +6,8 @@
 #include <array>
 #include <set>
 
+#include "simulators/energyplus/model_edits.hpp"
+
 namespace recald::simulators::energyplus {
 namespace {
 
@@ -84,22 +86,6 @@ std::vector<std::string> nodes_of(const Json& model, const std::string& node_or_
   return nodes;
 }
 
-bool is_schedule(std::string_view type) {
-  return type.starts_with("Schedule:") && type != "Schedule:Day" &&
-         !type.starts_with("Schedule:Day:") && !type.starts_with("Schedule:Week:");
-}
-
-void remove_schedule(Json& model, const std::string& name) {
-  for (auto& [type, objects] : model.items()) {
-    if (!is_schedule(type)) continue;
-    for (auto at = objects.begin(); at != objects.end(); ++at) {
-      if (in_capitals(at.key()) != name) continue;
-      objects.erase(at);
-      break;
-    }
-  }
-}
-
 }  // namespace
 
 BuildingYear::BuildingYear(Json model, ScheduleYear schedules, const YearAround& around)
@@ -116,6 +102,11 @@ BuildingYear::BuildingYear(Json model, ScheduleYear schedules, const YearAround&
                      : weekday == std::chrono::Saturday ? DayKind::saturday
                                                         : DayKind::workday);
   }
+  // EnergyPlus does not tell of constants.
+  for_each_object(model_, "Schedule:Constant", [&](const std::string& name, const Json& constant) {
+    schedules_.try_emplace(in_capitals(name), days_.size() * kQuartersPerDay,
+                           constant.value("hourly_value", 0.0));
+  });
   give_roles();
 }
 
@@ -125,8 +116,6 @@ void BuildingYear::give_roles() {
     const std::string name = in_capitals(object[field].get<std::string>());
     const auto found = schedules_.find(name);
     if (found == schedules_.end()) return;
-    const auto [at, is_new] = roles_.try_emplace(name, role);
-    if (at->second == role) return;
     const std::string own = name + " FOR " + in_capitals(std::string{suffix_of(role)});
     schedules_.try_emplace(own, found->second);
     roles_.try_emplace(own, role);
@@ -180,7 +169,6 @@ BuildingYear::Written BuildingYear::write(const std::string& csv_name) const {
   model["ScheduleTypeLimits"][kType] = Json::object();
   std::vector<const Quarters*> columns;
   for (const auto& [name, role] : roles_) {
-    remove_schedule(model, name);
     columns.push_back(&schedules_.at(name));
     model["Schedule:File"][name] = {{"schedule_type_limits_name", kType},
                                     {"file_name", csv_name},

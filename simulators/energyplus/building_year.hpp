@@ -38,7 +38,8 @@ struct YearAround {
 
 class BuildingYear {
  public:
-  /// Each role gets schedules of its own: what served several is copied.
+  /// Each role gets schedules of its own, "FANS FOR OUTDOOR AIR"; whoever else follows the original
+  /// goes on doing so.
   BuildingYear(Json model, ScheduleYear schedules, const YearAround& around);
 
   [[nodiscard]] Json& model() { return model_; }
@@ -69,7 +70,8 @@ class BuildingYear {
   /// A schedule that the model did not have, and its name. @pre a value for each quarter hour
   std::string add_schedule(const std::string& name, Quarters quarters);
 
-  /// Dry bulb in the middle of a quarter hour of local clock time, degC. @param day  Of the year.
+  /// The hour that a quarter hour lies in, as if the clock showed standard time. @param day  Of the
+  /// year.
   [[nodiscard]] const WeatherHour& weather_at(std::size_t day, std::size_t quarter) const;
 
   /// The model with its schedules in a file beside it, and that file: a column a schedule.

@@ -127,9 +127,7 @@ void add_outside_load(BuildingYear& building, const std::string& name, const cha
 }
 
 std::string heating_fuel(const Json& model) {
-  if (has_object(model, "DistrictHeating:Water") || has_object(model, "ZoneHVAC:IdealLoads")) {
-    return "DistrictHeatingWater";
-  }
+  // Where a boiler stands beside ideal air, the boiler heats most.
   for (const auto& [type, objects] : model.items()) {
     if (!type.starts_with("Boiler:") && !type.starts_with("Coil:Heating:Fuel") &&
         !type.starts_with("Coil:Heating:Gas")) {
@@ -139,7 +137,9 @@ std::string heating_fuel(const Json& model) {
       if (object.value("fuel_type", "NaturalGas") == "NaturalGas") return "NaturalGas";
     }
   }
-  return "";
+  const bool is_district =
+      has_object(model, "DistrictHeating:Water") || has_object(model, "ZoneHVAC:IdealLoads");
+  return is_district ? "DistrictHeatingWater" : "";
 }
 
 void stretch_day(double* values, int before, int after, bool keep_largest) {

@@ -58,7 +58,7 @@ std::optional<Span> span_of(const std::string& until, const std::string& week) {
 
 bool take_day(Tables& tables, const std::vector<std::string>& fields) {
   constexpr std::size_t kFirst = 5;
-  if (fields.size() < kFirst + kQuartersPerDay) return false;
+  if (fields.size() != kFirst + kQuartersPerDay) return false;
   Quarters& values = tables.days[fields[1]];
   for (std::size_t i = 0; i < kQuartersPerDay; ++i) {
     values.push_back(std::strtod(fields[kFirst + i].c_str(), nullptr));

@@ -42,6 +42,7 @@ def features_of(case):
     flattened(site, "site", features)
     for file in sorted(case.iterdir()):
         features[f"bytes {file.name}"] = float(file.stat().st_size)
+        features[f"time {file.name}"] = file.stat().st_mtime
     return features
 
 

@@ -81,6 +81,8 @@ void damper_stuck_open(BuildingYear& building, double share, Rng /*rng*/) {
                     Json& least = controller["minimum_outdoor_air_flow_rate"];
                     if (!most.is_number() || !least.is_number()) return;
                     least = std::max(least.get<double>(), share * most.get<double>());
+                    // A share of what is supplied, however much that is.
+                    controller["minimum_limit_type"] = "ProportionalMinimum";
                   });
   building.change(Role::outdoor_air, [](std::size_t, std::size_t, double) { return 1.0; });
 }
@@ -187,44 +189,37 @@ void add_air_changes(std::vector<HiddenChange>& all) {
   all.insert(all.end(), {{.id = "outdoor_air_amount",
                           .least = -0.6,
                           .most = 1.5,
-                          .unit = "share added to the designed outdoor air",
                           .dated = true,
                           .possible = takes_outdoor_air,
                           .apply = outdoor_air_amount},
                          {.id = "damper_stuck_open",
                           .least = 0.25,
                           .most = 0.9,
-                          .unit = "share of the supply air",
                           .possible = has_damper,
                           .apply = damper_stuck_open},
                          {.id = "demand_ventilation",
                           .least = 0.3,
                           .most = 1.0,
-                          .unit = "share of the outdoor air",
                           .possible = has_scheduled_outdoor_air,
                           .apply = demand_ventilation},
                          {.id = "economiser_failed",
                           .least = 1.0,
                           .most = 1.0,
-                          .unit = "share of the free cooling",
                           .possible = has_economiser,
                           .apply = economiser_failed},
                          {.id = "economiser_changeover",
                           .least = -8.0,
                           .most = 8.0,
-                          .unit = "K",
                           .possible = has_fixed_changeover,
                           .apply = economiser_changeover},
                          {.id = "constant_speed_fans",
                           .least = 0.3,
                           .most = 1.0,
-                          .unit = "share of the fans",
                           .possible = has_slowing_fans,
                           .apply = constant_speed_fans},
                          {.id = "constant_flow_pumps",
                           .least = 0.3,
                           .most = 1.0,
-                          .unit = "share of the pumps",
                           .possible = has_slowing_pumps,
                           .apply = constant_flow_pumps},
                          {.id = "deep_drying",

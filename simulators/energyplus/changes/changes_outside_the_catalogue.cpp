@@ -136,10 +136,11 @@ void tariff_load_shift(BuildingYear& building, double relaxed_K, Rng /*rng*/) {
     const auto month = static_cast<unsigned>(building.days()[day].month());
     return month >= 6 && month <= 9;
   };
+  const double cooled_ahead_K = std::min(0.3 * relaxed_K, 0.8);  // Never down to the heating.
   building.change(Role::cooling_setpoint, [&](std::size_t day, std::size_t quarter, double value) {
     if (!is_summer(day) || !is_workday(building, day)) return value;
     if (quarter >= 56 && quarter < 72) return value + relaxed_K;
-    return quarter >= 40 && quarter < 56 ? value - 0.5 * relaxed_K : value;
+    return quarter >= 40 && quarter < 56 ? value - cooled_ahead_K : value;
   });
 }
 

@@ -9,11 +9,25 @@ bool has_lights(const BuildingYear& building) { return building.has(Role::lights
 
 bool has_equipment(const BuildingYear& building) { return building.has(Role::equipment); }
 
+/// The mean of what models give by floor; the usual where they do not.
+double lamps_W_m2_of(const Json& model) {
+  constexpr double kUsual_W_m2 = 9.0;
+  double sum_W_m2 = 0.0;
+  double count = 0.0;
+  for_each_object(model, "Lights", [&](const std::string& /*name*/, const Json& lamps) {
+    const double of_floor_W_m2 = lamps.value("watts_per_floor_area", 0.0);
+    if (of_floor_W_m2 <= 0.0) return;
+    sum_W_m2 += of_floor_W_m2;
+    count += 1.0;
+  });
+  return count > 0.0 ? sum_W_m2 / count : kUsual_W_m2;
+}
+
 /// By day at the strength, at night at a third of it.
 void equipment_step(BuildingYear& building, double W_m2, Rng /*rng*/) {
   if (W_m2 < 0.0) {
-    constexpr double kUsual_W_m2 = 9.0;  // Of lamps; what goes is lamps exchanged for better ones.
-    scale_lights(building.model(), std::max(1.0 + W_m2 / kUsual_W_m2, 0.2));
+    const double lamps_W_m2 = lamps_W_m2_of(building.model());
+    scale_lights(building.model(), std::max(1.0 + W_m2 / lamps_W_m2, 0.2));
     return;
   }
   Quarters shares;
@@ -65,7 +79,6 @@ void add_electrical_changes(std::vector<HiddenChange>& all) {
                          {.id = "plug_growth",
                           .least = -0.2,
                           .most = 0.4,
-                          .unit = "share a year",
                           .course = Course::steadily,
                           .possible = has_equipment,
                           .apply = plug_growth},

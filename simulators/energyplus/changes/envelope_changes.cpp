@@ -91,13 +91,11 @@ void add_envelope_changes(std::vector<HiddenChange>& all) {
   all.insert(all.end(), {{.id = "ground_coupling",
                           .least = 0.4,
                           .most = 1.0,
-                          .unit = "share of the floor's insulation",
                           .possible = has_ground,
                           .apply = ground_coupling},
                          {.id = "solar_gain_change",
                           .least = -0.7,
                           .most = 0.7,
-                          .unit = "share of the windows' sun",
                           .possible = has_simple_windows,
                           .apply = solar_gain_change},
                          {.id = "stack_infiltration",
@@ -115,7 +113,6 @@ void add_envelope_changes(std::vector<HiddenChange>& all) {
                          {.id = "thermal_mass",
                           .least = -0.75,
                           .most = 1.5,
-                          .unit = "share of the heat capacity",
                           .possible = always,
                           .apply = thermal_mass}});
 }

@@ -67,12 +67,17 @@ std::span<const AirSystem> systems_of(Family family) {
 simulators::energyplus::TemplatedBuilding draw_eplus_building(Family family, Rng& rng) {
   const Use use = draw_one(uses_of(family), rng);
   simulators::Drawings drawings = draw_building_of(use, rng);
+  const double drawn_m2 = drawings.storey_m2();
   const Shape shape = draw_shape(family, use, rng);
   const AirSystem system = draw_one(systems_of(family), rng);
   drawings.storeys = std::min(drawings.storeys, most_storeys(shape));
   drawings.width_m = std::max(drawings.width_m, 12.0);
   drawings.length_m = std::max(drawings.length_m, 1.2 * drawings.width_m);
   if (shape == Shape::bar) drawings.width_m = std::min(drawings.width_m, 18.0);
+  // Outdoor air goes with the floor.
+  const double grown = drawings.storey_m2() / drawn_m2;
+  drawings.perimeter_air.outdoor_m3_s *= grown;
+  drawings.core_air.outdoor_m3_s *= grown;
   return {std::move(drawings), shape, system};
 }
 

@@ -61,6 +61,11 @@ tl::unexpected<Error> refused(const fs::path& folder, std::string_view what,
                  fmt::format("{} in {}: {}", what, folder.string(), said));
 }
 
+tl::unexpected<Error> unreadable(const fs::path& folder, const char* what) {
+  return failure(ErrorCode::io_failed,
+                 fmt::format("EnergyPlus in {} left {}", folder.string(), what));
+}
+
 /// The first lines of a log that tell of an error.
 std::string errors_of(const fs::path& log) {
   std::ifstream file(log);
@@ -116,8 +121,20 @@ struct Size {
   double value;
 };
 
+/// Whether one tells of one thing and the other of its opposite.
+bool contradict(const std::set<std::string>& a, const std::set<std::string>& b) {
+  for (const auto& [one, other] : {std::pair{"minimum", "maximum"}, std::pair{"heating", "cooling"},
+                                   std::pair{"high", "low"}, std::pair{"sensible", "total"}}) {
+    if ((a.contains(one) && b.contains(other)) || (a.contains(other) && b.contains(one))) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// How much two sets of words are alike, 0 to 1.
 double likeness(const std::set<std::string>& a, const std::set<std::string>& b) {
+  if (contradict(a, b)) return 0.0;
   std::size_t common = 0;
   for (const std::string& word : a) common += b.count(word);
   const std::size_t all = a.size() + b.size() - common;
@@ -187,11 +204,19 @@ Result<void> Engine::simulate(const Json& model, const fs::path& weather,
                                         .time_max = kLongest},
                                        {});
   if (!ended) return tl::unexpected(ended.error());
-  if (ended->ending == system::Ending::exited && ended->exit_code == 0) return {};
+  if (ended->ending != system::Ending::exited) {
+    return failure(
+        ErrorCode::io_failed,
+        fmt::format("EnergyPlus in {} was ended from outside or took more than {} minutes",
+                    folder.string(), kLongest.count()));
+  }
+  if (ended->exit_code == 0) return {};
   return refused(folder, "EnergyPlus", errors_of(folder / "eplusout.err"));
 }
 
 Result<SizedModel> Engine::size(Json model, const fs::path& weather, const fs::path& folder) const {
+  // Schedules are told step by step; they are read as quarter hours.
+  model["Timestep"].front()["number_of_timesteps_per_hour"] = kQuartersPerHour;
   Json& control = model["SimulationControl"].front();
   control["run_simulation_for_sizing_periods"] = "Yes";
   control["run_simulation_for_weather_file_run_periods"] = "No";
@@ -205,7 +230,7 @@ Result<SizedModel> Engine::size(Json model, const fs::path& weather, const fs::p
   SizedModel sized{{}, {}, folder / "eplusout.eio"};
   Rows rows(folder / "eplusout.sql",
             "SELECT TableName, RowName, ColumnName, Value FROM TabularDataWithStrings");
-  if (!rows.is_open()) return refused(folder, "EnergyPlus", "no tables");
+  if (!rows.is_open()) return unreadable(folder, "no tables");
   while (rows.next()) {
     sized.tables[rows.text(0)][trimmed(rows.text(1))][trimmed(rows.text(2))] =
         trimmed(rows.text(3));
@@ -267,7 +292,7 @@ Result<std::vector<std::vector<double>>> Engine::run(Json model, int year, const
             "JOIN ReportDataDictionary m ON m.ReportDataDictionaryIndex = "
             "d.ReportDataDictionaryIndex "
             "WHERE m.IsMeter = 1 AND coalesce(t.WarmupFlag, 0) = 0");
-  if (!rows.is_open()) return refused(folder, "EnergyPlus", "no results");
+  if (!rows.is_open()) return unreadable(folder, "no results");
   while (rows.next()) {
     std::vector<double>& of = kW[rows.text(0)];
     of.resize(quarters, std::nan(""));
@@ -309,7 +334,7 @@ Result<Json> with_sizes(Json model, const fs::path& sql) {
     sizes[{in_capitals(rows.text(0)), in_capitals(rows.text(1))}].push_back(
         {words_of(rows.text(2)), rows.number(3)});
   }
-  constexpr double kAlike = 0.6;
+  constexpr double kAlike = 0.5;
   for (auto& [type, objects] : model.items()) {
     if (type.starts_with("Sizing:") || type.starts_with("CoolingTower:")) continue;
     for (auto& [name, object] : objects.items()) {
@@ -322,7 +347,8 @@ Result<Json> with_sizes(Json model, const fs::path& sql) {
         double most = kAlike;
         for (const Size& size : found->second) {
           const double alike = likeness(words, size.words);
-          if (alike < most || size.value == 0.0) continue;
+          // A zero may stand for "not sized", unless it is just this field's.
+          if (alike < most || (size.value == 0.0 && alike < 1.0)) continue;
           most = alike;
           best = &size;
         }

@@ -58,6 +58,12 @@ struct Candidate {
   double least, most;          ///< Sizes of the strength; both have its sign.
   std::optional<metering::Day> from, to;
   std::optional<Utility> meter;
+
+  /// Where the quantity is that of our own world, its words are too.
+  [[nodiscard]] std::string_view unit() const {
+    const bool has_own = change != nullptr && !change->unit.empty();
+    return has_own ? change->unit : kind->strength.unit;
+  }
 };
 
 /// Size and sign are drawn, and when it begins.
@@ -77,9 +83,10 @@ Candidate draw_candidate(const std::string& id, const EplusCasePlan& plan,
   candidate.least = is_whole ? high : low > 0.0 ? low : kFaintest * high;
   const sys_days first{std::chrono::year{plan.building.first_year} / 1 / 1};
   const double length_days = 365.25 * plan.building.years;
-  const double share = plan.begins_in_forecast_year
-                           ? 1.0 - rng.uniform(0.5, 0.98) / plan.building.years
-                           : rng.uniform(0.25, 0.6);
+  const double share =
+      plan.begins_in_forecast_year
+          ? 1.0 - rng.uniform(0.5, 0.98) / plan.building.years
+          : rng.uniform(0.25, 0.9) * (plan.building.years - 1) / plan.building.years;
   const auto begin = first + days{static_cast<int>(length_days * share)};
   const auto length = days{static_cast<int>(rng.uniform(50.0, 200.0))};
   const bool dated = in_meters ? candidate.kind->dated : candidate.change->dated;
@@ -123,8 +130,9 @@ class Hider {
       const Candidate candidate = draw_candidate(id, plan_, building_, rng);
       if (change != nullptr && !building_.could_have(*change)) continue;
       auto hidden = at_share(candidate);
-      if (!hidden && was_refused(hidden.error())) continue;
-      if (!hidden || *hidden) return hidden;
+      const bool is_out = hidden ? !*hidden : was_refused(hidden.error());
+      if (!is_out) return hidden;
+      refused_.push_back(id);
     }
     return std::optional<Hidden>{};
   }
@@ -143,6 +151,7 @@ class Hider {
   }
 
   [[nodiscard]] int years_run() const { return years_run_; }
+  [[nodiscard]] const std::vector<std::string>& refused() const { return refused_; }
 
  private:
   Result<std::optional<Hidden>> at_share(const Candidate& candidate) {
@@ -191,6 +200,7 @@ class Hider {
   Recording twin_;
   std::vector<std::size_t> blocks_;
   int years_run_ = 0;
+  std::vector<std::string> refused_;  ///< Could not move as much as wanted.
 };
 
 OrderedJson date_of(const std::optional<metering::Day>& day) {
@@ -211,8 +221,7 @@ OrderedJson effects_json(const std::optional<Hidden>& hidden, const SimulatedBui
                   {"class", to_string(candidate.kind->group)},
                   {"in_catalogue", candidate.kind->group != EffectClass::outside_catalogue},
                   {"strength", hidden->strength},
-                  {"unit", candidate.change != nullptr ? candidate.change->unit
-                                                       : candidate.kind->strength.unit},
+                  {"unit", candidate.unit()},
                   {"from", date_of(candidate.from)},
                   {"to", date_of(candidate.to)},
                   {"share_of_meter", shares},
@@ -221,26 +230,26 @@ OrderedJson effects_json(const std::optional<Hidden>& hidden, const SimulatedBui
 }
 
 OrderedJson answer_json(const EplusCasePlan& plan, const SimulatedBuilding& building,
-                        const std::optional<Hidden>& hidden) {
+                        const std::optional<Hidden>& hidden,
+                        const std::vector<std::string>& refused) {
   const energyplus::TemplatedBuilding& built = plan.building.building;
-  // Nothing was found that moves a meter so much: then nothing is hidden.
-  const Block block = hidden || plan.block == Block::no_effect ? plan.block : Block::no_effect;
-  return {
-      {"case", plan.building.id},
-      {"world", "energyplus"},
-      {"block", block_name(block)},
-      {"grain", {{"detectability", nullptr}}},
-      {"effects", effects_json(hidden, building)},
-      {"decoys", OrderedJson::array()},
-      {"climate", name_of(built.drawings.climate)},
-      {"use", to_string(built.drawings.use)},
-      {"family", to_string(plan.family)},
-      {"shape", plan.building.foreign.empty() ? to_string(built.shape) : "of others"},
-      {"system", plan.building.foreign.empty() ? to_string(built.system) : plan.building.foreign},
-      {"gaps", plan.care == MeterCare::gaps},
-      {"true_parameters", OrderedJson::object()},
-      {"prior_sd", OrderedJson::object()},
-      {"differs_from_drawings", building.truth()}};
+  const std::optional<ForeignModel>& foreign = plan.building.foreign;
+  return {{"case", plan.building.id},
+          {"world", "energyplus"},
+          {"block", block_name(plan.block)},
+          {"grain", {{"detectability", nullptr}}},
+          {"effects", effects_json(hidden, building)},
+          {"decoys", OrderedJson::array()},
+          {"climate", name_of(built.drawings.climate)},
+          {"use", to_string(built.drawings.use)},
+          {"family", to_string(plan.family)},
+          {"shape", foreign ? "of others" : to_string(built.shape)},
+          {"system", foreign ? foreign->file : to_string(built.system)},
+          {"gaps", plan.care == MeterCare::gaps},
+          {"true_parameters", OrderedJson::object()},
+          {"prior_sd", OrderedJson::object()},
+          {"differs_from_drawings", building.truth()},
+          {"refused", refused}};
 }
 
 }  // namespace
@@ -276,10 +285,7 @@ std::vector<EplusCasePlan> plan_eplus(const PopulationKind& population, std::uin
     plan.building.seed = rng.below(std::uint64_t{1} << 53U);
     plan.building.building = draw_eplus_building(population.family, rng);
     if (population.family == Family::judging && rng.uniform() < kForeignShare) {
-      const ForeignModel& foreign = foreign_models()[rng.below(foreign_models().size())];
-      plan.building.foreign = foreign.file;
-      plan.building.building.drawings.use = foreign.like;
-      plan.building.building.drawings.calendar = foreign.like;
+      plan.building.foreign = foreign_models()[rng.below(foreign_models().size())];
     }
     plan.building.building.drawings.id = plan.building.id;
     plan.building.first_year = 2013 + static_cast<int>(rng.below(14));
@@ -369,6 +375,13 @@ Result<int> make_eplus_case(const EplusCasePlan& planned, const Engine& engine,
   if (plan.block != Block::no_effect) {
     auto found = hider.hide(stream_of(plan.building.seed, Stream::decoys));
     if (!found) return tl::unexpected(found.error());
+    if (!*found) {
+      return failure(
+          ErrorCode::not_enough_data,
+          fmt::format("nothing moves {:g} to {:g} % of a meter in this building; draw the "
+                      "population with another --seed",
+                      100.0 * plan.wanted.least, 100.0 * plan.wanted.most));
+    }
     hidden = std::move(*found);
   }
   const Loads& loads = hidden ? hidden->loads : building->twin();
@@ -384,8 +397,9 @@ Result<int> make_eplus_case(const EplusCasePlan& planned, const Engine& engine,
     }
   }
   if (written) {
-    written = system::write_file(folders.answers / (id + ".json"),
-                                 answer_json(plan, *building, hidden).dump(1) + "\n");
+    written =
+        system::write_file(folders.answers / (id + ".json"),
+                           answer_json(plan, *building, hidden, hider.refused()).dump(1) + "\n");
   }
   std::error_code whatever;  // Files that stay cost room and nothing else.
   std::filesystem::remove_all(scratch, whatever);

@@ -20,6 +20,14 @@ constexpr double kDaysAYear = 365.25;
 /// Streams of a case's seed that are no simulator's.
 constexpr std::uint64_t kAlterations = 76;
 constexpr std::uint64_t kMemory = 77;
+constexpr std::uint64_t kMeterSizes = 78;
+
+/// The next size of a series of ten a decade. @see ISO 3 (1973), R10.
+double standard_size(double least_kW) {
+  constexpr double kADecade = 10.0;
+  const double step = std::ceil(kADecade * std::log10(least_kW) - 1e-9);
+  return std::round(std::pow(10.0, step / kADecade));
+}
 
 double quantile_of(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -59,9 +67,11 @@ double share_on(const HiddenInBuilding& hidden, sys_days day, sys_days first, sy
   switch (hidden.change->course) {
     case Course::at_once:
       return 1.0;
-    case Course::steadily:
-      return static_cast<double>((day - first).count()) /
+    case Course::steadily: {
+      const sys_days begin = hidden.from ? std::max(first, sys_days{*hidden.from}) : first;
+      return static_cast<double>((day - begin).count()) /
              static_cast<double>((end - first).count());
+    }
     case Course::sawtooth: {
       // Put right in April of every year.
       const std::chrono::year_month_day date{day};
@@ -98,7 +108,8 @@ Result<SimulatedBuilding> SimulatedBuilding::make(const EplusPlan& plan, const E
   if (const auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
 
   const auto offset = building.calendar_->standard_offset(std::chrono::year{plan.first_year});
-  const simulators::Calendar holidays(drawings.calendar);
+  building.begin_ = sys_days{std::chrono::year{plan.first_year} / 1 / 1} - offset;
+  const simulators::Calendar holidays(plan.foreign ? plan.foreign->like : drawings.calendar);
   std::size_t hour = 0;
   for (int year = plan.first_year; year < plan.first_year + plan.years; ++year) {
     const std::vector<metering::Day> free = holidays.holidays_of(std::chrono::year{year});
@@ -147,14 +158,14 @@ Result<SizedModel> SimulatedBuilding::size(const EplusPlan& plan, const Engine& 
                                            const DesignHours& hours,
                                            const std::filesystem::path& folder) {
   const std::filesystem::path weather = folder / fmt::format("{}.epw", plan.first_year);
-  if (plan.foreign.empty()) {
+  if (!plan.foreign) {
     Json templated = templated_model(plan.building);
     add_design_days(templated, hours);
     auto expanded = engine.expand(templated, folder / "expand");
     if (!expanded) return tl::unexpected(expanded.error());
     return engine.size(std::move(*expanded), weather, folder / "size");
   }
-  auto model = read_foreign_model(plan.foreign);
+  auto model = read_foreign_model(plan.foreign->file);
   if (!model) return tl::unexpected(model.error());
   for (const char* theirs :
        {"Site:Location", "SizingPeriod:DesignDay", "SizingPeriod:WeatherFileDays",
@@ -207,9 +218,9 @@ Result<Loads> SimulatedBuilding::with(const HiddenInBuilding& hidden,
     const auto changed = run_year(year, fmt::format("{}-{}", hidden.change->id, of));
     if (!changed) return tl::unexpected(changed.error());
     for (std::size_t i = 0; i < slots; ++i) {
-      const sys_days day = sys_days{std::chrono::year{of} / 1 / 1} +
-                           std::chrono::days{static_cast<int>(i / kQuartersPerDay)};
-      const double share = share_on(hidden, day, first, end);
+      const metering::Day day =
+          calendar_->local_time(begin_ + (slot + i) * simulators::kInterval).date;
+      const double share = share_on(hidden, sys_days{day}, first, end);
       for (std::size_t meter = 0; meter < loads.size(); ++meter) {
         double& load = loads[meter][slot + i];
         load += share * ((*changed)[meter][i] - load);
@@ -221,9 +232,8 @@ Result<Loads> SimulatedBuilding::with(const HiddenInBuilding& hidden,
 }
 
 simulators::Recording SimulatedBuilding::recording_of(const Loads& loads) const {
-  const auto offset = calendar_->standard_offset(std::chrono::year{plan_.first_year});
   simulators::Recording recording;
-  recording.begin = sys_days{std::chrono::year{plan_.first_year} / 1 / 1} - offset;
+  recording.begin = begin_;
   recording.power.resize(loads.front().size());
   for (std::size_t meter = 0; meter < meters_.size(); ++meter) {
     for (std::size_t slot = 0; slot < loads[meter].size(); ++slot) {
@@ -234,12 +244,16 @@ simulators::Recording SimulatedBuilding::recording_of(const Loads& loads) const 
 }
 
 std::vector<simulators::MeterPlate> SimulatedBuilding::plates() const {
-  constexpr double kReserve = 1.4;
   simulators::Drawings as_metered;
   as_metered.cooling = simulators::CoolingPlant::packaged;
   as_metered.heating = simulators::HeatingPlant::heat_pump;
+  // Meters come in sizes, and nobody chooses them by the year's true peak: else the rating would
+  // tell whether readings are what they would be without an effect.
+  Rng rng{plan_.seed, kMeterSizes};
   for (std::size_t meter = 0; meter < meters_.size(); ++meter) {
-    const double rated_kW = kReserve * std::max(*std::ranges::max_element(twin_[meter]), 1.0);
+    const double reserve = rng.uniform(1.25, 2.4);
+    const double rated_kW =
+        standard_size(reserve * std::max(*std::ranges::max_element(twin_[meter]), 1.0));
     switch (meters_[meter].utility) {
       case Utility::electricity:
         as_metered.electricity_rated_kW = rated_kW;
@@ -263,19 +277,18 @@ std::string SimulatedBuilding::weather_text() const { return weather_csv(hours_)
 
 std::string SimulatedBuilding::site_text(const std::vector<simulators::MeterPlate>& plates) const {
   const simulators::Drawings& drawings = plan_.building.drawings;
-  SiteFacts facts{
-      .id = plan_.id,
-      .title = plan_.foreign.empty()
-                   ? fmt::format("{}, {} plan, {}", to_string(drawings.use),
-                                 to_string(plan_.building.shape), to_string(plan_.building.system))
-                   : std::string{"A building of others"},
-      .time_zone = drawings.time_zone,
-      .place = drawings.place,
-      .first_year = plan_.first_year,
-      .years = plan_.years,
-      .holidays = {},
-      .leakage_cm2_m2 = drawings.leakage_cm2_m2,
-      .heavy = drawings.heavy};
+  SiteFacts facts{.id = plan_.id,
+                  .title = !plan_.foreign ? fmt::format("{}, {} plan, {}", to_string(drawings.use),
+                                                        to_string(plan_.building.shape),
+                                                        to_string(plan_.building.system))
+                                          : std::string{"A building of others"},
+                  .time_zone = drawings.time_zone,
+                  .place = drawings.place,
+                  .first_year = plan_.first_year,
+                  .years = plan_.years,
+                  .holidays = {},
+                  .leakage_cm2_m2 = drawings.leakage_cm2_m2,
+                  .heavy = drawings.heavy};
   for (const auto& around : around_) {
     facts.holidays.insert(facts.holidays.end(), around->holidays.begin(), around->holidays.end());
   }

@@ -7,6 +7,7 @@
 #include "simulators/energyplus/hidden_change.hpp"
 #include "simulators/energyplus/true_building.hpp"
 #include "tests/blind/energyplus/building_draw.hpp"
+#include "tests/blind/energyplus/foreign_building.hpp"
 #include "tests/blind/energyplus/site_text.hpp"
 
 namespace recald::blind {
@@ -15,8 +16,8 @@ struct EplusPlan {
   std::string id;
   std::uint64_t seed;  ///< Of the truth, the weather, the people and the meters.
   simulators::energyplus::TemplatedBuilding building;
-  /// Of others: this one is simulated, and of `building` only place and closing days count.
-  std::string_view foreign = {};
+  /// Of others: this one is simulated, and of `building` only the place counts.
+  std::optional<ForeignModel> foreign = {};
   int first_year;
   int years;
 };
@@ -68,6 +69,7 @@ class SimulatedBuilding {
   const Engine* engine_ = nullptr;
   std::filesystem::path folder_;
   std::unique_ptr<metering::LocalCalendar> calendar_;
+  metering::Instant begin_;  ///< Of the first year, in standard time.
   std::vector<simulators::energyplus::WeatherHour> hours_;
   SizedModel sized_;
   std::vector<CaseMeter> meters_;

@@ -384,7 +384,8 @@ std::vector<CaseMeter> meters_of(const Json& model) {
   const bool is_ideal = has_object(model, "ZoneHVAC:IdealLoadsAirSystem");
   if (is_ideal || has_object(model, "DistrictCooling")) {
     meters.push_back({Utility::cooling, {"chilled_water", {"DistrictCooling:Facility"}}});
-  } else if (has_object(model, "Coil:Cooling:Water")) {
+  } else if (model.contains("Coil:Cooling:Water") ||
+             model.contains("Coil:Cooling:Water:DetailedGeometry")) {
     meters.push_back({Utility::cooling, {"chilled_water", {"CoolingCoils:EnergyTransfer"}}});
   }
   const std::string fuel = heating_fuel(model);

@@ -69,6 +69,7 @@ class Maker {
     const auto made = task.make(own);
     std::error_code whatever;
     std::filesystem::remove_all(own, whatever);
+    if (made) forget_when(task.id);
     const std::lock_guard lock(mutex_);
     if (!made) {
       stopped_ = true;
@@ -83,6 +84,17 @@ class Maker {
   [[nodiscard]] const std::string& error() const { return error_; }
 
  private:
+  /// How long a case took to make would tell whether something is hidden in it.
+  void forget_when(const std::string& id) const {
+    const std::filesystem::file_time_type never{};
+    std::error_code whatever;  // Only the times would stay.
+    for (const auto& file : std::filesystem::directory_iterator(folders_.cases / id, whatever)) {
+      std::filesystem::last_write_time(file, never, whatever);
+    }
+    std::filesystem::last_write_time(folders_.cases / id, never, whatever);
+    std::filesystem::last_write_time(folders_.answers / (id + ".json"), never, whatever);
+  }
+
   const CaseFolders& folders_;
   std::filesystem::path scratch_;
   std::size_t total_;

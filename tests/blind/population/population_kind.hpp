@@ -46,10 +46,10 @@ struct PopulationKind {
 /// @param world  "own" or "energyplus", where a year costs more. @return not_found with the names.
 [[nodiscard]] Result<PopulationKind> population_kind(std::string_view world, std::string_view name);
 
-/// Of outside effects, of pairs, and of single effects that matter.
 inline constexpr ShareBin kBelow3{0.005, 0.03};
 inline constexpr ShareBin kFrom3To10{0.03, 0.1};
 inline constexpr ShareBin kAbove10{0.1, 0.5};
+/// Of pairs and of what no catalogue contains.
 inline constexpr ShareBin kAbove3{0.03, 0.5};
 
 /// A seed that no population of another name shares.

@@ -90,6 +90,7 @@ LossesBySlope losses_by_slope(const CaseResult& result, const std::string& truth
     for (const auto& [name, probability] : result.probabilities) {
       sum += std::pow(std::max(probability, kProbabilityFloor), slope_at(i));
     }
+    if (!result.probabilities.contains(truth)) sum += std::pow(kProbabilityFloor, slope_at(i));
     const double of_truth = std::max(probability_of(result, truth), kProbabilityFloor);
     losses[i] = std::log(sum) - slope_at(i) * std::log(of_truth);
   }

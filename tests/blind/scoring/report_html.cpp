@@ -136,14 +136,18 @@ std::string cell_of(const Target& target) {
   return text;
 }
 
+std::string_view class_of(Verdict verdict) {
+  if (verdict == Verdict::missed) return "missed";
+  return verdict == Verdict::met ? "met" : "open";
+}
+
 std::string target_table(const std::vector<Target>& targets) {
   std::string rows;
   for (const Target& target : targets) {
     rows += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td class='{}'>{}</td></tr>\n",
         name_of_world(target.world), escaped(target.quantity), cell_of(target),
-        escaped(target.minimum_text), target.minimum == Verdict::missed ? "missed" : "met",
-        verdict_name(target.minimum));
+        escaped(target.minimum_text), class_of(target.minimum), verdict_name(target.minimum));
   }
   return "<table><thead><tr><th>buildings of</th><th>quantity</th><th>measured</th><th>target</th>"
          "<th></th></tr></thead><tbody>\n" +
@@ -174,7 +178,7 @@ svg { width: 100%; max-width: 52rem; height: auto; display: block; margin: 1rem 
 svg.square { max-width: 24rem }
 .grid { stroke: #d6dde4 } .frame { fill: none; stroke: #d6dde4 } .bar { stroke: #2a6f97; stroke-width: 3 }
 circle { fill: #2a6f97 } text { font-size: 13px; fill: #1c2733 } .label { text-anchor: end } .tick { text-anchor: middle; fill: #5a6875 }
-.missed { color: #a4262c } .met { color: #2f6f3e }
+.missed { color: #a4262c } .met { color: #2f6f3e } .open { color: #5a6875 }
 )";
 
 }  // namespace

@@ -84,9 +84,8 @@ class AYear : public ::testing::Test {
   YearAround around_ = year_around();
 };
 
-/// What serves several is called after the role that came later.
 constexpr const char* kFans = "FANS FOR FANS";
-constexpr const char* kOutdoorAir = "FANS";
+constexpr const char* kOutdoorAir = "FANS FOR OUTDOOR AIR";
 
 TEST(HiddenChanges, AreThoseOfTheCatalogueAndMore) {
   std::size_t in_catalogue = 0;
@@ -113,13 +112,22 @@ TEST_F(AYear, GivesEachRoleItsOwnSchedule) {
 TEST_F(AYear, IsWrittenAsAFileWithAColumnForEachSchedule) {
   const BuildingYear year = building(around_);
   const auto written = year.write("schedules.csv");
-  EXPECT_FALSE(written.model["Schedule:Compact"].contains("Office presence"));
-  EXPECT_FALSE(written.model["Schedule:Constant"].contains("Heating set-point"));
+  EXPECT_EQ(written.model["People"]["Office people"]["number_of_people_schedule_name"],
+            "OFFICE PRESENCE FOR PRESENCE");
   const Json& fans = written.model["Schedule:File"][kFans];
   EXPECT_EQ(fans["minutes_per_item"], 15);
   EXPECT_EQ(fans["number_of_hours_of_data"], 8760);
   EXPECT_EQ(std::ranges::count(written.csv, '\n'), 1 + 365 * 96);
-  EXPECT_THAT(written.csv.substr(0, written.csv.find('\n')), HasSubstr("FANS,FANS FOR FANS"));
+  EXPECT_THAT(written.csv.substr(0, written.csv.find('\n')),
+              HasSubstr("FANS FOR FANS,FANS FOR OUTDOOR AIR"));
+}
+
+TEST_F(AYear, KnowsConstantsThatEnergyPlusDoesNotTell) {
+  Json model = small_office_model({});
+  model["Fan:OnOff"]["Fan"] = {{"availability_schedule_name", "Activity"}};
+  const BuildingYear year(std::move(model), {}, around_);
+  EXPECT_THAT(year.names_of(Role::fans), ::testing::ElementsAre("ACTIVITY FOR FANS"));
+  EXPECT_EQ(year.schedule("ACTIVITY FOR FANS").front(), 130.0);
 }
 
 TEST_F(AYear, RunsIntoTheEveningOfWorkingDaysAlone) {
@@ -160,24 +168,24 @@ TEST_F(AYear, WorksOnWeekends) {
   EXPECT_EQ(hours_of(of_day(year, kFans, kSunday)), 0.0);
   apply(year, "weekend_operation", 2.0);
   EXPECT_EQ(of_day(year, kFans, kSunday), of_day(year, kFans, kMonday));
-  EXPECT_EQ(hours_of(of_day(year, "OFFICE PRESENCE", kSunday)), 0.0) << "nobody comes";
+  EXPECT_EQ(hours_of(of_day(year, "OFFICE PRESENCE FOR PRESENCE", kSunday)), 0.0) << "nobody comes";
 }
 
 TEST_F(AYear, IsNotSetBack) {
   BuildingYear year = building(around_);
   apply(year, "night_setback_missing", 0.5);
-  EXPECT_EQ(of_day(year, "HEATING SET-POINT", kMonday)[0], 19.0);
-  EXPECT_EQ(of_day(year, "HEATING SET-POINT", kMonday)[48], 21.0);
-  EXPECT_EQ(of_day(year, "COOLING SET-POINT", kSunday)[48], 26.5);
+  EXPECT_EQ(of_day(year, "HEATING SET-POINT FOR HEATING", kMonday)[0], 19.0);
+  EXPECT_EQ(of_day(year, "HEATING SET-POINT FOR HEATING", kMonday)[48], 21.0);
+  EXPECT_EQ(of_day(year, "COOLING SET-POINT FOR COOLING", kSunday)[48], 26.5);
 }
 
 TEST_F(AYear, LosesItsPeopleBetweenTermsAndKeepsWhatStands) {
   BuildingYear year = building(around_);
   apply(year, "semester_calendar", 1.0);
   const std::size_t july = 190;
-  EXPECT_EQ(hours_of(of_day(year, "OFFICE PRESENCE", july)), 0.0);
-  EXPECT_NEAR(of_day(year, "OFFICE EQUIPMENT ON", july)[48], 0.3, 1e-12);
-  EXPECT_EQ(of_day(year, "OFFICE PRESENCE", 101)[48], 0.8) << "in term";
+  EXPECT_EQ(hours_of(of_day(year, "OFFICE PRESENCE FOR PRESENCE", july)), 0.0);
+  EXPECT_NEAR(of_day(year, "OFFICE EQUIPMENT ON FOR EQUIPMENT", july)[48], 0.3, 1e-12);
+  EXPECT_EQ(of_day(year, "OFFICE PRESENCE FOR PRESENCE", 101)[48], 0.8) << "in term";
 }
 
 TEST_F(AYear, BringsOutdoorAirWithItsPeople) {
@@ -238,8 +246,8 @@ TEST_F(AYear, OfTheTruthDiffersFromTheDrawingsAsItsParametersSay) {
   const double drawn_W_m2 = drawn.model()["Lights"]["Office lights"]["watts_per_floor_area"];
   EXPECT_NEAR(year.model()["Lights"]["Office lights"]["watts_per_floor_area"],
               truth["lighting"] * drawn_W_m2, 1e-12);
-  EXPECT_NEAR(of_day(year, "COOLING SET-POINT", kMonday)[48], 24.0 + truth["cooling_setpoint_K"],
-              1e-9);
+  EXPECT_NEAR(of_day(year, "COOLING SET-POINT FOR COOLING", kMonday)[48],
+              24.0 + truth["cooling_setpoint_K"], 1e-9);
   const Quarters fans = of_day(year, kFans, kMonday);
   EXPECT_EQ(fans[30], 1.0) << "half an hour earlier";
   EXPECT_EQ(fans[29], 0.0);
@@ -253,10 +261,11 @@ TEST_F(AYear, HasPeopleWhoseDaysDiffer) {
   BuildingYear again = year;
   follow_habits(year, truth, 9);
   follow_habits(again, truth, 9);
-  EXPECT_EQ(year.schedule("OFFICE PRESENCE"), again.schedule("OFFICE PRESENCE"));
-  EXPECT_NE(hours_of(of_day(year, "OFFICE PRESENCE", kMonday)),
-            hours_of(of_day(year, "OFFICE PRESENCE", kMonday + 1)));
-  EXPECT_LE(*std::ranges::max_element(year.schedule("OFFICE LIGHTS ON")), 1.0);
+  EXPECT_EQ(year.schedule("OFFICE PRESENCE FOR PRESENCE"),
+            again.schedule("OFFICE PRESENCE FOR PRESENCE"));
+  EXPECT_NE(hours_of(of_day(year, "OFFICE PRESENCE FOR PRESENCE", kMonday)),
+            hours_of(of_day(year, "OFFICE PRESENCE FOR PRESENCE", kMonday + 1)));
+  EXPECT_LE(*std::ranges::max_element(year.schedule("OFFICE LIGHTS ON FOR LIGHTS")), 1.0);
 }
 
 TEST(Schedules, AreReadAsEnergyPlusUnderstoodThem) {
