@@ -1,7 +1,7 @@
 /// The hidden changes by what they touch.
 #pragma once
 
-#include "simulators/energyplus/hidden_change.hpp"
+#include "simulators/energyplus/changes/hidden_change.hpp"
 #include "simulators/energyplus/model_edits.hpp"
 
 namespace recald::simulators::energyplus::changes {

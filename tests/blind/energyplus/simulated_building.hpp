@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "simulators/energyplus/hidden_change.hpp"
+#include "simulators/energyplus/changes/hidden_change.hpp"
 #include "simulators/energyplus/true_building.hpp"
 #include "tests/blind/energyplus/building_draw.hpp"
 #include "tests/blind/energyplus/foreign_building.hpp"

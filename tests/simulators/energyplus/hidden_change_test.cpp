@@ -1,5 +1,5 @@
 /// What hidden changes do to a building's year, without EnergyPlus.
-#include "simulators/energyplus/hidden_change.hpp"
+#include "simulators/energyplus/changes/hidden_change.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

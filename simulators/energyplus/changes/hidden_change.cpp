@@ -1,4 +1,4 @@
-#include "simulators/energyplus/hidden_change.hpp"
+#include "simulators/energyplus/changes/hidden_change.hpp"
 
 #include <algorithm>
 
