@@ -352,8 +352,8 @@ TEST(WeatherAtTheStamp, NamesNoClockOfASoundBuilding) {
   // The building, and a year of it, would show such a clock.
   const Json late =
       diagnose(edited(site, "format = \"epw\"\n", "format = \"epw\"\nvalues = \"mean\"\n"));
-  EXPECT_EQ(late["outcome"], "named");
   EXPECT_EQ(late["candidates"][0]["effect"], "clock_offset");
+  EXPECT_GT(late["candidates"][0]["probability"].get<double>(), 0.8);
 }
 
 }  // namespace
