@@ -1,5 +1,5 @@
 #!/bin/sh
-# Whether files of a blind population tell what is hidden in its cases: from sizes of files and the numbers and words of site
+# Whether files of a blind population tell what is hidden in its cases: from sizes and times of files and the numbers and words of site
 # files alone, is "something hidden" told from "nothing", and one class of effects from another where use and plant are the
 # same? Better than chance means that a truth leaks.
 #   POPULATION  folder with cases/ and answers/ (default: a development population of our own world, made anew)

@@ -194,8 +194,7 @@ Result<Loads> SimulatedBuilding::run_year(const BuildingYear& year, const std::s
   return loads;
 }
 
-Result<Loads> SimulatedBuilding::with(const HiddenInBuilding& hidden,
-                                      std::optional<int> only_year) const {
+Result<Loads> SimulatedBuilding::with(const HiddenInBuilding& hidden) const {
   Loads loads = twin_;
   const sys_days first{std::chrono::year{plan_.first_year} / 1 / 1};
   const sys_days end{std::chrono::year{plan_.first_year + plan_.years} / 1 / 1};
@@ -207,7 +206,7 @@ Result<Loads> SimulatedBuilding::with(const HiddenInBuilding& hidden,
     const std::size_t slots = as_is.days().size() * kQuartersPerDay;
     const bool is_before =
         hidden.from && sys_days{*hidden.from} >= sys_days{std::chrono::year{of + 1} / 1 / 1};
-    if (is_before || (only_year && *only_year != of)) {
+    if (is_before) {
       slot += slots;
       continue;
     }

@@ -46,9 +46,8 @@ class SimulatedBuilding {
   [[nodiscard]] bool could_have(const simulators::energyplus::HiddenChange& change) const {
     return change.possible(years_.front());
   }
-  /// The loads with it. @param only_year  Of all others the twin's, for a first look.
-  [[nodiscard]] Result<Loads> with(const HiddenInBuilding& hidden,
-                                   std::optional<int> only_year = {}) const;
+  /// The loads with it.
+  [[nodiscard]] Result<Loads> with(const HiddenInBuilding& hidden) const;
 
   /// As the feed's meters take them.
   [[nodiscard]] simulators::Recording recording_of(const Loads& loads) const;
