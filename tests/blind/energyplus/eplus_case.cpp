@@ -234,22 +234,22 @@ OrderedJson answer_json(const EplusCasePlan& plan, const SimulatedBuilding& buil
                         const std::vector<std::string>& refused) {
   const energyplus::TemplatedBuilding& built = plan.building.building;
   const std::optional<ForeignModel>& foreign = plan.building.foreign;
-  return {{"case", plan.building.id},
-          {"world", "energyplus"},
-          {"block", block_name(plan.block)},
-          {"grain", {{"detectability", nullptr}}},
-          {"effects", effects_json(hidden, building)},
-          {"decoys", OrderedJson::array()},
-          {"climate", name_of(built.drawings.climate)},
-          {"use", to_string(built.drawings.use)},
-          {"family", to_string(plan.family)},
-          {"shape", foreign ? "of others" : to_string(built.shape)},
-          {"system", foreign ? foreign->file : to_string(built.system)},
-          {"gaps", plan.care == MeterCare::gaps},
-          {"true_parameters", OrderedJson::object()},
-          {"prior_sd", OrderedJson::object()},
-          {"differs_from_drawings", building.truth()},
-          {"refused", refused}};
+  OrderedJson answer{{"case", plan.building.id},
+                     {"world", "energyplus"},
+                     {"block", block_name(plan.block)},
+                     {"grain", {{"detectability", nullptr}}},
+                     {"effects", effects_json(hidden, building)},
+                     {"decoys", OrderedJson::array()},
+                     {"climate", name_of(built.drawings.climate)},
+                     {"use", to_string(built.drawings.use)},
+                     {"family", to_string(plan.family)},
+                     {"shape", foreign ? "of others" : to_string(built.shape)},
+                     {"system", foreign ? foreign->file : to_string(built.system)},
+                     {"gaps", plan.care == MeterCare::gaps},
+                     {"differs_from_drawings", building.truth()},
+                     {"refused", refused}};
+  add_base_parameters(answer, building.base_truth(), building.as_drawn());
+  return answer;
 }
 
 }  // namespace

@@ -288,6 +288,9 @@ TEST_F(InEnergyPlus, ACaseIsMadeByteForByteAgain) {
   ASSERT_TRUE(answer.has_value()) << answer.error().message;
   ASSERT_EQ(answer->effects.size(), 1u);
   EXPECT_EQ(answer->effects[0].effect, "server_room") << "there is no chiller";
+  EXPECT_NEAR(answer->true_parameters.at("cooling_setpoint"), 24.0, 1.2);
+  EXPECT_NE(answer->true_parameters.at("cooling_setpoint"), 24.0);
+  EXPECT_GT(answer->prior_sd.at("outdoor_airflow"), 0.0);
   EXPECT_GE(answer->effects[0].moved_share.at("electricity"), 0.03);
   EXPECT_LT(answer->effects[0].moved_share.at("electricity"), 0.1);
 }

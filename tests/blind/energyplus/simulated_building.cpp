@@ -272,6 +272,13 @@ std::vector<simulators::MeterPlate> SimulatedBuilding::plates() const {
   return simulators::plates_of(as_metered);
 }
 
+BaseParameters SimulatedBuilding::base_truth() const {
+  const BaseParameters drawn = as_drawn();
+  return {drawn.occupancy_person_m2 * truth_.at("occupancy"),
+          drawn.outdoor_air_m3_s * truth_.at("outdoor_air"),
+          drawn.cooling_setpoint_C + truth_.at("cooling_setpoint_K")};
+}
+
 std::string SimulatedBuilding::weather_text() const { return weather_csv(hours_); }
 
 std::string SimulatedBuilding::site_text(const std::vector<simulators::MeterPlate>& plates) const {

@@ -43,6 +43,9 @@ class SimulatedBuilding {
   [[nodiscard]] const std::vector<CaseMeter>& meters() const { return meters_; }
   [[nodiscard]] const Loads& twin() const { return twin_; }
   [[nodiscard]] const simulators::energyplus::TrueParameters& truth() const { return truth_; }
+  /// Of the building as it is, and by its drawings.
+  [[nodiscard]] BaseParameters base_truth() const;
+  [[nodiscard]] BaseParameters as_drawn() const { return blind::as_drawn(sized_, drawn_.front()); }
   [[nodiscard]] bool could_have(const simulators::energyplus::HiddenChange& change) const {
     return change.possible(years_.front());
   }

@@ -397,6 +397,15 @@ std::vector<CaseMeter> meters_of(const Json& model) {
   return meters;
 }
 
+BaseParameters as_drawn(const SizedModel& sized, const BuildingYear& drawings) {
+  constexpr double kHardlyAnybody = 0.01;
+  const double people_m2 =
+      number_in(table_of(sized, "Zone Summary"), "Conditioned Total", "People");
+  const auto cooling = by_hour(drawings, Role::cooling_setpoint, DayKind::workday);
+  return {people_m2 > 0.0 ? 1.0 / people_m2 : kHardlyAnybody, outdoor_air_m3_s(sized),
+          *std::ranges::min_element(cooling)};
+}
+
 std::string site_text(const SiteFacts& facts, const SizedModel& sized, const BuildingYear& drawings,
                       const std::vector<MeterPlate>& plates, Rng rng) {
   Memory memory(rng);
@@ -406,7 +415,7 @@ std::string site_text(const SiteFacts& facts, const SizedModel& sized, const Bui
   const Envelope envelope = envelope_of(sized);
   const double roof_m2 = area_of(envelope, Kind::roof) + area_of(envelope, Kind::skylight);
   const double storeys = std::max(std::round(floor_m2 / std::max(roof_m2, 1.0)), 1.0);
-  const double people_m2 = number_in(zones, "Conditioned Total", "People");
+  const BaseParameters drawn = as_drawn(sized, drawings);
   std::string text = heading(facts, plates);
   text += fmt::format(
       "[building]\nfloor_area_m2 = {:.0f}\nstoreys = {:.0f}\nstorey_height_m = {:.1f}\n"
@@ -427,7 +436,7 @@ saturday = [{}]
 sunday = [{}]
 
 )",
-      memory.of(people_m2 > 0.0 ? 1.0 / people_m2 : 0.01, 0.2),
+      memory.of(drawn.occupancy_person_m2, 0.2),
       memory.of(number_in(zones, "Conditioned Total", "Lighting"), 0.08),
       memory.of(number_in(zones, "Conditioned Total", "Plug and Process"), 0.12),
       1e-3 * sum_of(sized.model, "Exterior:Lights", {"design_level"}),

@@ -8,6 +8,7 @@
 #include "simulators/energyplus/building_year.hpp"
 #include "simulators/feed/meters.hpp"
 #include "tests/blind/energyplus/engine.hpp"
+#include "tests/blind/population/base_parameters.hpp"
 
 namespace recald::blind {
 
@@ -20,6 +21,10 @@ struct CaseMeter {
 /// The meters that the model's plant calls for: electricity; cooling where water is chilled; heat
 /// from the district or gas. A chiller's own electricity is in electricity.
 [[nodiscard]] std::vector<CaseMeter> meters_of(const Json& model);
+
+/// What the drawings say of the parameters that every model calibrates.
+[[nodiscard]] BaseParameters as_drawn(const SizedModel& sized,
+                                      const simulators::energyplus::BuildingYear& drawings);
 
 /// What no table of EnergyPlus tells.
 struct SiteFacts {

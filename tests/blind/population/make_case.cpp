@@ -9,6 +9,7 @@
 #include "adapters/system/write_file.hpp"
 #include "simulators/feed/feed_files.hpp"
 #include "simulators/scenario/scenario_files.hpp"
+#include "tests/blind/population/base_parameters.hpp"
 #include "tests/blind/population/moved_share.hpp"
 #include "tests/blind/population/share_search.hpp"
 
@@ -161,34 +162,23 @@ Json effects_json(const SettledCase& settled) {
   return list;
 }
 
-/// Standard deviation of Triangular(min, mode, max).
-double triangular_sd(double min, double mode, double max) {
-  return std::sqrt((min * min + mode * mode + max * max - min * mode - min * max - mode * max) /
-                   18.0);
-}
-
 Json answer_json(const CasePlan& plan, const SettledCase& settled, const Truth& truth) {
   const Drawings& drawings = truth.drawings;
   Json decoys = Json::array();
   for (const Decoy decoy : settled.scenario.decoys) decoys.push_back(to_string(decoy));
-  const double people = drawings.occupancy_person_m2;
-  const double air_m3_s = drawings.outdoor_air_m3_s();
-  return {{"case", plan.id},
-          {"block", block_name(plan.block)},
-          {"effects", effects_json(settled)},
-          {"decoys", decoys},
-          {"climate", name_of(drawings.climate)},
-          {"use", to_string(drawings.use)},
-          {"gaps", settled.scenario.care == MeterCare::gaps},
-          {"true_parameters",
-           {{"occupancy_density", truth.occupancy_density_person_m2},
-            {"outdoor_airflow", truth.outdoor_airflow_m3_s},
-            {"cooling_setpoint", truth.cooling_setpoint_C}}},
-          {"prior_sd",
-           {{"occupancy_density", triangular_sd(0.0, people, 2.0 * people)},
-            {"outdoor_airflow", triangular_sd(0.3 * air_m3_s, air_m3_s, 1.2 * air_m3_s)},
-            {"cooling_setpoint", triangular_sd(20.0, drawings.cooling_setpoint_C, 27.8)}}},
-          {"refused", settled.refused}};
+  Json answer{{"case", plan.id},
+              {"block", block_name(plan.block)},
+              {"effects", effects_json(settled)},
+              {"decoys", decoys},
+              {"climate", name_of(drawings.climate)},
+              {"use", to_string(drawings.use)},
+              {"gaps", settled.scenario.care == MeterCare::gaps},
+              {"refused", settled.refused}};
+  add_base_parameters(
+      answer,
+      {truth.occupancy_density_person_m2, truth.outdoor_airflow_m3_s, truth.cooling_setpoint_C},
+      {drawings.occupancy_person_m2, drawings.outdoor_air_m3_s(), drawings.cooling_setpoint_C});
+  return answer;
 }
 
 Scenario with_believed(Scenario scenario, const Drawings& believed) {
