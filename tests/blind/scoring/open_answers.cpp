@@ -11,20 +11,6 @@
 namespace recald::blind {
 namespace {
 
-Result<EffectClasses> read_classes(const std::optional<std::filesystem::path>& file) {
-  EffectClasses classes;
-  if (!file) return classes;
-  const auto text = read_file(*file);
-  if (!text) return tl::unexpected(text.error());
-  const auto parsed = parse_json(*text, file->string());
-  if (!parsed) return tl::unexpected(parsed.error());
-  JsonFields fields(*parsed, file->string());
-  if (fields.error()) return tl::unexpected(*fields.error());
-  for (const auto& [effect, ignored] : parsed->items()) classes[effect] = fields.name(effect);
-  if (fields.error()) return tl::unexpected(*fields.error());
-  return classes;
-}
-
 /// All that is needed for scores, read and checked.
 struct Material {
   std::string whole_hash;
@@ -90,6 +76,20 @@ Result<void> write_scores(const OpenRequest& request, const Scores& scores,
 }
 
 }  // namespace
+
+Result<EffectClasses> read_classes(const std::optional<std::filesystem::path>& file) {
+  EffectClasses classes;
+  if (!file) return classes;
+  const auto text = read_file(*file);
+  if (!text) return tl::unexpected(text.error());
+  const auto parsed = parse_json(*text, file->string());
+  if (!parsed) return tl::unexpected(parsed.error());
+  JsonFields fields(*parsed, file->string());
+  if (fields.error()) return tl::unexpected(*fields.error());
+  for (const auto& [effect, ignored] : parsed->items()) classes[effect] = fields.name(effect);
+  if (fields.error()) return tl::unexpected(*fields.error());
+  return classes;
+}
 
 Result<std::string> open_answers(const OpenRequest& request) {
   if (request.out.extension() != ".json") {

@@ -33,4 +33,7 @@ struct OpenRequest {
 ///         missing and `partial` was not asked for.
 [[nodiscard]] Result<std::string> open_answers(const OpenRequest& request);
 
+/// Classes of a file `{"effect": "class"}`; none without a file. @return malformed, io_failed
+[[nodiscard]] Result<EffectClasses> read_classes(const std::optional<std::filesystem::path>& file);
+
 }  // namespace recald::blind

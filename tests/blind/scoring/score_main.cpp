@@ -4,6 +4,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "tests/blind/scoring/handed_in.hpp"
 #include "tests/blind/scoring/open_answers.hpp"
 #include "tests/blind/scoring/result_log.hpp"
 #include "tests/blind/scoring/seal.hpp"
@@ -19,6 +20,8 @@ constexpr int kExitUsage = 2;
 
 struct Options {
   OpenRequest open;
+  std::string truth;
+  std::string world = "energyplus";
   std::string population;
   std::string results;
   std::string method = "recald";
@@ -26,6 +29,15 @@ struct Options {
 
   [[nodiscard]] Reruns reruns() const { return allow_rerun ? Reruns::replace : Reruns::refuse; }
 };
+
+Result<std::string> run_hand_in(const Options& options) {
+  const auto catalogue = recald::blind::read_classes(options.open.classes);
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  const auto count = recald::blind::write_handed_in(options.truth, options.world, *catalogue,
+                                                    options.open.answers);
+  if (!count) return tl::unexpected(count.error());
+  return std::to_string(*count) + " answers in " + options.open.answers.string() + "\n";
+}
 
 Result<std::string> run_seal(const Options& options) {
   auto whole = recald::blind::seal_answers(options.open.answers);
@@ -57,6 +69,21 @@ Result<std::string> run_open(const Options& options) {
   request.now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   request.scorer_version = RECALD_VERSION;
   return recald::blind::open_answers(request);
+}
+
+void add_hand_in(CLI::App& app, Options& options) {
+  CLI::App* hand_in =
+      app.add_subcommand("hand-in", "makes answers of a truth.json that somebody else wrote");
+  hand_in->add_option("--truth", options.truth, "JSON {case: {archetype, weather, effects}}")
+      ->required();
+  hand_in->add_option("--answers", options.open.answers, "folder that gets <case>.json")
+      ->required();
+  hand_in
+      ->add_option("--classes", options.open.classes, "JSON {effect: class} of the whole catalogue")
+      ->required();
+  hand_in->add_option("--world", options.world, "whose buildings: own or energyplus")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"own", "energyplus"}));
 }
 
 void add_seal(CLI::App& app, Options& options) {
@@ -97,6 +124,7 @@ void add_open(CLI::App& app, Options& options) {
 }
 
 Result<std::string> run(const CLI::App& app, const Options& options) {
+  if (app.got_subcommand("hand-in")) return run_hand_in(options);
   if (app.got_subcommand("seal")) return run_seal(options);
   if (app.got_subcommand("pending")) return run_pending(options);
   if (app.got_subcommand("append")) return run_append(options);
@@ -110,6 +138,7 @@ int main(int argc, char** argv) {
                "blind_score"};
   app.require_subcommand(1);
   Options options;
+  add_hand_in(app, options);
   add_seal(app, options);
   add_pending(app, options);
   add_append(app, options);
