@@ -216,7 +216,7 @@ Result<void> Engine::simulate(const Json& model, const fs::path& weather,
 
 Result<SizedModel> Engine::size(Json model, const fs::path& weather, const fs::path& folder) const {
   // Schedules are told step by step; they are read as quarter hours.
-  model["Timestep"].front()["number_of_timesteps_per_hour"] = kQuartersPerHour;
+  model["Timestep"] = {{"Quarter hours", {{"number_of_timesteps_per_hour", kQuartersPerHour}}}};
   Json& control = model["SimulationControl"].front();
   control["run_simulation_for_sizing_periods"] = "Yes";
   control["run_simulation_for_weather_file_run_periods"] = "No";
@@ -277,7 +277,7 @@ Result<std::vector<std::vector<double>>> Engine::run(Json model, int year, const
   }
   model["Output:Meter"] = outputs;
   model["Output:SQLite"] = {{"Results", {{"option_type", "Simple"}}}};
-  model["Timestep"].front()["number_of_timesteps_per_hour"] = kQuartersPerHour;
+  model["Timestep"] = {{"Quarter hours", {{"number_of_timesteps_per_hour", kQuartersPerHour}}}};
   if (const auto ran = simulate(model, weather, {}, folder); !ran)
     return tl::unexpected(ran.error());
 
