@@ -9,7 +9,7 @@ namespace recald::blind {
 namespace {
 
 constexpr double kSure = 0.8;
-constexpr std::size_t kSlopes = 81;
+constexpr std::size_t kSlopes = 161;
 constexpr std::array kThresholds{0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99};
 
 /// The most probable answer of a case.
@@ -78,7 +78,7 @@ void score_truths(const std::vector<TopAnswer>& tops, ProbabilityScores& scores)
 using LossesBySlope = std::array<double, kSlopes>;
 
 double slope_at(std::size_t i) {
-  constexpr double kLeast = 0.2;
+  constexpr double kLeast = 0.02;
   constexpr double kMost = 5.0;
   return kLeast * std::pow(kMost / kLeast, static_cast<double>(i) / (kSlopes - 1.0));
 }
