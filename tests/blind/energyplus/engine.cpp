@@ -156,7 +156,12 @@ Result<Engine> Engine::find() {
   if (program.empty() || !fs::is_regular_file(program, ignored)) {
     return failure(ErrorCode::not_found, "RECALD_ENERGYPLUS names no EnergyPlus");
   }
-  return Engine(fs::absolute(program).parent_path());
+  const fs::path payload = fs::absolute(program).parent_path();
+  for (const char* each : {"energyplus", "ConvertInputFormat", "ExpandObjects"}) {
+    // The Python package leaves them without the right to be run.
+    fs::permissions(payload / each, fs::perms::owner_exec, fs::perm_options::add, ignored);
+  }
+  return Engine(payload);
 }
 
 Result<Json> Engine::expand(const Json& templated, const fs::path& folder) const {
