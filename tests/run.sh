@@ -79,7 +79,10 @@ instrumented() {
 
 if [ "${1:-}" != "--plain" ]; then
   stage "fuzz (5 s each)"
-  sh "$root/tests/fuzz/run.sh" 5 || failed="$failed fuzz"
+  mkdir -p "$root/.build"
+  fuzz_log=$root/.build/fuzz.log
+  sh "$root/tests/fuzz/run.sh" 5 >"$fuzz_log" 2>&1 || failed="$failed fuzz"
+  grep -a 'nothing found\|FOUND' "$fuzz_log" || true
   instrumented asan
   # What differs from the other scenarios by its dates, or by what comes late or not at all, has the same threads.
   instrumented tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy"
@@ -111,6 +114,7 @@ if [ -n "$skipped" ]; then
   fi
 fi
 [ -z "$failed" ] || {
+  case "$failed" in *fuzz*) tail -n 100 "$fuzz_log" | cut -c 1-4000 ;; esac
   echo "Failed:$failed" >&2
   exit 1
 }

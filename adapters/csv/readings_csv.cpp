@@ -138,8 +138,8 @@ class ReadingsReader {
   bool read_expected_line(const Line& line) {
     std::string_view rest = line.text;
     const std::size_t stamp_length = last_stamp_text_.size();
-    if (columns_.count != kRequiredColumns || !line.terminated || rest.size() <= stamp_length ||
-        rest[stamp_length] != ',') {
+    if (columns_.count != kRequiredColumns || !line.terminated || stamp_length == 0 ||
+        rest.size() <= stamp_length || rest[stamp_length] != ',') {
       return false;
     }
     Row row{.line = line.number, .stamp = last_stamp_, .text = line.text};
@@ -197,7 +197,7 @@ class ReadingsReader {
 
   bool read_stamp(Row& row) {
     // Files ordered by time repeat a stamp for each meter.
-    if (fields_[0] != last_stamp_text_) {
+    if (last_stamp_text_.empty() || fields_[0] != last_stamp_text_) {
       const auto stamp = parse_timestamp(fields_[0]);
       if (!stamp) {
         return refuse(row, stamp.error().message);

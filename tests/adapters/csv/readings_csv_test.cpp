@@ -221,6 +221,17 @@ TEST(ReadingsCsvBadInput, MissingFile) {
   EXPECT_EQ(report.error().message, "readings file '/no/such/readings.csv' does not exist");
 }
 
+TEST(ReadingsCsvBadInput, ARowWithoutAStampIsNotOf1970) {
+  ReadingsOptions options = one_meter();
+  options.meters[0].counter = metering::CounterSettings{100.0, 0.1, 1e6};
+  const std::string text = kHead +
+                           ",main,10,kWh\n"
+                           "2016-03-01T00:00:00Z,main,11,kWh\n"
+                           "2016-03-01T00:15:00Z,main,12,kWh\n";
+  EXPECT_EQ(read(text, options).readings.size(), 1u);
+  EXPECT_THAT(issue(text, options), testing::StartsWith("2: timestamp ''"));
+}
+
 TEST(ReadingsCsvBadInput, WrongHeaderNamesTheExpectedOne) {
   for (const char* header :
        {"time,meter,value,unit\n", "timestamp;meter;value;unit\n", "timestamp,meter,value\n",

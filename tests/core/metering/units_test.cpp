@@ -119,5 +119,12 @@ TEST(Units, WhatIsNotEnergySaysWhatToDo) {
   EXPECT_FALSE(find_unit("", Utility::electricity, {}).has_value());
 }
 
+TEST(Units, AMessageHasNoControlCharactersOfAUnit) {
+  const auto unknown = find_unit("kW\x7Fh", Utility::electricity, {});
+  ASSERT_FALSE(unknown.has_value());
+  EXPECT_NE(unknown.error().message.find("'kW\\x7Fh'"), std::string::npos)
+      << unknown.error().message;
+}
+
 }  // namespace
 }  // namespace recald::metering::units_test
