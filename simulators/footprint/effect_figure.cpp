@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -114,6 +115,96 @@ void draw_months(Svg& svg, double top, const Footprint& footprint,
   plot.zero_line();
 }
 
+/// Means of what one meter adds, by outdoor temperature; where it was hardly ever so warm, the
+/// mean below.
+struct TemperatureCurve {
+  Utility utility;
+  std::vector<double> mean_kW;
+};
+
+struct TemperatureAxis {
+  static constexpr double kStep_K = 2.5;
+  double low_C;
+  std::size_t bins;
+
+  [[nodiscard]] std::size_t bin_of(double outdoor_C) const {
+    return std::min(static_cast<std::size_t>((outdoor_C - low_C) / kStep_K), bins - 1);
+  }
+};
+
+TemperatureAxis axis_of(const std::vector<double>& outdoor_C) {
+  const auto [low, high] = std::ranges::minmax_element(outdoor_C);
+  const double low_C = TemperatureAxis::kStep_K * std::floor(*low / TemperatureAxis::kStep_K);
+  return {low_C, static_cast<std::size_t>(std::ceil((*high - low_C) / TemperatureAxis::kStep_K))};
+}
+
+bool in_working_hours(const metering::LocalTime& local) {
+  constexpr int kFirst_min = 8 * 60;
+  constexpr int kLast_min = 18 * 60;
+  const unsigned weekday = std::chrono::weekday{std::chrono::sys_days{local.date}}.iso_encoding();
+  return weekday <= 5 && local.minute_of_day >= kFirst_min && local.minute_of_day < kLast_min;
+}
+
+std::vector<TemperatureCurve> temperature_curves(const Footprint& footprint,
+                                                 const TemperatureAxis& axis, bool working,
+                                                 const metering::LocalCalendar& calendar) {
+  std::vector<TemperatureCurve> curves;
+  for (const MeterFootprint& meter : footprint.meters) {
+    if (!changed(meter)) continue;
+    std::vector<double> sum_kW(axis.bins, 0.0);
+    std::vector<double> count(axis.bins, 0.0);
+    for (std::size_t i = 0; i < meter.added_kW.size(); ++i) {
+      const auto local = calendar.local_time(footprint.begin + i * kInterval);
+      const bool is_before = footprint.effect.from && local.date < *footprint.effect.from;
+      const bool is_after = footprint.effect.to && local.date > *footprint.effect.to;
+      if (is_before || is_after || in_working_hours(local) != working) continue;
+      const std::size_t bin = axis.bin_of(footprint.outdoor_C[i]);
+      sum_kW[bin] += meter.added_kW[i];
+      count[bin] += 1.0;
+    }
+    constexpr double kFewest = 8.0;  // Two hours.
+    double last_kW = 0.0;
+    for (std::size_t bin = 0; bin < axis.bins; ++bin) {
+      if (count[bin] >= kFewest) last_kW = sum_kW[bin] / count[bin];
+      sum_kW[bin] = last_kW;
+    }
+    curves.push_back({meter.utility, std::move(sum_kW)});
+  }
+  return curves;
+}
+
+void draw_temperatures(Svg& svg, double top, const Footprint& footprint,
+                       const metering::LocalCalendar& calendar) {
+  const TemperatureAxis axis = axis_of(footprint.outdoor_C);
+  std::array<std::vector<TemperatureCurve>, 2> halves;
+  ValueRange range;
+  for (const bool working : {true, false}) {
+    halves[working ? 0 : 1] = temperature_curves(footprint, axis, working, calendar);
+    for (const TemperatureCurve& curve : halves[working ? 0 : 1]) range.include(curve.mean_kW);
+  }
+  const Scale scale = range.scale(kIntervals);
+  const std::array<std::string_view, 2> captions{
+      "By outdoor temperature, Monday to Friday 8 to 18 h, kW",
+      "By outdoor temperature, other hours"};
+  const std::array<Box, 2> frames{Box{66.0, top, 366.0, kPlotHeight},
+                                  Box{502.0, top, 376.0, kPlotHeight}};
+  std::vector<Mark> marks;
+  for (std::size_t bin = 0; bin <= axis.bins; bin += 2) {
+    const double edge_C = axis.low_C + TemperatureAxis::kStep_K * static_cast<double>(bin);
+    marks.push_back({static_cast<double>(bin), fmt::format("{:g}", edge_C)});
+  }
+  marks.back().text += " °C";
+  for (std::size_t half = 0; half < halves.size(); ++half) {
+    Plot plot(svg, frames[half], static_cast<double>(axis.bins), scale);
+    plot.caption(captions[half]);
+    plot.x_marks(marks);
+    plot.zero_line();
+    for (const TemperatureCurve& curve : halves[half]) {
+      plot.curve(curve.mean_kW, {.colour = colour_of(curve.utility), .width = 1.8});
+    }
+  }
+}
+
 /// Below the diagrams: how to read the curves, and which building is shown.
 void draw_foot(Svg& svg, double y, const Footprint& footprint) {
   constexpr TextStyle style{.size = 11.0, .colour = kFaintInk};
@@ -178,7 +269,9 @@ std::string effect_figure(const Footprint& footprint, const metering::LocalCalen
                           16.0 * static_cast<double>(details.size());
   const double plots_y = shares_y + 44.0;
 
-  Svg svg(kWidth, plots_y + kPlotHeight + 52.0,
+  constexpr double kRow_px = kPlotHeight + 62.0;
+  const double rows = footprint.outdoor_C.empty() ? 1.0 : 2.0;
+  Svg svg(kWidth, plots_y + rows * kRow_px - 10.0,
           fmt::format("{}: {}", kind.title, share_text(footprint)));
   svg.text({kMargin, 32.0}, kind.title, {.size = 18.0, .bold = true});
   svg.text({kWidth - kMargin, 32.0}, kind.id,
@@ -196,6 +289,7 @@ std::string effect_figure(const Footprint& footprint, const metering::LocalCalen
   draw_days(svg, plots_y, footprint, calendar);
   draw_months(svg, plots_y, footprint, calendar);
   draw_foot(svg, plots_y + kPlotHeight + 36.0, footprint);
+  if (!footprint.outdoor_C.empty()) draw_temperatures(svg, plots_y + kRow_px, footprint, calendar);
   return svg.finished();
 }
 

@@ -25,6 +25,7 @@ struct Footprint {
   std::string building;  ///< In a few words.
   metering::Instant begin;
   std::vector<MeterFootprint> meters;
+  std::vector<double> outdoor_C = {};  ///< Of each interval; empty: not known.
 };
 
 /// "electricity +1.2 %", or "electricity unchanged" if nothing was added.
@@ -36,7 +37,8 @@ struct Footprint {
 
 /// Left: the mean day in the winter and in the summer half-year, working days and weekends
 /// apart, over the days on which the effect is active. Right: each month relative to the
-/// meter's mean month.
+/// meter's mean month. Below, where the weather is known: means by outdoor temperature, Monday to
+/// Friday from 8 to 18 h and at other times apart.
 /// @return an SVG file
 [[nodiscard]] std::string effect_figure(const Footprint& footprint,
                                         const metering::LocalCalendar& calendar);

@@ -119,6 +119,7 @@ Result<std::string> figure_of(const HiddenChange& change, const SimulatedBuildin
       of.added_kW.push_back((*loads)[meter][slot] - of.plain_kW[slot]);
     }
   }
+  footprint.outdoor_C = building.outdoor_C();
   return simulators::effect_figure(footprint, building.calendar());
 }
 

@@ -279,6 +279,14 @@ BaseParameters SimulatedBuilding::base_truth() const {
           drawn.cooling_setpoint_C + truth_.at("cooling_setpoint_K")};
 }
 
+std::vector<double> SimulatedBuilding::outdoor_C() const {
+  std::vector<double> outdoor_C;
+  for (const WeatherHour& hour : hours_) {
+    outdoor_C.insert(outdoor_C.end(), kQuartersPerDay / 24, hour.at_end.air.temperature_C);
+  }
+  return outdoor_C;
+}
+
 std::string SimulatedBuilding::weather_text() const { return weather_csv(hours_); }
 
 std::string SimulatedBuilding::site_text(const std::vector<simulators::MeterPlate>& plates) const {

@@ -55,6 +55,8 @@ class SimulatedBuilding {
   /// As the feed's meters take them.
   [[nodiscard]] simulators::Recording recording_of(const Loads& loads) const;
   [[nodiscard]] const metering::LocalCalendar& calendar() const { return *calendar_; }
+  /// Of each quarter hour.
+  [[nodiscard]] std::vector<double> outdoor_C() const;
   [[nodiscard]] std::string weather_text() const;
   [[nodiscard]] std::string site_text(const std::vector<simulators::MeterPlate>& plates) const;
   [[nodiscard]] std::vector<simulators::MeterPlate> plates() const;

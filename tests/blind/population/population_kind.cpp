@@ -38,7 +38,7 @@ Result<PopulationKind> population_kind(std::string_view world, std::string_view 
   };
   if (name == "smoke") {
     return is_own ? kind(Family::learning, 3, {0, 3, 2}, 2, 2, 1)
-                  : kind(Family::learning, 2, {0, 2, 2}, 0, 0, 2);
+                  : kind(Family::learning, 1, {0, 1, 1}, 0, 0, 1);
   }
   if (name == "development") {
     return is_own ? kind(Family::learning, 60, {40, 60, 60}, 20, 20, 3)
@@ -46,7 +46,7 @@ Result<PopulationKind> population_kind(std::string_view world, std::string_view 
   }
   if (name == "learning") {
     return is_own ? kind(Family::learning, 400, {300, 400, 350}, 50, 0, 3)
-                  : kind(Family::learning, 80, {60, 90, 90}, 20, 0, 2);
+                  : kind(Family::learning, 70, {50, 80, 80}, 20, 0, 2);
   }
   if (name == "sealed") {
     return is_own ? kind(Family::judging, 100, {40, 60, 60}, 20, 20, 3)

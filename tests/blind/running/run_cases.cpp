@@ -13,8 +13,10 @@
 #include "adapters/system/child_process.hpp"
 #include "adapters/system/scratch_folder.hpp"
 #include "tests/blind/running/baseline_lines.hpp"
+#include "tests/blind/running/calibration_line.hpp"
 #include "tests/blind/running/diagnosis_line.hpp"
 #include "tests/blind/scoring/answers.hpp"
+#include "tests/blind/scoring/calibration_scores.hpp"
 #include "tests/blind/scoring/case_range.hpp"
 #include "tests/blind/scoring/files.hpp"
 #include "tests/blind/scoring/gap_scores.hpp"
@@ -116,6 +118,10 @@ class Runner {
 
  private:
   [[nodiscard]] bool is_oracle() const { return request_.method == kOracle; }
+  [[nodiscard]] bool is_calibration() const { return request_.method == kCalibrate; }
+  [[nodiscard]] const char* written() const {
+    return is_calibration() ? "calibration.json" : "diagnosis.json";
+  }
 
   /// Those of the range without a line.
   Result<void> list_cases() {
@@ -196,9 +202,12 @@ class Runner {
 
   [[nodiscard]] std::vector<std::string> arguments_of(const std::string& case_id,
                                                       const fs::path& folder) const {
-    std::vector<std::string> arguments{"diagnose", (population_ / case_id / "site.toml").string(),
-                                       "--out",    folder.string(),
-                                       "--seed",   kSeed};
+    std::vector<std::string> arguments{is_calibration() ? "calibrate" : "diagnose",
+                                       (population_ / case_id / "site.toml").string(),
+                                       "--out",
+                                       folder.string(),
+                                       "--seed",
+                                       kSeed};
     if (!is_oracle()) return arguments;
     for (const std::string& assumed : assumed_.at(case_id).arguments) {
       arguments.insert(arguments.end(), {"--assume", assumed});
@@ -211,7 +220,7 @@ class Runner {
     const CaseRun run{case_id, request_.method, end.wall_s, end.cpu_s, end.peak_rss_MB, version_};
     std::string why = failure_of(end, request_.limit_s, folder / "said.txt");
     const auto diagnosis =
-        why.empty() ? read_diagnosis(folder) : Result<Json>(failure(ErrorCode::not_found, why));
+        why.empty() ? read_written(folder) : Result<Json>(failure(ErrorCode::not_found, why));
     if (diagnosis) {
       if (auto kept = keep(case_id, folder); !kept) return kept;
     }
@@ -231,24 +240,29 @@ class Runner {
     return {};
   }
 
-  static Result<Json> read_diagnosis(const fs::path& folder) {
-    const auto text = read_file(folder / "diagnosis.json");
-    if (!text) return failure(ErrorCode::not_found, "exit code 0, but no diagnosis.json");
-    Json diagnosis = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
-    if (diagnosis.is_discarded()) return failure(ErrorCode::malformed, "diagnosis.json is no JSON");
-    return diagnosis;
+  [[nodiscard]] Result<Json> read_written(const fs::path& folder) const {
+    const auto text = read_file(folder / written());
+    if (!text) {
+      return failure(ErrorCode::not_found, fmt::format("exit code 0, but no {}", written()));
+    }
+    Json json = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+    if (json.is_discarded()) {
+      return failure(ErrorCode::malformed, fmt::format("{} is no JSON", written()));
+    }
+    return json;
   }
 
   [[nodiscard]] Result<void> keep(const std::string& case_id, const fs::path& folder) const {
     if (request_.keep.empty()) return {};
     std::error_code error;
-    fs::copy_file(folder / "diagnosis.json", request_.keep / (case_id + ".json"),
+    fs::copy_file(folder / written(), request_.keep / (case_id + ".json"),
                   fs::copy_options::overwrite_existing, error);
     if (!error) return {};
     return failure(ErrorCode::io_failed, "its diagnosis cannot be kept: " + error.message());
   }
 
   [[nodiscard]] Result<Json> line_of(const Json& diagnosis, const CaseRun& run) const {
+    if (is_calibration()) return calibration_line(diagnosis, run);
     return is_oracle() ? oracle_line(diagnosis, run, assumed_.at(run.case_id).effects)
                        : diagnosis_line(diagnosis, run);
   }
@@ -297,6 +311,8 @@ std::optional<Error> misuse_of(const RunRequest& request) {
   std::string what;
   if (oracle == request.answers.empty()) {
     what = oracle ? "method oracle needs --answers" : "--answers is for method oracle alone";
+  } else if (request.baselines && request.method == kCalibrate) {
+    what = "baselines come from a diagnosis, not from a calibration";
   } else if (oracle && request.baselines) {
     what = "baselines come from a diagnosis that was told nothing";
   } else if (std::ranges::find(kBaselines, request.method) != kBaselines.end()) {

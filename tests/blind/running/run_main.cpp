@@ -23,7 +23,9 @@ void add_options(CLI::App& app, RunRequest& request) {
   app.add_option("--population", request.population, "folder that holds cases/")->required();
   app.add_option("--results", request.results, "results file; a run goes on where it ends")
       ->required();
-  app.add_option("--method", request.method, "its name in the results; oracle needs --answers")
+  app.add_option(
+         "--method", request.method,
+         "its name in the results; oracle needs --answers, calibrate runs `recald calibrate`")
       ->capture_default_str();
   app.add_option("--answers", request.answers, "folder with <case>.json, for method oracle");
   app.add_option("--jobs", request.jobs, "diagnoses at a time")

@@ -92,6 +92,24 @@ TEST_F(BlindRun, ALineForEachCase) {
   EXPECT_THAT(testing::read_text(folder_ / "calls"), HasSubstr("--seed 1"));
 }
 
+TEST_F(BlindRun, ACalibrationInThePlaceOfADiagnosis) {
+  add_case("a", R"sh(cat > "$out/calibration.json" <<'END'
+{"before":    {"validation": {"gas_daily_kWh": {"cvrmse": 0.4}, "gas_peak_kW": {"cvrmse": 9}}},
+ "after":     {"validation": {"gas_daily_kWh": {"cvrmse": 0.3}, "steam_daily_kWh": {"cvrmse": 1}}},
+ "forecast":  {"validation": {"gas_daily_kWh": {"cvrmse": 0.1}}},
+ "yardstick": {"validation": {"gas_daily_kWh": {"cvrmse": 0.2}, "steam_daily_kWh": null}}}
+END)sh");
+  add_case("b", "echo '{}' > \"$out/calibration.json\"");
+  ASSERT_EQ(run("--jobs 1 --method calibrate"), 0) << said_;
+  EXPECT_THAT(testing::read_text(folder_ / "calls"), HasSubstr("a calibrate "));
+  const auto lines = results();
+  ASSERT_EQ(lines.size(), 2u);
+  ASSERT_EQ(lines[0].calibration.size(), 1u);
+  EXPECT_DOUBLE_EQ(lines[0].calibration.at("gas").before, 0.4);
+  EXPECT_DOUBLE_EQ(lines[0].calibration.at("gas").yardstick, 0.2);
+  EXPECT_EQ(line(1)["extra"]["failed"], "calibration.json has no 'before' of unseen months");
+}
+
 TEST_F(BlindRun, GoesOnWhereItWasStopped) {
   for (const char* name : {"a", "b", "c", "d"}) add_case(name);
   ASSERT_EQ(run("--jobs 1 --cases 2-3"), 0) << said_;

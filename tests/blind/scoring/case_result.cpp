@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kOutcomes{"named", "confusable", "unknown", "none"};
 
 // "extra" is free for whatever else a method wants to keep; nothing of it is scored.
-constexpr std::array<std::string_view, 16> kKeys{"case",
+constexpr std::array<std::string_view, 17> kKeys{"case",
                                                  "method",
                                                  "outcome",
                                                  "named",
@@ -26,6 +26,7 @@ constexpr std::array<std::string_view, 16> kKeys{"case",
                                                  "parameters_before",
                                                  "parameters_after",
                                                  "effect_parameter",
+                                                 "calibration",
                                                  "located",
                                                  "wall_s",
                                                  "peak_rss_MB",
@@ -119,6 +120,15 @@ void read_fit(JsonFields& line, CaseResult& result) {
     line.each("other_meters_log_score_change", [&](const std::string& meter, JsonFields& fields) {
       result.other_meters[meter] = {.mean = fields.number("mean"),
                                     .se = fields.number("se", {.min = 0.0})};
+    });
+  }
+  if (line.has("calibration")) {
+    line.each("calibration", [&](const std::string& meter, JsonFields& fields) {
+      const NumberRange positive{.min = 0.0};
+      result.calibration[meter] = {.before = fields.number("before", positive),
+                                   .after = fields.number("after", positive),
+                                   .forecast = fields.number("forecast", positive),
+                                   .yardstick = fields.number("yardstick", positive)};
     });
   }
   result.parameters_before = read_posteriors(line, "parameters_before");

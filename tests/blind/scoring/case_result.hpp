@@ -37,6 +37,14 @@ struct Gap {
   std::optional<FitOfMeter> oracle;
 };
 
+/// CV(RMSE) of a meter's days in unseen months, shares of one.
+struct CalibrationFit {
+  double before = 0.0;  ///< The model by its drawings.
+  double after = 0.0;   ///< The calibrated model alone.
+  double forecast = 0.0;
+  double yardstick = 0.0;
+};
+
 struct LogScoreChange {
   double mean = 0.0;  ///< After minus before; negative is harm.
   double se = 0.0;    ///< Standard error of the mean.
@@ -66,7 +74,8 @@ struct CaseResult {
   std::map<std::string, Posterior> parameters_before;
   std::map<std::string, Posterior> parameters_after;
   std::optional<EffectInterval> effect_parameter;
-  std::optional<std::vector<std::string>> located;  ///< Meters, the one most amiss first.
+  std::map<std::string, CalibrationFit> calibration;  ///< By meter; of method "calibrate".
+  std::optional<std::vector<std::string>> located;    ///< Meters, the one most amiss first.
   std::optional<double> wall_s;
   std::optional<double> peak_rss_MB;
   std::string version;

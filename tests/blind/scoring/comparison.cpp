@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "tests/blind/scoring/calibration_scores.hpp"
 #include "tests/blind/scoring/cost_scores.hpp"
 #include "tests/blind/scoring/naming_scores.hpp"
 
@@ -87,7 +88,7 @@ std::vector<MethodRow> compare_methods(const AnswerKey& key, std::span<const Cas
   const OracleGaps oracles = oracle_gaps(results);
   std::set<std::string> others;
   for (const CaseResult& result : results) {
-    if (result.method != main_method && result.method != kOracle) others.insert(result.method);
+    if (result.method != main_method && competes(result.method)) others.insert(result.method);
   }
   const ScoredCases main = cases_of_method(key, results, main_method, classes);
   std::vector<MethodRow> rows{method_row(main, main_method, oracles)};

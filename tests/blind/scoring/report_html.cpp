@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "tests/blind/scoring/report.hpp"
 
@@ -154,6 +155,66 @@ std::string target_table(const std::vector<Target>& targets) {
          rows + "</tbody></table>\n";
 }
 
+std::string number_of(const std::optional<Score>& score, double scale, int decimals) {
+  if (!score) return "-";
+  std::string text = fmt::format("{:.{}f}", scale * score->value, decimals);
+  if (score->interval) {
+    text += fmt::format(" ({:.{}f} to {:.{}f})", scale * score->interval->low, decimals,
+                        scale * score->interval->high, decimals);
+  }
+  return text + fmt::format(", n = {}", score->cases);
+}
+
+/// What was counted besides names, worlds side by side.
+std::string table_of_worlds(const std::vector<WorldScores>& worlds) {
+  using Cell = std::function<std::string(const WorldScores&)>;
+  constexpr double kPercent = 100.0;
+  const auto percent = [](const std::optional<Score>& score) {
+    return number_of(score, kPercent, 1);
+  };
+  const auto median_of = [](const std::optional<Spread>& spread) {
+    return spread ? fmt::format("{}; 95 % below {:.1f}, most {:.1f}",
+                                number_of(spread->median, 1.0, 1), spread->p95, spread->max)
+                  : std::string{"-"};
+  };
+  const std::vector<std::pair<std::string_view, Cell>> rows{
+      {"gap closed on held months, share of the oracle's, large effects named",
+       [](const WorldScores& world) { return number_of(world.gap.cvrmse, 1.0, 2); }},
+      {"the same, all effects, named or not",
+       [](const WorldScores& world) { return number_of(world.gap.cvrmse_all, 1.0, 2); }},
+      {"another meter made worse, % of additions",
+       [&](const WorldScores& world) { return percent(world.gap.harm); }},
+      {"90 % interval of the effect holds the truth, %",
+       [&](const WorldScores& world) { return percent(world.gap.effect_coverage); }},
+      {"nothing hidden: CV(RMSE) of unseen months by the drawings, %",
+       [&](const WorldScores& world) { return percent(world.calibration.before); }},
+      {"calibrated, the model alone, %",
+       [&](const WorldScores& world) { return percent(world.calibration.after); }},
+      {"calibrated, the forecast, %",
+       [&](const WorldScores& world) { return percent(world.calibration.forecast); }},
+      {"yardstick: the meter's regression on temperature, %",
+       [&](const WorldScores& world) { return percent(world.calibration.yardstick); }},
+      {"meters whose model calibrating made worse, %",
+       [&](const WorldScores& world) { return percent(world.calibration.harmed); }},
+      {"meters that the yardstick forecasts better, %",
+       [&](const WorldScores& world) { return percent(world.calibration.beaten); }},
+      {"time of a diagnosis, s",
+       [&](const WorldScores& world) { return median_of(world.cost.wall_s); }},
+      {"memory, MB", [&](const WorldScores& world) { return median_of(world.cost.peak_rss_MB); }},
+  };
+  std::string html = "<table><thead><tr><th>median, or share</th>";
+  for (const WorldScores& world : worlds) {
+    html += fmt::format("<th>buildings of {}</th>", name_of_world(world.world));
+  }
+  html += "</tr></thead><tbody>\n";
+  for (const auto& [what, cell] : rows) {
+    html += fmt::format("<tr><td>{}</td>", what);
+    for (const WorldScores& world : worlds) html += fmt::format("<td>{}</td>", cell(world));
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table>\n";
+}
+
 std::string confusion_table(const NamingScores& naming) {
   std::string rows;
   for (const auto& [truth, said] : naming.confusion) {
@@ -197,6 +258,7 @@ std::string scores_html(const Scores& scores, const Circumstances& circumstances
   body +=
       "<p>Sizes of effects are per cent of the meter that is moved most. Lines are 95 % "
       "intervals.</p>\n";
+  body += "<h2>Besides names</h2>\n" + table_of_worlds(scores.worlds);
   for (const WorldScores& world : scores.worlds) {
     body += fmt::format("<h2>Buildings of {}: {} cases</h2>\n{}", name_of_world(world.world),
                         world.cases, figure_of_names(world));

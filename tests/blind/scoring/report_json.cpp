@@ -150,6 +150,26 @@ Json of_method(const MethodRow& row) {
   return json;
 }
 
+Json of_calibration(const CalibrationScores& calibration) {
+  return {{"cvrmse_by_drawings", of(calibration.before)},
+          {"cvrmse_calibrated", of(calibration.after)},
+          {"cvrmse_forecast", of(calibration.forecast)},
+          {"cvrmse_yardstick", of(calibration.yardstick)},
+          {"made_worse_by_calibrating", of(calibration.harmed)},
+          {"yardstick_better", of(calibration.beaten)}};
+}
+
+Json of_world(const WorldScores& world) {
+  return {{"world", world.world},
+          {"cases", world.cases},
+          {"naming", of_naming(world.naming)},
+          {"probability", of_probability(world.probability)},
+          {"gap", of_gap(world.gap)},
+          {"nothing_hidden", of_calibration(world.calibration)},
+          {"wall_s", of(world.cost.wall_s)},
+          {"peak_rss_MB", of(world.cost.peak_rss_MB)}};
+}
+
 }  // namespace
 
 std::string scores_json(const Scores& scores, const Circumstances& circumstances) {
@@ -167,6 +187,7 @@ std::string scores_json(const Scores& scores, const Circumstances& circumstances
                   {"results_sha256", circumstances.results_hash},
                   {"bootstrap", {{"seed", kBootstrapSeed}, {"resamples", kBootstrapResamples}}},
                   {"targets", list_of(scores.targets, of_target)},
+                  {"worlds", list_of(scores.worlds, of_world)},
                   {"naming", of_naming(scores.naming)},
                   {"probability", of_probability(scores.probability)},
                   {"gap", of_gap(scores.gap)},

@@ -61,16 +61,18 @@ std::vector<Failure> failures_of(const ScoredCases& cases) {
 }
 
 /// Worlds side by side: a result in one alone is half a result.
-void score_worlds(const ScoredCases& cases, const OracleGaps& oracles,
+void score_worlds(const ScoredCases& cases, std::span<const CaseResult> results,
                   const ScoringOptions& options, Scores& scores) {
+  const OracleGaps oracles = oracle_gaps(results);
+  const Calibrations calibrations = calibrations_of(results);
   std::map<std::string, ScoredCases> worlds;
   for (const ScoredCase& scored : cases) worlds[scored.answer->world].push_back(scored);
   for (const auto& [world, of] : worlds) {
     const WorldScores& one = scores.worlds.emplace_back(
         WorldScores{world, static_cast<int>(of.size()), naming_scores(of),
-                    probability_scores(of, options.reliability_bins)});
-    for (Target& each :
-         targets(world, one.naming, one.probability, gap_scores(of, oracles), cost_scores(of))) {
+                    probability_scores(of, options.reliability_bins), gap_scores(of, oracles),
+                    calibration_scores(of, calibrations), cost_scores(of)});
+    for (Target& each : targets(world, one.naming, one.probability, one.gap, one.cost)) {
       scores.targets.push_back(std::move(each));
     }
   }
@@ -89,7 +91,7 @@ Scores compute_scores(const AnswerKey& key, std::span<const CaseResult> results,
   scores.probability = probability_scores(cases, options.reliability_bins);
   scores.gap = gap_scores(cases, oracle_gaps(results));
   scores.cost = cost_scores(cases);
-  score_worlds(cases, oracle_gaps(results), options, scores);
+  score_worlds(cases, results, options, scores);
   scores.methods = compare_methods(key, results, options.method, classes);
   scores.failures = failures_of(cases);
   return scores;
@@ -100,7 +102,7 @@ std::vector<std::string> missing_cases(const AnswerKey& key, std::span<const Cas
   std::map<std::string, std::set<std::string>> done;
   done[method];
   for (const CaseResult& result : results) {
-    if (result.method != kOracle) done[result.method].insert(result.case_id);
+    if (competes(result.method)) done[result.method].insert(result.case_id);
   }
   std::vector<std::string> sentences;
   for (const auto& [name, cases] : done) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/blind/scoring/calibration_scores.hpp"
 #include "tests/blind/scoring/comparison.hpp"
 #include "tests/blind/scoring/cost_scores.hpp"
 #include "tests/blind/scoring/gap_scores.hpp"
@@ -29,6 +30,9 @@ struct WorldScores {
   int cases = 0;
   NamingScores naming;
   ProbabilityScores probability;
+  GapScores gap;
+  CalibrationScores calibration;
+  CostScores cost;
 };
 
 struct Scores {

@@ -147,6 +147,27 @@ TEST(FootprintFigures, TheMeanDayIsThatOfDaysWithTheEffect) {
   EXPECT_THAT(effect_figure(footprint, new_york()), Not(HasSubstr(">8</text>")));
 }
 
+// 8 kW where it is warmer than 20 degrees, which it is at noon: means by temperature have 8 kW,
+// mean days have fewer. The marks of the scale tell.
+TEST(FootprintFigures, WhatDependsOnTheTemperatureIsSeenByIt) {
+  const EffectKind* kind = find_effect_kind("equipment_step");
+  ASSERT_TRUE(kind);
+  Footprint footprint = hand_made(*kind);
+  footprint.meters = {meter_of(Utility::electricity, "electricity", 1.0, 0.0)};
+  std::vector<double>& added_kW = footprint.meters[0].added_kW;
+  for (std::size_t i = 0; i < added_kW.size(); ++i) {
+    const bool is_warm = (i / 96) % 3 == 0;
+    footprint.outdoor_C.push_back(is_warm ? 25.0 : 10.0);
+    added_kW[i] = is_warm ? 8.0 : 0.0;
+  }
+  const std::string figure = effect_figure(footprint, new_york());
+  EXPECT_TRUE(is_plain_xml(figure));
+  EXPECT_THAT(figure, HasSubstr("By outdoor temperature"));
+  EXPECT_THAT(figure, HasSubstr(">8</text>"));
+  footprint.outdoor_C.clear();
+  EXPECT_THAT(effect_figure(footprint, new_york()), Not(HasSubstr(">8</text>")));
+}
+
 TEST(FootprintFigures, MetersAreToldApart) {
   const std::set<std::string_view> colours{colour_of(Utility::electricity),
                                            colour_of(Utility::cooling), colour_of(Utility::heat)};

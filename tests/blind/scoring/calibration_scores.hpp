@@ -1,0 +1,40 @@
+/// What calibrating does to a model where nothing is hidden: it may find nothing, but it must not
+/// harm.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "tests/blind/scoring/intervals.hpp"
+#include "tests/blind/scoring/scored_case.hpp"
+
+namespace recald::blind {
+
+/// The method whose lines tell of a calibration in the place of a diagnosis.
+inline constexpr std::string_view kCalibrate = "calibrate";
+
+/// Whether a method answers for itself: neither the oracle nor a calibration does.
+[[nodiscard]] bool competes(std::string_view method);
+
+/// By case.
+using Calibrations = std::map<std::string, std::map<std::string, CalibrationFit>>;
+
+[[nodiscard]] Calibrations calibrations_of(std::span<const CaseResult> results);
+
+/// CV(RMSE) of the days of unseen months, shares of one; medians over the meters of all cases with
+/// nothing hidden. Absent without such lines.
+struct CalibrationScores {
+  std::optional<Score> before;     ///< The model by its drawings.
+  std::optional<Score> after;      ///< The calibrated model alone.
+  std::optional<Score> forecast;   ///< What recald forecasts with it.
+  std::optional<Score> yardstick;  ///< A regression of the meter on temperature.
+  std::optional<Score> harmed;     ///< Meters whose model calibrating made worse.
+  std::optional<Score> beaten;     ///< Meters that the yardstick forecasts better.
+};
+
+[[nodiscard]] CalibrationScores calibration_scores(const ScoredCases& cases,
+                                                   const Calibrations& calibrations);
+
+}  // namespace recald::blind
