@@ -43,6 +43,7 @@ constexpr std::array<const char*, 10> kSlopeNames{"per humidity",
                                                   "summer against winter"};
 constexpr int kCoefficients =
     2 + static_cast<int>(kBends_C.size()) + static_cast<int>(kSlopeNames.size());
+constexpr int kOfTime = 3;  ///< The last ones.
 constexpr int kFirstSlope = 2 + static_cast<int>(kBends_C.size());
 
 constexpr int kBlocks = 12;
@@ -79,11 +80,61 @@ struct Means {
   }
 };
 
-double median_of(std::vector<double>& values, std::size_t fewest = 8) {
-  if (values.size() < fewest) return kAbsent;
+constexpr int kFewestDays = 8;
+
+double median_of(std::vector<double>& values) {
+  if (values.size() < kFewestDays) return kAbsent;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// When the day's load begins or ends.
+struct Edge {
+  double at_h;
+  double outdoor_C;  ///< In the morning.
+  bool monday;
+  bool summer_time;
+  int third;  ///< Of the record.
+};
+
+template <class Wanted>
+double median_where(const std::vector<Edge>& edges, Wanted wanted) {
+  std::vector<double> chosen;
+  for (const Edge& edge : edges) {
+    if (wanted(edge)) chosen.push_back(edge.at_h);
+  }
+  return median_of(chosen);
+}
+
+/// Half way from the night's load to the one at noon; absent for a day that hardly has a noon.
+/// @param kW  (24)
+double half_load(const double* kW) {
+  const double night = (kW[1] + kW[2] + kW[3]) / 3.0;
+  const double noon = (kW[11] + kW[12] + kW[13]) / 3.0;
+  constexpr double kLeastRise = 0.15;
+  return noon - night > kLeastRise * std::abs(noon) ? 0.5 * (night + noon) : kAbsent;
+}
+
+/// Where the line through the middles of two hours passes the half load.
+double crossing_h(const double* kW, int hour, double half) {
+  return hour + 0.5 + (half - kW[hour]) / (kW[hour + 1] - kW[hour]);
+}
+
+double start_of_day(const double* kW) {
+  const double half = half_load(kW);
+  for (int hour = 3; hour < 13; ++hour) {
+    if (kW[hour] < half && kW[hour + 1] >= half) return crossing_h(kW, hour, half);
+  }
+  return kAbsent;
+}
+
+double stop_of_day(const double* kW) {
+  const double half = half_load(kW);
+  for (int hour = 22; hour >= 12; --hour) {
+    if (kW[hour] >= half && kW[hour + 1] < half) return crossing_h(kW, hour, half);
+  }
+  return kAbsent;
 }
 
 }  // namespace
@@ -332,9 +383,9 @@ void SignatureReader::read_regime(const Regime& regime, const double* kW, double
   for (Eigen::Index r = 0; r < n; ++r) {
     const auto row = static_cast<std::size_t>(r);
     warmths[static_cast<std::size_t>(regime.warmth[row])].add(rows[r]);
-    // What the weather does not explain; the trend is what is asked for.
-    const double trend = coefficients[kFirstSlope + 7] * regime.design(r, kFirstSlope + 7);
-    blocks[static_cast<std::size_t>(regime.block[row])].add(residual[r] + trend);
+    // What the weather does not explain, with trend and season: they are what is asked for.
+    const double in_time = regime.design.row(r).tail(kOfTime).dot(coefficients.tail(kOfTime));
+    blocks[static_cast<std::size_t>(regime.block[row])].add(residual[r] + in_time);
     months[static_cast<std::size_t>(regime.month[row])].add(residual[r]);
     const int weekday = regime.weekday[row];
     if (weekday >= 0) weekdays[static_cast<std::size_t>(weekday)].add(residual[r]);
@@ -349,80 +400,47 @@ void SignatureReader::read_regime(const Regime& regime, const double* kW, double
 
 void SignatureReader::read_edges(const Meter& meter, const double* kW, Sheet& sheet) const {
   const auto& hours = site_->drivers->hours;
-  struct Edge {
-    double hour;
-    std::size_t day;
-  };
   for (const bool starts : {true, false}) {
     std::vector<Edge> edges;
     Means saturdays, sundays;
     for (std::size_t d = 0; d < first_hour_.size(); ++d) {
       const auto first = static_cast<std::size_t>(first_hour_[d]);
-      bool is_measured = true;
-      for (std::size_t h = 0; h < 24; ++h) is_measured = is_measured && meter.group[first + h] >= 0;
+      const bool is_measured = std::all_of(meter.group.begin() + first_hour_[d],
+                                           meter.group.begin() + first_hour_[d] + 24,
+                                           [](int group) { return group >= 0; });
       if (!is_measured) continue;
-      const double* day = kW + first;
-      const double night = (day[1] + day[2] + day[3]) / 3.0;
-      const double noon = (day[11] + day[12] + day[13]) / 3.0;
-      const double half = 0.5 * (night + noon);
-      double found = kAbsent;
-      if (noon - night > 0.15 * std::abs(noon)) {
-        if (starts) {
-          for (int h = 3; h < 13 && !std::isfinite(found); ++h) {
-            if (day[h] < half && day[h + 1] >= half) {
-              found = h + 0.5 + (half - day[h]) / (day[h + 1] - day[h]);
-            }
-          }
-        } else {
-          for (int h = 22; h >= 12 && !std::isfinite(found); --h) {
-            if (day[h] >= half && day[h + 1] < half) {
-              found = h + 0.5 + (day[h] - half) / (day[h] - day[h + 1]);
-            }
-          }
-        }
-      }
-      const bool has_edge = std::isfinite(found);
+      const double at = starts ? start_of_day(kW + first) : stop_of_day(kW + first);
       const DriverHour& hour = hours[first];
-      if (hour.day == DayType::saturday) saturdays.add(has_edge ? 1.0 : 0.0);
-      if (hour.day == DayType::sunday_or_holiday) sundays.add(has_edge ? 1.0 : 0.0);
-      if (has_edge && hour.day == DayType::workday) edges.push_back({found, d});
+      const double has_one = std::isfinite(at) ? 1.0 : 0.0;
+      if (hour.day == DayType::saturday) saturdays.add(has_one);
+      if (hour.day == DayType::sunday_or_holiday) sundays.add(has_one);
+      if (hour.day != DayType::workday || !std::isfinite(at)) continue;
+      edges.push_back({.at_h = at,
+                       .outdoor_C = morning_C_[d],
+                       .monday = hour.weekday == 1,
+                       .summer_time = hour.daylight_saving,
+                       .third = static_cast<int>(3 * d / first_hour_.size())});
     }
-    const auto median_where = [&](auto wanted) {
-      std::vector<double> chosen;
-      for (const Edge& edge : edges) {
-        if (wanted(edge)) chosen.push_back(edge.hour);
-      }
-      return median_of(chosen);
+    const double usual = median_where(edges, [](const Edge&) { return true; });
+    std::vector<double> off_h;
+    for (const Edge& edge : edges) off_h.push_back(std::abs(edge.at_h - usual));
+    const auto between = [&](double from_C, double to_C) {
+      return median_where(edges, [&](const Edge& edge) {
+        return edge.outdoor_C >= from_C && edge.outdoor_C < to_C;
+      });
     };
-    const auto hour_of = [&](const Edge& edge) -> const DriverHour& {
-      return hours[static_cast<std::size_t>(first_hour_[edge.day])];
-    };
-    const double usual = median_where([](const Edge&) { return true; });
-    std::vector<double> off;
-    for (const Edge& edge : edges) off.push_back(std::abs(edge.hour - usual));
-    const double mild = median_where([&](const Edge& edge) {
-      return morning_C_[edge.day] >= 8.0 && morning_C_[edge.day] < 17.0;
-    });
-    const double cold = median_where([&](const Edge& edge) { return morning_C_[edge.day] < 4.0; });
-    const double hot = median_where([&](const Edge& edge) { return morning_C_[edge.day] >= 20.0; });
-    const double monday =
-        median_where([&](const Edge& edge) { return hour_of(edge).weekday == 1; });
-    const double summer_time =
-        median_where([&](const Edge& edge) { return hour_of(edge).daylight_saving; });
-    const double winter_time =
-        median_where([&](const Edge& edge) { return !hour_of(edge).daylight_saving; });
-    const std::size_t third = first_hour_.size() / 3;
-    const double early = median_where([&](const Edge& edge) { return edge.day < third; });
-    const double late = median_where([&](const Edge& edge) { return edge.day >= 2 * third; });
+    const double mild = between(8.0, 17.0);
     sheet.put(usual);
-    sheet.put(median_of(off));
-    sheet.put(cold - mild);
-    sheet.put(hot - mild);
-    sheet.put(monday - usual);
-    sheet.put(saturdays.mean(8));
-    sheet.put(sundays.mean(8));
-    sheet.put(summer_time - winter_time);
-    sheet.put(late - early);
+    sheet.put(median_of(off_h));
+    sheet.put(between(-90.0, 4.0) - mild);
+    sheet.put(between(20.0, 90.0) - mild);
+    sheet.put(median_where(edges, [](const Edge& edge) { return edge.monday; }) - usual);
+    sheet.put(saturdays.mean(kFewestDays));
+    sheet.put(sundays.mean(kFewestDays));
+    sheet.put(median_where(edges, [](const Edge& edge) { return edge.summer_time; }) -
+              median_where(edges, [](const Edge& edge) { return !edge.summer_time; }));
+    sheet.put(median_where(edges, [](const Edge& edge) { return edge.third == 2; }) -
+              median_where(edges, [](const Edge& edge) { return edge.third == 0; }));
   }
 }
 

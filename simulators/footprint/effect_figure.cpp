@@ -116,7 +116,7 @@ void draw_months(Svg& svg, double top, const Footprint& footprint,
 }
 
 /// Means of what one meter adds, by outdoor temperature; where it was hardly ever so warm, the
-/// mean below.
+/// mean beside.
 struct TemperatureCurve {
   Utility utility;
   std::vector<double> mean_kW;
@@ -163,12 +163,16 @@ std::vector<TemperatureCurve> temperature_curves(const Footprint& footprint,
       count[bin] += 1.0;
     }
     constexpr double kFewest = 8.0;  // Two hours.
-    double last_kW = 0.0;
+    const auto is_known = [](double hours) { return hours >= kFewest; };
+    std::size_t nearest =
+        static_cast<std::size_t>(std::ranges::find_if(count, is_known) - count.begin());
+    if (nearest == axis.bins) continue;
+    std::vector<double> mean_kW(axis.bins);
     for (std::size_t bin = 0; bin < axis.bins; ++bin) {
-      if (count[bin] >= kFewest) last_kW = sum_kW[bin] / count[bin];
-      sum_kW[bin] = last_kW;
+      if (is_known(count[bin])) nearest = bin;
+      mean_kW[bin] = sum_kW[nearest] / count[nearest];
     }
-    curves.push_back({meter.utility, std::move(sum_kW)});
+    curves.push_back({meter.utility, std::move(mean_kW)});
   }
   return curves;
 }
@@ -189,7 +193,7 @@ void draw_temperatures(Svg& svg, double top, const Footprint& footprint,
   const std::array<Box, 2> frames{Box{66.0, top, 366.0, kPlotHeight},
                                   Box{502.0, top, 376.0, kPlotHeight}};
   std::vector<Mark> marks;
-  for (std::size_t bin = 0; bin <= axis.bins; bin += 2) {
+  for (std::size_t bin = 0; bin <= axis.bins; bin += axis.bins > 16 ? 4 : 2) {
     const double edge_C = axis.low_C + TemperatureAxis::kStep_K * static_cast<double>(bin);
     marks.push_back({static_cast<double>(bin), fmt::format("{:g}", edge_C)});
   }
@@ -269,9 +273,9 @@ std::string effect_figure(const Footprint& footprint, const metering::LocalCalen
                           16.0 * static_cast<double>(details.size());
   const double plots_y = shares_y + 44.0;
 
-  constexpr double kRow_px = kPlotHeight + 62.0;
+  constexpr double kRow_px = kPlotHeight + 82.0;
   const double rows = footprint.outdoor_C.empty() ? 1.0 : 2.0;
-  Svg svg(kWidth, plots_y + rows * kRow_px - 10.0,
+  Svg svg(kWidth, plots_y + rows * kRow_px - 30.0,
           fmt::format("{}: {}", kind.title, share_text(footprint)));
   svg.text({kMargin, 32.0}, kind.title, {.size = 18.0, .bold = true});
   svg.text({kWidth - kMargin, 32.0}, kind.id,

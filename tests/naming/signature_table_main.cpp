@@ -40,7 +40,7 @@ Eigen::VectorXd rough_spread() {
   Eigen::VectorXd spread(static_cast<Eigen::Index>(names.size() * kSignatureMeters));
   for (std::size_t i = 0; i < names.size(); ++i) {
     double sd = 0.1;
-    if (names[i].find("of the day") != std::string::npos) sd = 0.7;
+    if (names[i].find("of the day, ") != std::string::npos) sd = 0.7;
     if (names[i].find("that have one") != std::string::npos) sd = 0.3;
     for (std::size_t m = 0; m < kSignatureMeters; ++m) {
       spread[static_cast<Eigen::Index>(m * names.size() + i)] = sd;

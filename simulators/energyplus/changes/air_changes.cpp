@@ -66,8 +66,7 @@ bool has_reset(const BuildingYear& building) {
 }
 
 bool has_heaters_in_cold_air(const BuildingYear& building) {
-  return has_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat") ||
-         has_object(building.model(), "ZoneHVAC:FourPipeFanCoil");
+  return has_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat");
 }
 
 void outdoor_air_amount(BuildingYear& building, double share, Rng /*rng*/) {
@@ -159,19 +158,12 @@ void deep_drying(BuildingYear& building, double colder_K, Rng /*rng*/) {
 }
 
 void simultaneous_heating_cooling(BuildingYear& building, double share, Rng /*rng*/) {
-  const auto leak = [&](Json& object, const char* most, const char* least) {
-    if (object.contains(most) && object[most].is_number()) {
-      object[least] = share * object[most].get<double>();
-    }
-  };
+  // Fan coils have such a field too, and EnergyPlus does not act upon it.
   for_each_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat",
                   [&](const std::string& /*name*/, Json& box) {
-                    leak(box, "maximum_hot_water_or_steam_flow_rate",
-                         "minimum_hot_water_or_steam_flow_rate");
-                  });
-  for_each_object(building.model(), "ZoneHVAC:FourPipeFanCoil",
-                  [&](const std::string& /*name*/, Json& coil) {
-                    leak(coil, "maximum_hot_water_flow_rate", "minimum_hot_water_flow_rate");
+                    const auto most = box.find("maximum_hot_water_or_steam_flow_rate");
+                    if (most == box.end() || !most->is_number()) return;
+                    box["minimum_hot_water_or_steam_flow_rate"] = share * most->get<double>();
                   });
 }
 

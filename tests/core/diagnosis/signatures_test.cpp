@@ -1,0 +1,157 @@
+#include "core/diagnosis/signatures.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "tests/support/sample_building.hpp"
+
+namespace recald::diagnosis::signatures_test {
+namespace {
+
+using metering::Utility;
+using model::DriverHour;
+
+/// A year of the sample building with an electricity and a gas meter.
+class Signatures : public ::testing::Test {
+ protected:
+  Signatures() {
+    site_.nominal = testing::sample_building();
+    site_.drivers =
+        std::make_shared<const model::Drivers>(testing::sample_drivers(site_.nominal, 12));
+    site_.meters = {{"electricity", Utility::electricity, {}}, {"gas", Utility::gas, {}}};
+    // Electricity: 10 kW, 40 kW more on workdays from 7 to 19 h. Gas: 3 kW a degree below 15.
+    site_.measured_kW = hourly([](const DriverHour& hour, Eigen::Index meter) {
+      if (meter == 1) return 3.0 * std::max(15.0 - hour.dry_bulb_C, 0.0);
+      const bool is_day =
+          hour.day == model::DayType::workday && hour.local_hour >= 7 && hour.local_hour < 19;
+      return is_day ? 50.0 : 10.0;
+    });
+  }
+
+  template <class Power>
+  Eigen::ArrayXXd hourly(Power power) const {
+    const auto& hours = site_.drivers->hours;
+    Eigen::ArrayXXd kW(static_cast<Eigen::Index>(hours.size()), 2);
+    for (Eigen::Index i = 0; i < kW.rows(); ++i) {
+      for (Eigen::Index meter = 0; meter < 2; ++meter) {
+        kW(i, meter) = power(hours[static_cast<std::size_t>(i)], meter);
+      }
+    }
+    return kW;
+  }
+  /// By its name, of what was measured or of something else.
+  double value(SignatureMeter meter, const std::string& name, const Eigen::ArrayXXd& kW) const {
+    const auto& names = signature_names();
+    const auto found = std::ranges::find(names, name);
+    EXPECT_NE(found, names.end()) << name;
+    return SignatureReader(site_).read(kW)(found - names.begin(), static_cast<int>(meter));
+  }
+  double measured(SignatureMeter meter, const std::string& name) const {
+    return value(meter, name, site_.measured_kW);
+  }
+
+  SiteProblem site_;
+};
+
+constexpr auto kElectricity = SignatureMeter::electricity;
+constexpr auto kHeat = SignatureMeter::heat;
+
+TEST_F(Signatures, HaveEachANameOfItsOwn) {
+  const auto& names = signature_names();
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  const Eigen::MatrixXd values = SignatureReader(site_).read(site_.measured_kW);
+  EXPECT_EQ(values.rows(), static_cast<Eigen::Index>(names.size()));
+  EXPECT_EQ(values.cols(), 3);
+  EXPECT_TRUE(values.col(1).array().isNaN().all()) << "no chilled water";
+}
+
+TEST_F(Signatures, MeansAreInUnitsOfTheMetersMean) {
+  const double mean_kW = site_.measured_kW.col(0).mean();
+  EXPECT_NEAR(measured(kElectricity, "workday, mild, 10 to 12 h"), 50.0 / mean_kW, 1e-12);
+  EXPECT_NEAR(measured(kElectricity, "Sunday, mild, 10 to 12 h"), 10.0 / mean_kW, 1e-12);
+}
+
+TEST_F(Signatures, EdgesOfTheDayAreWhereTheLoadIsHalf) {
+  EXPECT_NEAR(measured(kElectricity, "start of the day, usual"), 7.0, 0.01);
+  EXPECT_NEAR(measured(kElectricity, "stop of the day, usual"), 19.0, 0.01);
+  EXPECT_NEAR(measured(kElectricity, "start of the day, spread"), 0.0, 1e-12);
+  EXPECT_EQ(measured(kElectricity, "start of the day, Saturdays that have one"), 0.0);
+}
+
+TEST_F(Signatures, AnHourEarlierOnMondaysIsSeenOnMondaysAlone) {
+  const Eigen::ArrayXXd kW = hourly([](const DriverHour& hour, Eigen::Index) {
+    const int from = hour.weekday == 1 ? 6 : 7;
+    const bool is_day =
+        hour.day == model::DayType::workday && hour.local_hour >= from && hour.local_hour < 19;
+    return is_day ? 50.0 : 10.0;
+  });
+  EXPECT_NEAR(value(kElectricity, "start of the day, Monday", kW), -1.0, 0.01);
+  EXPECT_NEAR(value(kElectricity, "stop of the day, Monday", kW), 0.0, 0.01);
+  EXPECT_NEAR(value(kElectricity, "start of the day, usual", kW), 7.0, 0.01);
+}
+
+TEST_F(Signatures, RegressionsFindWhatDependsOnTheWeather) {
+  const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
+    const double wind = hour.wind_m_s * std::max(20.0 - hour.dry_bulb_C, 0.0) / 60.0;
+    return site_.measured_kW.col(0).mean() * (1.0 + 0.3 * wind);
+  });
+  EXPECT_NEAR(value(kElectricity, "night, per wind in the cold", kW), 0.3, 0.06);
+  EXPECT_NEAR(measured(kElectricity, "night, per wind in the cold"), 0.0, 1e-6);
+}
+
+TEST_F(Signatures, AStepShowsInThePartsOfTheRecord) {
+  const int days = site_.drivers->hours.back().day_index + 1;
+  const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
+    return hour.day_index >= days / 2 ? 12.0 : 10.0;
+  });
+  const double before = value(kElectricity, "night, twelfth 3 of the record", kW);
+  const double after = value(kElectricity, "night, twelfth 10 of the record", kW);
+  EXPECT_GT((after - before) * site_.measured_kW.col(0).mean(), 1.0);
+}
+
+TEST_F(Signatures, LampsAreSeenByTheDark) {
+  const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
+    return hour.sine_of_sun_altitude < 0.0 ? 14.0 : 10.0;
+  });
+  const double mean_kW = site_.measured_kW.col(0).mean();
+  EXPECT_NEAR(value(kElectricity, "dark against light, workday evenings", kW), 4.0 / mean_kW, 0.02);
+}
+
+// Only hours that were measured count, in the modelled ones too: else a gap would look like an
+// effect.
+TEST_F(Signatures, WhatWasNotMeasuredCountsNowhere) {
+  Eigen::ArrayXXd modelled = site_.measured_kW;
+  for (Eigen::Index i = 3000; i < 3400; ++i) {
+    site_.measured_kW(i, 0) = std::numeric_limits<double>::quiet_NaN();
+    modelled(i, 0) = 1e6;
+  }
+  const SignatureReader reader(site_);
+  const Eigen::VectorXd measured = reader.read(site_.measured_kW).col(0);
+  const Eigen::VectorXd same = reader.read(modelled).col(0);
+  for (Eigen::Index i = 0; i < measured.size(); ++i) {
+    if (!std::isfinite(measured[i])) continue;
+    EXPECT_NEAR(same[i], measured[i], 1e-9) << signature_names()[static_cast<std::size_t>(i)];
+  }
+}
+
+TEST_F(Signatures, OfAMeterThatReadsTwiceAsMuchMeansAreTwiceAndEdgesTheSame) {
+  const SignatureReader reader(site_);
+  const Eigen::MatrixXd once = reader.read(site_.measured_kW);
+  const Eigen::MatrixXd twice = reader.read(2.0 * site_.measured_kW);
+  const auto& names = signature_names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool is_edge = names[i].find("of the day, ") != std::string::npos;
+    const double was = once(static_cast<Eigen::Index>(i), static_cast<int>(kHeat));
+    if (!std::isfinite(was)) continue;
+    EXPECT_NEAR(twice(static_cast<Eigen::Index>(i), static_cast<int>(kHeat)),
+                is_edge ? was : 2.0 * was, 1e-9)
+        << names[i];
+  }
+}
+
+}  // namespace
+}  // namespace recald::diagnosis::signatures_test
