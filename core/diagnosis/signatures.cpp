@@ -2,8 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <numeric>
+#include <numbers>
+#include <span>
 
 #include "core/absent.hpp"
 
@@ -142,11 +144,16 @@ double stop_of_day(const double* kW) {
 /// Values one after the other, in the order of their names.
 class SignatureReader::Sheet {
  public:
-  explicit Sheet(double* values) : next_(values) {}
-  void put(double value) { *next_++ = value; }
+  explicit Sheet(std::span<double> values) : left_(values) {}
+  void put(double value) {
+    assert(!left_.empty());
+    left_.front() = value;
+    left_ = left_.subspan(1);
+  }
+  [[nodiscard]] bool is_full() const { return left_.empty(); }
 
  private:
-  double* next_;
+  std::span<double> left_;
 };
 
 std::string_view to_string(SignatureMeter meter) {
@@ -313,7 +320,9 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
     const double v = row.wind.mean();
     const double sun = row.sun.mean() / 300.0;
     const double before_C = day_C_[static_cast<std::size_t>(std::max(first.day_index - 1, 0))];
-    const double angle = 2.0 * M_PI * first.day_of_year / 365.25;
+    // The record may lack the day before.
+    const double warmer_K = std::isfinite(before_C) ? before_C - t : 0.0;
+    const double angle = 2.0 * std::numbers::pi * first.day_of_year / 365.25;
     const double year = (first.day_index - 0.5 * days) / 365.25;
     auto x = regime.design.row(r);
     Eigen::Index k = 0;
@@ -326,10 +335,10 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
     x[k++] = v * std::max(t - 20.0, 0.0) / 30.0;
     x[k++] = t < 14.0 ? sun : 0.0;
     x[k++] = t >= 14.0 ? sun : 0.0;
-    x[k++] = (before_C - t) / 10.0;
+    x[k++] = warmer_K / 10.0;
     x[k++] = year;
     x[k++] = std::sin(angle);
-    x[k++] = std::cos(angle);
+    x[k++] = -std::cos(angle);
     regime.block.push_back(std::min(first.day_index * kBlocks / days, kBlocks - 1));
     const bool is_workday = first.day == DayType::workday;
     const bool is_weekday = first.weekday >= 1 && first.weekday <= 5;
@@ -473,12 +482,13 @@ Eigen::MatrixXd SignatureReader::read(const Eigen::Ref<const Eigen::ArrayXXd>& h
   for (std::size_t m = 0; m < kSignatureMeters; ++m) {
     const Meter& meter = meters_[m];
     if (meter.column < 0) continue;
-    Sheet sheet(values.col(static_cast<Eigen::Index>(m)).data());
+    Sheet sheet({values.col(static_cast<Eigen::Index>(m)).data(), static_cast<std::size_t>(count)});
     const double* kW = hours_kW.col(meter.column).data();
     read_means(meter, kW, sheet);
     for (const Regime& regime : meter.regimes) read_regime(regime, kW, meter.mean_kW, sheet);
     read_edges(meter, kW, sheet);
     read_darkness(meter, kW, sheet);
+    assert(sheet.is_full());
   }
   return values;
 }

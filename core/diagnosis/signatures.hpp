@@ -30,9 +30,8 @@ class SignatureReader {
   explicit SignatureReader(const SiteProblem& site);
 
   /// @param hours_kW  (hours x m) measured or modelled. Only hours that were measured count.
-  /// @return (names x meters) powers in units of the meter's measured mean, times in hours; NaN
-  /// where
-  ///         the site has no such meter, or too few such hours.
+  /// @return (names x meters) powers in units of the meter's measured mean, times in hours, shares
+  ///         of one; NaN where the site has no such meter, or too few such hours.
   [[nodiscard]] Eigen::MatrixXd read(const Eigen::Ref<const Eigen::ArrayXXd>& hours_kW) const;
 
  private:

@@ -115,8 +115,8 @@ void draw_months(Svg& svg, double top, const Footprint& footprint,
   plot.zero_line();
 }
 
-/// Means of what one meter adds, by outdoor temperature; where it was hardly ever so warm, the
-/// mean beside.
+/// Means of what one meter adds, by outdoor temperature; a temperature that hardly ever occurred
+/// has the mean of the nearest cooler one.
 struct TemperatureCurve {
   Utility utility;
   std::vector<double> mean_kW;
@@ -135,7 +135,8 @@ struct TemperatureAxis {
 TemperatureAxis axis_of(const std::vector<double>& outdoor_C) {
   const auto [low, high] = std::ranges::minmax_element(outdoor_C);
   const double low_C = TemperatureAxis::kStep_K * std::floor(*low / TemperatureAxis::kStep_K);
-  return {low_C, static_cast<std::size_t>(std::ceil((*high - low_C) / TemperatureAxis::kStep_K))};
+  const double bins = std::ceil((*high - low_C) / TemperatureAxis::kStep_K);
+  return {low_C, std::max<std::size_t>(static_cast<std::size_t>(bins), 1)};
 }
 
 bool in_working_hours(const metering::LocalTime& local) {
@@ -163,7 +164,7 @@ std::vector<TemperatureCurve> temperature_curves(const Footprint& footprint,
       count[bin] += 1.0;
     }
     constexpr double kFewest = 8.0;  // Two hours.
-    const auto is_known = [](double hours) { return hours >= kFewest; };
+    const auto is_known = [](double quarters) { return quarters >= kFewest; };
     std::size_t nearest =
         static_cast<std::size_t>(std::ranges::find_if(count, is_known) - count.begin());
     if (nearest == axis.bins) continue;

@@ -25,7 +25,8 @@ run_target() {
   else
     echo "$1: FOUND: $(grep -aE -m 1 'property broken|runtime error|ERROR' "$log"); see $log"
     # On another machine the files are gone, and the next run draws other inputs.
-    grep -aE -m 8 '^ *#[0-9]|^Base64|SUMMARY' "$log" | cut -c 1-4000 | tr -d '\000-\010\013-\037'
+    { grep -aE -m 12 '^ +#[0-9]' "$log"; grep -aE '^Base64|^SUMMARY' "$log"; } |
+      cut -c 1-4000 | tr -d '\000-\010\013-\037'
   fi
   return "$result"
 }

@@ -72,16 +72,13 @@ class Table {
     const int days = site_.drivers->hours.back().day_index + 1;
     for (const Candidate& candidate : list.candidates) {
       for (const auto& own : shapes_to_try(candidate)) {
-        const auto alteration =
-            candidate.effect->bind(facts, own, candidate.meter);
+        const auto alteration = candidate.effect->bind(facts, own, candidate.meter);
         predictor_.parts_kW(theta_, alteration.get());
         const Eigen::ArrayXXd with_kW = predictor_.hours_kW();
         const auto note = [&](const Eigen::ArrayXXd& kW, double from, double to) {
           write(flat(reader_.read(kW)) - fitted_);
-          shapes.push_back({{"effect", candidate.key(site_)},
-                            {"values", own},
-                            {"from", from},
-                            {"to", to}});
+          shapes.push_back(
+              {{"effect", candidate.key(site_)}, {"values", own}, {"from", from}, {"to", to}});
         };
         if (!candidate.begins) {
           note(with_kW, 0, days);
@@ -92,7 +89,7 @@ class Table {
           std::vector<int> ends{days};
           if (candidate.ends) ends = {from + 56, from + 112, from + 196, days};
           for (const int to : ends) {
-            if (to > days) continue;
+            if (to > days || (to == days && &to != &ends.back())) continue;
             Eigen::ArrayXXd kW = base_kW;
             for (Eigen::Index i = 0; i < kW.rows(); ++i) {
               const int day = site_.drivers->hours[static_cast<std::size_t>(i)].day_index;
@@ -130,7 +127,9 @@ class Table {
     double sum = scores.squaredNorm();
     for (Eigen::Index i = 0; i < at.size(); ++i) {
       const double off = (measured_[i] - at[i]) / spread_[i];
-      if (std::isfinite(off)) sum += off * off / kAlike;
+      if (!std::isfinite(measured_[i]) || !std::isfinite(nominal_[i])) continue;
+      // What vanishes, such as the start of a day without one, must not count as a good fit.
+      sum += (std::isfinite(off) ? off * off : kVanished * kVanished) / kAlike;
     }
     return sum;
   }
@@ -166,7 +165,7 @@ class Table {
         const Eigen::VectorXd there = scores_ + step * (wanted - scores_);
         const Eigen::VectorXd at = run(there);
         const double objective = objective_of(at, there);
-        if (objective >= objective_) continue;
+        if (!(objective < objective_)) continue;
         is_better = true;
         scores_ = there;
         fitted_ = at;
@@ -192,7 +191,8 @@ class Table {
     }
   }
 
-  static constexpr double kAlike = 12.0;  // Signatures repeat each other.
+  static constexpr double kAlike = 12.0;    // Signatures repeat each other.
+  static constexpr double kVanished = 4.0;  // Of the spread.
   const SiteProblem& site_;
   SignatureReader reader_;
   Predictor predictor_;
@@ -216,13 +216,17 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   fs::create_directories(out);
   std::ofstream(out / "names.json") << Json(signature_names()).dump(1);
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(population / "cases")) {
-    names.push_back(entry.path().filename().string());
+  const auto listed = blind::cases_in(population / "cases");
+  if (!listed) {
+    std::cerr << listed.error().message << '\n';
+    return 1;
   }
-  std::ranges::sort(names);
+  const std::vector<std::string>& names = *listed;
   const auto range = blind::case_range_of(cases, names.size());
-  if (!range) return 2;
+  if (!range) {
+    std::cerr << fmt::format("--cases {}: give 1 to {}\n", cases, names.size());
+    return 2;
+  }
   for (std::size_t i = range->first - 1; i < range->last; ++i) {
     if (fs::exists(out / (names[i] + ".json"))) continue;
     const auto begin = std::chrono::steady_clock::now();
@@ -231,9 +235,13 @@ int main(int argc, char** argv) {
       std::cerr << names[i] << ": " << site.error().front() << '\n';
       continue;
     }
-    (void)daemon::choose_model(site->config, ModelKind::hourly);
+    if (const auto chosen = daemon::choose_model(site->config, ModelKind::hourly); !chosen) {
+      std::cerr << names[i] << ": " << chosen.error().message << '\n';
+      continue;
+    }
     auto modelled = daemon::load_modelled_site(
-        std::move(*site), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
+        std::move(*site),
+        std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
     if (!modelled) {
       std::cerr << names[i] << ": " << modelled.error().message << '\n';
       continue;

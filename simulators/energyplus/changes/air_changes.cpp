@@ -76,10 +76,11 @@ void outdoor_air_amount(BuildingYear& building, double share, Rng /*rng*/) {
 void damper_stuck_open(BuildingYear& building, double share, Rng /*rng*/) {
   for_each_object(building.model(), "Controller:OutdoorAir",
                   [&](const std::string& /*name*/, Json& controller) {
-                    const Json& most = controller["maximum_outdoor_air_flow_rate"];
-                    Json& least = controller["minimum_outdoor_air_flow_rate"];
+                    const Json most = controller.value("maximum_outdoor_air_flow_rate", Json());
+                    const Json least = controller.value("minimum_outdoor_air_flow_rate", Json());
                     if (!most.is_number() || !least.is_number()) return;
-                    least = std::max(least.get<double>(), share * most.get<double>());
+                    controller["minimum_outdoor_air_flow_rate"] =
+                        std::max(least.get<double>(), share * most.get<double>());
                     // A share of what is supplied, however much that is.
                     controller["minimum_limit_type"] = "ProportionalMinimum";
                   });
@@ -158,12 +159,12 @@ void deep_drying(BuildingYear& building, double colder_K, Rng /*rng*/) {
 }
 
 void simultaneous_heating_cooling(BuildingYear& building, double share, Rng /*rng*/) {
-  // Fan coils have such a field too, and EnergyPlus does not act upon it.
+  // Fan coils have such a field too, and EnergyPlus ignores it.
   for_each_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat",
                   [&](const std::string& /*name*/, Json& box) {
-                    const auto most = box.find("maximum_hot_water_or_steam_flow_rate");
-                    if (most == box.end() || !most->is_number()) return;
-                    box["minimum_hot_water_or_steam_flow_rate"] = share * most->get<double>();
+                    const Json most = box.value("maximum_hot_water_or_steam_flow_rate", Json());
+                    if (!most.is_number()) return;
+                    box["minimum_hot_water_or_steam_flow_rate"] = share * most.get<double>();
                   });
 }
 

@@ -229,7 +229,7 @@ TEST(ReadingsCsvBadInput, ARowWithoutAStampIsNotOf1970) {
                            "2016-03-01T00:00:00Z,main,11,kWh\n"
                            "2016-03-01T00:15:00Z,main,12,kWh\n";
   EXPECT_EQ(read(text, options).readings.size(), 1u);
-  EXPECT_THAT(issue(text, options), testing::StartsWith("2: timestamp ''"));
+  EXPECT_THAT(issue(text, options), ::testing::StartsWith("2: timestamp ''"));
 }
 
 TEST(ReadingsCsvBadInput, WrongHeaderNamesTheExpectedOne) {

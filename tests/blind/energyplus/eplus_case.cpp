@@ -83,10 +83,10 @@ Candidate draw_candidate(const std::string& id, const EplusCasePlan& plan,
   candidate.least = is_whole ? high : low > 0.0 ? low : kFaintest * high;
   const sys_days first{std::chrono::year{plan.building.first_year} / 1 / 1};
   const double length_days = 365.25 * plan.building.years;
-  const double share =
-      plan.begins_in_forecast_year
-          ? 1.0 - rng.uniform(0.5, 0.98) / plan.building.years
-          : rng.uniform(0.25, 0.9) * (plan.building.years - 1) / plan.building.years;
+  const int years = plan.building.years;
+  const double fitted = years == 1 ? 2.0 / 3.0 : (years - 1.0) / years;  // As the site file says.
+  const double share = plan.begins_in_forecast_year ? 1.0 - rng.uniform(0.5, 0.98) * (1.0 - fitted)
+                                                    : rng.uniform(0.25, 0.9) * fitted;
   const auto begin = first + days{static_cast<int>(length_days * share)};
   const auto length = days{static_cast<int>(rng.uniform(50.0, 200.0))};
   const bool dated = in_meters ? candidate.kind->dated : candidate.change->dated;

@@ -251,6 +251,8 @@ TEST_F(InEnergyPlus, TheSiteFileTellsWhatDrawingsTell) {
   EXPECT_THAT(site, HasSubstr("heating_unoccupied_C = 17.0"));
   EXPECT_THAT(site, HasSubstr("name = \"south windows\""));
   EXPECT_THAT(site, HasSubstr("chiller_cop"));
+  EXPECT_THAT(site, HasSubstr("calibration = { from = \"2021-01\", to = \"2021-08\" }"));
+  EXPECT_THAT(site, HasSubstr("validation = { from = \"2021-09\", to = \"2021-12\" }"));
 }
 
 TEST_F(InEnergyPlus, ACaseHidesWhatTheBuildingCanHave) {

@@ -43,7 +43,8 @@ class Buildings {
   Buildings(const Engine& engine, std::filesystem::path scratch)
       : engine_(engine), scratch_(std::move(scratch)) {}
 
-  /// The first after the first `passed` ones that could have it. @return null where none is left
+  /// The first that could have it from the `passed`-th building on, which then points behind it.
+  /// @return null where none is left
   Result<const SimulatedBuilding*> for_change(const HiddenChange& change, std::size_t& passed,
                                               std::string& words) {
     constexpr std::uint64_t kMost = 24;
@@ -138,7 +139,7 @@ Result<Figure> figure_of(const HiddenChange& change, const SimulatedBuilding& bu
   return Figure{simulators::effect_figure(footprint, building.calendar()), words, moved};
 }
 
-/// Of the building where it is seen: a few are tried until it moves a meter by a per cent.
+/// Tries up to four buildings until the change moves some meter by 1 %.
 Result<Figure> best_figure(const HiddenChange& change, Buildings& buildings) {
   constexpr int kTries = 4;
   constexpr double kSeen = 0.01;

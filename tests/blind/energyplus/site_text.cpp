@@ -364,17 +364,21 @@ stamps = "end"
     text += "\n";
     outputs += fmt::format("{}\"{}\"", outputs.empty() ? "" : ", ", plate.id);
   }
+  // The last year is for validation; of a single year, the last four months.
   const int last = facts.first_year + facts.years - 1;
+  const bool single = facts.years == 1;
   return text + fmt::format(R"([period]
-calibration = {{ from = "{}-01", to = "{}-12" }}
-validation = {{ from = "{}-01", to = "{}-12" }}
+calibration = {{ from = "{}-01", to = "{}" }}
+validation = {{ from = "{}-{}", to = "{}-12" }}
 
 [[model]]
 kind = "hourly"
 outputs = [{}]
 
 )",
-                            facts.first_year, last - 1, last, last, outputs);
+                            facts.first_year,
+                            single ? fmt::format("{}-08", last) : fmt::format("{}-12", last - 1),
+                            last, single ? "09" : "01", last, outputs);
 }
 
 }  // namespace

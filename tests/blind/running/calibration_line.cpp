@@ -24,8 +24,9 @@ Result<Json> calibration_line(const Json& calibration, const CaseRun& run) {
     }
     for (const auto& [output, fit] : fits->at("validation").items()) {
       if (!output.ends_with(kOfDays) || !fit.is_object()) continue;
-      const std::string meter = output.substr(0, output.size() - kOfDays.size());
-      meters[meter][key] = fit.value("cvrmse", Json());
+      const auto cvrmse = fit.find("cvrmse");
+      if (cvrmse == fit.end() || !cvrmse->is_number()) continue;
+      meters[output.substr(0, output.size() - kOfDays.size())][key] = *cvrmse;
     }
   }
   Json line = line_head(run, "none");
@@ -34,6 +35,9 @@ Result<Json> calibration_line(const Json& calibration, const CaseRun& run) {
     if (fits.size() == kFits.size()) complete[meter] = fits;
   }
   line["calibration"] = complete;
+  line["wall_s"] = run.wall_s;
+  line["peak_rss_MB"] = run.peak_rss_MB;
+  line["extra"]["cpu_s"] = run.cpu_s;
   return line;
 }
 

@@ -5,8 +5,9 @@
 
 namespace recald::blind {
 
-/// For each meter's daily means the CV(RMSE) of unseen months: before and after calibrating, of the
-/// forecast, and of the yardstick. A meter that lacks one of the four is left out.
+/// For each meter the CV(RMSE) over unseen months, of mean daily energies: before and after
+/// calibrating, of the forecast, and of the yardstick. A meter that lacks one of the four is left
+/// out.
 /// @param calibration  calibration.json, as `recald calibrate` writes it.
 /// @return malformed if a key is missing.
 [[nodiscard]] Result<Json> calibration_line(const Json& calibration, const CaseRun& run);

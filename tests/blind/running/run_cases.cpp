@@ -258,7 +258,7 @@ class Runner {
     fs::copy_file(folder / written(), request_.keep / (case_id + ".json"),
                   fs::copy_options::overwrite_existing, error);
     if (!error) return {};
-    return failure(ErrorCode::io_failed, "its diagnosis cannot be kept: " + error.message());
+    return failure(ErrorCode::io_failed, "what it wrote cannot be kept: " + error.message());
   }
 
   [[nodiscard]] Result<Json> line_of(const Json& diagnosis, const CaseRun& run) const {

@@ -16,11 +16,11 @@ struct RunRequest {
   std::filesystem::path population;  ///< Holds a folder a case, or `cases/` that does.
   std::filesystem::path results;     ///< Made if absent; lines that are there are not made again.
   std::filesystem::path program;     ///< recald
-  /// "oracle": told what is hidden, needs `answers`; "calibrate": `recald calibrate` in the place
-  /// of a diagnosis.
+  /// "oracle": told what is hidden, needs `answers`; "calibrate": `recald calibrate` of the site's
+  /// first model instead of a diagnosis.
   std::string method = "recald";
   std::filesystem::path answers;  ///< Read for the oracle and by nobody else.
-  std::filesystem::path keep;     ///< Gets each case's diagnosis.json; empty: none is kept.
+  std::filesystem::path keep;     ///< Gets what each case wrote, as CASE.json; empty: none is kept.
   std::string cases;              ///< "1-20" of the sorted cases; empty: all.
   unsigned jobs = 2;
   double limit_s = 90.0;  ///< Wall time of a diagnosis.

@@ -36,7 +36,8 @@ void add_options(CLI::App& app, RunRequest& request) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.add_flag("--baselines", request.baselines, "also lines of simpler methods");
-  app.add_option("--keep", request.keep, "folder that gets each case's diagnosis.json");
+  app.add_option("--keep", request.keep,
+                 "folder that gets each case's diagnosis.json or calibration.json");
   app.add_option("--recald", request.program, "the program")->capture_default_str();
 }
 

@@ -94,7 +94,8 @@ TEST_F(BlindRun, ALineForEachCase) {
 
 TEST_F(BlindRun, ACalibrationInThePlaceOfADiagnosis) {
   add_case("a", R"sh(cat > "$out/calibration.json" <<'END'
-{"before":    {"validation": {"gas_daily_kWh": {"cvrmse": 0.4}, "gas_peak_kW": {"cvrmse": 9}}},
+{"before":    {"validation": {"gas_daily_kWh": {"cvrmse": 0.4}, "gas_peak_kW": {"cvrmse": 9},
+                             "steam_daily_kWh": {"cvrmse": null}}},
  "after":     {"validation": {"gas_daily_kWh": {"cvrmse": 0.3}, "steam_daily_kWh": {"cvrmse": 1}}},
  "forecast":  {"validation": {"gas_daily_kWh": {"cvrmse": 0.1}}},
  "yardstick": {"validation": {"gas_daily_kWh": {"cvrmse": 0.2}, "steam_daily_kWh": null}}}

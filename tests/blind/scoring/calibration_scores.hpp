@@ -1,5 +1,5 @@
-/// What calibrating does to a model where nothing is hidden: it may find nothing, but it must not
-/// harm.
+/// What calibrating does to a model where nothing is hidden: there is nothing to find, and it must
+/// do no harm.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace recald::blind {
 
-/// The method whose lines tell of a calibration in the place of a diagnosis.
+/// The method whose lines tell of a calibration instead of a diagnosis.
 inline constexpr std::string_view kCalibrate = "calibrate";
 
 /// Whether a method answers for itself: neither the oracle nor a calibration does.
@@ -23,8 +23,9 @@ using Calibrations = std::map<std::string, std::map<std::string, CalibrationFit>
 
 [[nodiscard]] Calibrations calibrations_of(std::span<const CaseResult> results);
 
-/// CV(RMSE) of the days of unseen months, shares of one; medians over the meters of all cases with
-/// nothing hidden. Absent without such lines.
+/// CV(RMSE) over unseen months of mean daily energy, shares of one; medians over the meters of all
+/// cases with nothing hidden. Intervals take meters as independent, so they are a little too narrow
+/// where a building has several. Absent without such lines.
 struct CalibrationScores {
   std::optional<Score> before;     ///< The model by its drawings.
   std::optional<Score> after;      ///< The calibrated model alone.

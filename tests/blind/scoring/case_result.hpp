@@ -37,7 +37,7 @@ struct Gap {
   std::optional<FitOfMeter> oracle;
 };
 
-/// CV(RMSE) of a meter's days in unseen months, shares of one.
+/// CV(RMSE) over unseen months of a meter's mean daily energy, shares of one.
 struct CalibrationFit {
   double before = 0.0;  ///< The model by its drawings.
   double after = 0.0;   ///< The calibrated model alone.

@@ -186,7 +186,7 @@ std::string table_of_worlds(const std::vector<WorldScores>& worlds) {
        [&](const WorldScores& world) { return percent(world.gap.harm); }},
       {"90 % interval of the effect holds the truth, %",
        [&](const WorldScores& world) { return percent(world.gap.effect_coverage); }},
-      {"nothing hidden: CV(RMSE) of unseen months by the drawings, %",
+      {"nothing hidden: CV(RMSE) over unseen months of each meter, by the drawings, %",
        [&](const WorldScores& world) { return percent(world.calibration.before); }},
       {"calibrated, the model alone, %",
        [&](const WorldScores& world) { return percent(world.calibration.after); }},

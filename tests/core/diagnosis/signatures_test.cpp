@@ -1,10 +1,10 @@
 #include "core/diagnosis/signatures.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "tests/support/sample_building.hpp"
@@ -124,18 +124,50 @@ TEST_F(Signatures, LampsAreSeenByTheDark) {
 // Only hours that were measured count, in the modelled ones too: else a gap would look like an
 // effect.
 TEST_F(Signatures, WhatWasNotMeasuredCountsNowhere) {
-  Eigen::ArrayXXd modelled = site_.measured_kW;
+  const Eigen::ArrayXXd complete = site_.measured_kW;
+  Eigen::ArrayXXd wrong_in_the_gap = complete;
   for (Eigen::Index i = 3000; i < 3400; ++i) {
     site_.measured_kW(i, 0) = std::numeric_limits<double>::quiet_NaN();
-    modelled(i, 0) = 1e6;
+    wrong_in_the_gap(i, 0) = 1e6;
   }
   const SignatureReader reader(site_);
+  const Eigen::VectorXd expected = reader.read(complete).col(0);
+  const Eigen::VectorXd wrong = reader.read(wrong_in_the_gap).col(0);
   const Eigen::VectorXd measured = reader.read(site_.measured_kW).col(0);
-  const Eigen::VectorXd same = reader.read(modelled).col(0);
-  for (Eigen::Index i = 0; i < measured.size(); ++i) {
-    if (!std::isfinite(measured[i])) continue;
-    EXPECT_NEAR(same[i], measured[i], 1e-9) << signature_names()[static_cast<std::size_t>(i)];
+  for (Eigen::Index i = 0; i < expected.size(); ++i) {
+    const std::string& name = signature_names()[static_cast<std::size_t>(i)];
+    for (const double value : {wrong[i], measured[i]}) {
+      if (std::isfinite(expected[i])) {
+        EXPECT_NEAR(value, expected[i], 1e-9) << name;
+      } else {
+        EXPECT_TRUE(std::isnan(value)) << name;
+      }
+    }
   }
+}
+
+// Months without readings or weather are left out of the record: no signature may depend on it.
+TEST_F(Signatures, AMonthLeftOutTakesNothingElseAlong) {
+  auto drivers = std::make_shared<model::Drivers>(*site_.drivers);
+  std::erase_if(drivers->hours, [](const DriverHour& hour) { return hour.month == 4; });
+  Eigen::ArrayXXd kept(static_cast<Eigen::Index>(drivers->hours.size()), 2);
+  Eigen::Index to = 0;
+  for (Eigen::Index from = 0; from < site_.measured_kW.rows(); ++from) {
+    if (site_.drivers->hours[static_cast<std::size_t>(from)].month == 4) continue;
+    kept.row(to++) = site_.measured_kW.row(from);
+  }
+  site_.drivers = drivers;
+  site_.measured_kW = kept;
+  EXPECT_TRUE(std::isfinite(measured(kHeat, "night, per warmth of the day before")));
+  EXPECT_TRUE(std::isnan(measured(kHeat, "night, month 5")));
+  EXPECT_TRUE(std::isfinite(measured(kHeat, "night, month 6")));
+}
+
+TEST_F(Signatures, SummerAgainstWinterIsPositiveWhereSummerIsHigher) {
+  const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
+    return 10.0 - std::cos(2.0 * std::numbers::pi * hour.day_of_year / 365.25);
+  });
+  EXPECT_GT(value(kElectricity, "night, summer against winter", kW), 0.0);
 }
 
 TEST_F(Signatures, OfAMeterThatReadsTwiceAsMuchMeansAreTwiceAndEdgesTheSame) {
@@ -143,6 +175,7 @@ TEST_F(Signatures, OfAMeterThatReadsTwiceAsMuchMeansAreTwiceAndEdgesTheSame) {
   const Eigen::MatrixXd once = reader.read(site_.measured_kW);
   const Eigen::MatrixXd twice = reader.read(2.0 * site_.measured_kW);
   const auto& names = signature_names();
+  int known = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool is_edge = names[i].find("of the day, ") != std::string::npos;
     const double was = once(static_cast<Eigen::Index>(i), static_cast<int>(kHeat));
@@ -150,7 +183,9 @@ TEST_F(Signatures, OfAMeterThatReadsTwiceAsMuchMeansAreTwiceAndEdgesTheSame) {
     EXPECT_NEAR(twice(static_cast<Eigen::Index>(i), static_cast<int>(kHeat)),
                 is_edge ? was : 2.0 * was, 1e-9)
         << names[i];
+    ++known;
   }
+  EXPECT_GT(known, 100);
 }
 
 }  // namespace

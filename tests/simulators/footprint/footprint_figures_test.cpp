@@ -147,8 +147,8 @@ TEST(FootprintFigures, TheMeanDayIsThatOfDaysWithTheEffect) {
   EXPECT_THAT(effect_figure(footprint, new_york()), Not(HasSubstr(">8</text>")));
 }
 
-// 8 kW where it is warmer than 20 degrees, which it is at noon: means by temperature have 8 kW,
-// mean days have fewer. The marks of the scale tell.
+// 8 kW on warm days, which is every third: means by temperature have 8 kW, mean days have fewer.
+// The marks of the scale tell.
 TEST(FootprintFigures, WhatDependsOnTheTemperatureIsSeenByIt) {
   const EffectKind* kind = find_effect_kind("equipment_step");
   ASSERT_TRUE(kind);
