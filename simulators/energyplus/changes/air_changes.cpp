@@ -66,7 +66,9 @@ bool has_reset(const BuildingYear& building) {
 }
 
 bool has_heaters_in_cold_air(const BuildingYear& building) {
-  return has_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat");
+  const bool has_heaters = has_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat") ||
+                           has_object(building.model(), "ZoneHVAC:FourPipeFanCoil");
+  return has_heaters && !heating_fuel(building.model()).empty();
 }
 
 void outdoor_air_amount(BuildingYear& building, double share, Rng /*rng*/) {
@@ -158,14 +160,22 @@ void deep_drying(BuildingYear& building, double colder_K, Rng /*rng*/) {
                   });
 }
 
-void simultaneous_heating_cooling(BuildingYear& building, double share, Rng /*rng*/) {
-  // Fan coils have such a field too, and EnergyPlus ignores it.
-  for_each_object(building.model(), "AirTerminal:SingleDuct:VAV:Reheat",
-                  [&](const std::string& /*name*/, Json& box) {
-                    const Json most = box.value("maximum_hot_water_or_steam_flow_rate", Json());
-                    if (!most.is_number()) return;
-                    box["minimum_hot_water_or_steam_flow_rate"] = share * most.get<double>();
-                  });
+/// Least flows of heaters will not do: EnergyPlus still mixes to what the room asks for. So the
+/// heat that leaks goes into the rooms while air is blown in, and the heat meter counts it.
+void simultaneous_heating_cooling(BuildingYear& building, double W_m2, Rng /*rng*/) {
+  Quarters leaks(building.days().size() * kQuartersPerDay, building.has(Role::fans) ? 0.0 : 1.0);
+  for (const std::string& name : building.names_of(Role::fans)) {
+    const Quarters& runs = building.schedule(name);
+    for (std::size_t i = 0; i < leaks.size(); ++i) leaks[i] = std::max(leaks[i], runs[i]);
+  }
+  const std::string schedule = building.add_schedule("Heaters leak", std::move(leaks));
+  const std::string zones = add_zone_list(building.model());
+  building.model()["OtherEquipment"]["Heaters leak"] = {
+      {"fuel_type", heating_fuel(building.model())},
+      {"zone_or_zonelist_or_space_or_spacelist_name", zones},
+      {"schedule_name", schedule},
+      {"design_level_calculation_method", "Watts/Area"},
+      {"power_per_floor_area", W_m2}};
 }
 
 void supply_reset_missing(BuildingYear& building, double colder_K, Rng /*rng*/) {
@@ -222,9 +232,9 @@ void add_air_changes(std::vector<HiddenChange>& all) {
                           .possible = has_supply_schedule,
                           .apply = deep_drying},
                          {.id = "simultaneous_heating_cooling",
-                          .least = 0.02,
-                          .most = 0.3,
-                          .unit = "share of the heaters' largest flow",
+                          .least = 0.5,
+                          .most = 15.0,
+                          .unit = "W/m2 of floor",
                           .possible = has_heaters_in_cold_air,
                           .apply = simultaneous_heating_cooling},
                          {.id = "supply_reset_missing",
