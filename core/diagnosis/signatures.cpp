@@ -82,6 +82,42 @@ struct Means {
   }
 };
 
+/// The hours of a regime on one day.
+struct RegimeDay {
+  Means dry_bulb_C;
+  Means humidity;  ///< g/kg
+  Means wind;      ///< m/s
+  Means sun;       ///< W/m2
+  const DriverHour* first;
+};
+
+/// What a day's power is regressed on. @param before_C  Mean of the day before; NaN: not in the
+/// record.
+Eigen::RowVectorXd regressors(const RegimeDay& row, double before_C, int days) {
+  const double t = row.dry_bulb_C.mean();
+  const double w = row.humidity.mean();
+  const double v = row.wind.mean();
+  const double sun = row.sun.mean() / 300.0;
+  const double warmer_K = std::isfinite(before_C) ? before_C - t : 0.0;
+  const double angle = 2.0 * std::numbers::pi * row.first->day_of_year / 365.25;
+  Eigen::RowVectorXd x(kCoefficients);
+  Eigen::Index k = 0;
+  x[k++] = 1.0;
+  x[k++] = t / 10.0;
+  for (const double bend_C : kBends_C) x[k++] = std::max(t - bend_C, 0.0) / 10.0;
+  x[k++] = t > 10.0 ? std::max(w - 8.0, 0.0) / 5.0 : 0.0;
+  x[k++] = t < 15.0 ? std::max(5.0 - w, 0.0) / 5.0 : 0.0;
+  x[k++] = v * std::max(20.0 - t, 0.0) / 60.0;
+  x[k++] = v * std::max(t - 20.0, 0.0) / 30.0;
+  x[k++] = t < 14.0 ? sun : 0.0;
+  x[k++] = t >= 14.0 ? sun : 0.0;
+  x[k++] = warmer_K / 10.0;
+  x[k++] = (row.first->day_index - 0.5 * days) / 365.25;
+  x[k++] = std::sin(angle);
+  x[k++] = -std::cos(angle);
+  return x;
+}
+
 constexpr int kFewestDays = 8;
 
 double median_of(std::vector<double>& values) {
@@ -283,11 +319,7 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
   const auto& hours = site_->drivers->hours;
   Regime regime;
   regime.row_of_hour.assign(hours.size(), -1);
-  struct Row {
-    Means dry_bulb_C, humidity, wind, sun;
-    const DriverHour* first;
-  };
-  std::vector<Row> rows;
+  std::vector<RegimeDay> rows;
   int last_day = -1;
   for (std::size_t i = 0; i < hours.size(); ++i) {
     if (meter.group[i] < 0 ||
@@ -312,40 +344,19 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
   const int days = hours.back().day_index + 1;
   regime.design.resize(n, kCoefficients);
   for (Eigen::Index r = 0; r < n; ++r) {
-    const Row& row = rows[static_cast<std::size_t>(r)];
+    const RegimeDay& row = rows[static_cast<std::size_t>(r)];
     const DriverHour& first = *row.first;
     regime.per_hour.push_back(1.0 / row.dry_bulb_C.count);
-    const double t = row.dry_bulb_C.mean();
-    const double w = row.humidity.mean();
-    const double v = row.wind.mean();
-    const double sun = row.sun.mean() / 300.0;
     const double before_C = day_C_[static_cast<std::size_t>(std::max(first.day_index - 1, 0))];
-    // The record may lack the day before.
-    const double warmer_K = std::isfinite(before_C) ? before_C - t : 0.0;
-    const double angle = 2.0 * std::numbers::pi * first.day_of_year / 365.25;
-    const double year = (first.day_index - 0.5 * days) / 365.25;
-    auto x = regime.design.row(r);
-    Eigen::Index k = 0;
-    x[k++] = 1.0;
-    x[k++] = t / 10.0;
-    for (const double bend_C : kBends_C) x[k++] = std::max(t - bend_C, 0.0) / 10.0;
-    x[k++] = t > 10.0 ? std::max(w - 8.0, 0.0) / 5.0 : 0.0;
-    x[k++] = t < 15.0 ? std::max(5.0 - w, 0.0) / 5.0 : 0.0;
-    x[k++] = v * std::max(20.0 - t, 0.0) / 60.0;
-    x[k++] = v * std::max(t - 20.0, 0.0) / 30.0;
-    x[k++] = t < 14.0 ? sun : 0.0;
-    x[k++] = t >= 14.0 ? sun : 0.0;
-    x[k++] = warmer_K / 10.0;
-    x[k++] = year;
-    x[k++] = std::sin(angle);
-    x[k++] = -std::cos(angle);
+    regime.design.row(r) = regressors(row, before_C, days);
     regime.block.push_back(std::min(first.day_index * kBlocks / days, kBlocks - 1));
     const bool is_workday = first.day == DayType::workday;
     const bool is_weekday = first.weekday >= 1 && first.weekday <= 5;
     regime.weekday.push_back(is_workday ? static_cast<int>(first.weekday) - 1 : -1);
     regime.month.push_back(static_cast<int>(static_cast<unsigned>(first.date.month())) - 1);
     regime.free_day.push_back(is_weekday && !is_workday);
-    const auto bin = static_cast<int>(std::floor((t - kCoolest_C) / kWarmth_K + 0.5));
+    const auto bin =
+        static_cast<int>(std::floor((row.dry_bulb_C.mean() - kCoolest_C) / kWarmth_K + 0.5));
     regime.warmth.push_back(std::clamp(bin, 0, kWarmths - 1));
   }
   constexpr double kRidge = 1e-3;
