@@ -14,6 +14,7 @@ struct DayPartParameter {
   double median = 0.0;        ///< 0: the drawings' value.
   double second_start = 0.0;  ///< A score.
   bool of_own_chiller = false;
+  bool of_reheat_boxes = false;
 };
 constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {"start_early"},
@@ -26,20 +27,20 @@ constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {"shgc_scale", 0.4},
     {"specific_heat_scale", 0.6},
     {"leakage_area", 0.7},
-    {"supply_temperature"},
-    {"minimum_supply_flow", 0.35},
+    {.name = "supply_temperature", .of_reheat_boxes = true},
+    {.name = "minimum_supply_flow", .log_sd = 0.35, .of_reheat_boxes = true},
     {"hot_water_volume", 0.6},
     {"base_heat", 0.7},
-    {.name = "closet_share", .second_start = -2.0},
+    {.name = "closet_share", .second_start = -2.0, .of_reheat_boxes = true},
     {"gains_to_core"},
-    {"supply_reset"},
+    {.name = "supply_reset", .of_reheat_boxes = true},
     {"warm_up"},
     {"closed_start"},
     // Not in any drawing: approximate values of the training buildings.
     {"mass_coupling", 0.5, 0.5},
     {.name = "core_mass", .log_sd = 0.9, .median = 0.3, .second_start = -1.0},
     {"air_capacity", 0.5, 35.0},
-    {"night_fan"},
+    {.name = "night_fan", .of_reheat_boxes = true},
     {.name = "chiller_lift", .of_own_chiller = true},
 });
 
@@ -54,7 +55,9 @@ const DayPartParameter* find_day_part_parameter(std::string_view name) {
 std::vector<std::string_view> day_part_parameters(const model::Building& nominal) {
   std::vector<std::string_view> names;
   for (const DayPartParameter& parameter : kDayPartParameters) {
-    if (!parameter.of_own_chiller || nominal.chiller_cop) names.push_back(parameter.name);
+    if (parameter.of_own_chiller && !nominal.chiller_cop) continue;
+    if (parameter.of_reheat_boxes && !has_reheat_boxes(nominal)) continue;
+    names.push_back(parameter.name);
   }
   return names;
 }

@@ -47,6 +47,7 @@ struct EffectParameter {
 /// What an effect needs in order to be a candidate.
 struct EffectNeeds {
   bool air_system = false;
+  bool reheat_boxes = false;
   bool humidity = false;
   bool wind = false;
   bool sun = false;

@@ -31,6 +31,9 @@ std::string lacking(const Effect& effect, const SiteProblem& site) {
   const EffectNeeds& needs = effect.needs;
   const model::Building& b = site.nominal;
   if (needs.air_system && !b.air) return "the site file describes no air handlers";
+  if (needs.reheat_boxes && !has_reheat_boxes(b)) {
+    return "the site file describes no air handlers with reheat boxes";
+  }
   if (needs.humidity && !site.drivers->has_humidity) return "the weather has no humidity";
   if (needs.wind && !site.drivers->has_wind) return "the weather has no wind";
   if (needs.sun && !site.has_sun) return "the weather has no sun";

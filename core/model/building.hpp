@@ -57,6 +57,7 @@ struct SetPoints {
   int occupied_from_hour = 7;
   int occupied_to_hour = 19;
   bool saturday_occupied = false;
+  bool sunday_occupied = false;  ///< And on holidays.
   // How far the plant's day differs from that timetable, since site files give only whole hours.
   // Only the hourly model uses these.
   double start_early_h = 0.0;   ///< Negative: it starts later.
@@ -85,8 +86,11 @@ struct Season {
   }
 };
 
-/// Air handlers with VAV reheat as one system. Absent in a building without one.
+/// Air handlers with VAV reheat as one system, or units in the rooms. Absent in a building without.
 struct AirSystem {
+  /// False: units in the rooms (fan coils, packaged units, room heat pumps, ideal air). Each room
+  /// is heated or cooled, never both; outdoor air meets the room; fans run at one speed.
+  bool has_reheat_boxes = true;
   double outdoor_air_m3_s = 0.0;  ///< Total of all air handlers while occupied.
   /// Share of the air handlers that runs round the clock (laboratories); 0: fans are off when
   /// unoccupied. The rooms they serve keep their daytime set-points.
@@ -150,5 +154,10 @@ struct Building {
   double base_heat_kW = 0.0;  ///< Heat used at all hours that serves no zone.
   double ground_temperature_C = 12.0;
 };
+
+/// True if rooms get cold air from handlers through boxes that reheat it.
+[[nodiscard]] inline bool has_reheat_boxes(const Building& building) {
+  return building.air && building.air->has_reheat_boxes;
+}
 
 }  // namespace recald::model

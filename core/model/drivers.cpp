@@ -142,8 +142,9 @@ Eigen::ArrayXd irradiance_of_hour(const std::vector<weather::Orientation>& orien
 }  // namespace
 
 bool is_occupied(const SetPoints& set_points, DayType day, int local_hour) {
-  const bool working =
-      day == DayType::workday || (day == DayType::saturday && set_points.saturday_occupied);
+  const bool working = day == DayType::workday ||
+                       (day == DayType::saturday && set_points.saturday_occupied) ||
+                       (day == DayType::sunday_or_holiday && set_points.sunday_occupied);
   return working && set_points.occupied_from_hour <= local_hour &&
          local_hour < set_points.occupied_to_hour;
 }

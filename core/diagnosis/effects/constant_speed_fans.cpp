@@ -42,7 +42,7 @@ Effect constant_speed_fans() {
       .physics = "fan power share g(r) ← (1−f)·g(r) + f, r flow over design flow [–]; f [–] 0…1",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
-      .needs = {.air_system = true},
+      .needs = {.reheat_boxes = true},
       .confusable = {{"demand_limit",
                       "Hot afternoons: constant fans are flat on all days, a demand limit only "
                       "cuts the peaks."},

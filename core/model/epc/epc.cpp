@@ -91,14 +91,14 @@ void Epc::find_leakage_per_area(const Building& building) {
 }
 
 void Epc::fill_gains(const Building& building, const Zone& zone, const ClimateState& state,
-                     ClassBalance* balance) const {
+                     double fan_W, ClassBalance* balance) const {
   const Use& use = building.use;
   const double people_W = building.floor_area_m2 * use.occupancy_person_m2 * use.sensible_W_person;
   for (int i = state.first_class; i < state.first_class + state.classes; ++i) {
     const ClimateClass& c = climate_->classes[static_cast<std::size_t>(i)];
     double gains_W =
         zone.floor_share *
-            (people_W * c.occupied_fraction +
+            (fan_W + people_W * c.occupied_fraction +
              use.zone_heat_share * (use.lights_scale * c.lights_W + use.plugs_scale * c.plugs_W)) -
         zone.sky_loss_W;
     const std::span<const double> irradiance = climate_->irradiance(i);
@@ -191,19 +191,24 @@ void Epc::evaluate_zone(const Building& building, std::size_t index, const Clima
                         EndUseEnergy& energy) {
   const Zone& zone = zones_[index];
   ClassBalance* balance = balances(index);
-  fill_gains(building, zone, month.occupied, balance);
-  fill_gains(building, zone, month.unoccupied, balance);
+  const bool units = building.air && !building.air->has_reheat_boxes;
+  const double running = building.air ? building.air->outdoor_air_unoccupied_fraction : 0.0;
+  const double fan_W = units ? 1000.0 * building.air->fan_design_kW : 0.0;
+  fill_gains(building, zone, month.occupied, fan_W, balance);
+  fill_gains(building, zone, month.unoccupied, running * fan_W, balance);
   const HeldTemperatures occupied{building.set_points.cooling_occupied_C,
                                   building.set_points.heating_occupied_C};
   const HeldTemperatures drifting = unoccupied_temperatures(building, zone, month, balance);
-  const double running = building.air ? building.air->outdoor_air_unoccupied_fraction : 0.0;
   const HeldTemperatures unoccupied{
       running * occupied.cooling_C + (1.0 - running) * drifting.cooling_C,
       running * occupied.heating_C + (1.0 - running) * drifting.heating_C};
-  // With air handlers, outdoor air meets the coils first; without, it meets the zone.
-  const double ventilation_m3_s = building.air ? 0.0 : building.ventilation_m3_s;
+  // With air handlers, outdoor air meets their coils first; with units or without, the zone.
+  const double ventilation_m3_s = units ? zone.floor_share * (1.0 - building.air->heat_recovery) *
+                                              building.air->outdoor_air_m3_s
+                                  : building.air ? 0.0
+                                                 : building.ventilation_m3_s;
   balance_state(building, zone, month.occupied, occupied, ventilation_m3_s, balance);
-  balance_state(building, zone, month.unoccupied, unoccupied, 0.0, balance);
+  balance_state(building, zone, month.unoccupied, unoccupied, running * ventilation_m3_s, balance);
 
   const MonthlySums sums = sum_month(month, balance);
   const double capacity_Wh_K =
@@ -213,8 +218,9 @@ void Epc::evaluate_zone(const Building& building, std::size_t index, const Clima
   const double gains_kWh = 1e-3 * sums.gains_Wh;
   const double cooling_kWh = cooling_need_kWh(1e-3 * sums.cooling_transfer_Wh, gains_kWh, a);
   energy[EndUse::zone_heating] += heating_need_kWh(1e-3 * sums.heating_transfer_Wh, gains_kWh, a);
-  energy[EndUse::sensible_cooling] += cooling_kWh;
-  if (building.air) {
+  const double free_share = units ? free_cooling_share(building, zone, month, balance) : 0.0;
+  energy[EndUse::sensible_cooling] += (1.0 - free_share) * cooling_kWh;
+  if (has_reheat_boxes(building)) {
     spreads_[index] = spread_cooling(building, month, balance, cooling_kWh);
   }
 }
@@ -236,7 +242,11 @@ void Epc::evaluate_month(const Building& building, const ClimateMonth& month,
   energy[EndUse::exterior] = hours * building.use.exterior_kW;
   energy[EndUse::base_heat] = hours * building.base_heat_kW;
   energy[EndUse::hot_water] = hot_water_kWh(building, month);
-  if (building.air) add_air_side(building, month, energy);
+  if (has_reheat_boxes(building)) {
+    add_air_side(building, month, energy);
+  } else if (building.air) {
+    add_room_units(building, month, energy);
+  }
 
   // If the plant is off for part of a month, that part of the need is dropped.
   const double heating_factor =
@@ -285,6 +295,79 @@ void Epc::add_air_side(const Building& building, const ClimateMonth& month, EndU
   energy[EndUse::humidification] = 1e-3 * totals.humidification_Wh;
   energy[EndUse::fans] = 1e-3 * totals.fan_Wh;
   energy[EndUse::pumps] = 1e-3 * totals.pump_Wh;
+}
+
+/// Share of the zone's cooling that an economiser's extra outdoor air saves.
+double Epc::free_cooling_share(const Building& building, const Zone& zone,
+                               const ClimateMonth& month, const ClassBalance* balance) const {
+  const AirSystem& air = *building.air;
+  if (!air.economiser_lockout_C) return 0.0;
+  const double room_C = building.set_points.cooling_occupied_C;
+  const double spare_W_K = heat_capacity_J_m3K_ * zone.floor_share *
+                           std::max(air.supply_flow_design_m3_s - air.outdoor_air_m3_s, 0.0);
+  double load_Wh = 0.0;
+  double free_Wh = 0.0;
+  for (const ClimateState* state : {&month.occupied, &month.unoccupied}) {
+    const double running = state == &month.occupied ? 1.0 : air.outdoor_air_unoccupied_fraction;
+    for (int i = state->first_class; i < state->first_class + state->classes; ++i) {
+      const ClimateClass& c = climate_->classes[static_cast<std::size_t>(i)];
+      const double load_W = std::max(balance[i].cooling_balance_W, 0.0);
+      load_Wh += c.hours * load_W;
+      if (c.dry_bulb_C >= *air.economiser_lockout_C) continue;
+      const double saved_W = running * spare_W_K * std::max(room_C - c.dry_bulb_C, 0.0);
+      free_Wh += c.hours * std::min(saved_W, load_W);
+    }
+  }
+  return load_Wh > 0.0 ? free_Wh / load_Wh : 0.0;
+}
+
+/// What the coils condense in a state, as heat. @see hourly::add_room_units
+double Epc::moisture_Wh(const Building& building, const ClimateState& state, double running_share,
+                        double coil_W) const {
+  if (state.classes == 0 || running_share <= 0.0 || coil_W <= 0.0) return 0.0;
+  double people_h = 0.0;
+  for (int i = state.first_class; i < state.first_class + state.classes; ++i) {
+    const ClimateClass& c = climate_->classes[static_cast<std::size_t>(i)];
+    people_h += c.hours * c.occupied_fraction;
+  }
+  const Use& use = building.use;
+  const double people_W = building.floor_area_m2 * use.occupancy_person_m2 * use.latent_W_person *
+                          people_h / state.hours;
+  const double outdoor_kg_s = heat_capacity_J_m3K_ / weather::kAirHeatCapacity_J_kgK *
+                              building.air->outdoor_air_m3_s * running_share;
+  const double outdoor_W = std::max(outdoor_kg_s, 1e-6) * kVaporisationHeat_J_kg;
+  return outdoor_W * state.excess_over(coil_humidity_ratio_ - people_W / outdoor_W) * coil_W /
+         (outdoor_W + coil_W);
+}
+
+void Epc::add_room_units(const Building& building, const ClimateMonth& month,
+                         EndUseEnergy& energy) const {
+  constexpr double kLeastCoilLift_K = 5.0;
+  const AirSystem& air = *building.air;
+  const double always = air.outdoor_air_unoccupied_fraction;
+  const double running_h = month.occupied.hours + always * month.unoccupied.hours;
+  const double lift_K =
+      std::max(building.set_points.cooling_occupied_C - air.supply_temperature_C, kLeastCoilLift_K);
+  const double cooling_kWh = energy[EndUse::sensible_cooling];
+  const double design_kW = 1e-3 * heat_capacity_J_m3K_ * air.supply_flow_design_m3_s * lift_K;
+  energy[EndUse::fans] = air.fan_design_kW * running_h;
+  energy[EndUse::pumps] =
+      air.pump_design_kW * (cooling_kWh + energy[EndUse::zone_heating]) / design_kW;
+
+  // What passes through the coils for the month's sensible load, as moisture it could carry.
+  const double coil_W = 1e3 * cooling_kWh / std::max(running_h, 1.0) / lift_K *
+                        kVaporisationHeat_J_kg / weather::kAirHeatCapacity_J_kgK;
+  energy[EndUse::latent_cooling] =
+      1e-3 * (moisture_Wh(building, month.occupied, 1.0, coil_W) +
+              moisture_Wh(building, month.unoccupied, always, always * coil_W));
+  if (air.humidification_kg_kg) {
+    const double outdoor_W = heat_capacity_J_m3K_ / weather::kAirHeatCapacity_J_kgK *
+                             air.outdoor_air_m3_s * kVaporisationHeat_J_kg;
+    energy[EndUse::humidification] =
+        1e-3 * outdoor_W *
+        (month.occupied.shortfall_under(*air.humidification_kg_kg) +
+         always * month.unoccupied.shortfall_under(*air.humidification_kg_kg));
+  }
 }
 
 Epc::AirDemand Epc::boxes_of_class(const Building& building, int class_index) {

@@ -1,4 +1,5 @@
-/// The EPC model: a monthly quasi-steady energy balance of a building with a VAV air system.
+/// The EPC model: a monthly quasi-steady energy balance of a building with a VAV air system, or
+/// with units in its rooms.
 ///
 /// Heating and cooling need of each zone follow from the utilisation of gains and losses (ISO
 /// 13790:2008). They are spread over classes of similar hours for the air side, where flow limits,
@@ -74,8 +75,9 @@ class Epc {
     return balance_.data() + zone * climate_->classes.size();
   }
   void find_leakage_per_area(const Building& building);
+  /// @param fan_W  Heat that fans of units in rooms give to them.
   void fill_gains(const Building& building, const Zone& zone, const ClimateState& state,
-                  ClassBalance* balance) const;
+                  double fan_W, ClassBalance* balance) const;
   [[nodiscard]] HeldTemperatures unoccupied_temperatures(const Building& building, const Zone& zone,
                                                          const ClimateMonth& month,
                                                          const ClassBalance* balance) const;
@@ -90,6 +92,13 @@ class Epc {
                                              const ClassBalance* balance,
                                              double cooling_need_kWh) const;
   void add_air_side(const Building& building, const ClimateMonth& month, EndUseEnergy& energy);
+  void add_room_units(const Building& building, const ClimateMonth& month,
+                      EndUseEnergy& energy) const;
+  [[nodiscard]] double moisture_Wh(const Building& building, const ClimateState& state,
+                                   double running_share, double coil_W) const;
+  [[nodiscard]] double free_cooling_share(const Building& building, const Zone& zone,
+                                          const ClimateMonth& month,
+                                          const ClassBalance* balance) const;
   [[nodiscard]] AirDemand boxes_of_class(const Building& building, int class_index);
   void add_air_state(const Building& building, const ClimateState& state, double running_share,
                      AirTotals& totals);

@@ -12,6 +12,7 @@ using weather::kAirHeatCapacity_J_kgK;
 using weather::kVaporisationHeat_J_kg;
 
 constexpr double kNightLift_K = 1.0;
+constexpr double kLeastCoilLift_K = 5.0;  // between a room and its unit's air
 
 /// Share of outdoor air in the supply. Below the lock-out, an economiser opens as far as the supply
 /// temperature, before the fan's heat, requires.
@@ -92,6 +93,43 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
         outdoor_W * (operation.humidity_ratio - operation.coil_humidity_ratio) +
         (1.0 - outdoor_share) * running_share * latent_W;
     loads.latent_cooling_W = operation.latent_share * std::max(moisture_W, 0.0);
+  }
+  loads.humidification_W =
+      outdoor_W * std::max(operation.humidifier_kg_kg - operation.humidity_ratio, 0.0);
+}
+
+void add_room_units(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
+                    const ZoneTotals& zones, double latent_W, const StepOperation& operation,
+                    StepLoads& loads) {
+  const double outdoor_m3_s = running_share * operation.outdoor_air_m3_s;
+  const double lift_K =
+      std::max(operation.cooling_occupied_C - operation.supply_C, kLeastCoilLift_K);
+  const double design_W = heat_capacity_J_m3K * air.supply_flow_design_m3_s * lift_K;
+
+  double cooling_W = zones.cooling_W;
+  if (operation.dry_bulb_C < operation.economiser_lockout_C) {
+    const double spare_m3_s =
+        std::max(running_share * air.supply_flow_design_m3_s - outdoor_m3_s, 0.0);
+    const double free_W = heat_capacity_J_m3K * spare_m3_s * operation.economiser_share *
+                          std::max(zones.mean_air_C - operation.dry_bulb_C, 0.0);
+    cooling_W -= std::min(free_W, cooling_W);
+  }
+  const double load_share = std::min(std::max(cooling_W, zones.zone_heating_W) / design_W, 1.0);
+  loads.running_share = running_share;
+  loads.supply_m3_s = running_share * air.supply_flow_design_m3_s;
+  loads.zone_heating_W = zones.zone_heating_W;
+  loads.sensible_cooling_W = cooling_W;
+  loads.fans_W = 1000.0 * air.fan_design_kW * (running_share + (1.0 - running_share) * load_share);
+  loads.pumps_W = 1000.0 * air.pump_design_kW * load_share;
+
+  const double kg_W_per_W_K = kVaporisationHeat_J_kg / kAirHeatCapacity_J_kgK;
+  const double outdoor_W = heat_capacity_J_m3K * kg_W_per_W_K * outdoor_m3_s;
+  const double coil_W = kg_W_per_W_K * cooling_W / lift_K;
+  if (cooling_W > 0.0) {
+    const double moisture_W =
+        outdoor_W * (operation.humidity_ratio - operation.coil_humidity_ratio) + latent_W;
+    loads.latent_cooling_W =
+        operation.latent_share * std::max(moisture_W, 0.0) * coil_W / (outdoor_W + coil_W);
   }
   loads.humidification_W =
       outdoor_W * std::max(operation.humidifier_kg_kg - operation.humidity_ratio, 0.0);

@@ -218,10 +218,18 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
   return operation;
 }
 
+/// Fans of units in the rooms warm them.
+double Hourly::unit_fan_W(double served_share) const {
+  if (!building_.air || building_.air->has_reheat_boxes) return 0.0;
+  const double always = building_.air->outdoor_air_unoccupied_fraction;
+  return 1000.0 * building_.air->fan_design_kW * (always + (1.0 - always) * served_share);
+}
+
 ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
                                const Morning& morning, double served_share) {
   const Use& use = building_.use;
-  const double closets = building_.air ? use.closet_share : 0.0;
+  const bool boxes = has_reheat_boxes(building_);
+  const double closets = boxes ? use.closet_share : 0.0;
   const std::size_t sides = drivers_->orientations.size();
   const double people_W = building_.floor_area_m2 * use.occupancy_person_m2 *
                           use.sensible_W_person * operation.people_share;
@@ -230,7 +238,7 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
                  .internal_W = people_W +
                                use.zone_heat_share *
                                    (operation.lights_W + (1.0 - closets) * operation.plugs_W) +
-                               operation.zone_gain_W,
+                               operation.zone_gain_W + unit_fan_W(served_share),
                  .solar_share = operation.solar_share,
                  .irradiance_W_m2 = std::span{irradiance_W_m2_}.subspan(
                      hour * sides, hours_[hour].sunlit ? sides : 0)});
@@ -245,14 +253,17 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
   for (int p = 0; p < part_count_; ++p) {
     const Part& part = parts_[static_cast<std::size_t>(p)];
     const double served = part.always ? 1.0 : served_share;
+    const double direct_share =
+        building_.air ? (1.0 - building_.air->heat_recovery) * (part.always ? 1.0 : morning.open)
+                      : 1.0;
     const double daytime_heating_C =
         between(part.always ? 1.0 : morning.climbed, operation.heating_occupied_C,
                 operation.heating_unoccupied_C);
     const double heating_C = between(served, daytime_heating_C, operation.heating_unoccupied_C);
     const double cooling_C =
         between(served, operation.cooling_occupied_C, operation.cooling_unoccupied_C);
-    // Without air handlers, outdoor air meets the zone.
-    const double direct_m3_s = (building_.air ? 0.0 : served * operation.outdoor_air_m3_s) +
+    // Without handlers for many rooms, outdoor air meets the zone.
+    const double direct_m3_s = (boxes ? 0.0 : served * direct_share * operation.outdoor_air_m3_s) +
                                (1.0 - served) * operation.idle_outdoor_air_m3_s;
     const ZoneService service{.leakage_W_K_cm2 = leakage_W_K_cm2,
                               .outdoor_W_K = heat_capacity_J_m3K_ * direct_m3_s,
@@ -262,8 +273,7 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
                               .least_W_K = heat_capacity_J_m3K_ * served * least_m3_s,
                               .most_W_K = heat_capacity_J_m3K_ * most_m3_s,
                               .scheduled_share = served};
-    totals.add(part.share,
-               building_.air ? zones_.serve_with_boxes(p, service) : zones_.serve(p, service));
+    totals.add(part.share, boxes ? zones_.serve_with_boxes(p, service) : zones_.serve(p, service));
   }
   if (closets > 0.0)
     serve_closets(closets * use.zone_heat_share * operation.plugs_W, operation, totals);
@@ -314,6 +324,7 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
   if (building_.air) {
     const double always = building_.air->outdoor_air_unoccupied_fraction;
     const double running_share = always + (1.0 - always) * served_share;
+    const auto add = has_reheat_boxes(building_) ? add_air_handlers : add_room_units;
     const double latent_W = building_.floor_area_m2 * building_.use.occupancy_person_m2 *
                             building_.use.latent_W_person * operation.people_share;
     const double day_share = running_share > 0.0 ? 1.0 - always / running_share : 0.0;
@@ -321,8 +332,7 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
     const double open = 1.0 - day_share * (1.0 - morning.open);
     dampers.outdoor_air_m3_s *= open;
     dampers.economiser_share *= open;
-    add_air_handlers(*building_.air, heat_capacity_J_m3K_, running_share, zones, latent_W, dampers,
-                     loads);
+    add(*building_.air, heat_capacity_J_m3K_, running_share, zones, latent_W, dampers, loads);
   }
   switch_off(hours_[hour], loads);
   for (const Alteration* alteration : alterations) {

@@ -130,6 +130,7 @@ void read_set_points(TomlReader table, model::SetPoints& set) {
   set.occupied_from_hour = table.whole_number_or("occupied_from", 7, hours);
   set.occupied_to_hour = table.whole_number_or("occupied_to", 19, hours);
   set.saturday_occupied = table.boolean("saturday_occupied").value_or(false);
+  set.sunday_occupied = table.boolean("sunday_occupied").value_or(false);
   if (set.heating_occupied_C >= set.cooling_occupied_C) {
     table.problem(
         fmt::format("the heating set-point {} degC is not below the cooling set-point {} degC; "
@@ -141,6 +142,7 @@ void read_set_points(TomlReader table, model::SetPoints& set) {
 
 model::AirSystem read_air(TomlReader table) {
   model::AirSystem air;
+  air.has_reheat_boxes = table.boolean("reheat_boxes").value_or(true);
   air.outdoor_air_m3_s = table.required_number("outdoor_air_m3_s", kNotNegative);
   air.outdoor_air_unoccupied_fraction =
       table.number_or("outdoor_air_unoccupied_fraction", 0.0, kShare);

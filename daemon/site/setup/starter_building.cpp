@@ -29,18 +29,19 @@ struct UseFacts {
   int opens;
   int closes;
   bool saturday;
+  bool sunday;
   double hot_water_l_m2_day;
 };
 
 constexpr auto kUses = std::to_array<UseFacts>({
-    {"office", 0.05, 11, 9, 0.6, 5.0, 0.0, 0.33, 3.7, 7, 19, false, 0.2},
-    {"school", 0.25, 13, 7, 2.5, 5.0, 0.0, 0.33, 4.0, 7, 17, false, 0.3},
-    {"shop", 0.15, 16, 5, 1.2, 5.0, 0.0, 0.15, 5.0, 8, 21, true, 0.1},
-    {"hotel", 0.05, 10, 6, 0.5, 4.0, 0.8, 0.30, 3.2, 0, 24, true, 2.5},
-    {"clinic", 0.10, 12, 12, 1.5, 6.0, 0.2, 0.25, 4.0, 7, 19, false, 0.6},
-    {"laboratory", 0.05, 15, 40, 5.0, 7.0, 0.7, 0.30, 4.2, 7, 19, false, 0.6},
-    {"restaurant", 0.50, 14, 40, 3.5, 7.0, 0.0, 0.20, 4.0, 9, 23, true, 6.0},
-    {"warehouse", 0.005, 8, 3, 0.3, 2.0, 0.0, 0.03, 8.0, 6, 18, false, 0.05},
+    {"office", 0.05, 11, 9, 0.6, 5.0, 0.0, 0.33, 3.7, 7, 19, false, false, 0.2},
+    {"school", 0.25, 13, 7, 2.5, 5.0, 0.0, 0.33, 4.0, 7, 17, false, false, 0.3},
+    {"shop", 0.15, 16, 5, 1.2, 5.0, 0.0, 0.15, 5.0, 8, 21, true, false, 0.1},
+    {"hotel", 0.05, 10, 6, 0.5, 4.0, 0.8, 0.30, 3.2, 0, 24, true, true, 2.5},
+    {"clinic", 0.10, 12, 12, 1.5, 6.0, 0.2, 0.25, 4.0, 7, 19, false, false, 0.6},
+    {"laboratory", 0.05, 15, 40, 5.0, 7.0, 0.7, 0.30, 4.2, 7, 19, false, false, 0.6},
+    {"restaurant", 0.50, 14, 40, 3.5, 7.0, 0.0, 0.20, 4.0, 9, 23, true, true, 6.0},
+    {"warehouse", 0.005, 8, 3, 0.3, 2.0, 0.0, 0.03, 8.0, 6, 18, false, false, 0.05},
 });
 
 constexpr auto kUseNames = [] {
@@ -142,13 +143,14 @@ std::string use_of(const UseFacts& use) {
   text += "\n[building.schedule]                  # guess: typical hours\n";
   text += "workday = " + day(use, 0.9) + "\n";
   text += "saturday = " + day(use, use.saturday ? 0.8 : 0.0) + "\n";
-  text += "sunday = " + day(use, use.closes - use.opens == 24 ? 0.8 : 0.0) + "\n";
+  text += "sunday = " + day(use, use.sunday ? 0.8 : 0.0) + "\n";
   text += "\n[building.setpoint]\n";
   text += line("cooling_occupied_C", "24", "guess, +-2 K");
   text += line("heating_occupied_C", "21", "guess, +-1.5 K");
   text += line("occupied_from", std::to_string(use.opens), "guess, +-2 h");
   text += line("occupied_to", std::to_string(use.closes), "guess, +-2 h");
   if (use.saturday) text += "saturday_occupied = true\n";
+  if (use.sunday) text += "sunday_occupied = true\n";
   return text;
 }
 
@@ -160,6 +162,7 @@ std::string systems_of(const StarterFacts& facts, const UseFacts& use, const Env
   text += line("ela_cm2_m2", number(envelope.leakage_cm2_m2),
                fmt::format("guess, a factor of 2: {}", envelope.typical_of));
   text += "\n[building.air]\n";
+  text += line("reheat_boxes", "true", "guess; false if each room has a unit of its own");
   text += line("outdoor_air_m3_s", number(outdoor_m3_s), "guess, a factor of 2: " + typical);
   if (use.night_air_share > 0.0) {
     text += line("outdoor_air_unoccupied_fraction", number(use.night_air_share),

@@ -131,5 +131,18 @@ TEST(Drivers, HolidaysRunLikeSundays) {
   EXPECT_EQ(day_type(friday, {friday}), DayType::sunday_or_holiday);
 }
 
+TEST(Drivers, WeekendsAreOccupiedWhereTheSiteSaysSo) {
+  SetPoints set_points;
+  for (const DayType day : {DayType::saturday, DayType::sunday_or_holiday}) {
+    EXPECT_FALSE(is_occupied(set_points, day, 12));
+  }
+  set_points.saturday_occupied = true;
+  EXPECT_TRUE(is_occupied(set_points, DayType::saturday, 12));
+  EXPECT_FALSE(is_occupied(set_points, DayType::sunday_or_holiday, 12));
+  set_points.sunday_occupied = true;
+  EXPECT_TRUE(is_occupied(set_points, DayType::sunday_or_holiday, 12));
+  EXPECT_FALSE(is_occupied(set_points, DayType::sunday_or_holiday, 5));
+}
+
 }  // namespace
 }  // namespace recald::model

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/model/epc/epc_model.hpp"
+#include "core/model/hourly/hourly.hpp"
 #include "core/weather/psychrometrics.hpp"
 #include "tests/support/allocations.hpp"
 #include "tests/support/sample_building.hpp"
@@ -262,6 +263,28 @@ TEST(EpcModel, EvaluationDoesNotAllocate) {
   const long before = allocation_count();
   model.evaluate(theta, outputs);
   EXPECT_EQ(allocation_count() - before, 0);
+}
+
+// The monthly balance with units in the rooms against the hourly one of the same building.
+TEST(Epc, RoomUnitsAgreeWithTheHourlyModel) {
+  for (const bool has_economiser : {false, true}) {
+    SCOPED_TRACE(has_economiser);
+    Building building = sample_building();
+    building.air->has_reheat_boxes = false;
+    if (has_economiser) building.air->economiser_lockout_C = 18.0;
+    const auto monthly = evaluate(building);
+    hourly::Hourly hourly{std::make_shared<const Drivers>(sample_drivers(building, 24)),
+                          {.steps_per_hour = 1}};
+    std::vector<EndUseEnergy> by_hour(24);
+    hourly.run_end_uses(building, {}, by_hour);
+    for (const std::initializer_list<EndUse>& uses : {kCooling, kHeating}) {
+      const double year = year_kWh(by_hour, uses);
+      EXPECT_NEAR(year_kWh(monthly, uses), year, 0.15 * year);
+    }
+    EXPECT_NEAR(year_kWh(monthly, {fans}), year_kWh(by_hour, {fans}),
+                0.1 * year_kWh(by_hour, {fans}));
+    EXPECT_EQ(year_kWh(monthly, {reheat, preheat}), 0.0);
+  }
 }
 
 }  // namespace

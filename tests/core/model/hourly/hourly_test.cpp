@@ -410,5 +410,87 @@ TEST(Hourly, ASecondRunDoesNotAllocate) {
   EXPECT_EQ(testing::allocation_count(), before);
 }
 
+Building with_room_units() {
+  Building building = sample_building();
+  building.air->has_reheat_boxes = false;
+  return building;
+}
+
+TEST(RoomUnits, HeatOrCoolButNeverReheat) {
+  Hourly hourly = make_hourly(12);
+  const auto boxes = end_uses_of(hourly, sample_building());
+  const auto units = end_uses_of(hourly, with_room_units());
+  for (std::size_t month = 0; month < 12; ++month) {
+    EXPECT_EQ(units[month][EndUse::reheat] + units[month][EndUse::preheat], 0.0) << month;
+    EXPECT_GT(boxes[month][EndUse::reheat], 0.0) << month;
+  }
+  EXPECT_GT(units[0][EndUse::zone_heating], 0.0);
+  EXPECT_GT(units[6][EndUse::sensible_cooling], 0.0);
+  EXPECT_LT(heat_kWh(units[6]), 0.1 * heat_kWh(boxes[6]));
+}
+
+TEST(RoomUnits, FansRunAtOneSpeedByScheduleAndOnCallAtNight) {
+  Hourly hourly = make_hourly(2);
+  Building still = with_room_units();
+  still.air->outdoor_air_unoccupied_fraction = 0.0;
+  still.air->pump_design_kW = 0.0;
+  const Eigen::ArrayXXd fanned = power_of(hourly, still);
+  still.air->fan_design_kW = 0.0;
+  const Eigen::ArrayXXd none = power_of(hourly, still);
+  for (Eigen::Index i = 0; i < fanned.rows(); ++i) {
+    const double fans_kW = fanned(i, 0) - none(i, 0);
+    if (hourly.drivers().hours[static_cast<std::size_t>(i)].occupied) {
+      ASSERT_NEAR(fans_kW, 35.0, 1e-9) << i;
+    } else {
+      ASSERT_LT(fans_kW, 35.0) << i;
+    }
+  }
+  EXPECT_LT(fanned.col(2).sum(), none.col(2).sum()) << "their heat stays in the rooms";
+}
+
+TEST(RoomUnits, OutdoorAirMeetsTheRoomsAndRecoverySparesHeat) {
+  Hourly hourly = make_hourly(2);
+  Building building = with_room_units();
+  const double plain_kWh = power_of(hourly, building).col(2).sum();
+  building.air->heat_recovery = 0.5;
+  const double recovered_kWh = power_of(hourly, building).col(2).sum();
+  building.air->heat_recovery = 0.0;
+  building.air->outdoor_air_m3_s *= 0.5;
+  EXPECT_LT(recovered_kWh, plain_kWh);
+  EXPECT_NEAR(power_of(hourly, building).col(2).sum(), recovered_kWh, 1e-9 * recovered_kWh);
+}
+
+TEST(RoomUnits, AnEconomiserSavesCoolingAndItsShareScalesTheSaving) {
+  Hourly hourly = make_hourly(6);
+  Building building = with_room_units();
+  const double without_kWh = power_of(hourly, building).col(1).sum();
+  building.air->economiser_lockout_C = 18.0;
+  const auto at_share = [&](double share) {
+    return with_operation(
+               hourly, building,
+               [share](const DriverHour&, StepOperation& o) { o.economiser_share = share; })
+        .col(1)
+        .sum();
+  };
+  EXPECT_NEAR(at_share(0.0), without_kWh, 1e-9 * without_kWh);
+  EXPECT_LT(at_share(1.0), at_share(0.1));
+  EXPECT_LT(at_share(0.1), 0.99 * without_kWh);
+}
+
+// k (m_o (w_o - w_coil) + g) / (m_o + k), by hand for one hour in July.
+TEST(RoomUnits, CoilsDryWhatPassesThroughThem) {
+  Hourly hourly = make_hourly(8);
+  const auto units = end_uses_of(hourly, with_room_units());
+  Building empty = with_room_units();
+  empty.use.latent_W_person = 0.0;
+  const auto no_people = end_uses_of(hourly, empty);
+  EXPECT_GT(units[6][EndUse::latent_cooling], no_people[6][EndUse::latent_cooling]);
+  EXPECT_EQ(no_people[0][EndUse::latent_cooling], 0.0) << "dry winter air";
+  Building warm = with_room_units();
+  warm.set_points.cooling_occupied_C = warm.set_points.cooling_unoccupied_C = 60.0;
+  const auto uncooled = end_uses_of(hourly, warm);
+  EXPECT_EQ(uncooled[6][EndUse::sensible_cooling] + uncooled[6][EndUse::latent_cooling], 0.0);
+}
+
 }  // namespace
 }  // namespace recald::model::hourly::hourly_test
