@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kReferenceYears = 3;
 constexpr std::size_t kStepMonths = 3;
+constexpr double kBeyondWeather = 2.0;  // times the largest month ever
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -99,14 +100,30 @@ class LevelWatch {
     month.z = (month.log_ratio - expected.centre) / expected.scale;
     month.step = recent_.empty() ? month.log_ratio : month.log_ratio - median_of(recent_);
     if (std::abs(month.step) > std::log(options_.scale_factor_min)) {
-      open(LevelChangeKind::scale, month, month.step / expected.scale);
-      recent_.clear();  // report the step only once
-    } else if (!open_) {
-      watch(month);
+      judge_step(month, expected.scale);
+    } else {
+      stepped_.clear();
+      if (!open_) watch(month);
     }
-    recent_.push_back(month.log_ratio);
-    if (recent_.size() > kStepMonths) recent_.erase(recent_.begin());
+    if (stepped_.empty()) remember(month.log_ratio);
     if (open_) count_return(month.figure->month, std::abs(month.z) <= options_.z_max / 2.0);
+  }
+
+  void remember(double log_ratio) {
+    recent_.push_back(log_ratio);
+    if (recent_.size() > kStepMonths) recent_.erase(recent_.begin());
+  }
+
+  /// A month a whole factor off. Where one such month may be the weather, it waits for another.
+  void judge_step(const Compared& month, double scale) {
+    if (!stepped_.empty() && (stepped_.back().step > 0.0) != (month.step > 0.0)) stepped_.clear();
+    stepped_.push_back(month);
+    const bool is_beyond_weather = month.level > largest_level_ + std::log(kBeyondWeather);
+    if (static_cast<int>(stepped_.size()) < options_.scale_months && !is_beyond_weather) return;
+    open(LevelChangeKind::scale, stepped_.front(), stepped_.front().step / scale);
+    recent_.clear();  // report the step only once
+    for (const Compared& each : stepped_) remember(each.log_ratio);
+    stepped_.clear();
   }
 
   /// No change is open: one month far off, or several in a row off to the same side, opens one.
@@ -180,6 +197,7 @@ class LevelWatch {
   std::vector<double> learned_;                         ///< Undisputed log ratios.
   std::vector<double> recent_;                          ///< The last few log ratios of any kind.
   std::vector<Compared> doubted_;                       ///< In a row off to one side, not yet open.
+  std::vector<Compared> stepped_;                       ///< In a row off by a whole factor.
   double largest_level_ = -std::numeric_limits<double>::infinity();
   std::vector<LevelChange> changes_;
   bool open_ = false;
@@ -200,6 +218,7 @@ LevelChangeOptions level_change_options(Utility utility) {
     options.typical_scatter = 0.15;
     options.small_month = 0.25;      // chilled water in a mild January may be only half
     options.scale_factor_min = 8.0;  // a cold March after a mild winter is a step of 5.5
+    options.scale_months = 2;
   }
   return options;
 }

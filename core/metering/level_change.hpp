@@ -35,14 +35,16 @@ struct LevelChangeOptions {
   double z_persistent = 2.0;  ///< This far off to the same side in …
   int months_persistent = 4;  ///< … this many compared months in a row counts as much as one z_max.
   double ratio_change_min = 0.10;  ///< Smaller changes are never reported.
-  double scale_factor_min = 5.0;   ///< A step this large is called a change of scale.
+  double scale_factor_min = 5.0;   ///< A step this large is called a change of scale …
+  int scale_months = 1;  ///< … once this many compared months in a row are off to the same side.
   double small_month = 0.10;  ///< Months below this share of the largest month are not compared.
   int months_to_return = 6;   ///< In a row within z_max / 2; then the change is over.
 };
 
 /// Typical scatter is 0.05 for electricity and water. For utilities that follow the weather it
 /// is 0.15, months below a quarter of the largest are not compared, and a change of scale is a
-/// step of at least 8.
+/// step of at least 8 in two months in a row, or in one month that is twice the largest ever: in a
+/// mild climate one month of heating may be a dozen times that of another year.
 [[nodiscard]] LevelChangeOptions level_change_options(Utility utility);
 
 /// Compares each usable month with the same calendar months before it.

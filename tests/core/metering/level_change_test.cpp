@@ -181,5 +181,32 @@ TEST(LevelChange, StableMetersRarelyAlarm) {
   EXPECT_LE(thermal, 0.037);
 }
 
+// In a mild climate one month of heating says nothing: thirteen times last year's, then as before.
+TEST(LevelChange, OneColdMonthOfAMildClimateIsNoUnit) {
+  std::vector<double> daily_kWh(48, 100.0);
+  daily_kWh[26] = 1250.0;
+  daily_kWh[12] = 1000.0;
+  for (const LevelChange& change : changes(daily_kWh, Utility::heating)) {
+    EXPECT_NE(change.kind, LevelChangeKind::scale) << change.words;
+  }
+  // Nor is one twice as much as ever the weather.
+  daily_kWh[26] = 2500.0;
+  const auto found = changes(daily_kWh, Utility::heating);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].kind, LevelChangeKind::scale);
+  EXPECT_EQ(found[0].since, month(2012, 3));
+}
+
+TEST(LevelChange, ASecondMonthDatesTheUnitToTheFirst) {
+  std::vector<double> daily_kWh(48, 1000.0);
+  for (std::size_t i = 30; i < 48; ++i) daily_kWh[i] = 40.0;
+  // Months this small beside the largest are compared, because last year's were not small.
+  const auto found = changes(daily_kWh, Utility::gas);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].kind, LevelChangeKind::scale);
+  EXPECT_EQ(found[0].since, month(2012, 7));
+  EXPECT_NEAR(1.0 / found[0].factor, 25.0, 0.1);
+}
+
 }  // namespace
 }  // namespace recald::metering::level_change_test
