@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -177,21 +178,6 @@ double stop_of_day(const double* kW) {
 
 }  // namespace
 
-/// Values one after the other, in the order of their names.
-class SignatureReader::Sheet {
- public:
-  explicit Sheet(std::span<double> values) : left_(values) {}
-  void put(double value) {
-    assert(!left_.empty());
-    left_.front() = value;
-    left_ = left_.subspan(1);
-  }
-  [[nodiscard]] bool is_full() const { return left_.empty(); }
-
- private:
-  std::span<double> left_;
-};
-
 std::string_view to_string(SignatureMeter meter) {
   switch (meter) {
     case SignatureMeter::electricity:
@@ -257,12 +243,77 @@ const std::vector<std::string>& signature_names() {
   return names;
 }
 
+namespace {
+
+constexpr int kOfRegime = static_cast<int>(kSlopeNames.size()) + kWarmths + kBlocks + 12 + 5 + 1;
+constexpr int kDarkKinds = 4;
+constexpr int kEdgeNames = 18;
+constexpr int kEdgesFrom = kGroups + kRegimes * kOfRegime;  ///< Place of the first.
+constexpr int kDarkFrom = kEdgesFrom + kEdgeNames;
+
+/// Rows of a regime by what they have in common.
+struct RowGroups {
+  std::vector<int> block;     ///< Twelfth of the record.
+  std::vector<int> weekday;   ///< 0…4 Monday to Friday of a working day; else -1.
+  std::vector<int> month;     ///< 0…11
+  std::vector<int> free_day;  ///< 0: a holiday from Monday to Friday; else -1.
+  std::vector<int> warmth;    ///< Bin of outdoor temperature.
+};
+
+/// (groups x rows) that averages each group; NaN for those of fewer than four rows.
+Eigen::MatrixXd averaging(const std::vector<int>& group_of, int groups) {
+  constexpr int kFewest = 4;
+  Eigen::MatrixXd average = Eigen::MatrixXd::Zero(groups, std::ssize(group_of));
+  std::vector<int> count(static_cast<std::size_t>(groups));
+  for (std::size_t r = 0; r < group_of.size(); ++r) {
+    if (group_of[r] < 0) continue;
+    ++count[static_cast<std::size_t>(group_of[r])];
+    average(group_of[r], static_cast<Eigen::Index>(r)) = 1.0;
+  }
+  for (int g = 0; g < groups; ++g) {
+    const int of = count[static_cast<std::size_t>(g)];
+    average.row(g) *= of < kFewest ? kAbsent : 1.0 / of;
+  }
+  return average;
+}
+
+/// What the signatures of a regime are of its rows. Blocks, months and days are asked for what the
+/// weather does not explain; blocks keep trend and season too, which are what they are asked for.
+Eigen::MatrixXd signatures_of_rows(const Eigen::MatrixXd& design, const Eigen::MatrixXd& solve,
+                                   const RowGroups& rows) {
+  Eigen::MatrixXd of_rows(kOfRegime, design.rows());
+  Eigen::Index next = 0;
+  const auto put = [&](const Eigen::MatrixXd& block) {
+    of_rows.middleRows(next, block.rows()) = block;
+    next += block.rows();
+  };
+  const auto unexplained = [&](const Eigen::MatrixXd& average, Eigen::Index coefficients) {
+    return (average - (average * design.leftCols(coefficients)) * solve.topRows(coefficients))
+        .eval();
+  };
+  put(solve.middleRows(kFirstSlope, kCoefficients - kFirstSlope));
+  put(averaging(rows.warmth, kWarmths));
+  put(unexplained(averaging(rows.block, kBlocks), kCoefficients - kOfTime));
+  put(unexplained(averaging(rows.month, 12), kCoefficients));
+  put(unexplained(averaging(rows.weekday, 5), kCoefficients));
+  put(unexplained(averaging(rows.free_day, 1), kCoefficients));
+  assert(next == of_rows.rows());
+  return of_rows;
+}
+
+}  // namespace
+
 SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
   const auto& hours = site.drivers->hours;
   std::vector<Means> warmth(static_cast<std::size_t>(hours.back().day_index) + 1);
   for (const DriverHour& hour : hours) {
     warmth[static_cast<std::size_t>(hour.day_index)].add(hour.dry_bulb_C);
   }
+  hours_before_.assign(warmth.size() + 1, 0);
+  for (const DriverHour& hour : hours) {
+    ++hours_before_[static_cast<std::size_t>(hour.day_index) + 1];
+  }
+  for (std::size_t d = 1; d < hours_before_.size(); ++d) hours_before_[d] += hours_before_[d - 1];
   for (const Means& day : warmth) day_C_.push_back(day.mean());
   for (std::size_t i = 0; i + 24 <= hours.size(); ++i) {
     // Days of 23 or 25 hours have no edges.
@@ -275,19 +326,26 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
     for (std::size_t h = 5; h < 8; ++h) sum_C += hours[i + h].dry_bulb_C;
     morning_C_.push_back(sum_C / 3.0);
   }
+  double all_kW = 0.0;
+  for (const double mean_kW : site.facts().mean_kW) all_kW += mean_kW;
+  const auto make = [&](int column) {
+    // A meter that counts next to nothing must not look as if it changed by many times itself.
+    constexpr double kLeastShare = 0.05;
+    return make_meter(column, kLeastShare * all_kW);
+  };
   for (std::size_t g = site.meters.size(); g-- > 0;) {
     const int column = static_cast<int>(g);
     switch (site.meters[g].utility) {
       case Utility::electricity:
-        meters_[0] = make_meter(column);
+        meters_[0] = make(column);
         break;
       case Utility::chilled_water:
-        meters_[1] = make_meter(column);
+        meters_[1] = make(column);
         break;
       case Utility::heating:
       case Utility::steam:
       case Utility::gas:
-        meters_[2] = make_meter(column);
+        meters_[2] = make(column);
         break;
       case Utility::water:
         break;
@@ -295,10 +353,11 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
   }
 }
 
-SignatureReader::Meter SignatureReader::make_meter(int column) const {
+SignatureReader::Meter SignatureReader::make_meter(int column, double least_kW) const {
   const auto& hours = site_->drivers->hours;
   Meter meter{.column = column};
   Means all;
+  std::array<int, kGroups> count{};
   for (std::size_t i = 0; i < hours.size(); ++i) {
     const double kW = site_->measured_kW(static_cast<Eigen::Index>(i), column);
     if (!std::isfinite(kW)) {
@@ -307,11 +366,17 @@ SignatureReader::Meter SignatureReader::make_meter(int column) const {
     }
     all.add(kW);
     const double day_C = day_C_[static_cast<std::size_t>(hours[i].day_index)];
-    meter.group.push_back((static_cast<int>(hours[i].day) * kSeasons + season_of(day_C)) * kPairs +
-                          hours[i].local_hour / 2);
+    const int group = (static_cast<int>(hours[i].day) * kSeasons + season_of(day_C)) * kPairs +
+                      hours[i].local_hour / 2;
+    meter.group.push_back(group);
+    ++count[static_cast<std::size_t>(group)];
   }
-  meter.mean_kW = std::max(all.mean(1), 1e-9);
+  for (const int of : count) {
+    meter.per_group_hour.push_back(of < kFewestHours ? kAbsent : 1.0 / of);
+  }
+  meter.unit_kW = std::max({all.count > 0 ? all.mean() : 0.0, least_kW, 1e-9});
   for (int kind = 0; kind < kRegimes; ++kind) meter.regimes.push_back(make_regime(meter, kind));
+  make_darkness(meter);
   return meter;
 }
 
@@ -342,100 +407,139 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
     return regime;
   }
   const int days = hours.back().day_index + 1;
-  regime.design.resize(n, kCoefficients);
+  Eigen::MatrixXd design(n, kCoefficients);
+  RowGroups groups;
   for (Eigen::Index r = 0; r < n; ++r) {
     const RegimeDay& row = rows[static_cast<std::size_t>(r)];
     const DriverHour& first = *row.first;
     regime.per_hour.push_back(1.0 / row.dry_bulb_C.count);
     const double before_C = day_C_[static_cast<std::size_t>(std::max(first.day_index - 1, 0))];
-    regime.design.row(r) = regressors(row, before_C, days);
-    regime.block.push_back(std::min(first.day_index * kBlocks / days, kBlocks - 1));
+    design.row(r) = regressors(row, before_C, days);
+    groups.block.push_back(std::min(first.day_index * kBlocks / days, kBlocks - 1));
     const bool is_workday = first.day == DayType::workday;
     const bool is_weekday = first.weekday >= 1 && first.weekday <= 5;
-    regime.weekday.push_back(is_workday ? static_cast<int>(first.weekday) - 1 : -1);
-    regime.month.push_back(static_cast<int>(static_cast<unsigned>(first.date.month())) - 1);
-    regime.free_day.push_back(is_weekday && !is_workday);
+    groups.weekday.push_back(is_workday ? static_cast<int>(first.weekday) - 1 : -1);
+    groups.month.push_back(static_cast<int>(static_cast<unsigned>(first.date.month())) - 1);
+    groups.free_day.push_back(is_weekday && !is_workday ? 0 : -1);
     const auto bin =
         static_cast<int>(std::floor((row.dry_bulb_C.mean() - kCoolest_C) / kWarmth_K + 0.5));
-    regime.warmth.push_back(std::clamp(bin, 0, kWarmths - 1));
+    groups.warmth.push_back(std::clamp(bin, 0, kWarmths - 1));
   }
   constexpr double kRidge = 1e-3;
-  Eigen::MatrixXd normal = regime.design.transpose() * regime.design;
+  Eigen::MatrixXd normal = design.transpose() * design;
   for (Eigen::Index k = 1; k < kCoefficients; ++k) {
-    const double mean = regime.design.col(k).mean();
-    const double variance = regime.design.col(k).array().square().mean() - mean * mean;
+    const double mean = design.col(k).mean();
+    const double variance = design.col(k).array().square().mean() - mean * mean;
     normal(k, k) += static_cast<double>(n) * (kRidge * variance + 1e-9);
   }
-  regime.solve = normal.ldlt().solve(regime.design.transpose());
+  const Eigen::MatrixXd solve = normal.ldlt().solve(design.transpose());
+  regime.of_rows = signatures_of_rows(design, solve, groups) / meter.unit_kW;
   return regime;
 }
 
-void SignatureReader::read_means(const Meter& meter, const double* kW, Sheet& sheet) const {
-  std::array<Means, kGroups> groups;
-  for (std::size_t i = 0; i < meter.group.size(); ++i) {
-    if (meter.group[i] >= 0) groups[static_cast<std::size_t>(meter.group[i])].add(kW[i]);
-  }
-  for (const Means& group : groups) sheet.put(group.mean(kFewestHours) / meter.mean_kW);
-}
-
-void SignatureReader::read_regime(const Regime& regime, const double* kW, double mean_kW,
-                                  Sheet& sheet) const {
-  const Eigen::Index n = regime.design.rows();
-  Eigen::VectorXd rows = Eigen::VectorXd::Zero(n);
-  for (std::size_t i = 0; i < regime.row_of_hour.size(); ++i) {
-    const int row = regime.row_of_hour[i];
-    if (row >= 0) rows[row] += kW[i] * regime.per_hour[static_cast<std::size_t>(row)];
-  }
-  rows /= mean_kW;
-  const bool is_there = n > 0;
-  Eigen::VectorXd coefficients = Eigen::VectorXd::Constant(kCoefficients, kAbsent);
-  Eigen::VectorXd residual = rows;
-  if (is_there) {
-    coefficients = regime.solve * rows;
-    residual -= regime.design * coefficients;
-  }
-  for (Eigen::Index k = kFirstSlope; k < kCoefficients; ++k) sheet.put(coefficients[k]);
-  std::array<Means, kWarmths> warmths;
-  std::array<Means, kBlocks> blocks;
-  std::array<Means, 12> months;
-  std::array<Means, 5> weekdays;
-  Means holidays;
-  for (Eigen::Index r = 0; r < n; ++r) {
-    const auto row = static_cast<std::size_t>(r);
-    warmths[static_cast<std::size_t>(regime.warmth[row])].add(rows[r]);
-    // What the weather does not explain, with trend and season: they are what is asked for.
-    const double in_time = regime.design.row(r).tail(kOfTime).dot(coefficients.tail(kOfTime));
-    blocks[static_cast<std::size_t>(regime.block[row])].add(residual[r] + in_time);
-    months[static_cast<std::size_t>(regime.month[row])].add(residual[r]);
-    const int weekday = regime.weekday[row];
-    if (weekday >= 0) weekdays[static_cast<std::size_t>(weekday)].add(residual[r]);
-    if (regime.free_day[row]) holidays.add(residual[r]);
-  }
-  for (const Means& bin : warmths) sheet.put(bin.mean(4));
-  for (const Means& block : blocks) sheet.put(block.mean(4));
-  for (const Means& month : months) sheet.put(month.mean(4));
-  for (const Means& weekday : weekdays) sheet.put(weekday.mean(4));
-  sheet.put(holidays.mean(4));
-}
-
-void SignatureReader::read_edges(const Meter& meter, const double* kW, Sheet& sheet) const {
+/// Within each hour of the clock: what is more when it is dark.
+void SignatureReader::make_darkness(Meter& meter) const {
   const auto& hours = site_->drivers->hours;
-  for (const bool starts : {true, false}) {
+  constexpr int kFewest = 15;
+  std::array<std::array<std::array<int, 2>, 24>, 2> count{};
+  const auto at = [&](std::size_t i) -> std::array<int, 2>& {
+    const auto day = hours[i].day == DayType::workday ? 0U : 1U;
+    return count[day][static_cast<std::size_t>(hours[i].local_hour)];
+  };
+  const auto is_dark = [&](std::size_t i) { return hours[i].sine_of_sun_altitude < 0.0 ? 1U : 0U; };
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    if (meter.group[i] >= 0) ++at(i)[is_dark(i)];
+  }
+  // Kinds: mornings and evenings of workdays, then of free days.
+  const auto kind_of = [](std::size_t day, int hour) {
+    const int half = hour >= 5 && hour < 9 ? 0 : hour >= 16 && hour < 22 ? 1 : -1;
+    return half < 0 ? -1 : 2 * static_cast<int>(day) + half;
+  };
+  std::array<int, kDarkKinds> compared{};
+  for (std::size_t day = 0; day < 2; ++day) {
+    for (int hour = 0; hour < 24; ++hour) {
+      const auto& of = count[day][static_cast<std::size_t>(hour)];
+      const int kind = kind_of(day, hour);
+      if (kind >= 0 && of[0] >= kFewest && of[1] >= kFewest) {
+        ++compared[static_cast<std::size_t>(kind)];
+      }
+    }
+  }
+  for (const int of : compared) meter.no_darkness.push_back(of > 0 ? 0.0 : kAbsent);
+  meter.darkness.assign(hours.size(), 0.0);
+  meter.dark_kind.assign(hours.size(), -1);
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    if (meter.group[i] < 0) continue;
+    const auto& of = at(i);
+    const int kind = kind_of(hours[i].day == DayType::workday ? 0U : 1U, hours[i].local_hour);
+    if (kind < 0 || of[0] < kFewest || of[1] < kFewest) continue;
+    const double sign = is_dark(i) == 1 ? 1.0 : -1.0;
+    meter.dark_kind[i] = kind;
+    meter.darkness[i] = sign / (of[is_dark(i)] * compared[static_cast<std::size_t>(kind)]);
+  }
+}
+
+void SignatureReader::add_linear(const Meter& meter, const double* kW, std::size_t from,
+                                 std::size_t to, double* values) const {
+  const double per_kW = 1.0 / meter.unit_kW;
+  std::array<double, kGroups> sums{};
+  for (std::size_t i = from; i < to; ++i) {
+    if (meter.group[i] >= 0) sums[static_cast<std::size_t>(meter.group[i])] += kW[i];
+  }
+  for (std::size_t g = 0; g < kGroups; ++g) values[g] += sums[g] * meter.per_group_hour[g] * per_kW;
+  for (std::size_t kind = 0; kind < kRegimes; ++kind) {
+    const Regime& regime = meter.regimes[kind];
+    Eigen::Map<Eigen::VectorXd> into(values + kGroups + kind * kOfRegime, kOfRegime);
+    if (regime.per_hour.empty()) {
+      into.setConstant(kAbsent);
+      continue;
+    }
+    Eigen::VectorXd rows = Eigen::VectorXd::Zero(regime.of_rows.cols());
+    for (std::size_t i = from; i < to; ++i) {
+      const int row = regime.row_of_hour[i];
+      if (row >= 0) rows[row] += kW[i] * regime.per_hour[static_cast<std::size_t>(row)];
+    }
+    into += regime.of_rows * rows;
+  }
+  double* const dark = values + kDarkFrom;
+  for (std::size_t k = 0; k < kDarkKinds; ++k) dark[k] += meter.no_darkness[k];
+  for (std::size_t i = from; i < to; ++i) {
+    if (meter.dark_kind[i] >= 0) dark[meter.dark_kind[i]] += meter.darkness[i] * kW[i] * per_kW;
+  }
+}
+
+SignatureReader::DayEdges SignatureReader::edges_of(const Meter& meter, const double* kW) const {
+  DayEdges edges(std::ssize(first_hour_), 2);
+  for (std::size_t d = 0; d < first_hour_.size(); ++d) {
+    const auto from = meter.group.begin() + first_hour_[d];
+    const bool is_measured = std::all_of(from, from + 24, [](int group) { return group >= 0; });
+    const auto day = static_cast<Eigen::Index>(d);
+    // A day without a reading is absent, one without an edge is infinitely late.
+    edges.row(day).setConstant(kAbsent);
+    if (!is_measured) continue;
+    const auto or_never = [](double at_h) {
+      return std::isfinite(at_h) ? at_h : std::numeric_limits<double>::infinity();
+    };
+    edges(day, 0) = or_never(start_of_day(kW + first_hour_[d]));
+    edges(day, 1) = or_never(stop_of_day(kW + first_hour_[d]));
+  }
+  return edges;
+}
+
+void SignatureReader::read_edges(const DayEdges& of_days, double* values) const {
+  const auto& hours = site_->drivers->hours;
+  for (const Eigen::Index side : {0, 1}) {
     std::vector<Edge> edges;
     Means saturdays, sundays;
     for (std::size_t d = 0; d < first_hour_.size(); ++d) {
-      const auto first = static_cast<std::size_t>(first_hour_[d]);
-      const bool is_measured = std::all_of(meter.group.begin() + first_hour_[d],
-                                           meter.group.begin() + first_hour_[d] + 24,
-                                           [](int group) { return group >= 0; });
-      if (!is_measured) continue;
-      const double at = starts ? start_of_day(kW + first) : stop_of_day(kW + first);
-      const DriverHour& hour = hours[first];
-      const double has_one = std::isfinite(at) ? 1.0 : 0.0;
+      const double at_h = of_days(static_cast<Eigen::Index>(d), side);
+      if (std::isnan(at_h)) continue;
+      const DriverHour& hour = hours[static_cast<std::size_t>(first_hour_[d])];
+      const double has_one = std::isfinite(at_h) ? 1.0 : 0.0;
       if (hour.day == DayType::saturday) saturdays.add(has_one);
       if (hour.day == DayType::sunday_or_holiday) sundays.add(has_one);
-      if (hour.day != DayType::workday || !std::isfinite(at)) continue;
-      edges.push_back({.at_h = at,
+      if (hour.day != DayType::workday || !std::isfinite(at_h)) continue;
+      edges.push_back({.at_h = at_h,
                        .outdoor_C = morning_C_[d],
                        .monday = hour.weekday == 1,
                        .summer_time = hour.daylight_saving,
@@ -450,40 +554,19 @@ void SignatureReader::read_edges(const Meter& meter, const double* kW, Sheet& sh
       });
     };
     const double mild = between(8.0, 17.0);
-    sheet.put(usual);
-    sheet.put(median_of(off_h));
-    sheet.put(between(-90.0, 4.0) - mild);
-    sheet.put(between(20.0, 90.0) - mild);
-    sheet.put(median_where(edges, [](const Edge& edge) { return edge.monday; }) - usual);
-    sheet.put(saturdays.mean(kFewestDays));
-    sheet.put(sundays.mean(kFewestDays));
-    sheet.put(median_where(edges, [](const Edge& edge) { return edge.summer_time; }) -
-              median_where(edges, [](const Edge& edge) { return !edge.summer_time; }));
-    sheet.put(median_where(edges, [](const Edge& edge) { return edge.third == 2; }) -
-              median_where(edges, [](const Edge& edge) { return edge.third == 0; }));
-  }
-}
-
-void SignatureReader::read_darkness(const Meter& meter, const double* kW, Sheet& sheet) const {
-  const auto& hours = site_->drivers->hours;
-  // Within each hour of the clock: what is more when it is dark.
-  std::array<std::array<std::array<Means, 2>, 24>, 2> means;
-  for (std::size_t i = 0; i < hours.size(); ++i) {
-    if (meter.group[i] < 0) continue;
-    const bool is_dark = hours[i].sine_of_sun_altitude < 0.0;
-    const auto day = hours[i].day == DayType::workday ? 0U : 1U;
-    means[day][static_cast<std::size_t>(hours[i].local_hour)][is_dark ? 1 : 0].add(kW[i]);
-  }
-  for (const auto& of_day : means) {
-    for (const auto& [from, to] : {std::pair{5U, 9U}, std::pair{16U, 22U}}) {
-      Means more;
-      for (std::size_t h = from; h < to; ++h) {
-        constexpr int kFewest = 15;
-        if (of_day[h][0].count < kFewest || of_day[h][1].count < kFewest) continue;
-        more.add(of_day[h][1].mean() - of_day[h][0].mean());
-      }
-      sheet.put(more.mean() / meter.mean_kW);
-    }
+    const std::array<double, kEdgeNames / 2> read{
+        usual,
+        median_of(off_h),
+        between(-90.0, 4.0) - mild,
+        between(20.0, 90.0) - mild,
+        median_where(edges, [](const Edge& edge) { return edge.monday; }) - usual,
+        saturdays.mean(kFewestDays),
+        sundays.mean(kFewestDays),
+        median_where(edges, [](const Edge& edge) { return edge.summer_time; }) -
+            median_where(edges, [](const Edge& edge) { return !edge.summer_time; }),
+        median_where(edges, [](const Edge& edge) { return edge.third == 2; }) -
+            median_where(edges, [](const Edge& edge) { return edge.third == 0; })};
+    values = std::copy(read.begin(), read.end(), values);
   }
 }
 
@@ -493,13 +576,58 @@ Eigen::MatrixXd SignatureReader::read(const Eigen::Ref<const Eigen::ArrayXXd>& h
   for (std::size_t m = 0; m < kSignatureMeters; ++m) {
     const Meter& meter = meters_[m];
     if (meter.column < 0) continue;
-    Sheet sheet({values.col(static_cast<Eigen::Index>(m)).data(), static_cast<std::size_t>(count)});
-    const double* kW = hours_kW.col(meter.column).data();
-    read_means(meter, kW, sheet);
-    for (const Regime& regime : meter.regimes) read_regime(regime, kW, meter.mean_kW, sheet);
-    read_edges(meter, kW, sheet);
-    read_darkness(meter, kW, sheet);
-    assert(sheet.is_full());
+    double* const into = values.col(static_cast<Eigen::Index>(m)).data();
+    const double* const kW = hours_kW.col(meter.column).data();
+    std::fill_n(into, count, 0.0);
+    add_linear(meter, kW, 0, meter.group.size(), into);
+    read_edges(edges_of(meter, kW), into + kEdgesFrom);
+  }
+  return values;
+}
+
+SpanReader::SpanReader(const SignatureReader& reader, const Eigen::ArrayXXd& base_kW)
+    : reader_(&reader), base_kW_(&base_kW), base_edge_values_(kEdgeNames, kSignatureMeters) {
+  for (std::size_t m = 0; m < kSignatureMeters; ++m) {
+    const auto& meter = reader.meters_[m];
+    if (meter.column < 0) continue;
+    base_edges_[m] = reader.edges_of(meter, base_kW.col(meter.column).data());
+    reader.read_edges(base_edges_[m], base_edge_values_.col(static_cast<Eigen::Index>(m)).data());
+  }
+}
+
+void SpanReader::take(const Eigen::Ref<const Eigen::ArrayXXd>& other_kW) {
+  more_kW_ = other_kW - *base_kW_;
+  for (std::size_t m = 0; m < kSignatureMeters; ++m) {
+    const auto& meter = reader_->meters_[m];
+    if (meter.column < 0) continue;
+    other_edges_[m] = reader_->edges_of(meter, other_kW.col(meter.column).data());
+  }
+}
+
+Eigen::MatrixXd SpanReader::change(int from_day, int to_day) const {
+  const auto count = static_cast<Eigen::Index>(signature_names().size());
+  const auto last = static_cast<int>(reader_->hours_before_.size()) - 1;
+  const auto hour_of = [&](int day) {
+    return static_cast<std::size_t>(
+        reader_->hours_before_[static_cast<std::size_t>(std::clamp(day, 0, last))]);
+  };
+  const std::size_t from = hour_of(from_day);
+  const std::size_t to = std::max(hour_of(to_day), from);
+  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(count, kSignatureMeters, kAbsent);
+  for (std::size_t m = 0; m < kSignatureMeters; ++m) {
+    const auto& meter = reader_->meters_[m];
+    if (meter.column < 0) continue;
+    auto into = values.col(static_cast<Eigen::Index>(m));
+    into.setZero();
+    reader_->add_linear(meter, more_kW_.col(meter.column).data(), from, to, into.data());
+    SignatureReader::DayEdges edges = base_edges_[m];
+    for (std::size_t d = 0; d < reader_->first_hour_.size(); ++d) {
+      const auto hour = static_cast<std::size_t>(reader_->first_hour_[d]);
+      const auto row = static_cast<Eigen::Index>(d);
+      if (hour >= from && hour < to) edges.row(row) = other_edges_[m].row(row);
+    }
+    reader_->read_edges(edges, into.data() + kEdgesFrom);
+    into.segment(kEdgesFrom, kEdgeNames) -= base_edge_values_.col(static_cast<Eigen::Index>(m));
   }
   return values;
 }

@@ -30,43 +30,71 @@ class SignatureReader {
   explicit SignatureReader(const SiteProblem& site);
 
   /// @param hours_kW  (hours x m) measured or modelled. Only hours that were measured count.
-  /// @return (names x meters) powers in units of the meter's measured mean, times in hours, shares
-  ///         of one; NaN where the site has no such meter, or too few such hours.
+  /// @return (names x meters) powers in units of the meter's measured mean, or of a twentieth of
+  /// all
+  ///         meters' where the meter counts less; times in hours, shares of one; NaN where the site
+  ///         has no such meter, or too few such hours.
   [[nodiscard]] Eigen::MatrixXd read(const Eigen::Ref<const Eigen::ArrayXXd>& hours_kW) const;
 
  private:
+  friend class SpanReader;
+
   /// Hours that are alike, averaged by day and regressed on weather and date.
   struct Regime {
     std::vector<int> row_of_hour;  ///< (hours) day of the regime; -1: not in it.
     std::vector<double> per_hour;  ///< (rows) 1 / hours measured.
-    Eigen::MatrixXd solve;         ///< (coefficients x rows) least squares with a small ridge.
-    Eigen::MatrixXd design;        ///< (rows x coefficients)
-    std::vector<int> block;        ///< (rows) twelfth of the record.
-    std::vector<int> weekday;      ///< (rows) 0…4 Monday to Friday of a working day; else -1.
-    std::vector<int> month;        ///< (rows) 0…11
-    std::vector<bool> free_day;    ///< (rows) a holiday from Monday to Friday.
-    std::vector<int> warmth;       ///< (rows) bin of outdoor temperature.
+    Eigen::MatrixXd of_rows;       ///< (signatures x rows) what each is of the days' powers.
   };
   struct Meter {
-    int column = -1;         ///< In hours_kW; -1: there is none.
-    double mean_kW = 0.0;    ///< Measured.
+    int column = -1;  ///< In hours_kW; -1: there is none.
+    double unit_kW = 1.0;
     std::vector<int> group;  ///< (hours) kind of day, season, two hours; -1: not measured.
+    std::vector<double> per_group_hour;  ///< (groups) 1 / hours measured; NaN: too few.
     std::vector<Regime> regimes;
+    std::vector<double> darkness;     ///< (hours) weight in its kind of darkness …
+    std::vector<int> dark_kind;       ///< … (hours) which is this; -1: none.
+    std::vector<double> no_darkness;  ///< (kinds) 0; NaN where there are too few hours.
   };
-  class Sheet;
+  /// When the load of each day begins and ends; NaN where it does not. (days of first_hour_ x 2)
+  using DayEdges = Eigen::ArrayX2d;
 
-  [[nodiscard]] Meter make_meter(int column) const;
+  [[nodiscard]] Meter make_meter(int column, double least_kW) const;
   [[nodiscard]] Regime make_regime(const Meter& meter, int kind) const;
-  void read_means(const Meter& meter, const double* kW, Sheet& sheet) const;
-  void read_regime(const Regime& regime, const double* kW, double mean_kW, Sheet& sheet) const;
-  void read_edges(const Meter& meter, const double* kW, Sheet& sheet) const;
-  void read_darkness(const Meter& meter, const double* kW, Sheet& sheet) const;
+  void make_darkness(Meter& meter) const;
+  /// Adds what the hours from one to another contribute to the signatures that are linear in power.
+  void add_linear(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
+                  double* values) const;
+  [[nodiscard]] DayEdges edges_of(const Meter& meter, const double* kW) const;
+  void read_edges(const DayEdges& edges, double* values) const;
 
   const SiteProblem* site_;
   std::array<Meter, kSignatureMeters> meters_;
   std::vector<int> first_hour_;    ///< (days) of each day that has all its hours.
+  std::vector<int> hours_before_;  ///< (day index + 1) hours of the record before that day.
   std::vector<double> day_C_;      ///< (day index) mean outdoor temperature.
   std::vector<double> morning_C_;  ///< (days of first_hour_) mean of 5 to 8 h.
+};
+
+/// Signatures of a record that is like another one but for some days: an effect from a date on
+/// costs no run of the model.
+class SpanReader {
+ public:
+  /// @param base_kW  (hours x m); must outlive the reader.
+  SpanReader(const SignatureReader& reader, const Eigen::ArrayXXd& base_kW);
+
+  /// @param other_kW  (hours x m)
+  void take(const Eigen::Ref<const Eigen::ArrayXXd>& other_kW);
+  /// @return (names x meters) by how much signatures change if the days from `from_day` up to and
+  ///         without `to_day` are those of the other record; NaN as in `SignatureReader::read`.
+  [[nodiscard]] Eigen::MatrixXd change(int from_day, int to_day) const;
+
+ private:
+  const SignatureReader* reader_;
+  const Eigen::ArrayXXd* base_kW_;
+  Eigen::ArrayXXd more_kW_;
+  std::array<SignatureReader::DayEdges, kSignatureMeters> base_edges_;
+  std::array<SignatureReader::DayEdges, kSignatureMeters> other_edges_;
+  Eigen::MatrixXd base_edge_values_;  ///< (edge names x meters)
 };
 
 }  // namespace recald::diagnosis

@@ -188,5 +188,60 @@ TEST_F(Signatures, OfAMeterThatReadsTwiceAsMuchMeansAreTwiceAndEdgesTheSame) {
   EXPECT_GT(known, 100);
 }
 
+// What is told of a span without reading the record anew.
+TEST_F(Signatures, OfASpanAreThoseOfTheMixedRecord) {
+  const Eigen::ArrayXXd other = hourly([&](const DriverHour& hour, Eigen::Index meter) {
+    const double earlier = hour.local_hour == 5 || hour.local_hour == 6 ? 40.0 : 0.0;
+    return meter == 1 ? 2.0 * std::max(17.0 - hour.dry_bulb_C, 0.0)
+                      : 12.0 + (hour.day == model::DayType::sunday_or_holiday ? 0.0 : earlier) +
+                            (hour.local_hour >= 7 && hour.local_hour < 20 ? 35.0 : 0.0);
+  });
+  constexpr int kFrom = 61;
+  constexpr int kTo = 240;
+  Eigen::ArrayXXd mixed = site_.measured_kW;
+  for (Eigen::Index i = 0; i < mixed.rows(); ++i) {
+    const int day = site_.drivers->hours[static_cast<std::size_t>(i)].day_index;
+    if (day >= kFrom && day < kTo) mixed.row(i) = other.row(i);
+  }
+  const SignatureReader reader(site_);
+  SpanReader spans(reader, site_.measured_kW);
+  spans.take(other);
+  const Eigen::MatrixXd change = spans.change(kFrom, kTo);
+  const Eigen::MatrixXd expected = reader.read(mixed) - reader.read(site_.measured_kW);
+  int known = 0;
+  for (Eigen::Index i = 0; i < change.size(); ++i) {
+    const double wanted = expected.data()[i];
+    if (!std::isfinite(wanted)) continue;
+    EXPECT_NEAR(change.data()[i], wanted, 1e-9) << i;
+    ++known;
+  }
+  EXPECT_GT(known, 200);
+  EXPECT_EQ(spans.change(30, 30).col(0)[3], 0.0) << "no day";
+}
+
+// Gas for a few taps: by its own mean it would seem to change many times over.
+TEST_F(Signatures, ASmallMeterIsMeasuredByWhatAllMetersCount) {
+  site_.measured_kW.col(1) *= 1e-3;
+  const double all_kW = site_.measured_kW.col(0).mean() + site_.measured_kW.col(1).mean();
+  const double night_kW = [&] {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < site_.drivers->hours.size(); ++i) {
+      const DriverHour& hour = site_.drivers->hours[i];
+      if (hour.local_hour > 1 || hour.day != model::DayType::workday) continue;
+      sum += site_.measured_kW(static_cast<Eigen::Index>(i), 1);
+      ++count;
+    }
+    return sum / count;
+  }();
+  double weighted = 0.0;
+  for (const char* season : {"cold", "mild", "hot"}) {
+    const double read = measured(kHeat, std::string("workday, ") + season + ", 00 to 02 h");
+    EXPECT_LT(read, 0.2) << season;
+    weighted = std::max(weighted, read);
+  }
+  EXPECT_GT(weighted, night_kW / (0.05 * all_kW) * 0.9) << "the cold nights are the highest";
+}
+
 }  // namespace
 }  // namespace recald::diagnosis::signatures_test
