@@ -15,9 +15,11 @@
 #include "tests/blind/running/baseline_lines.hpp"
 #include "tests/blind/running/calibration_line.hpp"
 #include "tests/blind/running/diagnosis_line.hpp"
+#include "tests/blind/running/drift_line.hpp"
 #include "tests/blind/scoring/answers.hpp"
 #include "tests/blind/scoring/calibration_scores.hpp"
 #include "tests/blind/scoring/case_range.hpp"
+#include "tests/blind/scoring/drift_scores.hpp"
 #include "tests/blind/scoring/files.hpp"
 #include "tests/blind/scoring/gap_scores.hpp"
 #include "tests/blind/scoring/result_log.hpp"
@@ -119,8 +121,9 @@ class Runner {
  private:
   [[nodiscard]] bool is_oracle() const { return request_.method == kOracle; }
   [[nodiscard]] bool is_calibration() const { return request_.method == kCalibrate; }
+  [[nodiscard]] bool is_drift() const { return request_.method == kDrift; }
   [[nodiscard]] const char* written() const {
-    return is_calibration() ? "calibration.json" : "diagnosis.json";
+    return is_calibration() ? "calibration.json" : is_drift() ? "drift.json" : "diagnosis.json";
   }
 
   /// Those of the range without a line.
@@ -202,12 +205,14 @@ class Runner {
 
   [[nodiscard]] std::vector<std::string> arguments_of(const std::string& case_id,
                                                       const fs::path& folder) const {
-    std::vector<std::string> arguments{is_calibration() ? "calibrate" : "diagnose",
-                                       (population_ / case_id / "site.toml").string(),
-                                       "--out",
-                                       folder.string(),
-                                       "--seed",
-                                       kSeed};
+    std::vector<std::string> arguments{
+        is_calibration() || is_drift() ? request_.method : "diagnose",
+        (population_ / case_id / "site.toml").string(),
+        "--out",
+        folder.string(),
+        "--seed",
+        kSeed};
+    if (is_drift()) arguments.insert(arguments.end(), {"--threads", "1"});
     if (!is_oracle()) return arguments;
     for (const std::string& assumed : assumed_.at(case_id).arguments) {
       arguments.insert(arguments.end(), {"--assume", assumed});
@@ -263,6 +268,7 @@ class Runner {
 
   [[nodiscard]] Result<Json> line_of(const Json& diagnosis, const CaseRun& run) const {
     if (is_calibration()) return calibration_line(diagnosis, run);
+    if (is_drift()) return drift_line(diagnosis, run);
     return is_oracle() ? oracle_line(diagnosis, run, assumed_.at(run.case_id).effects)
                        : diagnosis_line(diagnosis, run);
   }
@@ -311,8 +317,8 @@ std::optional<Error> misuse_of(const RunRequest& request) {
   std::string what;
   if (oracle == request.answers.empty()) {
     what = oracle ? "method oracle needs --answers" : "--answers is for method oracle alone";
-  } else if (request.baselines && request.method == kCalibrate) {
-    what = "baselines come from a diagnosis, not from a calibration";
+  } else if (request.baselines && (request.method == kCalibrate || request.method == kDrift)) {
+    what = "baselines come from a diagnosis, not from a calibration or from drift";
   } else if (oracle && request.baselines) {
     what = "baselines come from a diagnosis that was told nothing";
   } else if (std::ranges::find(kBaselines, request.method) != kBaselines.end()) {

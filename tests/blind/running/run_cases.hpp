@@ -16,8 +16,8 @@ struct RunRequest {
   std::filesystem::path population;  ///< Holds a folder a case, or `cases/` that does.
   std::filesystem::path results;     ///< Made if absent; lines that are there are not made again.
   std::filesystem::path program;     ///< recald
-  /// "oracle": told what is hidden, needs `answers`; "calibrate": `recald calibrate` of the site's
-  /// first model instead of a diagnosis.
+  /// "oracle": told what is hidden, needs `answers`; "calibrate", "drift": that command
+  /// instead of a diagnosis.
   std::string method = "recald";
   std::filesystem::path answers;  ///< Read for the oracle and by nobody else.
   std::filesystem::path keep;     ///< Gets what each case wrote, as CASE.json; empty: none is kept.

@@ -25,7 +25,7 @@ void add_options(CLI::App& app, RunRequest& request) {
       ->required();
   app.add_option(
          "--method", request.method,
-         "its name in the results; oracle needs --answers, calibrate runs `recald calibrate`")
+         "its name in the results; oracle needs --answers; calibrate and drift run those commands")
       ->capture_default_str();
   app.add_option("--answers", request.answers, "folder with <case>.json, for method oracle");
   app.add_option("--jobs", request.jobs, "diagnoses at a time")
@@ -37,7 +37,7 @@ void add_options(CLI::App& app, RunRequest& request) {
       ->check(CLI::PositiveNumber);
   app.add_flag("--baselines", request.baselines, "also lines of simpler methods");
   app.add_option("--keep", request.keep,
-                 "folder that gets each case's diagnosis.json or calibration.json");
+                 "folder that gets each case's diagnosis.json, calibration.json or drift.json");
   app.add_option("--recald", request.program, "the program")->capture_default_str();
 }
 

@@ -111,6 +111,34 @@ END)sh");
   EXPECT_EQ(line(1)["extra"]["failed"], "calibration.json has no 'before' of unseen months");
 }
 
+TEST_F(BlindRun, MonthsFollowedInThePlaceOfADiagnosis) {
+  add_case("a", R"sh(cat > "$out/drift.json" <<'END'
+{"months": ["2021-01", "2021-02", "2021-03", "2021-04"], "learning_months": 2,
+ "alarms": [{"month": "2021-04", "causes": [
+   {"kind": "use", "subject": "electricity use", "probability": 0.7},
+   {"kind": "nothing", "subject": null, "probability": 0.3}]},
+  {"month": "2021-03", "causes": []}],
+ "meter_changes": [{"meter": "gas", "kind": "scale", "since": "2021-04"},
+                   {"meter": "steam", "kind": "level", "since": "2021-01"}]}
+END)sh");
+  add_case("b", R"sh(echo '{"months": ["2021-01"], "learning_months": 1}' > "$out/drift.json")sh");
+  ASSERT_EQ(run("--jobs 1 --method drift"), 0) << said_;
+  EXPECT_THAT(testing::read_text(folder_ / "calls"), HasSubstr("a drift "));
+  EXPECT_THAT(testing::read_text(folder_ / "calls"), HasSubstr("--threads 1"));
+  const auto lines = results();
+  ASSERT_EQ(lines.size(), 2u);
+  ASSERT_TRUE(lines[0].drift);
+  EXPECT_EQ(lines[0].drift->from, "2021-03");
+  EXPECT_EQ(lines[0].drift->to, "2021-04");
+  ASSERT_EQ(lines[0].drift->alarms.size(), 3u);
+  EXPECT_EQ(lines[0].drift->alarms[0].kind, "use");
+  EXPECT_EQ(lines[0].drift->alarms[1].kind, "nothing");
+  EXPECT_EQ(lines[0].drift->alarms[2].kind, "meter");
+  EXPECT_EQ(lines[0].drift->alarms[2].subject, "gas");
+  EXPECT_FALSE(lines[1].drift);
+  EXPECT_EQ(line(1)["extra"]["failed"], "drift.json watches no month");
+}
+
 TEST_F(BlindRun, GoesOnWhereItWasStopped) {
   for (const char* name : {"a", "b", "c", "d"}) add_case(name);
   ASSERT_EQ(run("--jobs 1 --cases 2-3"), 0) << said_;

@@ -2,11 +2,14 @@
 
 #include <vector>
 
+#include "tests/blind/scoring/drift_scores.hpp"
 #include "tests/blind/scoring/gap_scores.hpp"
 
 namespace recald::blind {
 
-bool competes(std::string_view method) { return method != kOracle && method != kCalibrate; }
+bool competes(std::string_view method) {
+  return method != kOracle && method != kCalibrate && method != kDrift;
+}
 
 Calibrations calibrations_of(std::span<const CaseResult> results) {
   Calibrations calibrations;

@@ -15,7 +15,7 @@ namespace recald::blind {
 /// The method whose lines tell of a calibration instead of a diagnosis.
 inline constexpr std::string_view kCalibrate = "calibrate";
 
-/// Whether a method answers for itself: neither the oracle nor a calibration does.
+/// Whether a method answers for itself: the oracle, a calibration and what follows drift do not.
 [[nodiscard]] bool competes(std::string_view method);
 
 /// By case.

@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kOutcomes{"named", "confusable", "unknown", "none"};
 
 // "extra" is free for whatever else a method wants to keep; nothing of it is scored.
-constexpr std::array<std::string_view, 17> kKeys{"case",
+constexpr std::array<std::string_view, 18> kKeys{"case",
                                                  "method",
                                                  "outcome",
                                                  "named",
@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 17> kKeys{"case",
                                                  "parameters_after",
                                                  "effect_parameter",
                                                  "calibration",
+                                                 "drift",
                                                  "located",
                                                  "wall_s",
                                                  "peak_rss_MB",
@@ -112,6 +113,19 @@ void read_said(JsonFields& line, CaseResult& result) {
   }
 }
 
+Drift read_drift(JsonFields& fields) {
+  constexpr std::array<std::string_view, 5> kKinds{"meter", "parameter", "use", "unknown",
+                                                   "nothing"};
+  Drift drift{.from = fields.name("from"), .to = fields.name("to")};
+  fields.each("alarms", [&](const std::string&, JsonFields& alarm) {
+    drift.alarms.push_back({.month = alarm.name("month"),
+                            .kind = alarm.word("kind", kKinds),
+                            .subject = alarm.text("subject"),
+                            .probability = alarm.number("probability", {.min = 0.0, .max = 1.0})});
+  });
+  return drift;
+}
+
 void read_fit(JsonFields& line, CaseResult& result) {
   if (line.has("gap")) {
     line.object("gap", [&](JsonFields& fields) { result.gap = read_gap(fields); });
@@ -130,6 +144,9 @@ void read_fit(JsonFields& line, CaseResult& result) {
                                    .forecast = fields.number("forecast", positive),
                                    .yardstick = fields.number("yardstick", positive)};
     });
+  }
+  if (line.has("drift")) {
+    line.object("drift", [&](JsonFields& fields) { result.drift = read_drift(fields); });
   }
   result.parameters_before = read_posteriors(line, "parameters_before");
   result.parameters_after = read_posteriors(line, "parameters_after");

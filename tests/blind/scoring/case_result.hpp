@@ -62,6 +62,21 @@ struct EffectInterval {
   std::string unit;  ///< Empty: the answer's.
 };
 
+/// An alarm and its likeliest cause.
+struct DriftCause {
+  std::string month;    ///< "2022-03", in which it was raised.
+  std::string kind;     ///< "meter", "parameter", "use", "unknown"; "nothing": nothing is blamed.
+  std::string subject;  ///< The meter or parameter; may be empty.
+  double probability = 0.0;
+};
+
+/// What was said month by month.
+struct Drift {
+  std::string from;  ///< First and last month that were watched.
+  std::string to;
+  std::vector<DriftCause> alarms;
+};
+
 struct CaseResult {
   std::string case_id;
   std::string method;
@@ -75,6 +90,7 @@ struct CaseResult {
   std::map<std::string, Posterior> parameters_after;
   std::optional<EffectInterval> effect_parameter;
   std::map<std::string, CalibrationFit> calibration;  ///< By meter; of method "calibrate".
+  std::optional<Drift> drift;                         ///< Of method "drift".
   std::optional<std::vector<std::string>> located;    ///< Meters, the one most amiss first.
   std::optional<double> wall_s;
   std::optional<double> peak_rss_MB;

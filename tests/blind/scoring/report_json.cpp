@@ -159,6 +159,17 @@ Json of_calibration(const CalibrationScores& calibration) {
           {"yardstick_better", of(calibration.beaten)}};
 }
 
+Json of_drift(const DriftScores& drift) {
+  return {{"found", of(drift.found)},
+          {"found_large", of(drift.found_large)},
+          {"delay_months", of(drift.delay_months)},
+          {"alarmed_too_early", of(drift.early)},
+          {"cause_right", of(drift.cause_right)},
+          {"side_right", of(drift.side_right)},
+          {"sure_cause_right", of(drift.sure_right)},
+          {"false_alarms", of(drift.false_alarms)}};
+}
+
 Json of_world(const WorldScores& world) {
   return {{"world", world.world},
           {"cases", world.cases},
@@ -166,6 +177,7 @@ Json of_world(const WorldScores& world) {
           {"probability", of_probability(world.probability)},
           {"gap", of_gap(world.gap)},
           {"nothing_hidden", of_calibration(world.calibration)},
+          {"drift", of_drift(world.drift)},
           {"wall_s", of(world.cost.wall_s)},
           {"peak_rss_MB", of(world.cost.peak_rss_MB)}};
 }

@@ -65,13 +65,14 @@ void score_worlds(const ScoredCases& cases, std::span<const CaseResult> results,
                   const ScoringOptions& options, Scores& scores) {
   const OracleGaps oracles = oracle_gaps(results);
   const Calibrations calibrations = calibrations_of(results);
+  const Drifts drifts = drifts_of(results);
   std::map<std::string, ScoredCases> worlds;
   for (const ScoredCase& scored : cases) worlds[scored.answer->world].push_back(scored);
   for (const auto& [world, of] : worlds) {
-    const WorldScores& one = scores.worlds.emplace_back(
-        WorldScores{world, static_cast<int>(of.size()), naming_scores(of),
-                    probability_scores(of, options.reliability_bins), gap_scores(of, oracles),
-                    calibration_scores(of, calibrations), cost_scores(of)});
+    const WorldScores& one = scores.worlds.emplace_back(WorldScores{
+        world, static_cast<int>(of.size()), naming_scores(of),
+        probability_scores(of, options.reliability_bins), gap_scores(of, oracles),
+        calibration_scores(of, calibrations), drift_scores(of, drifts), cost_scores(of)});
     for (Target& each : targets(world, one.naming, one.probability, one.gap, one.cost)) {
       scores.targets.push_back(std::move(each));
     }

@@ -9,6 +9,7 @@
 #include "tests/blind/scoring/calibration_scores.hpp"
 #include "tests/blind/scoring/comparison.hpp"
 #include "tests/blind/scoring/cost_scores.hpp"
+#include "tests/blind/scoring/drift_scores.hpp"
 #include "tests/blind/scoring/gap_scores.hpp"
 #include "tests/blind/scoring/naming_scores.hpp"
 #include "tests/blind/scoring/probability_scores.hpp"
@@ -32,6 +33,7 @@ struct WorldScores {
   ProbabilityScores probability;
   GapScores gap;
   CalibrationScores calibration;
+  DriftScores drift;
   CostScores cost;
 };
 
