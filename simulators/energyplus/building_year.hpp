@@ -56,6 +56,11 @@ class BuildingYear {
   [[nodiscard]] const Quarters& schedule(const std::string& name) const {
     return schedules_.at(name);
   }
+  /// nullptr where the model has none of this name, or a constant that EnergyPlus does not tell of.
+  [[nodiscard]] const Quarters* find_schedule(const std::string& name) const {
+    const auto found = schedules_.find(name);
+    return found == schedules_.end() ? nullptr : &found->second;
+  }
 
   /// `change(day, quarter, value)` gives each schedule of the role its new values.
   template <class Change>

@@ -197,12 +197,12 @@ void add_room_units(Json& model, const Drawings& drawings, const Group& group, A
     switch (system) {
       case AirSystem::fan_coils:
         zone["outdoor_air_schedule_name"] = name + " outdoor air";
-        zone["capacity_control_method"] = "CyclingFan";
+        zone["capacity_control_method"] = "ConstantFanVariableFlow";
         model["HVACTemplate:Zone:FanCoil"][room.name + " fan coil"] = zone;
         break;
       case AirSystem::outdoor_air_units:
         zone["dedicated_outdoor_air_system_name"] = "Outdoor air";
-        zone["capacity_control_method"] = "CyclingFan";
+        zone["capacity_control_method"] = "ConstantFanVariableFlow";
         model["HVACTemplate:Zone:FanCoil"][room.name + " fan coil"] = zone;
         break;
       case AirSystem::packaged_rooms: {

@@ -357,7 +357,9 @@ Result<Json> with_sizes(Json model, const fs::path& sql) {
           most = alike;
           best = &size;
         }
-        if (best != nullptr) value = best->value;
+        if (best == nullptr) continue;
+        // EnergyPlus refuses the frost in which it sized the coil itself.
+        value = field == "design_inlet_air_temperature" ? std::max(best->value, 0.0) : best->value;
       }
     }
   }

@@ -179,6 +179,7 @@ class Hider {
     }
     const Recording with = building_.recording_of(hidden.loads);
     const HiddenEffects effects = in_meters(candidate, strength);
+    std::vector<double> wholes_kW;
     for (std::size_t meter = 0; meter < building_.meters().size(); ++meter) {
       std::vector<double> footprint_kW =
           metered_kW(with, building_.meters()[meter].utility, effects, building_.calendar());
@@ -191,7 +192,9 @@ class Hider {
       }
       hidden.share_of_meter.push_back(whole_kW > 0.0 ? net_kW / whole_kW : 0.0);
       hidden.moved_share.push_back(moved_share(footprint_kW, blocks_, whole_kW));
+      wholes_kW.push_back(whole_kW);
     }
+    leave_out_small_meters(wholes_kW, hidden.moved_share);
     return hidden;
   }
 

@@ -21,6 +21,7 @@ using recald::testing::read_text;
 using recald::testing::TemporaryFolder;
 using simulators::energyplus::hidden_change;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::vector<EplusCasePlan> plans_of(const char* name, std::uint64_t seed) {
   return plan_eplus(*population_kind("energyplus", name), seed);
@@ -251,6 +252,9 @@ TEST_F(InEnergyPlus, TheSiteFileTellsWhatDrawingsTell) {
   EXPECT_THAT(site, HasSubstr("heating_unoccupied_C = 17.0"));
   EXPECT_THAT(site, HasSubstr("name = \"south windows\""));
   EXPECT_THAT(site, HasSubstr("chiller_cop"));
+  EXPECT_THAT(site, HasSubstr("reheat_boxes = true"));
+  EXPECT_THAT(site, HasSubstr("outdoor_air_unoccupied_fraction = 0.0"));
+  EXPECT_THAT(site, Not(HasSubstr("saturday_occupied")));
   EXPECT_THAT(site, HasSubstr("calibration = { from = \"2021-01\", to = \"2021-08\" }"));
   EXPECT_THAT(site, HasSubstr("validation = { from = \"2021-09\", to = \"2021-12\" }"));
 }

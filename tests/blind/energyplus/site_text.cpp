@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -176,10 +177,12 @@ std::string list_of(const std::array<double, 24>& values) {
   return list;
 }
 
-/// From and to which hour of a working day the building is kept for people.
-std::pair<int, int> occupied_hours(const BuildingYear& drawings) {
-  const auto cooling = by_hour(drawings, Role::cooling_setpoint, DayKind::workday);
-  const auto fans = by_hour(drawings, Role::fans, DayKind::workday);
+/// From and to which hour of a day of this kind the building is kept for people. By set-points,
+/// where they are set back at night; else by the fans.
+std::pair<int, int> occupied_hours(const BuildingYear& drawings, DayKind kind) {
+  const auto workday = by_hour(drawings, Role::cooling_setpoint, DayKind::workday);
+  const auto cooling = by_hour(drawings, Role::cooling_setpoint, kind);
+  const auto fans = by_hour(drawings, Role::fans, kind);
   const auto hours_where = [](const auto& is_on) {
     int first = 24;
     int last = 0;
@@ -188,14 +191,65 @@ std::pair<int, int> occupied_hours(const BuildingYear& drawings) {
       first = std::min(first, hour);
       last = hour + 1;
     }
-    return first < last ? std::pair(first, last) : std::pair(0, 24);
+    return first < last ? std::pair(first, last) : std::pair(0, 0);
   };
   constexpr double kSetBack_K = 1.0;
-  const double least = *std::ranges::min_element(cooling);
-  if (*std::ranges::max_element(cooling) - least > kSetBack_K) {
+  const double least = *std::ranges::min_element(workday);
+  if (*std::ranges::max_element(workday) - least > kSetBack_K) {
     return hours_where([&](std::size_t hour) { return cooling[hour] < least + 0.5 * kSetBack_K; });
   }
   return hours_where([&](std::size_t hour) { return fans[hour] > 0.5; });
+}
+
+/// A flow of outdoor air, and the schedule that its plant follows.
+struct OutdoorAir {
+  std::string_view type;
+  const char* flow;
+  const char* schedule;
+};
+constexpr std::array kOutdoorAir{
+    OutdoorAir{"Controller:OutdoorAir", "minimum_outdoor_air_flow_rate",
+               "minimum_outdoor_air_schedule_name"},
+    OutdoorAir{"ZoneHVAC:", "maximum_outdoor_air_flow_rate", "outdoor_air_schedule_name"},
+    OutdoorAir{"ZoneHVAC:", "cooling_outdoor_air_flow_rate",
+               "supply_air_fan_operating_mode_schedule_name"},
+    OutdoorAir{"DesignSpecification:OutdoorAir", "outdoor_air_flow_per_zone_floor_area",
+               "outdoor_air_schedule_name"},
+};
+
+/// Mean at an hour of the working days.
+double at_hour(const BuildingYear& drawings, const Quarters& quarters, std::size_t hour) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t day = 0; day < drawings.days().size(); ++day) {
+    if (drawings.kind_of(day) != DayKind::workday) continue;
+    sum += quarters[day * kQuartersPerDay + 4 * hour];
+    count += 1.0;
+  }
+  return sum / count;
+}
+
+/// Share of the outdoor air whose plant runs at an hour of the working days.
+double share_running_at(const BuildingYear& drawings, std::size_t hour) {
+  const double fans =
+      drawings.has(Role::fans) ? by_hour(drawings, Role::fans, DayKind::workday)[hour] : 0.0;
+  double all = 0.0;
+  double running = 0.0;
+  for (const OutdoorAir& outdoor : kOutdoorAir) {
+    if (all > 0.0) break;  // the same air would be counted again
+    for (const auto& [type, objects] : drawings.model().items()) {
+      if (!type.starts_with(outdoor.type)) continue;
+      for (const auto& [name, object] : objects.items()) {
+        if (!object.contains(outdoor.flow) || !object[outdoor.flow].is_number()) continue;
+        const double flow = object[outdoor.flow].template get<double>();
+        const Quarters* const follows =
+            drawings.find_schedule(in_capitals(object.value(outdoor.schedule, "")));
+        all += flow;
+        running += flow * std::min(follows ? at_hour(drawings, *follows, hour) : fans, 1.0);
+      }
+    }
+  }
+  return all > 0.0 ? running / all : 0.0;
 }
 
 double sum_of(Json model, std::string_view type, std::initializer_list<const char*> fields) {
@@ -244,12 +298,24 @@ double economiser_limit_C(const Json& model) {
   return 0.0;
 }
 
+constexpr std::size_t kDeepNight_h = 3;
+
 std::string operation(const SiteFacts& facts, const SizedModel& sized, const BuildingYear& drawings,
                       double floor_m2, Memory& memory) {
   const auto cooling = by_hour(drawings, Role::cooling_setpoint, DayKind::workday);
   const auto heating = by_hour(drawings, Role::heating_setpoint, DayKind::workday);
-  const auto [from, to] = occupied_hours(drawings);
-  const auto saturday = by_hour(drawings, Role::fans, DayKind::saturday);
+  auto [from, to] = occupied_hours(drawings, DayKind::workday);
+  if (from == to) to = 24;
+  const auto is_open = [&](DayKind kind) {
+    const auto [opens, closes] = occupied_hours(drawings, kind);
+    return 2 * (closes - opens) > to - from;
+  };
+  const double always_share =
+      from == 0 && to == 24 ? 1.0 : share_running_at(drawings, kDeepNight_h);
+  const bool boxes = sized.model.contains("AirTerminal:SingleDuct:VAV:Reheat");
+  const double recovery =
+      first_of(sized.model,
+               "HeatExchanger:AirToAir:", "sensible_effectiveness_at_100_heating_air_flow", 0.0);
   double fan_m3_s = 0.0;
   double fan_W = 0.0;
   const Table& fans = table_of(sized, "Fans");
@@ -277,12 +343,14 @@ heating_occupied_C = {:.1f}
 heating_unoccupied_C = {:.1f}
 occupied_from = {}
 occupied_to = {}
-{}
+{}{}
 [building.infiltration]
 ela_cm2_m2 = {}
 
 [building.air]
+reheat_boxes = {}
 outdoor_air_m3_s = {}
+outdoor_air_unoccupied_fraction = {:.1f}
 supply_flow_design_m3_s = {}
 supply_flow_min_m3_s = {}
 supply_temperature_C = {:.1f}
@@ -291,11 +359,13 @@ pump_design_kW = {}
 )",
       *std::ranges::min_element(cooling), *std::ranges::max_element(cooling),
       *std::ranges::max_element(heating), *std::ranges::min_element(heating), from, to,
-      *std::ranges::max_element(saturday) > 0.5 ? "saturday_occupied = true\n" : "",
-      memory.of(facts.leakage_cm2_m2, 0.2), memory.of(outdoor_m3_s, 0.1), memory.of(fan_m3_s, 0.08),
-      memory.of(std::max(std::min(least, 1.0) * fan_m3_s, 0.02), 0.08), supply_C,
-      memory.of(1e-3 * fan_W, 0.1), memory.of(1e-3 * pump_W, 0.1));
+      is_open(DayKind::saturday) ? "saturday_occupied = true\n" : "",
+      is_open(DayKind::sunday) ? "sunday_occupied = true\n" : "",
+      memory.of(facts.leakage_cm2_m2, 0.2), boxes, memory.of(outdoor_m3_s, 0.1), always_share,
+      memory.of(fan_m3_s, 0.08), memory.of(std::max(std::min(least, 1.0) * fan_m3_s, 0.02), 0.08),
+      supply_C, memory.of(1e-3 * fan_W, 0.1), memory.of(1e-3 * pump_W, 0.1));
   const double lockout_C = economiser_limit_C(sized.model);
+  if (recovery > 0.0) text += fmt::format("heat_recovery = {:.2f}\n", recovery);
   if (lockout_C > 0.0) text += fmt::format("economiser_lockout_C = {:.0f}\n", lockout_C);
   return text + "\n";
 }

@@ -28,6 +28,7 @@ struct Footprint {
 Footprint shares_of(const std::vector<std::vector<double>>& footprint_kW, const Simulated& twin,
                     const std::vector<MeterPlate>& plates, const std::vector<std::size_t>& blocks) {
   Footprint shares;
+  std::vector<double> wholes_kW;
   for (std::size_t meter = 0; meter < plates.size(); ++meter) {
     double whole_kW = 0.0;
     double net_kW = 0.0;
@@ -37,7 +38,9 @@ Footprint shares_of(const std::vector<std::vector<double>>& footprint_kW, const 
     }
     shares.signed_share.push_back(whole_kW > 0.0 ? net_kW / whole_kW : 0.0);
     shares.moved_share.push_back(moved_share(footprint_kW[meter], blocks, whole_kW));
+    wholes_kW.push_back(whole_kW);
   }
+  leave_out_small_meters(wholes_kW, shares.moved_share);
   return shares;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace recald::blind {
 
@@ -27,6 +28,14 @@ double moved_share(const std::vector<double>& footprint_kW, const std::vector<st
   double moved_kW = 0.0;
   for (const double block_kW : sum_kW) moved_kW += std::abs(block_kW);
   return whole_kW > 0.0 ? moved_kW / whole_kW : 0.0;
+}
+
+void leave_out_small_meters(std::span<const double> whole_kW, std::span<double> moved_shares) {
+  constexpr double kSmall = 0.02;
+  const double all_kW = std::accumulate(whole_kW.begin(), whole_kW.end(), 0.0);
+  for (std::size_t meter = 0; meter < whole_kW.size(); ++meter) {
+    if (whole_kW[meter] < kSmall * all_kW) moved_shares[meter] = 0.0;
+  }
 }
 
 }  // namespace recald::blind

@@ -1,6 +1,7 @@
 /// How strong an effect is as a client counts: in shares of a meter.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "simulators/feed/recording.hpp"
@@ -16,5 +17,9 @@ namespace recald::blind {
 /// strength.
 [[nodiscard]] double moved_share(const std::vector<double>& footprint_kW,
                                  const std::vector<std::size_t>& blocks, double whole_kW);
+
+/// Sets the shares of meters to zero that count less than 2 % of what all meters count: a gas meter
+/// for a few taps may double, and nobody would call that a strong effect.
+void leave_out_small_meters(std::span<const double> whole_kW, std::span<double> moved_shares);
 
 }  // namespace recald::blind

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+
+#include "tests/blind/population/moved_share.hpp"
 
 namespace recald::blind {
 namespace {
@@ -58,6 +61,13 @@ TEST(ShareSearch, PassesOnWhatWasRefused) {
     return failure(ErrorCode::io_failed, "disk full");
   });
   EXPECT_EQ(refused.error().message, "disk full");
+}
+
+TEST(MovedShare, OfAMeterThatHardlyCountsIsNothing) {
+  const std::array whole_kW{1000.0, 15.0, 30.0};
+  std::array shares{0.02, 0.9, 0.4};
+  leave_out_small_meters(whole_kW, shares);
+  EXPECT_EQ(shares, (std::array{0.02, 0.0, 0.4}));
 }
 
 }  // namespace
