@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kFirstDay = 28;  ///< A date this close to an end of the record shows nothing.
 constexpr int kDaysBetween = 56;
-constexpr std::array<int, 3> kLasting_days{56, 112, 196};
+constexpr std::array<int, 3> kLastingDays{56, 112, 196};
 
 struct Span {
   int from;
@@ -22,7 +22,7 @@ std::vector<Span> spans_of(const Candidate& candidate, int days) {
   for (int from = kFirstDay; from < days - kFirstDay; from += kDaysBetween) {
     spans.push_back({from, days});
     if (!candidate.ends) continue;
-    for (const int lasting : kLasting_days) {
+    for (const int lasting : kLastingDays) {
       if (from + lasting < days) spans.push_back({from, from + lasting});
     }
   }

@@ -17,11 +17,11 @@ struct SignatureFit {
   Eigen::VectorXd scores;     ///< (q) where the fit is, in standard scores of the priors.
   std::vector<double> theta;  ///< (q) the same in the parameters' units.
   Eigen::ArrayXXd hours_kW;   ///< (hours x m) of the fitted model.
-  double objective = 0.0;     ///< Half of it from the priors, half from the signatures; squares.
+  double objective = 0.0;  ///< Squared scores plus squared misfits, a dozen of which count as one.
 };
 
-/// Gauss-Newton on rough, fixed spreads of the signatures and the original priors. Steps are halved
-/// where they make it worse. Signatures repeat each other, so a dozen count as one.
+/// Gauss-Newton on rough, fixed spreads of the signatures and the original priors. Steps are
+/// shortened where they make it worse. Signatures repeat each other, so a dozen count as one.
 /// @param predictor  Of the same site; what it has accepted counts.
 [[nodiscard]] SignatureFit fit_signatures(const SiteProblem& site, const SignatureReader& reader,
                                           Predictor& predictor);

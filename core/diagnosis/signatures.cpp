@@ -327,7 +327,13 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
     morning_C_.push_back(sum_C / 3.0);
   }
   double all_kW = 0.0;
-  for (const double mean_kW : site.facts().mean_kW) all_kW += mean_kW;
+  for (Eigen::Index g = 0; g < site.measured_kW.cols(); ++g) {
+    Means meter;
+    for (const double kW : site.measured_kW.col(g)) {
+      if (std::isfinite(kW)) meter.add(kW);
+    }
+    if (meter.count > 0) all_kW += meter.mean();
+  }
   const auto make = [&](int column) {
     // A meter that counts next to nothing must not look as if it changed by many times itself.
     constexpr double kLeastShare = 0.05;

@@ -31,9 +31,9 @@ class SignatureReader {
 
   /// @param hours_kW  (hours x m) measured or modelled. Only hours that were measured count.
   /// @return (names x meters) powers in units of the meter's measured mean, or of a twentieth of
-  /// all
-  ///         meters' where the meter counts less; times in hours, shares of one; NaN where the site
-  ///         has no such meter, or too few such hours.
+  /// the
+  ///         sum of all meters' means where that is more; times in hours, shares of one; NaN where
+  ///         the site has no such meter, or too few such hours.
   [[nodiscard]] Eigen::MatrixXd read(const Eigen::Ref<const Eigen::ArrayXXd>& hours_kW) const;
 
  private:
@@ -55,7 +55,8 @@ class SignatureReader {
     std::vector<int> dark_kind;       ///< … (hours) which is this; -1: none.
     std::vector<double> no_darkness;  ///< (kinds) 0; NaN where there are too few hours.
   };
-  /// When the load of each day begins and ends; NaN where it does not. (days of first_hour_ x 2)
+  /// (days of first_hour_ x 2) hours at which the load begins and ends; infinite where it does not,
+  /// NaN on days that were not measured.
   using DayEdges = Eigen::ArrayX2d;
 
   [[nodiscard]] Meter make_meter(int column, double least_kW) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 namespace recald::metering {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr std::size_t kReferenceYears = 3;
 constexpr std::size_t kStepMonths = 3;
 constexpr double kBeyondWeather = 2.0;  // times the largest month ever
+constexpr std::chrono::months kRowWithin{6};
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -43,7 +45,7 @@ class LevelWatch {
     const std::optional<double> reference = reference_for(figure.month);
     if (reference && !is_small(level, *reference)) {
       judge({&figure, level, level - *reference});
-    } else if (!open_) {
+    } else if (!open_ && stepped_.empty()) {
       accept_level(figure.month, level);
     }
   }
@@ -102,10 +104,10 @@ class LevelWatch {
     if (std::abs(month.step) > std::log(options_.scale_factor_min)) {
       judge_step(month, expected.scale);
     } else {
-      stepped_.clear();
+      give_up_step();
       if (!open_) watch(month);
+      remember(month.log_ratio);
     }
-    if (stepped_.empty()) remember(month.log_ratio);
     if (open_) count_return(month.figure->month, std::abs(month.z) <= options_.z_max / 2.0);
   }
 
@@ -116,14 +118,28 @@ class LevelWatch {
 
   /// A month a whole factor off. Where one such month may be the weather, it waits for another.
   void judge_step(const Compared& month, double scale) {
-    if (!stepped_.empty() && (stepped_.back().step > 0.0) != (month.step > 0.0)) stepped_.clear();
+    if (!stepped_.empty()) {
+      const Compared& last = stepped_.back();
+      const bool is_same_side = (last.step > 0.0) == (month.step > 0.0);
+      const auto apart = month.figure->month - last.figure->month;
+      if (!is_same_side || apart > kRowWithin) give_up_step();
+    }
     stepped_.push_back(month);
     const bool is_beyond_weather = month.level > largest_level_ + std::log(kBeyondWeather);
     if (static_cast<int>(stepped_.size()) < options_.scale_months && !is_beyond_weather) return;
-    open(LevelChangeKind::scale, stepped_.front(), stepped_.front().step / scale);
+    const std::vector<Compared> row = std::exchange(stepped_, {});
+    open(LevelChangeKind::scale, row.front(), row.front().step / scale, month.figure->month);
     recent_.clear();  // report the step only once
-    for (const Compared& each : stepped_) remember(each.log_ratio);
-    stepped_.clear();
+    for (const Compared& each : row) remember(each.log_ratio);
+  }
+
+  /// No unit, but still a month unlike others.
+  void give_up_step() {
+    const std::vector<Compared> alone = std::exchange(stepped_, {});
+    for (const Compared& month : alone) {
+      if (!open_) watch(month);
+      remember(month.log_ratio);
+    }
   }
 
   /// No change is open: one month far off, or several in a row off to the same side, opens one.
@@ -140,7 +156,7 @@ class LevelWatch {
     const bool persistent = static_cast<int>(doubted_.size()) >= options_.months_persistent;
     if (std::abs(month.z) > options_.z_max || persistent) {
       const Compared first = doubted_.front();
-      open(LevelChangeKind::level, first, persistent ? first.z : month.z);
+      open(LevelChangeKind::level, first, persistent ? first.z : month.z, month.figure->month);
     }
   }
 
@@ -154,10 +170,10 @@ class LevelWatch {
     doubted_.clear();
   }
 
-  void open(LevelChangeKind kind, const Compared& month, double z) {
+  void open(LevelChangeKind kind, const Compared& month, double z, Month seen) {
     const MonthlyFigure& figure = *month.figure;
-    LevelChange change{kind, figure.month, {}, std::exp(month.log_ratio), std::exp(month.step), z,
-                       {}};
+    LevelChange change{
+        kind, figure.month, seen, {}, std::exp(month.log_ratio), std::exp(month.step), z, {}};
     change.words = kind == LevelChangeKind::level ? level_in_words(change) : scale_in_words(change);
     changes_.push_back(std::move(change));
     doubted_.clear();

@@ -19,6 +19,7 @@ enum class LevelChangeKind : std::uint8_t {
 struct LevelChange {
   LevelChangeKind kind;
   Month since;                      ///< First month that differs.
+  Month seen;                       ///< By the end of which it was found.
   std::optional<Month> back_since;  ///< First month from which it is as before again.
   double ratio;       ///< In `since`: daily average divided by that of the same months before.
   double factor;      ///< Step relative to the three months before: the factor of the unit.
@@ -36,7 +37,8 @@ struct LevelChangeOptions {
   int months_persistent = 4;  ///< … this many compared months in a row counts as much as one z_max.
   double ratio_change_min = 0.10;  ///< Smaller changes are never reported.
   double scale_factor_min = 5.0;   ///< A step this large is called a change of scale …
-  int scale_months = 1;  ///< … once this many compared months in a row are off to the same side.
+  /// … once this many compared months in a row are off to the same side, within half a year.
+  int scale_months = 1;
   double small_month = 0.10;  ///< Months below this share of the largest month are not compared.
   int months_to_return = 6;   ///< In a row within z_max / 2; then the change is over.
 };

@@ -155,6 +155,9 @@ struct Building {
   double ground_temperature_C = 12.0;
 };
 
+/// Between rooms and the air of units in them, by design; at least 5 K. Nameplates refer to it.
+[[nodiscard]] double coil_lift_K(const Building& building);
+
 /// True if rooms get cold air from handlers through boxes that reheat it.
 [[nodiscard]] inline bool has_reheat_boxes(const Building& building) {
   return building.air && building.air->has_reheat_boxes;

@@ -47,7 +47,8 @@ Effect deep_drying() {
           "assume, which costs chilled water.",
       .physics =
           "Q_latent [W] = ρ V_oa h_fg·max(w_o − (w_s − x), 0) while the coil cools, V_oa [m³/s], "
-          "h_fg [J/kg], w [kg/kg]; x [kg/kg] ≥ 0",
+          "h_fg [J/kg], w [kg/kg]; x [kg/kg] ≥ 0; with units in the rooms, of what passes through "
+          "their coils",
       .effect_class = EffectClass::air_system,
       .needs = {.air_system = true, .humidity = true},
       .confusable =

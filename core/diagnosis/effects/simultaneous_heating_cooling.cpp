@@ -49,7 +49,7 @@ Effect simultaneous_heating_cooling() {
       .id = "simultaneous_heating_cooling",
       .title = "Simultaneous heating and cooling",
       .meaning =
-          "While the fans run, air is cooled and reheated by the same amount, for instance because "
+          "While the fans run, air is cooled and heated by the same amount, for instance because "
           "of a leaking valve or zones that work against each other. Nobody notices, because the "
           "rooms stay comfortable.",
       .physics =
@@ -69,7 +69,7 @@ Effect simultaneous_heating_cooling() {
             "Nights with the fans off, and chilled water: pipe losses do not show in chilled "
             "water."},
            {"scale_fault",
-            "Whether an error of a single meter explains it: close the reheat valves for an hour "
+            "Whether an error of a single meter explains it: close the heating valves for an hour "
             "and check that both meters fall."}},
       .parameters = parameters,
       .bind = bind,

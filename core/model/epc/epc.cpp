@@ -342,17 +342,16 @@ double Epc::moisture_Wh(const Building& building, const ClimateState& state, dou
 
 void Epc::add_room_units(const Building& building, const ClimateMonth& month,
                          EndUseEnergy& energy) const {
-  constexpr double kLeastCoilLift_K = 5.0;
   const AirSystem& air = *building.air;
   const double always = air.outdoor_air_unoccupied_fraction;
   const double running_h = month.occupied.hours + always * month.unoccupied.hours;
-  const double lift_K =
-      std::max(building.set_points.cooling_occupied_C - air.supply_temperature_C, kLeastCoilLift_K);
+  const double lift_K = coil_lift_K(building);
   const double cooling_kWh = energy[EndUse::sensible_cooling];
   const double design_kW = 1e-3 * heat_capacity_J_m3K_ * air.supply_flow_design_m3_s * lift_K;
   energy[EndUse::fans] = air.fan_design_kW * running_h;
-  energy[EndUse::pumps] =
-      air.pump_design_kW * (cooling_kWh + energy[EndUse::zone_heating]) / design_kW;
+  const double driven_kWh =
+      month.cooling_share * cooling_kWh + month.heating_share * energy[EndUse::zone_heating];
+  energy[EndUse::pumps] = air.pump_design_kW * driven_kWh / std::max(design_kW, 1e-3);
 
   // What passes through the coils for the month's sensible load, as moisture it could carry.
   const double coil_W = 1e3 * cooling_kWh / std::max(running_h, 1.0) / lift_K *

@@ -1,5 +1,5 @@
 /// The EPC model: a monthly quasi-steady energy balance of a building with a VAV air system, or
-/// with units in its rooms.
+/// with units in its rooms (whose fans run by schedule only, not on call at night).
 ///
 /// Heating and cooling need of each zone follow from the utilisation of gains and losses (ISO
 /// 13790:2008). They are spread over classes of similar hours for the air side, where flow limits,

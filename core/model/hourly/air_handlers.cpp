@@ -12,7 +12,6 @@ using weather::kAirHeatCapacity_J_kgK;
 using weather::kVaporisationHeat_J_kg;
 
 constexpr double kNightLift_K = 1.0;
-constexpr double kLeastCoilLift_K = 5.0;  // between a room and its unit's air
 
 /// Share of outdoor air in the supply. Below the lock-out, an economiser opens as far as the supply
 /// temperature, before the fan's heat, requires.
@@ -98,13 +97,11 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
       outdoor_W * std::max(operation.humidifier_kg_kg - operation.humidity_ratio, 0.0);
 }
 
-void add_room_units(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
-                    const ZoneTotals& zones, double latent_W, const StepOperation& operation,
-                    StepLoads& loads) {
+void add_room_units(const AirSystem& air, double lift_K, double heat_capacity_J_m3K,
+                    double running_share, const ZoneTotals& zones, double latent_W,
+                    const StepOperation& operation, StepLoads& loads) {
   const double outdoor_m3_s = running_share * operation.outdoor_air_m3_s;
-  const double lift_K =
-      std::max(operation.cooling_occupied_C - operation.supply_C, kLeastCoilLift_K);
-  const double design_W = heat_capacity_J_m3K * air.supply_flow_design_m3_s * lift_K;
+  const double design_W = std::max(heat_capacity_J_m3K * air.supply_flow_design_m3_s * lift_K, 1.0);
 
   double cooling_W = zones.cooling_W;
   if (operation.dry_bulb_C < operation.economiser_lockout_C) {

@@ -24,12 +24,13 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
 /// The same for units in the rooms, which hold each room's set-point by themselves.
 ///
 /// Outdoor air has met the rooms; here an economiser saves cooling, and the coils dry what passes
-/// through them. Fans run at one speed by schedule and on call with the load; pumps follow the
-/// load. A coil takes k (w_room − w_coil) from rooms that outdoor air m_o and people g moisten,
-/// where k = Q / (c_p ΔT) passes through it for the sensible load Q:
+/// through them. Fans run at one speed by schedule, and on call with the load (that heat is
+/// left out); pumps follow the load. A coil takes k (w_room − w_coil) from rooms that outdoor air
+/// m_o and people g moisten, where k = Q / (c_p ΔT) passes through it for the sensible load Q:
 ///     m = k (m_o (w_o − w_coil) + g) / (m_o + k)
-void add_room_units(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
-                    const ZoneTotals& zones, double latent_W, const StepOperation& operation,
-                    StepLoads& loads);
+/// @param lift_K  ΔT between the rooms and the units' air, by design.
+void add_room_units(const AirSystem& air, double lift_K, double heat_capacity_J_m3K,
+                    double running_share, const ZoneTotals& zones, double latent_W,
+                    const StepOperation& operation, StepLoads& loads);
 
 }  // namespace recald::model::hourly

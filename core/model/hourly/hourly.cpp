@@ -218,13 +218,6 @@ StepOperation Hourly::operation_of(std::size_t hour, int step) const {
   return operation;
 }
 
-/// Fans of units in the rooms warm them.
-double Hourly::unit_fan_W(double served_share) const {
-  if (!building_.air || building_.air->has_reheat_boxes) return 0.0;
-  const double always = building_.air->outdoor_air_unoccupied_fraction;
-  return 1000.0 * building_.air->fan_design_kW * (always + (1.0 - always) * served_share);
-}
-
 ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
                                const Morning& morning, double served_share) {
   const Use& use = building_.use;
@@ -238,7 +231,7 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
                  .internal_W = people_W +
                                use.zone_heat_share *
                                    (operation.lights_W + (1.0 - closets) * operation.plugs_W) +
-                               operation.zone_gain_W + unit_fan_W(served_share),
+                               operation.zone_gain_W,
                  .solar_share = operation.solar_share,
                  .irradiance_W_m2 = std::span{irradiance_W_m2_}.subspan(
                      hour * sides, hours_[hour].sunlit ? sides : 0)});
@@ -249,6 +242,7 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
       leakage_.per_area_m3_s(middle_C_ - operation.dry_bulb_C, wind2_m2_s2);
   const double least_m3_s = std::max(operation.least_flow_m3_s, operation.outdoor_air_m3_s);
   const double most_m3_s = std::max(most_flow_m3_s_, least_m3_s);
+  const double unit_fans_W = building_.air && !boxes ? 1000.0 * building_.air->fan_design_kW : 0.0;
   ZoneTotals totals;
   for (int p = 0; p < part_count_; ++p) {
     const Part& part = parts_[static_cast<std::size_t>(p)];
@@ -272,7 +266,8 @@ ZoneTotals Hourly::solve_zones(std::size_t hour, const StepOperation& operation,
                               .supply_C = operation.supply_C,
                               .least_W_K = heat_capacity_J_m3K_ * served * least_m3_s,
                               .most_W_K = heat_capacity_J_m3K_ * most_m3_s,
-                              .scheduled_share = served};
+                              .scheduled_share = served,
+                              .fan_W = served * unit_fans_W};
     totals.add(part.share, boxes ? zones_.serve_with_boxes(p, service) : zones_.serve(p, service));
   }
   if (closets > 0.0)
@@ -324,7 +319,6 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
   if (building_.air) {
     const double always = building_.air->outdoor_air_unoccupied_fraction;
     const double running_share = always + (1.0 - always) * served_share;
-    const auto add = has_reheat_boxes(building_) ? add_air_handlers : add_room_units;
     const double latent_W = building_.floor_area_m2 * building_.use.occupancy_person_m2 *
                             building_.use.latent_W_person * operation.people_share;
     const double day_share = running_share > 0.0 ? 1.0 - always / running_share : 0.0;
@@ -332,7 +326,13 @@ StepLoads Hourly::solve_step(std::size_t hour, int step,
     const double open = 1.0 - day_share * (1.0 - morning.open);
     dampers.outdoor_air_m3_s *= open;
     dampers.economiser_share *= open;
-    add(*building_.air, heat_capacity_J_m3K_, running_share, zones, latent_W, dampers, loads);
+    if (has_reheat_boxes(building_)) {
+      add_air_handlers(*building_.air, heat_capacity_J_m3K_, running_share, zones, latent_W,
+                       dampers, loads);
+    } else {
+      add_room_units(*building_.air, coil_lift_K(building_), heat_capacity_J_m3K_, running_share,
+                     zones, latent_W, dampers, loads);
+    }
   }
   switch_off(hours_[hour], loads);
   for (const Alteration* alteration : alterations) {

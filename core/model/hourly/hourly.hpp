@@ -89,7 +89,6 @@ class Hourly {
   void follow_timetable(const Hour& hour, StepOperation& operation) const;
   static void switch_off(const Hour& hour, StepOperation& operation);
   static void switch_off(const Hour& hour, StepLoads& loads);
-  [[nodiscard]] double unit_fan_W(double served_share) const;
   [[nodiscard]] ZoneTotals solve_zones(std::size_t hour, const StepOperation& operation,
                                        const Morning& morning, double served_share);
   void serve_closets(double heat_W, const StepOperation& operation, ZoneTotals& totals) const;

@@ -249,7 +249,8 @@ ZoneTotals ZoneNetworks::serve(int part, const ZoneService& s) {
     const ZonePair store_W_K = z.floor_share * air_store_W_K_;
     const ZonePair lost_W_K = z.air_W_K + outdoor_W_K + store_W_K;
     const ZonePair source_W = to_air_W_[i] + z.air_from_mass * mass_C[i] +
-                              outdoor_W_K * dry_bulb_C_ + store_W_K * last_air_C[i];
+                              outdoor_W_K * dry_bulb_C_ + store_W_K * last_air_C[i] +
+                              z.floor_share * s.fan_W;
     const ZonePair air_C = (source_W / lost_W_K).max(s.heating_C).min(s.cooling_C);
     last_air_C[i] = air_C;
     mass_C[i] = to_mass_K_[i] + z.mass_from_mass * mass_C[i] + z.mass_from_air * air_C;

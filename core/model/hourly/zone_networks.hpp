@@ -63,6 +63,7 @@ struct ZoneService {
   double least_W_K;        ///< Boxes at minimum.
   double most_W_K;         ///< At design flow.
   double scheduled_share;  ///< Of the handlers; the others run on call, only to cool.
+  double fan_W = 0.0;      ///< Heat of fans in the rooms, to their air; without boxes.
 };
 
 /// Sums over all zones.

@@ -147,7 +147,10 @@ model::AirSystem read_air(TomlReader table) {
   air.outdoor_air_unoccupied_fraction =
       table.number_or("outdoor_air_unoccupied_fraction", 0.0, kShare);
   air.supply_flow_design_m3_s = table.required_number("supply_flow_design_m3_s", kPositive);
-  air.supply_flow_min_m3_s = table.required_number("supply_flow_min_m3_s", kNotNegative);
+  // Units in rooms have no least flow.
+  air.supply_flow_min_m3_s = air.has_reheat_boxes
+                                 ? table.required_number("supply_flow_min_m3_s", kNotNegative)
+                                 : table.number_or("supply_flow_min_m3_s", 0.0, kNotNegative);
   air.supply_temperature_C = table.number_or("supply_temperature_C", 13.0, {5.0, 25.0});
   air.fan_design_kW = table.required_number("fan_design_kW", kNotNegative);
   air.pump_design_kW = table.number_or("pump_design_kW", 0.0, kNotNegative);

@@ -37,7 +37,8 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
     for (const metering::LevelChange& change : record.level_changes) {
       if (change.kind != metering::LevelChangeKind::scale) continue;
       const std::string since = metering::to_string(change.since);
-      changes.push_back({MeterChange::Kind::unit, id, since, since, change.factor,
+      changes.push_back({MeterChange::Kind::unit, id, since, metering::to_string(change.seen),
+                         change.factor,
                          // The words begin with the meter's id.
                          display::meter_label(id) + change.words.substr(id.size())});
     }

@@ -217,22 +217,22 @@ constexpr std::array kOutdoorAir{
                "outdoor_air_schedule_name"},
 };
 
-/// Mean at an hour of the working days.
-double at_hour(const BuildingYear& drawings, const Quarters& quarters, std::size_t hour) {
+/// Mean at an hour of the days of a kind.
+double at_hour(const BuildingYear& drawings, const Quarters& quarters, DayKind kind,
+               std::size_t hour) {
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t day = 0; day < drawings.days().size(); ++day) {
-    if (drawings.kind_of(day) != DayKind::workday) continue;
+    if (drawings.kind_of(day) != kind) continue;
     sum += quarters[day * kQuartersPerDay + 4 * hour];
     count += 1.0;
   }
   return sum / count;
 }
 
-/// Share of the outdoor air whose plant runs at an hour of the working days.
-double share_running_at(const BuildingYear& drawings, std::size_t hour) {
-  const double fans =
-      drawings.has(Role::fans) ? by_hour(drawings, Role::fans, DayKind::workday)[hour] : 0.0;
+/// Share of the outdoor air whose plant runs at an hour of the days of a kind.
+double share_running_at(const BuildingYear& drawings, DayKind kind, std::size_t hour) {
+  const double fans = drawings.has(Role::fans) ? by_hour(drawings, Role::fans, kind)[hour] : 0.0;
   double all = 0.0;
   double running = 0.0;
   for (const OutdoorAir& outdoor : kOutdoorAir) {
@@ -245,7 +245,7 @@ double share_running_at(const BuildingYear& drawings, std::size_t hour) {
         const Quarters* const follows =
             drawings.find_schedule(in_capitals(object.value(outdoor.schedule, "")));
         all += flow;
-        running += flow * std::min(follows ? at_hour(drawings, *follows, hour) : fans, 1.0);
+        running += flow * std::min(follows ? at_hour(drawings, *follows, kind, hour) : fans, 1.0);
       }
     }
   }
@@ -299,6 +299,7 @@ double economiser_limit_C(const Json& model) {
 }
 
 constexpr std::size_t kDeepNight_h = 3;
+constexpr std::size_t kNoon_h = 12;
 
 std::string operation(const SiteFacts& facts, const SizedModel& sized, const BuildingYear& drawings,
                       double floor_m2, Memory& memory) {
@@ -310,8 +311,10 @@ std::string operation(const SiteFacts& facts, const SizedModel& sized, const Bui
     const auto [opens, closes] = occupied_hours(drawings, kind);
     return 2 * (closes - opens) > to - from;
   };
-  const double always_share =
-      from == 0 && to == 24 ? 1.0 : share_running_at(drawings, kDeepNight_h);
+  // Where workdays never end, weekends tell what never stops.
+  const bool is_whole = from == 0 && to == 24;
+  const double always_share = is_whole ? share_running_at(drawings, DayKind::sunday, kNoon_h)
+                                       : share_running_at(drawings, DayKind::workday, kDeepNight_h);
   const bool boxes = sized.model.contains("AirTerminal:SingleDuct:VAV:Reheat");
   const double recovery =
       first_of(sized.model,

@@ -18,12 +18,12 @@ Json alarm_of(const Json& alarm) {
   return told;
 }
 
+/// A changed unit, or readings that were lost or stand still.
 Json changed_meter_of(const Json& change) {
-  const bool is_scale = change.at("kind") == "scale";
-  return {{"month", change.at("since")},
-          {"kind", is_scale ? "meter" : "nothing"},
+  return {{"month", change.at("seen")},
+          {"kind", "meter"},
           {"subject", change.at("meter")},
-          {"probability", is_scale ? 1.0 : 0.0}};
+          {"probability", 1.0}};
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ Result<Json> drift_line(const Json& drift, const CaseRun& run) try {
   Json alarms = Json::array();
   for (const Json& alarm : drift.at("alarms")) alarms.push_back(alarm_of(alarm));
   for (const Json& change : drift.at("meter_changes")) {
-    if (change.at("since") >= months[learnt]) alarms.push_back(changed_meter_of(change));
+    if (change.at("seen") >= months[learnt]) alarms.push_back(changed_meter_of(change));
   }
   Json line = line_head(run, "none");
   line["drift"] = {{"from", months[learnt]}, {"to", months.back()}, {"alarms", alarms}};

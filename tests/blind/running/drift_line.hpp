@@ -6,7 +6,7 @@
 namespace recald::blind {
 
 /// Each alarm with its likeliest cause, and which months were watched. A meter whose figures have
-/// another unit is an alarm that blames the meter; one whose level differs blames nothing.
+/// another unit, or that lost its readings, is an alarm that blames the meter.
 /// @param drift  drift.json, as `recald drift` writes it.
 /// @return malformed if a key is missing.
 [[nodiscard]] Result<Json> drift_line(const Json& drift, const CaseRun& run);

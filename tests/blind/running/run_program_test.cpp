@@ -118,8 +118,8 @@ TEST_F(BlindRun, MonthsFollowedInThePlaceOfADiagnosis) {
    {"kind": "use", "subject": "electricity use", "probability": 0.7},
    {"kind": "nothing", "subject": null, "probability": 0.3}]},
   {"month": "2021-03", "causes": []}],
- "meter_changes": [{"meter": "gas", "kind": "scale", "since": "2021-04"},
-                   {"meter": "steam", "kind": "level", "since": "2021-01"}]}
+ "meter_changes": [{"meter": "gas", "kind": "unit", "since": "2021-02", "seen": "2021-03"},
+                   {"meter": "steam", "kind": "readings", "since": "2021-01", "seen": "2021-02"}]}
 END)sh");
   add_case("b", R"sh(echo '{"months": ["2021-01"], "learning_months": 1}' > "$out/drift.json")sh");
   ASSERT_EQ(run("--jobs 1 --method drift"), 0) << said_;
@@ -134,6 +134,7 @@ END)sh");
   EXPECT_EQ(lines[0].drift->alarms[0].kind, "use");
   EXPECT_EQ(lines[0].drift->alarms[1].kind, "nothing");
   EXPECT_EQ(lines[0].drift->alarms[2].kind, "meter");
+  EXPECT_EQ(lines[0].drift->alarms[2].month, "2021-03");
   EXPECT_EQ(lines[0].drift->alarms[2].subject, "gas");
   EXPECT_FALSE(lines[1].drift);
   EXPECT_EQ(line(1)["extra"]["failed"], "drift.json watches no month");

@@ -113,12 +113,23 @@ void read_said(JsonFields& line, CaseResult& result) {
   }
 }
 
+/// "2022-03"
+std::string read_month(JsonFields& fields, std::string_view key) {
+  std::string month = fields.name(key);
+  constexpr std::size_t kLength = 7;
+  if (month.size() != kLength || month[4] != '-') {
+    fields.fail(fmt::format("'{}' is '{}', must be a month such as 2022-03", key, month));
+    return "2000-01";
+  }
+  return month;
+}
+
 Drift read_drift(JsonFields& fields) {
   constexpr std::array<std::string_view, 5> kKinds{"meter", "parameter", "use", "unknown",
                                                    "nothing"};
-  Drift drift{.from = fields.name("from"), .to = fields.name("to")};
+  Drift drift{.from = read_month(fields, "from"), .to = read_month(fields, "to")};
   fields.each("alarms", [&](const std::string&, JsonFields& alarm) {
-    drift.alarms.push_back({.month = alarm.name("month"),
+    drift.alarms.push_back({.month = read_month(alarm, "month"),
                             .kind = alarm.word("kind", kKinds),
                             .subject = alarm.text("subject"),
                             .probability = alarm.number("probability", {.min = 0.0, .max = 1.0})});

@@ -87,10 +87,11 @@ bool is_right_cause(const HiddenEffect& hidden, const DriftCause& cause) {
       return stands.effect == hidden.effect && stands.parameter == cause.subject;
     });
   }
-  if (cause.kind == "use") return std::ranges::find(kUses, hidden.effect) != kUses.end();
+  const bool is_use = std::ranges::find(kUses, hidden.effect) != kUses.end();
+  if (cause.kind == "use") return is_use;
   const bool has_parameter =
       std::ranges::find(kParameters, hidden.effect, &Stands::effect) != kParameters.end();
-  return cause.kind == "unknown" && !has_parameter;
+  return cause.kind == "unknown" && !has_parameter && !is_use;
 }
 
 bool is_right_side(const HiddenEffect& hidden, const DriftCause& cause) {

@@ -30,7 +30,7 @@ void add(made_up::Population& population, Answer answer, std::vector<DriftCause>
   population.add(followed(id, std::move(alarms)));
 }
 
-DriftScores scores_of(const made_up::Population& population) {
+DriftScores drift_scores_of(const made_up::Population& population) {
   return drift_scores(population.cases(), drifts_of(population.results()));
 }
 
@@ -44,7 +44,7 @@ TEST(DriftScores, CountWhatBeginsInAWatchedMonth) {
   add(population, made_up::single("d", dated("server_room", "electrical", 0.2, "2020-03-10")),
       {{"2022-03", "meter", "gas", 0.9}});
   add(population, made_up::single("e", made_up::moving("A", 0.2)), {});
-  const DriftScores scores = scores_of(population);
+  const DriftScores scores = drift_scores_of(population);
   EXPECT_EQ(scores.found->hits, 2);
   EXPECT_EQ(scores.found->cases, 3) << "one began before, one is always there";
   EXPECT_EQ(scores.found_large->cases, 2);
@@ -62,7 +62,7 @@ TEST(DriftScores, AnyAlarmWhereNothingIsHiddenIsFalse) {
   add(population, made_up::nothing_hidden("a"), {{"2022-03", "nothing", "", 0.0}});
   add(population, made_up::nothing_hidden("b"), {});
   population.add(made_up::nothing_hidden("c"), said("c", Outcome::none));  // was not followed
-  const DriftScores scores = scores_of(population);
+  const DriftScores scores = drift_scores_of(population);
   EXPECT_EQ(scores.false_alarms->hits, 1);
   EXPECT_EQ(scores.false_alarms->cases, 2);
   EXPECT_FALSE(scores.found);
@@ -79,6 +79,9 @@ TEST(DriftScores, ACauseIsRightIfItIsWhatTheEffectWouldBestBeCalled) {
   EXPECT_FALSE(is_right_cause(air, {"", "parameter", "heating_setpoint", 1.0}));
   EXPECT_FALSE(is_right_cause(air, {"", "unknown", "", 1.0})) << "a parameter says it";
   EXPECT_TRUE(is_right_side(air, {"", "unknown", "", 1.0}));
+  const HiddenEffect server = dated("server_room", "electrical", 0.2);
+  EXPECT_TRUE(is_right_cause(server, {"", "use", "electricity use", 1.0}));
+  EXPECT_FALSE(is_right_cause(server, {"", "unknown", "", 1.0}));
   const HiddenEffect pool = dated("swimming_pool", "outside_catalogue", 0.2);
   EXPECT_TRUE(is_right_cause(pool, {"", "unknown", "", 1.0}));
   EXPECT_FALSE(is_right_cause(pool, {"", "nothing", "", 1.0}));

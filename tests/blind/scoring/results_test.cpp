@@ -100,8 +100,8 @@ INSTANTIATE_TEST_SUITE_P(
             "MisspeltKey", [](json& r) { r["wal_s"] = 1.0; },
             "key 'wal_s' is not known here; known are case, method, outcome, named, "
             "confusable, probabilities, gap, other_meters_log_score_change, "
-            "parameters_before, parameters_after, effect_parameter, calibration, located, wall_s, "
-            "peak_rss_MB, version, extra"},
+            "parameters_before, parameters_after, effect_parameter, calibration, drift, located, "
+            "wall_s, peak_rss_MB, version, extra"},
         Mistake{"OtherMetersAfter",
                 [](json& r) {
                   r["gap"]["after"] = {{"water", r["gap"]["before"]["steam"]}};

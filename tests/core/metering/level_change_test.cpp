@@ -184,11 +184,12 @@ TEST(LevelChange, StableMetersRarelyAlarm) {
 // In a mild climate one month of heating says nothing: thirteen times last year's, then as before.
 TEST(LevelChange, OneColdMonthOfAMildClimateIsNoUnit) {
   std::vector<double> daily_kWh(48, 100.0);
+  for (std::size_t january = 0; january < 48; january += 12) daily_kWh[january] = 1000.0;
   daily_kWh[26] = 1250.0;
-  daily_kWh[12] = 1000.0;
-  for (const LevelChange& change : changes(daily_kWh, Utility::heating)) {
-    EXPECT_NE(change.kind, LevelChangeKind::scale) << change.words;
-  }
+  const auto odd = changes(daily_kWh, Utility::heating);
+  ASSERT_EQ(odd.size(), 1u);
+  EXPECT_EQ(odd[0].kind, LevelChangeKind::level) << odd[0].words;
+  EXPECT_EQ(odd[0].since, month(2012, 3));
   // Nor is one twice as much as ever the weather.
   daily_kWh[26] = 2500.0;
   const auto found = changes(daily_kWh, Utility::heating);
@@ -205,6 +206,7 @@ TEST(LevelChange, ASecondMonthDatesTheUnitToTheFirst) {
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found[0].kind, LevelChangeKind::scale);
   EXPECT_EQ(found[0].since, month(2012, 7));
+  EXPECT_EQ(found[0].seen, month(2012, 8));
   EXPECT_NEAR(1.0 / found[0].factor, 25.0, 0.1);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/model/epc/epc.hpp"
+#include "core/model/hourly/air_handlers.hpp"
 #include "core/weather/psychrometrics.hpp"
 #include "tests/support/allocations.hpp"
 #include "tests/support/sample_building.hpp"
@@ -477,7 +478,51 @@ TEST(RoomUnits, AnEconomiserSavesCoolingAndItsShareScalesTheSaving) {
   EXPECT_LT(at_share(0.1), 0.99 * without_kWh);
 }
 
-// k (m_o (w_o - w_coil) + g) / (m_o + k), by hand for one hour in July.
+// 2 m3/s of outdoor air, 50 kW of cooling over 11 K, 1 kW of people's moisture. With
+// h_fg / c_p = 2487.6 K the outdoor air carries 5.970 MW per unit of humidity ratio and the coils
+// 11.307 MW, so 20.19 kW condense.
+TEST(RoomUnits, WorkedHour) {
+  const AirSystem air{.has_reheat_boxes = false,
+                      .outdoor_air_m3_s = 2.0,
+                      .supply_flow_design_m3_s = 10.0,
+                      .fan_design_kW = 4.0,
+                      .pump_design_kW = 3.0};
+  ZoneTotals zones;
+  zones.cooling_W = 50e3;
+  StepOperation operation{};
+  operation.dry_bulb_C = 30.0;
+  operation.humidity_ratio = 0.014;
+  operation.outdoor_air_m3_s = 2.0;
+  operation.economiser_lockout_C = -100.0;
+  operation.coil_humidity_ratio = 0.009;
+  operation.latent_share = 1.0;
+  StepLoads loads{};
+  add_room_units(air, 11.0, 1200.0, 1.0, zones, 1000.0, operation, loads);
+  EXPECT_NEAR(loads.latent_cooling_W, 20190.3, 1.0);
+  EXPECT_EQ(loads.sensible_cooling_W, 50e3);
+  EXPECT_EQ(loads.fans_W, 4000.0);
+  EXPECT_NEAR(loads.pumps_W, 3000.0 * 50e3 / (1200.0 * 10.0 * 11.0), 1e-9);
+  zones.cooling_W = 0.0;
+  zones.zone_heating_W = 66e3;
+  add_room_units(air, 11.0, 1200.0, 0.0, zones, 0.0, operation, loads = {});
+  EXPECT_EQ(loads.fans_W, 2000.0) << "called for half the design load";
+  EXPECT_EQ(loads.latent_cooling_W, 0.0);
+}
+
+TEST(RoomUnits, PumpsKnowThatHeatingGoesOnWhereCoolingIsOff) {
+  Building building = with_room_units();
+  const auto pumps_kWh = [](const Building& of) {
+    Hourly hourly{std::make_shared<const Drivers>(sample_drivers(of, 2)), {.steps_per_hour = 1}};
+    return end_uses_of(hourly, of)[0][EndUse::pumps];
+  };
+  const double with_kWh = pumps_kWh(building);
+  building.seasons = {{.first = std::chrono::December / 1,
+                       .last = std::chrono::February / 28,
+                       .occupied_fraction = {},
+                       .cooling = false}};
+  EXPECT_NEAR(pumps_kWh(building), with_kWh, 0.3 * with_kWh);
+}
+
 TEST(RoomUnits, CoilsDryWhatPassesThroughThem) {
   Hourly hourly = make_hourly(8);
   const auto units = end_uses_of(hourly, with_room_units());

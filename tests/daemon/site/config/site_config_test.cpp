@@ -333,6 +333,18 @@ TEST(SiteConfig, ModelNamesWhatItLacks) {
   lacking(without("latitude_deg", "altitude_m"), "needs latitude_deg and longitude_deg in [site]");
 }
 
+TEST(SiteConfig, UnitsInRoomsNeedNoLeastFlow) {
+  std::string text = edited(sample_site(), "supply_flow_min_m3_s = 2.5", "reheat_boxes = false");
+  text = edited(text, "[building.setpoint]", "[building.setpoint]\nsunday_occupied = true");
+  const SiteFile units{text};
+  ASSERT_THAT(units.problems(), ElementsAre());
+  EXPECT_FALSE(units.config().building->air->has_reheat_boxes);
+  EXPECT_TRUE(units.config().building->set_points.sunday_occupied);
+  const SiteFile boxes{sample_site()};
+  EXPECT_TRUE(boxes.config().building->air->has_reheat_boxes);
+  EXPECT_FALSE(boxes.config().building->set_points.sunday_occupied);
+}
+
 TEST(SiteConfig, BuildingNamesWhatItLacks) {
   const auto lacking = [](const std::string& text, const char* sentence) {
     EXPECT_THAT(SiteFile{text}.problems(),
