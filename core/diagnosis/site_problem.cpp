@@ -30,8 +30,9 @@ bool has_night_set_back(const model::SetPoints& set) {
 std::string lacking(const Effect& effect, const SiteProblem& site) {
   const EffectNeeds& needs = effect.needs;
   const model::Building& b = site.nominal;
-  if (needs.air_system && !b.air)
+  if (needs.air_system && !b.air) {
     return "the site file describes no air handlers or units in rooms";
+  }
   if (needs.reheat_boxes && !has_reheat_boxes(b)) {
     return "the site file describes no air handlers with reheat boxes";
   }

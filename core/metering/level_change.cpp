@@ -50,7 +50,10 @@ class LevelWatch {
     }
   }
 
-  [[nodiscard]] std::vector<LevelChange> take() { return std::move(changes_); }
+  [[nodiscard]] std::vector<LevelChange> take() {
+    give_up_step();  // The newest month may be the odd one.
+    return std::move(changes_);
+  }
 
  private:
   /// A month that can be compared with others.

@@ -62,8 +62,8 @@ DesignHours design_hours(const std::vector<WeatherHour>& hours, const simulators
           .zone_h = metering::in_hours(standard_offset)};
 }
 
-/// Wet or dry as a whole: a coil of the templates, partly wet, takes nine tenths of EnergyPlus's
-/// time and cools within two per cent of this.
+/// Wet or dry as a whole: partly wet coils took seven eighths of EnergyPlus's time in ten days of
+/// July of a building with fan coils, and cooled 1.4 % more.
 void use_fast_coils(Json& model) {
   for_each_object(model, "Coil:Cooling:Water", [](const std::string& /*name*/, Json& coil) {
     coil["type_of_analysis"] = "SimpleAnalysis";

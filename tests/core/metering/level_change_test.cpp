@@ -198,6 +198,16 @@ TEST(LevelChange, OneColdMonthOfAMildClimateIsNoUnit) {
   EXPECT_EQ(found[0].since, month(2012, 3));
 }
 
+// As long as no other month confirms it, a unit is not told from a month unlike others.
+TEST(LevelChange, TheNewestMonthIsTold) {
+  std::vector<double> daily_kWh(31, 1000.0);
+  daily_kWh[30] = 40.0;
+  const auto found = changes(daily_kWh, Utility::gas);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, LevelChangeKind::level);
+  EXPECT_EQ(found[0].since, month(2012, 7));
+}
+
 TEST(LevelChange, ASecondMonthDatesTheUnitToTheFirst) {
   std::vector<double> daily_kWh(48, 1000.0);
   for (std::size_t i = 30; i < 48; ++i) daily_kWh[i] = 40.0;

@@ -265,27 +265,43 @@ TEST(EpcModel, EvaluationDoesNotAllocate) {
   EXPECT_EQ(allocation_count() - before, 0);
 }
 
-// The monthly balance with units in the rooms against the hourly one of the same building.
+/// Both models' months of the building with units in its rooms.
+struct BothModels {
+  std::vector<EndUseEnergy> monthly, hourly;
+};
+BothModels with_room_units(Building building) {
+  building.air->has_reheat_boxes = false;
+  hourly::Hourly hourly{std::make_shared<const Drivers>(sample_drivers(building, 24)),
+                        {.steps_per_hour = 1}};
+  BothModels both{evaluate(building), std::vector<EndUseEnergy>(24)};
+  hourly.run_end_uses(building, {}, both.hourly);
+  return both;
+}
+
+// What units add, apart from how well a month uses gains: where these are large beside the losses,
+// the monthly method needs a third more heat than the hours, without units too (34 to 44 % here).
+// So: plant that never stops, and fans that warm nothing.
 TEST(Epc, RoomUnitsAgreeWithTheHourlyModel) {
   for (const bool has_economiser : {false, true}) {
     SCOPED_TRACE(has_economiser);
     Building building = sample_building();
-    building.air->has_reheat_boxes = false;
+    building.air->outdoor_air_unoccupied_fraction = 1.0;
+    building.air->fan_design_kW = 0.0;
     if (has_economiser) building.air->economiser_lockout_C = 18.0;
-    const auto monthly = evaluate(building);
-    hourly::Hourly hourly{std::make_shared<const Drivers>(sample_drivers(building, 24)),
-                          {.steps_per_hour = 1}};
-    std::vector<EndUseEnergy> by_hour(24);
-    hourly.run_end_uses(building, {}, by_hour);
-    for (const std::initializer_list<EndUse>& uses : {kCooling, kHeating}) {
-      const double year = year_kWh(by_hour, uses);
-      // The month averages rooms whose fans never stop with the others, so it heats more.
-      EXPECT_NEAR(year_kWh(monthly, uses), year, 0.25 * year);
-    }
-    EXPECT_NEAR(year_kWh(monthly, {fans}), year_kWh(by_hour, {fans}),
-                0.1 * year_kWh(by_hour, {fans}));
-    EXPECT_EQ(year_kWh(monthly, {reheat, preheat}), 0.0);
+    const BothModels both = with_room_units(building);
+    const double heat_kWh = year_kWh(both.hourly, kHeating);
+    const double cold_kWh = year_kWh(both.hourly, kCooling);
+    EXPECT_NEAR(year_kWh(both.monthly, kHeating), heat_kWh, 0.05 * heat_kWh);
+    EXPECT_NEAR(year_kWh(both.monthly, kCooling), cold_kWh, 0.12 * cold_kWh);
+    EXPECT_EQ(year_kWh(both.monthly, {reheat, preheat}), 0.0);
   }
+}
+
+TEST(Epc, FansOfRoomUnitsAgreeWithTheHourlyModel) {
+  const BothModels both = with_room_units(sample_building());
+  const double fans_kWh = year_kWh(both.hourly, {fans});
+  EXPECT_NEAR(year_kWh(both.monthly, {fans}), fans_kWh, 0.1 * fans_kWh);
+  EXPECT_LT(year_kWh(both.monthly, {fans}), fans_kWh) << "those on call are left out";
 }
 
 }  // namespace
