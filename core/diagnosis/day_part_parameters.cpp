@@ -12,6 +12,7 @@ struct DayPartParameter {
   std::string_view name;
   double log_sd = 0.0;        ///< 0: the library's prior.
   double median = 0.0;        ///< 0: the drawings' value.
+  double if_none = 0.0;       ///< The median where the drawings say 0.
   double second_start = 0.0;  ///< A score.
   bool of_own_chiller = false;
   bool of_reheat_boxes = false;
@@ -42,7 +43,16 @@ constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {"air_capacity", 0.5, 35.0},
     {.name = "night_fan", .of_reheat_boxes = true},
     {.name = "chiller_lift", .of_own_chiller = true},
+    {.name = "cooling_idle", .log_sd = 1.0, .if_none = 1.5, .of_own_chiller = true},
+    // The profile is what the meter has without the plant of the drawings: if the real one idles
+    // more, the profile has its idle power too.
+    {.name = "electric_use", .log_sd = 0.15, .of_own_chiller = true},
 });
+
+bool applies(const DayPartParameter& parameter, const model::Building& nominal) {
+  return (!parameter.of_own_chiller || nominal.chiller_cop) &&
+         (!parameter.of_reheat_boxes || has_reheat_boxes(nominal));
+}
 
 /// nullptr: not one of them.
 const DayPartParameter* find_day_part_parameter(std::string_view name) {
@@ -55,19 +65,20 @@ const DayPartParameter* find_day_part_parameter(std::string_view name) {
 std::vector<std::string_view> day_part_parameters(const model::Building& nominal) {
   std::vector<std::string_view> names;
   for (const DayPartParameter& parameter : kDayPartParameters) {
-    if (parameter.of_own_chiller && !nominal.chiller_cop) continue;
-    if (parameter.of_reheat_boxes && !has_reheat_boxes(nominal)) continue;
-    names.push_back(parameter.name);
+    if (applies(parameter, nominal)) names.push_back(parameter.name);
   }
   return names;
 }
 
 std::optional<Prior> wide_prior(std::string_view name, const model::Building& nominal) {
   const DayPartParameter* parameter = find_day_part_parameter(name);
-  if (parameter == nullptr || parameter->log_sd == 0.0) return std::nullopt;
+  if (parameter == nullptr || parameter->log_sd == 0.0 || !applies(*parameter, nominal)) {
+    return std::nullopt;
+  }
   const auto definition = model::find_parameter(name);
   const double drawn = definition ? (*definition)->get(nominal) : 0.0;
-  const double median = parameter->median > 0.0 ? parameter->median : drawn;
+  const double said = drawn > 0.0 ? drawn : parameter->if_none;
+  const double median = parameter->median > 0.0 ? parameter->median : said;
   if (!(median > 0.0)) return std::nullopt;
   return Prior{LogNormalPrior{.median = median, .log_sd = parameter->log_sd}};
 }

@@ -20,7 +20,8 @@ namespace recald::diagnosis {
 /// If drawings may be wrong by a factor, the prior is log-normal around their value and wider
 /// than the library's range, because a diagnosis must not mistake a wrong number in the site
 /// file for an effect.
-/// @return nothing if the library's prior is sufficient, or the drawings say 0.
+/// @return nothing if the library's prior is sufficient, if the building cannot have it, or if the
+///         drawings say 0 and mean it.
 [[nodiscard]] std::optional<Prior> wide_prior(std::string_view name,
                                               const model::Building& nominal);
 

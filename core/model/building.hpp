@@ -150,6 +150,9 @@ struct Building {
   /// Water that leaves the chiller. A kelvin more spares it as much as a kelvin less of wet bulb.
   /// Only the hourly model uses it, of a chiller that feels the wet bulb.
   double chilled_water_C = kRatedChilledWater_C;
+  /// What pumps, tower and compressors of an own chiller take whenever it runs, over what follows
+  /// its load. Only the hourly model uses it.
+  double cooling_idle_kW = 0.0;
   HotWater hot_water;
   double base_heat_kW = 0.0;  ///< Heat used at all hours that serves no zone.
   double ground_temperature_C = 12.0;

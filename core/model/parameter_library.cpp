@@ -174,6 +174,8 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
    [](const Building& b) { return b.air ? b.air->night_fan_share : 0.0; }, [](Building& b, double v) { if (b.air) b.air->night_fan_share = v; }, 0.0, 1.0},
   {"chiller_lift", "1/K", "More chiller electricity per K of outdoor wet bulb", "plant", kAbsolute, 0.0, 0.06,
    [](const Building& b) { return b.chiller_lift_per_K; }, [](Building& b, double v) { b.chiller_lift_per_K = v; }},
+  {"cooling_idle", "W/m2", "Electricity of the cooling plant whenever it runs, over its load's", "plant", kRelative, 0.3, 2.0,
+   [](const Building& b) { return 1e3 * b.cooling_idle_kW / b.floor_area_m2; }, [](Building& b, double v) { b.cooling_idle_kW = 1e-3 * v * b.floor_area_m2; }},
   // Their meters give the built-in models lights and plugs.
   {"lighting_power", "W/m2", "Installed lighting", "internal load", kRelative, 0.7, 1.4, nullptr, nullptr},
   {"equipment_power", "W/m2", "Installed equipment", "internal load", kRelative, 0.5, 1.5, nullptr, nullptr},

@@ -1,5 +1,6 @@
 #include "core/model/hourly/plant.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@ namespace {
 
 constexpr double kWarmestWaterDay = 230.0;  // day of year, cold-water mains lag the air
 constexpr double kWaterHeat_kWh_m3K = 1.163;
+constexpr double kIdleOverLoad = 10.0;  ///< A tenth of its idle power's worth keeps a plant on.
 
 }  // namespace
 
@@ -15,7 +17,8 @@ Plant::Plant(const Building& building)
     : heating_((1.0 + building.heating_loss_fraction) / building.heating_efficiency),
       cooling_(1.0 + building.cooling_loss_fraction),
       hot_water_(1.0 / (building.hot_water.efficiency * building.heating_efficiency)),
-      chiller_(building.chiller_cop ? 1.0 / *building.chiller_cop : 0.0) {}
+      chiller_(building.chiller_cop ? 1.0 / *building.chiller_cop : 0.0),
+      idle_W_(building.chiller_cop ? 1000.0 * building.cooling_idle_kW : 0.0) {}
 
 EndUsePower_W Plant::metered_W(const StepLoads& loads) const {
   EndUsePower_W power_W;
@@ -30,7 +33,10 @@ EndUsePower_W Plant::metered_W(const StepLoads& loads) const {
   set(EndUse::exterior, loads.exterior_W);
   set(EndUse::fans, loads.fans_W);
   set(EndUse::pumps, loads.pumps_W);
-  set(EndUse::chiller, chiller_ * chilled_W * loads.cooling_cost_factor);
+  const double compressor_W = chiller_ * chilled_W * loads.cooling_cost_factor;
+  // In an hour that asks for less, the plant runs for a part of it.
+  const double idle_W = std::min(idle_W_, kIdleOverLoad * chiller_ * chilled_W);
+  set(EndUse::chiller, compressor_W + idle_W);
   set(EndUse::sensible_cooling, district * loads.sensible_cooling_W);
   set(EndUse::latent_cooling, district * loads.latent_cooling_W);
   set(EndUse::zone_heating, heating * loads.zone_heating_W);

@@ -27,6 +27,7 @@ class Plant {
   double cooling_ = 1.0;
   double hot_water_ = 1.0;
   double chiller_ = 0.0;
+  double idle_W_ = 0.0;
 };
 
 /// Mean heat of the hot water drawn on this day, W, without losses.

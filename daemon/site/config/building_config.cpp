@@ -174,6 +174,10 @@ void read_plant(TomlReader& table, Building& building) {
   if (auto cooling = table.table("cooling")) {
     building.cooling_loss_fraction = cooling->number_or("loss_fraction", 0.0, kShare);
     building.chiller_cop = cooling->number("chiller_cop", {0.5, 20.0});
+    building.cooling_idle_kW = cooling->number_or("idle_kW", 0.0, kNotNegative);
+    if (building.cooling_idle_kW > 0.0 && !building.chiller_cop) {
+      cooling->problem("'idle_kW' is that of an own chiller; give its 'chiller_cop' too");
+    }
     cooling->finish();
   }
   if (auto water = table.table("hot_water")) {

@@ -340,6 +340,31 @@ TEST(Hourly, AnOwnChillerPaysByElectricity) {
   EXPECT_LT((own.col(0) - district.col(0) - district.col(1) / 4.0).abs().maxCoeff(), 1e-9);
 }
 
+TEST(Hourly, ACoolingPlantThatRunsIdlesWhateverItsLoad) {
+  Hourly hourly = make_hourly(8);
+  Building building = sample_building();
+  building.chiller_cop = 4.0;
+  const Eigen::ArrayXXd without = power_of(hourly, building);
+  building.cooling_idle_kW = 30.0;
+  const Eigen::ArrayXXd with = power_of(hourly, building);
+  double fewest_kW = 1e9;
+  double most_kW = 0.0;
+  for (Eigen::Index row = 0; row < with.rows(); ++row) {
+    const double idle_kW = with(row, 0) - without(row, 0);
+    // A tenth of its idle power's worth of cooling keeps it on.
+    ASSERT_NEAR(idle_kW, std::min(30.0, 10.0 * with(row, 1) / 4.0), 1e-9) << row;
+    fewest_kW = std::min(fewest_kW, idle_kW);
+    most_kW = std::max(most_kW, idle_kW);
+  }
+  EXPECT_LT(fewest_kW, 1.0);
+  EXPECT_NEAR(most_kW, 30.0, 1e-9);
+  EXPECT_TRUE((with.rightCols(2) == without.rightCols(2)).all());
+  building.chiller_cop.reset();  // Whoever sells the cooling pays for it.
+  const Eigen::ArrayXXd district = power_of(hourly, building);
+  building.cooling_idle_kW = 0.0;
+  EXPECT_TRUE((district == power_of(hourly, building)).all());
+}
+
 TEST(Hourly, AnOwnChillerPaysForEachKelvinFromChilledWaterToWetBulb) {
   Hourly hourly = make_hourly(8);
   const Drivers& drivers = hourly.drivers();

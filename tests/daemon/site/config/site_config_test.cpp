@@ -297,6 +297,9 @@ const Mistake kSiteMistakes[] = {
      "[building.setpoint]",
      "[building.setpoint] the heating set-point 26 degC is not below the cooling set-point 25 "
      "degC; they would work against each other"},
+    {"IdlePowerOfNoChiller", "[building.air]", "[building.cooling]\nidle_kW = 5\n[building.air]",
+     "[building.cooling]",
+     "[building.cooling] 'idle_kW' is that of an own chiller; give its 'chiller_cop' too"},
     {"SmallestFlowAboveDesign", "supply_flow_min_m3_s = 2.5", "supply_flow_min_m3_s = 7",
      "[building.air]",
      "[building.air] 'supply_flow_min_m3_s' is larger than 'supply_flow_design_m3_s'"},

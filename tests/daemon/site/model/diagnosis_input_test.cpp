@@ -55,10 +55,20 @@ TEST_F(SiteProblemTest, WhatNoDrawingGivesBeginsWhereBuildingsUsuallyAre) {
   EXPECT_NEAR(start_of("air_capacity"), 35.0, 1e-9);
 }
 
-TEST_F(SiteProblemTest, OnlyAnOwnChillerHasALift) {
+TEST_F(SiteProblemTest, OnlyAnOwnChillerHasALiftAndIdles) {
   EXPECT_FALSE(index_of(problem(), "chiller_lift"));
+  EXPECT_FALSE(index_of(problem(), "cooling_idle"));
   modelled_->site.config.building->chiller_cop = 3.0;
-  EXPECT_TRUE(index_of(problem(), "chiller_lift"));
+  const SiteProblem site = problem();
+  EXPECT_TRUE(index_of(site, "chiller_lift"));
+  const auto idle = index_of(site, "cooling_idle");
+  ASSERT_TRUE(idle);
+  // W/m2, where no drawing tells of pumps.
+  EXPECT_NEAR(site.parameters[*idle].prior.at_score(0.0).value, 1.5, 1e-9);
+  EXPECT_TRUE(index_of(site, "electric_use"));
+  model::Building& building = *modelled_->site.config.building;
+  building.cooling_idle_kW = 1e-3 * 0.4 * building.floor_area_m2;
+  EXPECT_NEAR(problem().parameters[*idle].prior.at_score(0.0).value, 0.4, 1e-9);
 }
 
 TEST_F(SiteProblemTest, TheSecondStartHasFewClosetsAndALightCore) {
