@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAlike = 12.0;    // Signatures repeat each other.
 constexpr double kVanished = 4.0;  // Of the spread: what has no value any more.
-constexpr int kIterations = 5;
+constexpr int kIterations = 10;
 constexpr double kFarthest = 3.0;  // Scores.
 
 Eigen::VectorXd flat(const Eigen::MatrixXd& signatures) {

@@ -1,4 +1,4 @@
-/// The building model fitted to the signatures of the meters: under a second, and steady.
+/// The building model fitted to the signatures of the meters, in a second or two.
 #pragma once
 
 #include <Eigen/Core>
