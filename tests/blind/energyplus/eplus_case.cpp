@@ -271,8 +271,8 @@ std::vector<EplusCasePlan> plan_eplus(const PopulationKind& population, std::uin
                {Block::out_of_catalogue, kAbove3});
   Rng order{own, 1};
   shuffle(slots, order);
-  const std::vector<std::string> known = kinds_in_catalogue(true);
-  const std::vector<std::string> unknown = kinds_in_catalogue(false);
+  std::vector<std::string> known = kinds_in_catalogue(true);
+  std::vector<std::string> unknown = kinds_in_catalogue(false);
   std::vector<EplusCasePlan> plans;
   std::size_t known_dealt = 0;
   std::size_t unknown_dealt = 0;
@@ -297,9 +297,12 @@ std::vector<EplusCasePlan> plan_eplus(const PopulationKind& population, std::uin
     if (plan.block != Block::no_effect) {
       plan.begins_in_forecast_year = rng.uniform() < 0.25;
       const bool is_known = plan.block == Block::single;
-      // Every kind is wanted once before any is wanted again; the others stand by.
-      plan.candidates = is_known ? known : unknown;
+      // Every kind is wanted once before any is wanted again, each time in a new order, or numbers
+      // of cases would tell; the others stand by.
+      std::vector<std::string>& kinds = is_known ? known : unknown;
       std::size_t& dealt = is_known ? known_dealt : unknown_dealt;
+      if (dealt % kinds.size() == 0) shuffle(kinds, order);
+      plan.candidates = kinds;
       std::swap(plan.candidates.front(), plan.candidates[dealt++ % plan.candidates.size()]);
       std::vector<std::string> others(plan.candidates.begin() + 1, plan.candidates.end());
       shuffle(others, rng);

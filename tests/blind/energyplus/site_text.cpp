@@ -264,6 +264,43 @@ double sum_of(Json model, std::string_view type, std::initializer_list<const cha
   return sum;
 }
 
+/// Of a type; empty where there is none.
+Json find_object(const Json& model, const char* type, const std::string& wanted) {
+  const Json objects = model.value(type, Json::object());
+  for (const auto& [name, object] : objects.items()) {
+    if (in_capitals(name) == in_capitals(wanted)) return object;
+  }
+  return Json::object();
+}
+
+/// Pumps of one speed in the loops of chillers and towers: they turn whenever there is something to
+/// cool.
+double idle_W(const Json& model) {
+  double sum_W = 0.0;
+  for (const auto& [type, list] : {std::pair{"PlantLoop", "plant_side_branch_list_name"},
+                                   std::pair{"CondenserLoop", "condenser_side_branch_list_name"}}) {
+    const Json loops = model.value(type, Json::object());
+    for (const Json& loop : loops) {
+      double pumps_W = 0.0;
+      bool cools = std::string_view{type} == "CondenserLoop";
+      const Json branches = find_object(model, "BranchList", loop.value(list, ""));
+      for (const Json& listed : branches.value("branches", Json::array())) {
+        const Json branch = find_object(model, "Branch", listed.value("branch_name", ""));
+        for (const Json& part : branch.value("components", Json::array())) {
+          const std::string kind = part.value("component_object_type", "");
+          cools = cools || kind.starts_with("Chiller:");
+          if (kind != "Pump:ConstantSpeed") continue;
+          const Json pump = find_object(model, kind.c_str(), part.value("component_name", ""));
+          const Json power_W = pump.value("design_power_consumption", Json());
+          if (power_W.is_number()) pumps_W += power_W.get<double>();
+        }
+      }
+      if (cools) sum_W += pumps_W;
+    }
+  }
+  return sum_W;
+}
+
 double first_of(const Json& model, std::string_view type, const char* field, double otherwise) {
   for (const auto& [of, objects] : model.items()) {
     if (!of.starts_with(type)) continue;
@@ -329,6 +366,7 @@ std::string operation(const SiteFacts& facts, const SizedModel& sized, const Bui
   double pump_W = 0.0;
   const Table& pumps = table_of(sized, "Pumps");
   for (const auto& [name, row] : pumps) pump_W += number_in(pumps, name, "Electricity Rate");
+  pump_W = std::max(pump_W - idle_W(sized.model), 0.0);
   const double outdoor_m3_s = outdoor_air_m3_s(sized);
   constexpr double kUsual_m3_s_m2 = 0.006;
   if (fan_m3_s == 0.0) fan_m3_s = std::max(kUsual_m3_s_m2 * floor_m2, 1.5 * outdoor_m3_s);
@@ -392,8 +430,12 @@ std::string services(const SizedModel& sized, const std::vector<MeterPlate>& pla
                first_of(model, "Coil:Cooling:", "high_speed_gross_rated_cooling_cop",
                         first_of(model, "AirConditioner:", "gross_rated_cooling_cop", 0.0))));
   if (cop > 0.0) {
-    text += fmt::format("[building.cooling]\nloss_fraction = 0.0\nchiller_cop = {}\n\n",
+    text += fmt::format("[building.cooling]\nloss_fraction = 0.0\nchiller_cop = {}\n",
                         memory.of(cop, 0.05));
+    if (const double idle = idle_W(model); idle > 0.0) {
+      text += fmt::format("idle_kW = {}\n", memory.of(1e-3 * idle, 0.1));
+    }
+    text += "\n";
   }
   const double ground_C =
       first_of(model, "Site:GroundTemperature:BuildingSurface", "april_ground_temperature", 18.0);
