@@ -4,8 +4,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
-#include <utility>
+
+#include "core/text/printable.hpp"
 
 namespace recald {
 
@@ -24,6 +26,10 @@ enum class ErrorCode {
 };
 
 struct Error {
+  /// @param text  One sentence, which may quote what others wrote: control characters are written
+  ///              out here, so that no caller can forget it.
+  Error(ErrorCode kind, std::string_view text) : code{kind}, message{printable(text)} {}
+
   ErrorCode code;
   std::string message;
 };
@@ -32,8 +38,8 @@ template <class T>
 using Result = tl::expected<T, Error>;
 
 /// Shorthand for `return tl::unexpected(Error{code, message})`.
-[[nodiscard]] inline tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected<Error>(Error{code, std::move(message)});
+[[nodiscard]] inline tl::unexpected<Error> failure(ErrorCode code, std::string_view message) {
+  return tl::unexpected<Error>(Error{code, message});
 }
 
 }  // namespace recald

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <optional>
 
-#include "core/text/printable.hpp"
 
 namespace recald::http {
 namespace {
@@ -36,7 +35,7 @@ std::string Url::text() const { return (is_tls ? "https://" : "http://") + autho
 
 Result<Url> parse_url(std::string_view text) {
   const auto wrong = [&](const char* why) {
-    return failure(ErrorCode::malformed, "'" + printable(text) + "' is no address: " + why +
+    return failure(ErrorCode::malformed, "'" + std::string{text} + "' is no address: " + why +
                                              "; http://127.0.0.1:8080 is one");
   };
   Url url;

@@ -28,7 +28,7 @@ Result<Transition> TrajectorySampler::transition(PhasePoint& current, double ste
     if (rng_.uniform() < 0.5) turn_round();
     outcome = extend(depth);
   }
-  if (outcome == Outcome::failed) return tl::unexpected(std::move(error_));
+  if (outcome == Outcome::failed) return tl::unexpected(std::move(*error_));
   current.position = whole_.choice.position;
   current.force = whole_.choice.force;
   current.log_density = whole_.choice.log_density;

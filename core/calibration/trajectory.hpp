@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/calibration/hamiltonian.hpp"
@@ -85,7 +86,7 @@ class TrajectorySampler {
   double energy_0_ = 0.0;
   double acceptance_sum_ = 0.0;
   int points_ = 0;
-  Error error_{};
+  std::optional<Error> error_;  // of the target, once a step has failed
 };
 
 }  // namespace recald::calibration

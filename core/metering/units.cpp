@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/text/ascii.hpp"
-#include "core/text/printable.hpp"
 
 namespace recald::metering {
 namespace {
@@ -164,7 +163,7 @@ const KnownUnit* find_known(std::string_view spelling) {
 
 std::string quoted(std::string_view text) {
   std::string quoted_text{"'"};
-  quoted_text += printable(text);
+  quoted_text += text;
   quoted_text += '\'';
   return quoted_text;
 }

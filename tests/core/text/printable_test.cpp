@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/result.hpp"
+
 namespace recald {
 namespace {
 
@@ -14,6 +16,13 @@ TEST(Printable, WritesControlCharactersOut) {
 TEST(Printable, LeavesEverythingElse) {
   EXPECT_EQ(printable(""), "");
   EXPECT_EQ(printable("São Paulo, 21.5 °C ~"), "São Paulo, 21.5 °C ~");
+}
+
+TEST(Printable, IsWhatEveryErrorSays) {
+  const Error error{ErrorCode::malformed, "it ends within <link\b>"};
+  EXPECT_EQ(error.message, "it ends within <link\\x08>");
+  const Result<int> failed = failure(ErrorCode::malformed, "unit 'k\x1BWh'");
+  EXPECT_EQ(failed.error().message, "unit 'k\\x1BWh'");
 }
 
 }  // namespace
