@@ -358,8 +358,8 @@ Result<Json> with_sizes(Json model, const fs::path& sql) {
           best = &size;
         }
         if (best == nullptr) continue;
-        // EnergyPlus refuses the frost in which it sized the coil itself.
-        value = field == "design_inlet_air_temperature" ? std::max(best->value, 0.0) : best->value;
+        // EnergyPlus refuses the frost in which it sized the coil itself, zero included.
+        value = field == "design_inlet_air_temperature" ? std::max(best->value, 0.1) : best->value;
       }
     }
   }
