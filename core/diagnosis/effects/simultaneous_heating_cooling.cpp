@@ -1,4 +1,6 @@
 /// Heating and cooling work against each other.
+#include <algorithm>
+
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/effects/support/half_normal.hpp"
 
@@ -7,17 +9,19 @@ namespace {
 
 class SimultaneousHeatingCooling final : public model::hourly::Alteration {
  public:
-  explicit SimultaneousHeatingCooling(double wasted_kW) : wasted_kW_(wasted_kW) {}
+  explicit SimultaneousHeatingCooling(double leaking_kW) : leaking_kW_(leaking_kW) {}
 
   void supply(const model::Building&, const model::DriverHour&, const model::hourly::StepOperation&,
               model::hourly::StepLoads& loads) const override {
-    const double wasted_W = 1000.0 * wasted_kW_ * loads.running_share;
+    // What leaks is no waste while as much heat is wanted.
+    const double leaking_W = 1000.0 * leaking_kW_ * loads.running_share;
+    const double wasted_W = std::max(leaking_W - loads.reheat_W - loads.zone_heating_W, 0.0);
     loads.sensible_cooling_W += wasted_W;
     loads.reheat_W += wasted_W;
   }
 
  private:
-  double wasted_kW_;
+  double leaking_kW_;
 };
 
 /// Mean of chilled water; with an own chiller, that of heat; else 10 W/m².
@@ -49,18 +53,19 @@ Effect simultaneous_heating_cooling() {
       .id = "simultaneous_heating_cooling",
       .title = "Simultaneous heating and cooling",
       .meaning =
-          "While the fans run, air is cooled and heated by the same amount, for instance because "
-          "of a leaking valve or zones that work against each other. Nobody notices, because the "
-          "rooms stay comfortable.",
+          "While the fans run, heat goes into air that wants none, for instance because a valve "
+          "leaks, and the cooling takes it out again. Nobody notices, because the rooms stay "
+          "comfortable.",
       .physics =
-          "Q_cool [kW] += q·on, Q_heat [kW] += q·on; on: share of the air handlers that runs [–]; "
-          "q [kW] ≥ 0",
+          "Q_cool [kW] += w, Q_heat [kW] += w, w = max(q·on − Q_heat, 0); on: share of the air "
+          "handlers that runs [–]; Q_heat of reheat and rooms; q [kW] ≥ 0",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.air_system = true},
       .confusable =
           {{"supply_reset_missing",
-            "Plot chilled water against outdoor temperature: leaking valves do not depend on it, "
+            "Plot heat against outdoor temperature: leaking valves heat in the hottest weather "
+            "too, "
             "the effect of a missing reset stops at a certain temperature."},
            {"economiser_failed",
             "Heat in mild weather: only simultaneous heating and cooling raises it together with "

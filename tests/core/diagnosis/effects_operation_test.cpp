@@ -299,12 +299,20 @@ TEST(EffectsOfOperation, DemandVentilationSparesLaboratories) {
   EXPECT_DOUBLE_EQ(by_day.outdoor_air_m3_s, 6.0 * (1.0 - 0.5 * 0.2 * 0.6));
 }
 
-TEST(EffectsOfOperation, SimultaneousHeatingAndCoolingAddsTheSameToBoth) {
-  const StepLoads loads =
-      supplied(effects::simultaneous_heating_cooling(), {20.0}, morning(),
-               {.sensible_cooling_W = 1e5, .reheat_W = 1e4, .running_share = 0.5});
-  EXPECT_DOUBLE_EQ(loads.sensible_cooling_W, 1.1e5);
-  EXPECT_DOUBLE_EQ(loads.reheat_W, 2e4);
+TEST(EffectsOfOperation, SimultaneousHeatingAndCoolingAddsTheSameToBothBeyondWhatIsWanted) {
+  const auto with = [](double zone_heating_W, double reheat_W) {
+    return supplied(effects::simultaneous_heating_cooling(), {20.0}, morning(),
+                    {.sensible_cooling_W = 1e5,
+                     .zone_heating_W = zone_heating_W,
+                     .reheat_W = reheat_W,
+                     .running_share = 0.5});
+  };
+  EXPECT_DOUBLE_EQ(with(1e3, 3e3).sensible_cooling_W, 1.06e5);
+  EXPECT_DOUBLE_EQ(with(1e3, 3e3).reheat_W, 9e3);
+  EXPECT_DOUBLE_EQ(with(0.0, 0.0).reheat_W, 1e4);
+  // On a cold day the valve would be open anyway.
+  EXPECT_DOUBLE_EQ(with(2e4, 1e3).sensible_cooling_W, 1e5);
+  EXPECT_DOUBLE_EQ(with(2e4, 1e3).reheat_W, 1e3);
 }
 
 TEST(EffectsOfOperation, SupplyResetMissingCoolsDeeperInMildWeatherUpToItsLimit) {
