@@ -19,10 +19,9 @@ struct ExpectedChange {
 };
 
 /// Every eight weeks a date is tried, and for what may end also how long it lasts. A shape costs
-/// one run of the model, its dates none.
+/// one run of the model, its dates none: what may begin or not is run once for both.
 /// @param candidates  Must outlive what is told.
-/// @param tell        Called with each change; one at a time, so that nobody needs to keep them
-/// all.
+/// @param tell        Called with each change; one at a time, so that nobody needs to keep all.
 void expect_changes(const SiteProblem& site, const SignatureReader& reader, const SignatureFit& fit,
                     const std::vector<Candidate>& candidates, Predictor& predictor,
                     const std::function<void(const ExpectedChange&)>& tell);

@@ -8,25 +8,13 @@
 namespace recald::diagnosis {
 namespace {
 
-constexpr double kAlike = 12.0;    // Signatures repeat each other.
-constexpr double kVanished = 4.0;  // Of the spread: what has no value any more.
+constexpr double kAlike = 12.0;  // Signatures repeat each other …
+constexpr double kSpread = 0.1;  // … and are so far off at the mode.
 constexpr int kIterations = 10;
 constexpr double kFarthest = 3.0;  // Scores.
 
 Eigen::VectorXd flat(const Eigen::MatrixXd& signatures) {
   return Eigen::Map<const Eigen::VectorXd>(signatures.data(), signatures.size());
-}
-
-/// Standard deviations to find the mode with: powers, times in hours, shares of days.
-Eigen::VectorXd rough_spread() {
-  const auto& names = signature_names();
-  Eigen::VectorXd spread(std::ssize(names));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool is_time = names[i].find("of the day, ") != std::string::npos;
-    const bool is_share = names[i].find("that have one") != std::string::npos;
-    spread[static_cast<Eigen::Index>(i)] = is_share ? 0.3 : is_time ? 0.7 : 0.1;
-  }
-  return spread.replicate(static_cast<Eigen::Index>(kSignatureMeters), 1);
 }
 
 class Fitter {
@@ -56,16 +44,16 @@ class Fitter {
     return flat(reader_.read(predictor_.hours_kW()));
   }
 
+  /// In standard deviations; 0 where the site has no such signature.
+  [[nodiscard]] Eigen::VectorXd off_of(const Eigen::VectorXd& read) const {
+    return ((fit_.measured - read) / (kSpread * std::sqrt(kAlike))).unaryExpr([](double off) {
+      return std::isfinite(off) ? off : 0.0;
+    });
+  }
+
   [[nodiscard]] double objective_of(const Eigen::VectorXd& read,
                                     const Eigen::VectorXd& scores) const {
-    double sum = scores.squaredNorm();
-    for (Eigen::Index i = 0; i < read.size(); ++i) {
-      if (!std::isfinite(fit_.measured[i]) || !std::isfinite(fit_.nominal[i])) continue;
-      const double off = (fit_.measured[i] - read[i]) / spread_[i];
-      // What vanishes, such as the start of a day without one, must not count as a good fit.
-      sum += (std::isfinite(off) ? off * off : kVanished * kVanished) / kAlike;
-    }
-    return sum;
+    return scores.squaredNorm() + off_of(read).squaredNorm();
   }
 
   void linearise() {
@@ -83,15 +71,8 @@ class Fitter {
 
   /// One step, as long as it helps. @return whether any length did.
   bool improve() {
-    const Eigen::VectorXd weight = (spread_ * std::sqrt(kAlike)).cwiseInverse();
-    Eigen::MatrixXd slopes = weight.asDiagonal() * fit_.jacobian;
-    Eigen::VectorXd off = (fit_.measured - fit_.fitted).cwiseProduct(weight);
-    for (Eigen::Index i = 0; i < off.size(); ++i) {
-      if (std::isfinite(off[i])) continue;
-      off[i] = 0.0;
-      slopes.row(i).setZero();
-    }
-    off += slopes * fit_.scores;
+    const Eigen::MatrixXd slopes = fit_.jacobian / (kSpread * std::sqrt(kAlike));
+    const Eigen::VectorXd off = off_of(fit_.fitted) + slopes * fit_.scores;
     const Eigen::Index q = fit_.scores.size();
     const Eigen::MatrixXd normal = slopes.transpose() * slopes + Eigen::MatrixXd::Identity(q, q);
     const Eigen::VectorXd wanted =
@@ -114,7 +95,6 @@ class Fitter {
   const SignatureReader& reader_;
   Predictor& predictor_;
   std::vector<Prior> priors_;
-  Eigen::VectorXd spread_ = rough_spread();
   std::vector<double> theta_;
   SignatureFit fit_;
 };

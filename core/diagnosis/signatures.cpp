@@ -119,63 +119,6 @@ Eigen::RowVectorXd regressors(const RegimeDay& row, double before_C, int days) {
   return x;
 }
 
-constexpr int kFewestDays = 8;
-
-double median_of(std::vector<double>& values) {
-  if (values.size() < kFewestDays) return kAbsent;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// When the day's load begins or ends.
-struct Edge {
-  double at_h;
-  double outdoor_C;  ///< In the morning.
-  bool monday;
-  bool summer_time;
-  int third;  ///< Of the record.
-};
-
-template <class Wanted>
-double median_where(const std::vector<Edge>& edges, Wanted wanted) {
-  std::vector<double> chosen;
-  for (const Edge& edge : edges) {
-    if (wanted(edge)) chosen.push_back(edge.at_h);
-  }
-  return median_of(chosen);
-}
-
-/// Half way from the night's load to the one at noon; absent for a day that hardly has a noon.
-/// @param kW  (24)
-double half_load(const double* kW) {
-  const double night = (kW[1] + kW[2] + kW[3]) / 3.0;
-  const double noon = (kW[11] + kW[12] + kW[13]) / 3.0;
-  constexpr double kLeastRise = 0.15;
-  return noon - night > kLeastRise * std::abs(noon) ? 0.5 * (night + noon) : kAbsent;
-}
-
-/// Where the line through the middles of two hours passes the half load.
-double crossing_h(const double* kW, int hour, double half) {
-  return hour + 0.5 + (half - kW[hour]) / (kW[hour + 1] - kW[hour]);
-}
-
-double start_of_day(const double* kW) {
-  const double half = half_load(kW);
-  for (int hour = 3; hour < 13; ++hour) {
-    if (kW[hour] < half && kW[hour + 1] >= half) return crossing_h(kW, hour, half);
-  }
-  return kAbsent;
-}
-
-double stop_of_day(const double* kW) {
-  const double half = half_load(kW);
-  for (int hour = 22; hour >= 12; --hour) {
-    if (kW[hour] >= half && kW[hour + 1] < half) return crossing_h(kW, hour, half);
-  }
-  return kAbsent;
-}
-
 }  // namespace
 
 std::string_view to_string(SignatureMeter meter) {
@@ -221,14 +164,6 @@ std::vector<std::string> make_names() {
     }
     names.push_back(of + "holiday");
   }
-  for (const char* edge : {"start", "stop"}) {
-    const std::string of = std::string(edge) + " of the day, ";
-    for (const char* what :
-         {"usual", "spread", "per cold", "per heat", "Monday", "Saturdays that have one",
-          "Sundays that have one", "after the clock change", "late in the record"}) {
-      names.push_back(of + what);
-    }
-  }
   for (const char* what :
        {"workday mornings", "workday evenings", "free day mornings", "free day evenings"}) {
     names.push_back(std::string("dark against light, ") + what);
@@ -247,9 +182,7 @@ namespace {
 
 constexpr int kOfRegime = static_cast<int>(kSlopeNames.size()) + kWarmths + kBlocks + 12 + 5 + 1;
 constexpr int kDarkKinds = 4;
-constexpr int kEdgeNames = 18;
-constexpr int kEdgesFrom = kGroups + kRegimes * kOfRegime;  ///< Place of the first.
-constexpr int kDarkFrom = kEdgesFrom + kEdgeNames;
+constexpr int kDarkFrom = kGroups + kRegimes * kOfRegime;  ///< Place of the first.
 
 /// Rows of a regime by what they have in common.
 struct RowGroups {
@@ -277,8 +210,10 @@ Eigen::MatrixXd averaging(const std::vector<int>& group_of, int groups) {
   return average;
 }
 
-/// What the signatures of a regime are of its rows. Blocks, months and days are asked for what the
-/// weather does not explain; blocks keep trend and season too, which are what they are asked for.
+/// What the signatures of a regime are of its rows, in power. Slopes are told per standard
+/// deviation of what they are of: one against next to nothing, such as sun at night, must not be
+/// large. Blocks, months and days are asked for what the weather does not explain; blocks keep
+/// trend and season too, which are what they are asked for.
 Eigen::MatrixXd signatures_of_rows(const Eigen::MatrixXd& design, const Eigen::MatrixXd& solve,
                                    const RowGroups& rows) {
   Eigen::MatrixXd of_rows(kOfRegime, design.rows());
@@ -291,13 +226,30 @@ Eigen::MatrixXd signatures_of_rows(const Eigen::MatrixXd& design, const Eigen::M
     return (average - (average * design.leftCols(coefficients)) * solve.topRows(coefficients))
         .eval();
   };
-  put(solve.middleRows(kFirstSlope, kCoefficients - kFirstSlope));
+  const Eigen::MatrixXd of_slopes = design.rightCols(kCoefficients - kFirstSlope);
+  const Eigen::RowVectorXd mean = of_slopes.colwise().mean();
+  const Eigen::VectorXd deviation =
+      (of_slopes.rowwise() - mean).array().square().colwise().mean().sqrt();
+  put(deviation.asDiagonal() * solve.bottomRows(kCoefficients - kFirstSlope));
   put(averaging(rows.warmth, kWarmths));
   put(unexplained(averaging(rows.block, kBlocks), kCoefficients - kOfTime));
   put(unexplained(averaging(rows.month, 12), kCoefficients));
   put(unexplained(averaging(rows.weekday, 5), kCoefficients));
   put(unexplained(averaging(rows.free_day, 1), kCoefficients));
   assert(next == of_rows.rows());
+  return of_rows;
+}
+
+/// (signatures x rows) weights whose products with rows of power are the level at which each
+/// signature of a regime is: of slopes, where there is something of what they are of.
+Eigen::MatrixXd levels_of_rows(const Eigen::MatrixXd& design, const RowGroups& rows) {
+  Eigen::MatrixXd of_rows(kOfRegime, design.rows());
+  constexpr Eigen::Index kSlopes = kCoefficients - kFirstSlope;
+  const Eigen::ArrayXXd there = design.rightCols(kSlopes).cwiseAbs().array() + 1e-9;
+  of_rows.topRows(kSlopes) = (there.rowwise() / there.colwise().sum()).matrix().transpose();
+  of_rows.bottomRows(kOfRegime - kSlopes) << averaging(rows.warmth, kWarmths),
+      averaging(rows.block, kBlocks), averaging(rows.month, 12), averaging(rows.weekday, 5),
+      averaging(rows.free_day, 1);
   return of_rows;
 }
 
@@ -315,17 +267,6 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
   }
   for (std::size_t d = 1; d < hours_before_.size(); ++d) hours_before_[d] += hours_before_[d - 1];
   for (const Means& day : warmth) day_C_.push_back(day.mean());
-  for (std::size_t i = 0; i + 24 <= hours.size(); ++i) {
-    // Days of 23 or 25 hours have no edges.
-    if (hours[i].local_hour != 0 || hours[i + 23].day_index != hours[i].day_index ||
-        hours[i + 23].local_hour != 23) {
-      continue;
-    }
-    first_hour_.push_back(static_cast<int>(i));
-    double sum_C = 0.0;
-    for (std::size_t h = 5; h < 8; ++h) sum_C += hours[i + h].dry_bulb_C;
-    morning_C_.push_back(sum_C / 3.0);
-  }
   double all_kW = 0.0;
   for (Eigen::Index g = 0; g < site.measured_kW.cols(); ++g) {
     Means meter;
@@ -363,7 +304,7 @@ SignatureReader::Meter SignatureReader::make_meter(int column, double least_kW) 
   const auto& hours = site_->drivers->hours;
   Meter meter{.column = column};
   Means all;
-  std::array<int, kGroups> count{};
+  std::array<Means, kGroups> groups{};
   for (std::size_t i = 0; i < hours.size(); ++i) {
     const double kW = site_->measured_kW(static_cast<Eigen::Index>(i), column);
     if (!std::isfinite(kW)) {
@@ -375,15 +316,21 @@ SignatureReader::Meter SignatureReader::make_meter(int column, double least_kW) 
     const int group = (static_cast<int>(hours[i].day) * kSeasons + season_of(day_C)) * kPairs +
                       hours[i].local_hour / 2;
     meter.group.push_back(group);
-    ++count[static_cast<std::size_t>(group)];
+    groups[static_cast<std::size_t>(group)].add(kW);
   }
-  for (const int of : count) {
-    meter.per_group_hour.push_back(of < kFewestHours ? kAbsent : 1.0 / of);
+  meter.mean_kW = std::max({all.count > 0 ? all.mean() : 0.0, least_kW, 1e-9});
+  for (const Means& of : groups) {
+    const double per_kWh = 1.0 / (of.count * unit_at(meter, of.mean()));
+    meter.per_group_kWh.push_back(of.count < kFewestHours ? kAbsent : per_kWh);
   }
-  meter.unit_kW = std::max({all.count > 0 ? all.mean() : 0.0, least_kW, 1e-9});
   for (int kind = 0; kind < kRegimes; ++kind) meter.regimes.push_back(make_regime(meter, kind));
   make_darkness(meter);
   return meter;
+}
+
+double SignatureReader::unit_at(const Meter& meter, double level_kW) {
+  constexpr double kShareOfMean = 0.25;
+  return kShareOfMean * meter.mean_kW + std::abs(level_kW);
 }
 
 SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kind) const {
@@ -391,6 +338,7 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
   Regime regime;
   regime.row_of_hour.assign(hours.size(), -1);
   std::vector<RegimeDay> rows;
+  std::vector<Means> measured_kW;
   int last_day = -1;
   for (std::size_t i = 0; i < hours.size(); ++i) {
     if (meter.group[i] < 0 ||
@@ -399,9 +347,11 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
     }
     if (hours[i].day_index != last_day) {
       rows.push_back({.first = &hours[i]});
+      measured_kW.emplace_back();
       last_day = hours[i].day_index;
     }
     regime.row_of_hour[i] = static_cast<int>(rows.size()) - 1;
+    measured_kW.back().add(site_->measured_kW(static_cast<Eigen::Index>(i), meter.column));
     rows.back().dry_bulb_C.add(hours[i].dry_bulb_C);
     rows.back().humidity.add(1000.0 * hours[i].humidity_ratio);
     rows.back().wind.add(hours[i].wind_m_s);
@@ -439,7 +389,13 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
     normal(k, k) += static_cast<double>(n) * (kRidge * variance + 1e-9);
   }
   const Eigen::MatrixXd solve = normal.ldlt().solve(design.transpose());
-  regime.of_rows = signatures_of_rows(design, solve, groups) / meter.unit_kW;
+  Eigen::VectorXd rows_kW(n);
+  for (Eigen::Index r = 0; r < n; ++r) rows_kW[r] = measured_kW[static_cast<std::size_t>(r)].mean();
+  const Eigen::VectorXd unit_kW =
+      (levels_of_rows(design, groups) * rows_kW).unaryExpr([&](double kW) {
+        return unit_at(meter, kW);
+      });
+  regime.of_rows = unit_kW.cwiseInverse().asDiagonal() * signatures_of_rows(design, solve, groups);
   return regime;
 }
 
@@ -483,16 +439,26 @@ void SignatureReader::make_darkness(Meter& meter) const {
     meter.dark_kind[i] = kind;
     meter.darkness[i] = sign / (of[is_dark(i)] * compared[static_cast<std::size_t>(kind)]);
   }
+  std::array<double, kDarkKinds> level_kW{};  // half of it in the dark, half in the light
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    if (meter.dark_kind[i] < 0) continue;
+    level_kW[static_cast<std::size_t>(meter.dark_kind[i])] +=
+        0.5 * std::abs(meter.darkness[i]) *
+        site_->measured_kW(static_cast<Eigen::Index>(i), meter.column);
+  }
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    if (meter.dark_kind[i] < 0) continue;
+    meter.darkness[i] /= unit_at(meter, level_kW[static_cast<std::size_t>(meter.dark_kind[i])]);
+  }
 }
 
 void SignatureReader::add_linear(const Meter& meter, const double* kW, std::size_t from,
                                  std::size_t to, double* values) const {
-  const double per_kW = 1.0 / meter.unit_kW;
   std::array<double, kGroups> sums{};
   for (std::size_t i = from; i < to; ++i) {
     if (meter.group[i] >= 0) sums[static_cast<std::size_t>(meter.group[i])] += kW[i];
   }
-  for (std::size_t g = 0; g < kGroups; ++g) values[g] += sums[g] * meter.per_group_hour[g] * per_kW;
+  for (std::size_t g = 0; g < kGroups; ++g) values[g] += sums[g] * meter.per_group_kWh[g];
   for (std::size_t kind = 0; kind < kRegimes; ++kind) {
     const Regime& regime = meter.regimes[kind];
     Eigen::Map<Eigen::VectorXd> into(values + kGroups + kind * kOfRegime, kOfRegime);
@@ -500,79 +466,25 @@ void SignatureReader::add_linear(const Meter& meter, const double* kW, std::size
       into.setConstant(kAbsent);
       continue;
     }
-    Eigen::VectorXd rows = Eigen::VectorXd::Zero(regime.of_rows.cols());
+    // Rows are in order of days: those of a few days are together.
+    Eigen::Index first = regime.of_rows.cols();
+    Eigen::Index last = -1;
+    Eigen::VectorXd rows = Eigen::VectorXd::Zero(first);
     for (std::size_t i = from; i < to; ++i) {
       const int row = regime.row_of_hour[i];
-      if (row >= 0) rows[row] += kW[i] * regime.per_hour[static_cast<std::size_t>(row)];
+      if (row < 0) continue;
+      rows[row] += kW[i] * regime.per_hour[static_cast<std::size_t>(row)];
+      first = std::min<Eigen::Index>(first, row);
+      last = row;
     }
-    into += regime.of_rows * rows;
+    const Eigen::Index count = std::max<Eigen::Index>(last - first + 1, 0);
+    into += regime.of_rows.middleCols(std::min(first, last + 1), count) *
+            rows.segment(std::min(first, last + 1), count);
   }
   double* const dark = values + kDarkFrom;
   for (std::size_t k = 0; k < kDarkKinds; ++k) dark[k] += meter.no_darkness[k];
   for (std::size_t i = from; i < to; ++i) {
-    if (meter.dark_kind[i] >= 0) dark[meter.dark_kind[i]] += meter.darkness[i] * kW[i] * per_kW;
-  }
-}
-
-SignatureReader::DayEdges SignatureReader::edges_of(const Meter& meter, const double* kW) const {
-  DayEdges edges(std::ssize(first_hour_), 2);
-  for (std::size_t d = 0; d < first_hour_.size(); ++d) {
-    const auto from = meter.group.begin() + first_hour_[d];
-    const bool is_measured = std::all_of(from, from + 24, [](int group) { return group >= 0; });
-    const auto day = static_cast<Eigen::Index>(d);
-    // A day without a reading is absent, one without an edge is infinitely late.
-    edges.row(day).setConstant(kAbsent);
-    if (!is_measured) continue;
-    const auto or_never = [](double at_h) {
-      return std::isfinite(at_h) ? at_h : std::numeric_limits<double>::infinity();
-    };
-    edges(day, 0) = or_never(start_of_day(kW + first_hour_[d]));
-    edges(day, 1) = or_never(stop_of_day(kW + first_hour_[d]));
-  }
-  return edges;
-}
-
-void SignatureReader::read_edges(const DayEdges& of_days, double* values) const {
-  const auto& hours = site_->drivers->hours;
-  for (const Eigen::Index side : {0, 1}) {
-    std::vector<Edge> edges;
-    Means saturdays, sundays;
-    for (std::size_t d = 0; d < first_hour_.size(); ++d) {
-      const double at_h = of_days(static_cast<Eigen::Index>(d), side);
-      if (std::isnan(at_h)) continue;
-      const DriverHour& hour = hours[static_cast<std::size_t>(first_hour_[d])];
-      const double has_one = std::isfinite(at_h) ? 1.0 : 0.0;
-      if (hour.day == DayType::saturday) saturdays.add(has_one);
-      if (hour.day == DayType::sunday_or_holiday) sundays.add(has_one);
-      if (hour.day != DayType::workday || !std::isfinite(at_h)) continue;
-      edges.push_back({.at_h = at_h,
-                       .outdoor_C = morning_C_[d],
-                       .monday = hour.weekday == 1,
-                       .summer_time = hour.daylight_saving,
-                       .third = static_cast<int>(3 * d / first_hour_.size())});
-    }
-    const double usual = median_where(edges, [](const Edge&) { return true; });
-    std::vector<double> off_h;
-    for (const Edge& edge : edges) off_h.push_back(std::abs(edge.at_h - usual));
-    const auto between = [&](double from_C, double to_C) {
-      return median_where(edges, [&](const Edge& edge) {
-        return edge.outdoor_C >= from_C && edge.outdoor_C < to_C;
-      });
-    };
-    const double mild = between(8.0, 17.0);
-    const std::array<double, kEdgeNames / 2> read{
-        usual,
-        median_of(off_h),
-        between(-90.0, 4.0) - mild,
-        between(20.0, 90.0) - mild,
-        median_where(edges, [](const Edge& edge) { return edge.monday; }) - usual,
-        saturdays.mean(kFewestDays),
-        sundays.mean(kFewestDays),
-        median_where(edges, [](const Edge& edge) { return edge.summer_time; }) -
-            median_where(edges, [](const Edge& edge) { return !edge.summer_time; }),
-        median_where(edges, [](const Edge& edge) { return edge.third == 2; }) -
-            median_where(edges, [](const Edge& edge) { return edge.third == 0; })};
-    values = std::copy(read.begin(), read.end(), values);
+    if (meter.dark_kind[i] >= 0) dark[meter.dark_kind[i]] += meter.darkness[i] * kW[i];
   }
 }
 
@@ -586,28 +498,15 @@ Eigen::MatrixXd SignatureReader::read(const Eigen::Ref<const Eigen::ArrayXXd>& h
     const double* const kW = hours_kW.col(meter.column).data();
     std::fill_n(into, count, 0.0);
     add_linear(meter, kW, 0, meter.group.size(), into);
-    read_edges(edges_of(meter, kW), into + kEdgesFrom);
   }
   return values;
 }
 
 SpanReader::SpanReader(const SignatureReader& reader, const Eigen::ArrayXXd& base_kW)
-    : reader_(&reader), base_kW_(&base_kW), base_edge_values_(kEdgeNames, kSignatureMeters) {
-  for (std::size_t m = 0; m < kSignatureMeters; ++m) {
-    const auto& meter = reader.meters_[m];
-    if (meter.column < 0) continue;
-    base_edges_[m] = reader.edges_of(meter, base_kW.col(meter.column).data());
-    reader.read_edges(base_edges_[m], base_edge_values_.col(static_cast<Eigen::Index>(m)).data());
-  }
-}
+    : reader_(&reader), base_kW_(&base_kW) {}
 
 void SpanReader::take(const Eigen::Ref<const Eigen::ArrayXXd>& other_kW) {
   more_kW_ = other_kW - *base_kW_;
-  for (std::size_t m = 0; m < kSignatureMeters; ++m) {
-    const auto& meter = reader_->meters_[m];
-    if (meter.column < 0) continue;
-    other_edges_[m] = reader_->edges_of(meter, other_kW.col(meter.column).data());
-  }
 }
 
 Eigen::MatrixXd SpanReader::change(int from_day, int to_day) const {
@@ -626,14 +525,6 @@ Eigen::MatrixXd SpanReader::change(int from_day, int to_day) const {
     auto into = values.col(static_cast<Eigen::Index>(m));
     into.setZero();
     reader_->add_linear(meter, more_kW_.col(meter.column).data(), from, to, into.data());
-    SignatureReader::DayEdges edges = base_edges_[m];
-    for (std::size_t d = 0; d < reader_->first_hour_.size(); ++d) {
-      const auto hour = static_cast<std::size_t>(reader_->first_hour_[d]);
-      const auto row = static_cast<Eigen::Index>(d);
-      if (hour >= from && hour < to) edges.row(row) = other_edges_[m].row(row);
-    }
-    reader_->read_edges(edges, into.data() + kEdgesFrom);
-    into.segment(kEdgesFrom, kEdgeNames) -= base_edge_values_.col(static_cast<Eigen::Index>(m));
   }
   return values;
 }

@@ -2,8 +2,7 @@
 ///
 /// The same numbers are taken of the measured and of the modelled hours, so that their difference
 /// says where the two disagree: at night, on Saturdays, when it is humid, in the mornings of cold
-/// days. Nearly all are linear in the power: means over groups of hours, and coefficients of
-/// regressions.
+/// days. All are linear in the power: means over groups of hours, and coefficients of regressions.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,10 +29,10 @@ class SignatureReader {
   explicit SignatureReader(const SiteProblem& site);
 
   /// @param hours_kW  (hours x m) measured or modelled. Only hours that were measured count.
-  /// @return (names x meters) powers in units of the meter's measured mean, or of a twentieth of
-  /// the
-  ///         sum of all meters' means where that is more; times in hours, shares of one; NaN where
-  ///         the site has no such meter, or too few such hours.
+  /// @return (names x meters) powers in units of what was measured in the same hours plus a quarter
+  ///         of the meter's measured mean, or of a twentieth of the sum of all meters' means where
+  ///         that is more: models err by shares of what is there. Slopes are per standard deviation
+  ///         of what they are of. NaN where the site has no such meter, or too few such hours.
   [[nodiscard]] Eigen::MatrixXd read(const Eigen::Ref<const Eigen::ArrayXXd>& hours_kW) const;
 
  private:
@@ -43,37 +42,31 @@ class SignatureReader {
   struct Regime {
     std::vector<int> row_of_hour;  ///< (hours) day of the regime; -1: not in it.
     std::vector<double> per_hour;  ///< (rows) 1 / hours measured.
-    Eigen::MatrixXd of_rows;       ///< (signatures x rows) what each is of the days' powers.
+    Eigen::MatrixXd of_rows;       ///< (signatures x rows) what each is of the days' powers in kW.
   };
   struct Meter {
     int column = -1;  ///< In hours_kW; -1: there is none.
-    double unit_kW = 1.0;
+    double mean_kW = 1.0;
     std::vector<int> group;  ///< (hours) kind of day, season, two hours; -1: not measured.
-    std::vector<double> per_group_hour;  ///< (groups) 1 / hours measured; NaN: too few.
+    std::vector<double> per_group_kWh;  ///< (groups) 1 / (hours measured x unit); NaN: too few.
     std::vector<Regime> regimes;
-    std::vector<double> darkness;     ///< (hours) weight in its kind of darkness …
+    std::vector<double> darkness;     ///< (hours) weight of a kW in its kind of darkness …
     std::vector<int> dark_kind;       ///< … (hours) which is this; -1: none.
     std::vector<double> no_darkness;  ///< (kinds) 0; NaN where there are too few hours.
   };
-  /// (days of first_hour_ x 2) hours at which the load begins and ends; infinite where it does not,
-  /// NaN on days that were not measured.
-  using DayEdges = Eigen::ArrayX2d;
-
   [[nodiscard]] Meter make_meter(int column, double least_kW) const;
+  /// The unit of powers at hours when so much was measured.
+  [[nodiscard]] static double unit_at(const Meter& meter, double level_kW);
   [[nodiscard]] Regime make_regime(const Meter& meter, int kind) const;
   void make_darkness(Meter& meter) const;
   /// Adds what the hours from one to another contribute to the signatures that are linear in power.
   void add_linear(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
                   double* values) const;
-  [[nodiscard]] DayEdges edges_of(const Meter& meter, const double* kW) const;
-  void read_edges(const DayEdges& edges, double* values) const;
 
   const SiteProblem* site_;
   std::array<Meter, kSignatureMeters> meters_;
-  std::vector<int> first_hour_;    ///< (days) of each day that has all its hours.
   std::vector<int> hours_before_;  ///< (day index + 1) hours of the record before that day.
   std::vector<double> day_C_;      ///< (day index) mean outdoor temperature.
-  std::vector<double> morning_C_;  ///< (days of first_hour_) mean of 5 to 8 h.
 };
 
 /// Signatures of a record that is like another one but for some days: an effect from a date on
@@ -93,9 +86,6 @@ class SpanReader {
   const SignatureReader* reader_;
   const Eigen::ArrayXXd* base_kW_;
   Eigen::ArrayXXd more_kW_;
-  std::array<SignatureReader::DayEdges, kSignatureMeters> base_edges_;
-  std::array<SignatureReader::DayEdges, kSignatureMeters> other_edges_;
-  Eigen::MatrixXd base_edge_values_;  ///< (edge names x meters)
 };
 
 }  // namespace recald::diagnosis

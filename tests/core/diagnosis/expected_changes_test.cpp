@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tests/support/sample_problem.hpp"
 
@@ -36,7 +37,7 @@ TEST_F(FittedSite, FindsTheBuildingThatWasMeasured) {
   ASSERT_EQ(fit.theta.size(), 3u);
   // The priors hold back a little.
   EXPECT_NEAR(fit.theta[0], 1.4 * site_.nominal.use.occupancy_person_m2,
-              0.15 * site_.nominal.use.occupancy_person_m2);
+              0.2 * site_.nominal.use.occupancy_person_m2);
   EXPECT_NEAR(fit.theta[1], 0.7 * site_.nominal.air->outdoor_air_m3_s,
               0.1 * site_.nominal.air->outdoor_air_m3_s);
   EXPECT_NEAR(fit.theta[2], site_.nominal.set_points.heating_occupied_C, 0.2);
@@ -116,6 +117,36 @@ TEST_F(FittedSite, EachCandidateChangesWhatItsRunChanges) {
     EXPECT_GT(most, 0.01);
   });
   EXPECT_TRUE(compared);
+}
+
+// One run for all dates, and for what may begin or not.
+TEST_F(FittedSite, DatesCostNoRunAndAreThoseOfTheirOwnSpans) {
+  const SignatureReader reader(site_);
+  const SignatureFit fit = fit_signatures(site_, reader, predictor_);
+  std::vector<Candidate> late;
+  for (const Candidate& candidate : list_candidates(site_).candidates) {
+    if (candidate.effect->id == "after_hours") late.push_back(candidate);
+  }
+  ASSERT_EQ(late.size(), 2u) << "from the start, and from a date";
+  std::vector<ExpectedChange> told;
+  const int runs = predictor_.runs();
+  expect_changes(site_, reader, fit, late, predictor_,
+                 [&](const ExpectedChange& expected) { told.push_back(expected); });
+  EXPECT_EQ(predictor_.runs() - runs, 3) << "one for each number of hours";
+  EXPECT_GT(told.size(), 12u);
+  SpanReader spans(reader, fit.hours_kW);
+  double most = 0.0;
+  for (const ExpectedChange& expected : told) {
+    predictor_.parts_kW(fit.theta, late[0].effect->bind(site_.facts(), expected.values, -1).get());
+    spans.take(predictor_.hours_kW());
+    const Eigen::MatrixXd change = spans.change(expected.from_day, expected.to_day);
+    for (Eigen::Index i = 0; i < change.size(); ++i) {
+      if (!std::isfinite(change.data()[i])) continue;
+      ASSERT_NEAR(expected.change[i], change.data()[i], 1e-9) << expected.from_day;
+      most = std::max(most, std::abs(change.data()[i]));
+    }
+  }
+  EXPECT_GT(most, 0.05);
 }
 
 }  // namespace
