@@ -1,8 +1,9 @@
 """What the signatures of a case say for each possible effect, beside buildings with nothing hidden.
 
 A table (see signature_table_main.cpp) holds the signatures of the meters, of the fitted model, and how parameters and
-effects change them. A fit takes up a part of whatever is hidden. So a case is judged by what is left of its signatures
-*and* by where its parameters went, and an effect by what it would leave there (`Case.residual_change`, `score_change`).
+effects change them. What the meters show beyond the drawings is r = J u + a e + n: parameters u move within their priors,
+an effect e has an amount a, and n is what buildings with nothing hidden leave unexplained. So an effect is judged by how far
+a e shortens r in the metric of n and of all that the parameters could do.
 """
 import json
 import pathlib
@@ -11,7 +12,6 @@ import warnings
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-PARAMETERS_MAX = 40
 # Of typical amounts, with a log-normal prior; both signs where an effect may add or take away and its table has only what
 # it adds.
 AMOUNTS = np.array([0.12, 0.25, 0.5, 0.8, 1.2, 1.8, 2.6, 4.0])
@@ -19,35 +19,31 @@ AMOUNT_PRIOR = -0.5 * (np.log(AMOUNTS) / 0.9) ** 2
 AMOUNT_PRIOR -= np.log(np.exp(AMOUNT_PRIOR).sum())
 TWO_SIDED = {"scale_fault", "plug_growth", "equipment_step", "outdoor_air_amount", "solar_gain_change", "thermal_mass",
              "hybrid_work"}
-# Signatures repeat each other: so many count as one in the fit (signature_fit.cpp), so many are free in the evidence.
-ALIKE = 12.0
+# Signatures repeat each other: so many are free.
 FREE = 100.0
 NU = 10.0
+MOST = 15.0  # deviations; what is farther off says no more
 
 
 class Case:
     """A table and, where known, its answer. Residuals are NaN where the site has no such signature."""
 
-    def __init__(self, stem, names, parameters, world, answer=None):
+    def __init__(self, stem, world, answer=None):
         table = json.loads(pathlib.Path(f"{stem}.json").read_text())
         count, q, shapes = table["signatures"], len(table["parameters"]), len(table["shapes"])
         rows = np.fromfile(f"{stem}.f32", dtype="<f4").astype(float)
-        if rows.size != count * (3 + q + shapes):
+        twin = table.get("twin", False)
+        if rows.size != count * (3 + q + shapes + twin):
             raise ValueError(f"{stem}.f32 is torn; delete it and its .json and make it again")
         rows = rows.reshape(-1, count)
         self.name, self.world, self.answer = pathlib.Path(stem).name, world, answer
         self.measured = np.isfinite(rows[0]) & np.isfinite(rows[2])
         self.residual = np.where(self.measured, rows[0] - rows[2], np.nan)
         self.scores = np.array([p["score"] for p in table["parameters"]])
-        self.at = np.array([parameters.setdefault(p["name"], len(parameters)) for p in table["parameters"]])
+        self.parameters = [p["name"] for p in table["parameters"]]
         self.effects = np.array([shape["effect"].replace("@", "").split(":")[0] for shape in table["shapes"]])
-        jacobian = np.nan_to_num(rows[3:3 + q].T)
-        change = np.where(self.measured, np.nan_to_num(rows[3 + q:]), 0.0)
-        weight = np.where(self.measured, 1.0 / (rough_spread(names) * np.sqrt(ALIKE)), 0.0)
-        slopes = weight[:, None] * jacobian
-        gain = np.linalg.solve(slopes.T @ slopes + np.eye(q), slopes.T * weight)
-        self.score_change = change @ gain.T
-        self.residual_change = np.where(self.measured, change - self.score_change @ jacobian.T, 0.0)
+        self.jacobian = np.nan_to_num(rows[3:3 + q].T)
+        self.change = np.where(self.measured, np.nan_to_num(rows[3 + q:3 + q + shapes]), 0.0).astype(np.float32)
 
     @property
     def hidden(self):
@@ -60,68 +56,61 @@ class Case:
                    default=0.0)
 
 
-def rough_spread(names):
-    """As signature_fit.cpp weighs them."""
-    one = [0.3 if "that have one" in name else 0.7 if "of the day, " in name else 0.1 for name in names]
-    return np.tile(one, 3)
-
-
-def load(folder, world, answers, parameters):
-    """All cases of a folder of tables. @param parameters  Index of each parameter by name; grows."""
+def load(folder, world, answers):
+    """All cases of a folder of tables."""
     folder = pathlib.Path(folder)
-    names = json.loads((folder / "names.json").read_text())
     cases = []
     for file in sorted(folder.glob("*.json")):
         if file.stem == "names":
             continue
         answer = json.loads((pathlib.Path(answers) / f"{file.stem}.json").read_text())
-        cases.append(Case(file.with_suffix(""), names, parameters, world, answer))
+        cases.append(Case(file.with_suffix(""), world, answer))
     return cases
 
 
 class Null:
     """Mean squares and covariance of what buildings with nothing hidden leave, every world counting alike.
 
-    Of a case, its own row is left out. K = w I + (1 - w) Z'Z / N in units of the mean squares."""
+    Of a case, its own row is left out. K = w I + (1 - w) Z'Z / N + (J S)(J S)' in units of the mean squares; S: how far
+    parameters go from their priors' middle where nothing is hidden, in scores."""
 
-    def __init__(self, cases, own_share=0.2, most=6.0):
-        self.own_share, self.most = own_share, most
+    def __init__(self, cases, own_share=0.2):
+        self.own_share = own_share
         worlds = sorted({case.world for case in cases})
         of_world = [[case for case in cases if case.world == world] for world in worlds]
         self.spread = np.sqrt(averaged([mean_squares([case.residual for case in group]) for group in of_world]) + 0.01**2)
-        self.score_spread = np.sqrt(averaged([mean_squares([self.spread_out(case) for case in group]) for group in of_world], 0.25)
-                                    + 0.1**2)
+        self.score_spread = self.spread_of_scores(of_world)
         self.names = np.array([case.name for case in cases])
         self.rows = np.array([self.row(case) for case in cases])
-        self.rows /= np.maximum([np.sqrt(np.mean(row[self.there(case)] ** 2)) for row, case in zip(self.rows, cases)], 0.3)[:, None]
+        self.rows /= np.maximum([np.sqrt(np.mean(row[case.measured] ** 2)) for row, case in zip(self.rows, cases)], 0.3)[:, None]
         self.weight = np.array([1.0 / len(of_world[worlds.index(case.world)]) for case in cases])
 
     @staticmethod
-    def spread_out(case):
-        scores = np.full(PARAMETERS_MAX, np.nan)
-        scores[case.at] = case.scores
-        return scores
-
-    def there(self, case):
-        return np.concatenate([case.measured, np.isin(np.arange(PARAMETERS_MAX), case.at)])
+    def spread_of_scores(of_world):
+        names = sorted({name for group in of_world for case in group for name in case.parameters})
+        spread = {}
+        for name in names:
+            of = [[case.scores[case.parameters.index(name)] for case in group if name in case.parameters] for group in of_world]
+            squares = [np.mean(np.square(scores)) for scores in of if len(scores) >= 5]
+            spread[name] = np.sqrt(np.mean(squares)) if squares else 1.0
+        return spread
 
     def row(self, case):
-        left = np.nan_to_num(np.clip(case.residual / self.spread, -self.most, self.most))
-        return np.concatenate([left, np.nan_to_num(self.spread_out(case) / self.score_spread)])
-
-    def changes(self, case):
-        scores = np.zeros((len(case.effects), PARAMETERS_MAX))
-        scores[:, case.at] = case.score_change / self.score_spread[case.at]
-        return np.hstack([np.clip(case.residual_change / self.spread, -30.0, 30.0), scores])
+        return np.nan_to_num(np.clip(case.residual / self.spread, -MOST, MOST))
 
     def whitener(self, case):
-        """The case's entries, and the product of K^-1 with rows of them (Woodbury)."""
-        there = self.there(case)
+        """The case's r, its changes, and the product of K^-1 with rows of them (Woodbury)."""
+        there = case.measured
         keep = self.names != case.name
         weight = self.weight[keep] / self.weight[keep].sum()
         factor = (self.rows[keep][:, there] * np.sqrt(weight * (1.0 - self.own_share))[:, None]).T
+        slopes = (case.jacobian / self.spread[:, None])[there]
+        reach = np.array([max(self.score_spread.get(name, 1.0), 0.5) for name in case.parameters])
+        factor = np.hstack([factor, slopes * reach])
         inner = cho_factor(self.own_share * np.eye(factor.shape[1]) + factor.T @ factor)
-        return there, lambda rows: (rows - cho_solve(inner, (rows @ factor).T).T @ factor.T) / self.own_share
+        left = self.row(case)[there] + slopes @ case.scores
+        changes = (case.change / self.spread)[:, there]
+        return left, changes, lambda rows: (rows - cho_solve(inner, (rows @ factor).T).T @ factor.T) / self.own_share
 
 
 def mean_squares(rows):
@@ -135,21 +124,19 @@ def mean_squares(rows):
     return np.where(seen >= 5, squares, np.nan)
 
 
-def averaged(of_worlds, otherwise=None):
+def averaged(of_worlds):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         mean = np.nanmean(np.array(of_worlds), axis=0)
-        return np.where(np.isfinite(mean), mean, np.nanmedian(mean) if otherwise is None else otherwise)
+        return np.where(np.isfinite(mean), mean, np.nanmedian(mean))
 
 
 def evidence(case, null):
     """For each effect that the case could have: its features in order of FEATURES. Also the features of the case alone."""
-    there, times_inverse = null.whitener(case)
-    left = null.row(case)[there]
-    changes = null.changes(case)[:, there]
+    left, changes, times_inverse = null.whitener(case)
     white = times_inverse(left[None])[0]
     misfit = float(left @ white)
-    count = int(there.sum())
+    count = left.size
     along = changes @ white
     across = np.einsum("ij,ij->i", changes, times_inverse(changes))
     amounts = AMOUNTS[:, None]
@@ -162,9 +149,8 @@ def evidence(case, null):
     gains = gain_of(1.0)
     both = np.isin(case.effects, list(TWO_SIDED))
     gains = np.where(both, np.logaddexp(gains, gain_of(-1.0)) - np.log(2.0), gains)
-    visible = np.linalg.norm(changes, axis=1) > 1e-6
+    visible = across > 1e-3
     inflated = max(misfit / count, 0.2)
-    meter = np.concatenate([np.repeat([0, 1, 2], len(case.measured) // 3), np.full(PARAMETERS_MAX, 3)])[there]
     features, strongest = {}, 0.1
     for effect in dict.fromkeys(case.effects):
         shapes = np.flatnonzero((case.effects == effect) & visible)
@@ -173,32 +159,21 @@ def evidence(case, null):
         best = shapes[np.argmax(gains[shapes])]
         # One that only adds must not be praised for what it would explain by taking away.
         seen = abs(along[best]) if effect in TWO_SIDED else max(along[best], 0.0)
-        amount = seen / max(across[best], 1e-9)
-        change = changes[best] * (np.sign(along[best]) if effect in TWO_SIDED else 1.0)
         gain = 0.5 * seen**2 / max(across[best], 1e-9)
         strongest = max(strongest, gain / inflated)
-        moved = [m for m in range(4) if np.abs(change[meter == m]).sum() > 0.05 * np.abs(change).sum()]
-        alike = [cosine(left[meter == m], change[meter == m]) for m in moved]
         log_mean = np.logaddexp.reduce(gains[shapes]) - np.log(shapes.size)
-        size = max(amount, 1e-3)
+        size = max(seen / max(across[best], 1e-9), 1e-3)
         features[effect] = np.array([
             np.clip(log_mean, -10.0, 150.0) / 20.0,
             np.sqrt(max(log_mean, 0.0)) / 3.0,
             seen / np.sqrt(max(across[best] * misfit, 1e-9)),
-            cosine(left, change),
             2.0 * gain / max(misfit, 1e-9),
             float(along[best] < 0.0 and effect not in TWO_SIDED),
             max(np.log(size / 2.5), 0.0),
             max(np.log(0.3 / size), 0.0),
-            min(alike, default=0.0),
             0.5 * np.log1p(np.sqrt(across[best] / inflated)),
         ])
     return features, np.array([1.0, np.log(inflated), 0.5 * np.log(strongest) - 1.0])
 
 
-FEATURES = ["log mean gain", "its root", "likeness, whitened", "likeness", "share explained", "wrong sign", "too much",
-            "too little", "least alike meter", "visibility"]
-
-
-def cosine(a, b):
-    return float(a @ b / np.sqrt((a @ a) * (b @ b) + 1e-9))
+FEATURES = ["log mean gain", "its root", "likeness", "share explained", "wrong sign", "too much", "too little", "visibility"]

@@ -104,11 +104,10 @@ def report(title, rows):
 
 
 def main():
-    parameters = {}
     worlds = {}
     for world, argument in zip(("own", "energyplus"), sys.argv[1:]):
         pairs = [pair.split(":") for pair in argument.split(",")]
-        worlds[world] = [case for tables, answers in pairs for case in ev.load(tables, world, answers, parameters)]
+        worlds[world] = [case for tables, answers in pairs for case in ev.load(tables, world, answers)]
     # Whoever has a decoy has something in the records that does not belong there.
     worlds = {world: [case for case in cases if not case.answer["decoys"]] for world, cases in worlds.items()}
     nothing = [case for cases in worlds.values() for case in cases if not case.hidden]
@@ -117,7 +116,8 @@ def main():
     def judge(case):
         return Judged(case, null if case.hidden else ev.Null([each for each in nothing if each is not case]))
 
-    all_judged = {world: [judge(case) for case in cases] for world, cases in worlds.items()}
+    # A table made with --no-effects only tells what buildings with nothing hidden look like.
+    all_judged = {world: [judge(case) for case in cases if case.effects.size] for world, cases in worlds.items()}
     for world, judged in all_judged.items():
         # The null is of both worlds, without the case; the weights are the other world's alone.
         learnt = Logit(next(others for name, others in all_judged.items() if name != world))
