@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <algorithm>
 
 #include <fstream>
 #include <iterator>
@@ -55,8 +56,11 @@ Result<void> run_helper(std::string_view name, const std::vector<std::string>& a
                                        {});
   if (!ended) return tl::unexpected(ended.error());
   if (ended->ending == system::Ending::exited && ended->exit_code == 0) return {};
-  return failure(ErrorCode::io_failed, fmt::format("{} failed and said: {}", original.string(),
-                                                   file_text(said).substr(0, 400)));
+  std::string words = file_text(said).substr(0, 400);
+  std::ranges::replace_if(
+      words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return failure(ErrorCode::io_failed,
+                 fmt::format("{} failed and said: {}", original.string(), words));
 }
 
 Result<ModelDocument> convert(const fs::path& file, const Program& program) {

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <optional>
 
-
 namespace recald::http {
 namespace {
 

@@ -8,8 +8,8 @@
 namespace recald::diagnosis {
 namespace {
 
-constexpr double kAlike = 12.0;  // Signatures repeat each other …
-constexpr double kSpread = 0.1;  // … and are so far off at the mode.
+constexpr double kAlike = 12.0;  // So many count as one: signatures repeat each other.
+constexpr double kSpread = 0.1;  // Standard deviation of each, in its unit.
 constexpr int kIterations = 10;
 constexpr double kFarthest = 3.0;  // Scores.
 
@@ -46,9 +46,8 @@ class Fitter {
 
   /// In standard deviations; 0 where the site has no such signature.
   [[nodiscard]] Eigen::VectorXd off_of(const Eigen::VectorXd& read) const {
-    return ((fit_.measured - read) / (kSpread * std::sqrt(kAlike))).unaryExpr([](double off) {
-      return std::isfinite(off) ? off : 0.0;
-    });
+    const Eigen::VectorXd off = (fit_.measured - read) / (kSpread * std::sqrt(kAlike));
+    return (fit_.measured + fit_.nominal).array().isFinite().select(off, 0.0);
   }
 
   [[nodiscard]] double objective_of(const Eigen::VectorXd& read,

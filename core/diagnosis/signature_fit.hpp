@@ -20,7 +20,7 @@ struct SignatureFit {
   double objective = 0.0;  ///< Squared scores plus squared misfits, a dozen of which count as one.
 };
 
-/// Gauss-Newton on rough, fixed spreads of the signatures and the original priors. Steps are
+/// Gauss-Newton on one rough spread for all signatures and the original priors. Steps are
 /// shortened where they make it worse. Signatures repeat each other, so a dozen count as one.
 /// @param predictor  Of the same site; what it has accepted counts.
 [[nodiscard]] SignatureFit fit_signatures(const SiteProblem& site, const SignatureReader& reader,

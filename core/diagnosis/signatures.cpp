@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <span>
 
 #include "core/absent.hpp"
 
@@ -78,9 +76,7 @@ struct Means {
     sum += value;
     ++count;
   }
-  [[nodiscard]] double mean(int fewest = 1) const {
-    return count >= fewest ? sum / count : kAbsent;
-  }
+  [[nodiscard]] double mean() const { return count > 0 ? sum / count : kAbsent; }
 };
 
 /// The hours of a regime on one day.
@@ -452,8 +448,8 @@ void SignatureReader::make_darkness(Meter& meter) const {
   }
 }
 
-void SignatureReader::add_linear(const Meter& meter, const double* kW, std::size_t from,
-                                 std::size_t to, double* values) const {
+void SignatureReader::add(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
+                          double* values) const {
   std::array<double, kGroups> sums{};
   for (std::size_t i = from; i < to; ++i) {
     if (meter.group[i] >= 0) sums[static_cast<std::size_t>(meter.group[i])] += kW[i];
@@ -477,9 +473,12 @@ void SignatureReader::add_linear(const Meter& meter, const double* kW, std::size
       first = std::min<Eigen::Index>(first, row);
       last = row;
     }
-    const Eigen::Index count = std::max<Eigen::Index>(last - first + 1, 0);
-    into += regime.of_rows.middleCols(std::min(first, last + 1), count) *
-            rows.segment(std::min(first, last + 1), count);
+    if (last < 0) {
+      into += 0.0 * regime.of_rows.col(0);  // NaN where there is no such signature
+      continue;
+    }
+    const Eigen::Index count = last - first + 1;
+    into += regime.of_rows.middleCols(first, count) * rows.segment(first, count);
   }
   double* const dark = values + kDarkFrom;
   for (std::size_t k = 0; k < kDarkKinds; ++k) dark[k] += meter.no_darkness[k];
@@ -497,7 +496,7 @@ Eigen::MatrixXd SignatureReader::read(const Eigen::Ref<const Eigen::ArrayXXd>& h
     double* const into = values.col(static_cast<Eigen::Index>(m)).data();
     const double* const kW = hours_kW.col(meter.column).data();
     std::fill_n(into, count, 0.0);
-    add_linear(meter, kW, 0, meter.group.size(), into);
+    add(meter, kW, 0, meter.group.size(), into);
   }
   return values;
 }
@@ -524,7 +523,7 @@ Eigen::MatrixXd SpanReader::change(int from_day, int to_day) const {
     if (meter.column < 0) continue;
     auto into = values.col(static_cast<Eigen::Index>(m));
     into.setZero();
-    reader_->add_linear(meter, more_kW_.col(meter.column).data(), from, to, into.data());
+    reader_->add(meter, more_kW_.col(meter.column).data(), from, to, into.data());
   }
   return values;
 }

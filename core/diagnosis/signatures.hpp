@@ -30,9 +30,10 @@ class SignatureReader {
 
   /// @param hours_kW  (hours x m) measured or modelled. Only hours that were measured count.
   /// @return (names x meters) powers in units of what was measured in the same hours plus a quarter
-  ///         of the meter's measured mean, or of a twentieth of the sum of all meters' means where
-  ///         that is more: models err by shares of what is there. Slopes are per standard deviation
-  ///         of what they are of. NaN where the site has no such meter, or too few such hours.
+  ///         of the meter's mean, because models err by shares of what is there. The mean counts as
+  ///         at least a twentieth of the sum of all meters' means. Slopes are per standard
+  ///         deviation of what they are of. NaN where the site has no such meter, or too few such
+  ///         hours.
   [[nodiscard]] Eigen::MatrixXd read(const Eigen::Ref<const Eigen::ArrayXXd>& hours_kW) const;
 
  private:
@@ -59,9 +60,9 @@ class SignatureReader {
   [[nodiscard]] static double unit_at(const Meter& meter, double level_kW);
   [[nodiscard]] Regime make_regime(const Meter& meter, int kind) const;
   void make_darkness(Meter& meter) const;
-  /// Adds what the hours from one to another contribute to the signatures that are linear in power.
-  void add_linear(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
-                  double* values) const;
+  /// Adds what the hours from one to another contribute to the signatures.
+  void add(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
+           double* values) const;
 
   const SiteProblem* site_;
   std::array<Meter, kSignatureMeters> meters_;

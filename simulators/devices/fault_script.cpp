@@ -8,8 +8,6 @@
 #include <sstream>
 #include <utility>
 
-#include "core/text/printable.hpp"
-
 namespace recald::simulators {
 namespace {
 
@@ -164,8 +162,8 @@ Result<FaultScript> parse_fault_script(std::string_view text) {
     if (fault) {
       script.faults.push_back(*fault);
     } else {
-      problems += fmt::format("{}line {}: {}", problems.empty() ? "" : "\n", number,
-                              printable(fault.error().message));
+      problems +=
+          fmt::format("{}line {}: {}", problems.empty() ? "" : "; ", number, fault.error().message);
     }
   }
   if (!problems.empty()) return failure(ErrorCode::malformed, problems);

@@ -44,6 +44,7 @@ class Case:
         self.effects = np.array([shape["effect"].replace("@", "").split(":")[0] for shape in table["shapes"]])
         self.jacobian = np.nan_to_num(rows[3:3 + q].T)
         self.change = np.where(self.measured, np.nan_to_num(rows[3 + q:3 + q + shapes]), 0.0).astype(np.float32)
+        self.true_change = np.where(self.measured, np.nan_to_num(rows[0] - rows[-1]), 0.0) if twin else None
 
     @property
     def hidden(self):
@@ -71,8 +72,8 @@ def load(folder, world, answers):
 class Null:
     """Mean squares and covariance of what buildings with nothing hidden leave, every world counting alike.
 
-    Of a case, its own row is left out. K = w I + (1 - w) Z'Z / N + (J S)(J S)' in units of the mean squares; S: how far
-    parameters go from their priors' middle where nothing is hidden, in scores."""
+    K = w I + (1 - w) Z'Z / N + (J S)(J S)' in units of the mean squares; S: how far
+    parameters go from their priors' middle where nothing is hidden, in scores; at least a half, one where that is unknown."""
 
     def __init__(self, cases, own_share=0.2):
         self.own_share = own_share
@@ -80,7 +81,6 @@ class Null:
         of_world = [[case for case in cases if case.world == world] for world in worlds]
         self.spread = np.sqrt(averaged([mean_squares([case.residual for case in group]) for group in of_world]) + 0.01**2)
         self.score_spread = self.spread_of_scores(of_world)
-        self.names = np.array([case.name for case in cases])
         self.rows = np.array([self.row(case) for case in cases])
         self.rows /= np.maximum([np.sqrt(np.mean(row[case.measured] ** 2)) for row, case in zip(self.rows, cases)], 0.3)[:, None]
         self.weight = np.array([1.0 / len(of_world[worlds.index(case.world)]) for case in cases])
@@ -101,9 +101,8 @@ class Null:
     def whitener(self, case):
         """The case's r, its changes, and the product of K^-1 with rows of them (Woodbury)."""
         there = case.measured
-        keep = self.names != case.name
-        weight = self.weight[keep] / self.weight[keep].sum()
-        factor = (self.rows[keep][:, there] * np.sqrt(weight * (1.0 - self.own_share))[:, None]).T
+        weight = self.weight / self.weight.sum()
+        factor = (self.rows[:, there] * np.sqrt(weight * (1.0 - self.own_share))[:, None]).T
         slopes = (case.jacobian / self.spread[:, None])[there]
         reach = np.array([max(self.score_spread.get(name, 1.0), 0.5) for name in case.parameters])
         factor = np.hstack([factor, slopes * reach])

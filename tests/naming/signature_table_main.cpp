@@ -9,10 +9,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/absent.hpp"
 #include "core/diagnosis/expected_changes.hpp"
@@ -42,13 +45,21 @@ Result<SiteProblem> problem_of(const fs::path& folder) {
   return daemon::prepare_diagnosis(*modelled);
 }
 
-/// As for a diagnosis; and whatever people may change one day may begin within the record.
+/// As for a diagnosis. Besides, what people may change one day may begin within the record, and
+/// hours are shapes: the third hour shows elsewhere than the first.
 std::vector<Candidate> candidates_of(const SiteProblem& site) {
   constexpr std::array<std::string_view, 11> kMayBegin{
       "chiller_part_load",    "clock_offset",      "constant_flow_pumps", "deep_drying",
       "demand_ventilation",   "early_start",       "humidifier",          "seasonal_hot_water",
       "supply_reset_missing", "weekend_operation", "wind_infiltration"};
   std::vector<Candidate> candidates = list_candidates(site).candidates;
+  for (Candidate& candidate : candidates) {
+    if (candidate.effect->id == "after_hours") candidate.parameters[0].scan = {1.0, 2.0, 4.0};
+    if (candidate.effect->id == "early_start") {
+      candidate.parameters[0].scan = {0.0, 1.0, 3.0};
+      candidate.parameters[1].scan = {0.0, 0.03, 0.1};
+    }
+  }
   for (std::size_t i = candidates.size(); i-- > 0;) {
     if (std::ranges::find(kMayBegin, candidates[i].effect->id) == kMayBegin.end()) continue;
     candidates.push_back(candidates[i]);
@@ -136,9 +147,17 @@ int main(int argc, char** argv) {
     std::optional<SiteProblem> twin;
     if (const fs::path folder = population / "twins" / names[i]; fs::exists(folder)) {
       auto without = problem_of(folder);
-      // Another gap would be taken for an effect.
-      if (without && without->measured_kW.rows() == problem->measured_kW.rows()) {
+      if (!without) {
+        std::cerr << names[i] << ", its twin: " << without.error().message << '\n';
+        continue;
+      }
+      const Eigen::ArrayXXd& with_kW = problem->measured_kW;
+      const Eigen::ArrayXXd& without_kW = without->measured_kW;
+      if (without_kW.rows() == with_kW.rows() && without_kW.cols() == with_kW.cols() &&
+          (without_kW.isFinite() == with_kW.isFinite()).all()) {
         twin = std::move(*without);
+      } else {
+        std::cerr << names[i] << ": its twin has other gaps, which would be taken for an effect\n";
       }
     }
     const auto loaded = std::chrono::steady_clock::now();

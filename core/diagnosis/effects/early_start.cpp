@@ -23,17 +23,8 @@ class EarlyStart final : public model::hourly::Alteration {
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts&) {
-  // The third hour shows elsewhere than the first.
-  return {{.name = "lead",
-           .unit = "h",
-           .prior = half_normal(2.0),
-           .neutral = 0.0,
-           .scan = {0.0, 1.0, 3.0}},
-          {.name = "lead_per_cold",
-           .unit = "h/K",
-           .prior = half_normal(0.1),
-           .neutral = 0.0,
-           .scan = {0.0, 0.03, 0.1}}};
+  return {{.name = "lead", .unit = "h", .prior = half_normal(2.0), .neutral = 0.0},
+          {.name = "lead_per_cold", .unit = "h/K", .prior = half_normal(0.1), .neutral = 0.0}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,

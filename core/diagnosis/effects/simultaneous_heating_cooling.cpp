@@ -33,6 +33,7 @@ double reference_kW(const SiteFacts& facts) {
 }
 
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  // What leaks. Only what leaks beyond the heat that is wanted is waste.
   return {{.name = "wasted_heat",
            .unit = "kW",
            .prior = half_normal(0.1 * reference_kW(facts)),
@@ -57,16 +58,15 @@ Effect simultaneous_heating_cooling() {
           "leaks, and the cooling takes it out again. Nobody notices, because the rooms stay "
           "comfortable.",
       .physics =
-          "Q_cool [kW] += w, Q_heat [kW] += w, w = max(q·on − Q_heat, 0); on: share of the air "
-          "handlers that runs [–]; Q_heat of reheat and rooms; q [kW] ≥ 0",
+          "Q_cool [kW] += w, Q_heat [kW] += w, w = max(q·on − Q_wanted, 0); Q_wanted: by reheat "
+          "and rooms; on: share of the air handlers that runs [–]; q [kW] ≥ 0",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.air_system = true},
       .confusable =
           {{"supply_reset_missing",
-            "Plot heat against outdoor temperature: leaking valves heat in the hottest weather "
-            "too, "
-            "the effect of a missing reset stops at a certain temperature."},
+            "Plot heat against outdoor temperature: a leaking valve heats in the hottest weather "
+            "too. The effect of a missing reset stops at a certain temperature."},
            {"economiser_failed",
             "Heat in mild weather: only simultaneous heating and cooling raises it together with "
             "chilled water."},

@@ -105,12 +105,25 @@ TEST_F(Signatures, RegressionsFindWhatDependsOnTheWeather) {
   EXPECT_NEAR(measured(kElectricity, "night, per wind in the cold"), 0.0, 1e-6);
 }
 
-// A slope against next to nothing is anything.
+// A slope against next to nothing is anything: here 50 kW for one W/m2 of some early mornings.
 TEST_F(Signatures, TheSunOfNightsIsNothing) {
-  const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
-    return 10.0 + std::sin(1.7 * hour.day_index) + 0.3 * std::cos(0.1 * hour.day_index);
-  });
-  EXPECT_LT(std::abs(value(kElectricity, "night, per sun in the heat", kW)), 0.1);
+  auto drivers = std::make_shared<model::Drivers>(*site_.drivers);
+  const auto is_light = [](const DriverHour& hour) {
+    return hour.local_hour == 4 && hour.day_index % 40 == 0 && hour.dry_bulb_C > 15.0;
+  };
+  int mornings = 0;
+  for (DriverHour& hour : drivers->hours) {
+    if (!is_light(hour)) continue;
+    hour.global_horizontal_W_m2 = 1.0;
+    ++mornings;
+  }
+  ASSERT_GT(mornings, 2);
+  site_.drivers = drivers;
+  const Eigen::ArrayXXd kW =
+      hourly([&](const DriverHour& hour, Eigen::Index) { return is_light(hour) ? 60.0 : 10.0; });
+  const double read = value(kElectricity, "night, per sun in the heat", kW);
+  EXPECT_GT(read, 0.01);
+  EXPECT_LT(read, 0.3) << "50 kW x 300 W/m2 / 1 W/m2 would be hundreds";
 }
 
 TEST_F(Signatures, AStepShowsInThePartsOfTheRecord) {
@@ -183,7 +196,7 @@ TEST_F(Signatures, SummerAgainstWinterIsPositiveWhereSummerIsHigher) {
   EXPECT_GT(value(kElectricity, "night, summer against winter", kW), 0.0);
 }
 
-TEST_F(Signatures, OfAMeterThatReadsTwiceAsMuchAreTwice) {
+TEST_F(Signatures, AreLinearInThePower) {
   const SignatureReader reader(site_);
   const Eigen::MatrixXd once = reader.read(site_.measured_kW);
   const Eigen::MatrixXd twice = reader.read(2.0 * site_.measured_kW);
