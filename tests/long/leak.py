@@ -164,8 +164,24 @@ def plant_of(answer, site):
             "chiller_cop" in site.get("building", {}).get("cooling", {}), tuple(meter["utility"] for meter in site["meter"]))
 
 
+def told_by_twins(population):
+    """Whatever is written beside the readings must be what it is without the effect.
+
+    The readings themselves may differ, and do."""
+    twins = [twin for twin in sorted((population / "twins").glob("*")) if (population / "cases" / twin.name).is_dir()]
+
+    def beside(folder):
+        return {file.name: file.read_bytes() for file in folder.iterdir() if file.name != "readings.csv"}
+
+    differ = [twin.name for twin in twins if beside(twin) != beside(population / "cases" / twin.name)]
+    if twins:
+        print(f"files beside the readings of {len(twins)} cases and their twins: "
+              f"{f'LEAKS, {differ[0]} differs' if differ else 'the same, byte for byte'}")
+
+
 def main():
     population = pathlib.Path(sys.argv[1])
+    told_by_twins(population)
     answers = {}
     for file in sorted((population / "answers").glob("*.json")):
         answer = json.loads(file.read_text())
@@ -176,7 +192,7 @@ def main():
     labels = [1 if answers[case]["effects"] else -1 for case in cases]
     area, error = cross_validated([rows[case] for case in cases], labels)
     print(f"{len(cases)} cases, {sum(label > 0 for label in labels)} with something hidden")
-    print(f"something or nothing: area under the curve {area:.3f}, 95 % {area - 1.96 * error:.3f} to {area + 1.96 * error:.3f}; "
+    print(f"something or nothing: area under the curve {area:.3f}, 95 % {area - 1.96 * error:.3f} to {min(area + 1.96 * error, 1.0):.3f}; "
           f"chance 0.5: {'LEAKS' if area - 1.96 * error > 0.5 else 'no better than chance'}")
     single = [case for case in cases if len(answers[case]["effects"]) == 1]
     strata = [plant_of(answers[case], tomllib.loads((population / "cases" / case / "site.toml").read_text())) for case in single]
