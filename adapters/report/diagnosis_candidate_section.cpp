@@ -53,8 +53,9 @@ void write_candidate_section(Html& html, const DiagnosisData& data) {
   if (data.candidates.empty()) return;
   open_section(html, "candidates", "What could explain it?");
   html.element("p",
-               "Each effect was put into the model and everything fitted anew. \"No effect\" and "
-               "\"something else\" compete with them; \"something else\" stands for a gap that has "
+               "The likeliest effects were each put into the model and everything fitted anew. "
+               "\"No effect\" and \"something else\" compete with them; \"something else\" stands "
+               "for a gap that has "
                "a pattern, but none that the catalogue knows. Probabilities are of the first "
                "search, before anything was added, and they sum to one.");
   write_figure(html,

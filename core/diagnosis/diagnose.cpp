@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/diagnosis/learnt_names.hpp"
 #include "core/diagnosis/monthly_impact.hpp"
 #include "core/display/id_words.hpp"
 #include "core/random/rng.hpp"
@@ -86,14 +87,14 @@ std::vector<Candidate> still_open(const CandidateList& list, const std::vector<A
 /// with `accepted`.
 Result<Pass> search(Predictor& predictor, const SiteProblem& site, const Ground& now,
                     const HeldJudge& shown, const std::vector<Candidate>& open,
-                    const NamingRules& rules, Rng& rng) {
+                    const NamingRules& rules, const SignatureNames* names, Rng& rng) {
   auto located = locate(now.context(site), now.none, rng);
   if (!located) return tl::unexpected(located.error());
   auto look = look_at(predictor, now.context(site), now.none, open, rng);
   if (!look) return tl::unexpected(look.error());
   const auto unknown = unknown_log_evidence(site, now);
   if (!unknown) return tl::unexpected(unknown.error());
-  const NamingData data{now.context(site), *unknown, now.select, now.levels, *now.usual};
+  const NamingData data{now.context(site), *unknown, now.select, now.levels, *now.usual, names};
   auto naming = name_effect(predictor, data, now.none, open, *look, rules);
   if (!naming) return tl::unexpected(naming.error());
   return Pass{.located = std::move(*located),
@@ -204,8 +205,17 @@ class Search {
  public:
   /// @param proceed  Called before each run of the model.
   Search(const SiteProblem& site, const DiagnoseOptions& options, std::function<bool()> proceed)
-      : site_(site), options_(options), proceed_(std::move(proceed)), list_(list_candidates(site)) {
+      : site_(site),
+        options_(options),
+        proceed_(std::move(proceed)),
+        before_show_(without_shown_months(site)),
+        list_(list_candidates(before_show_)) {
     result_.not_identifiable = list_.not_identifiable;
+    if (options.rules.errs_as_learnt) {
+      result_.not_identifiable.push_back(
+          {"stuck_meter",
+           "readings that stand still are marked as suspect and left out before a diagnosis"});
+    }
     result_.candidates = list_.candidates;
   }
 
@@ -231,7 +241,13 @@ class Search {
       if (!meant) return tl::unexpected(meant.error());
       rules.only = std::move(*meant);
     }
-    auto pass = search_again(predictor, open, rules, rng);
+    std::optional<SignatureNames> names;
+    if (rules.errs_as_learnt && rules.only.empty()) {
+      SignatureEvidence evidence = evidence_of(before_show_, open, learnt_null(), predictor);
+      if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
+      names = names_by(std::move(evidence), learnt_weights());
+    }
+    auto pass = search_again(predictor, open, rules, names ? &*names : nullptr, rng);
     if (!pass) return tl::unexpected(pass.error());
     if (assumed) take_as_named(pass->naming);
     const bool named = pass->naming.outcome == Outcome::named && may_add(count);
@@ -289,10 +305,10 @@ class Search {
   /// If the rivals find a much better mode of the base model, the first look used the wrong mode:
   /// search again from the better one.
   Result<Pass> search_again(Predictor& predictor, const std::vector<Candidate>& open,
-                            const NamingRules& rules, Rng& rng) {
+                            const NamingRules& rules, const SignatureNames* names, Rng& rng) {
     const auto once = [&] {
       return search(predictor, site_, now(), judge_of(site_, first_, first_.show), open, rules,
-                    rng);
+                    names, rng);
     };
     auto pass = once();
     if (!pass || !pass->naming.better_base) return pass;
@@ -338,6 +354,7 @@ class Search {
   const SiteProblem& site_;
   const DiagnoseOptions& options_;
   std::function<bool()> proceed_;
+  SiteProblem before_show_;  ///< What may be known before the final check.
   CandidateList list_;
   Alterations accepted_;
   Ground first_;

@@ -60,6 +60,7 @@ void expect_changes(const SiteProblem& site, const SignatureReader& reader, cons
     const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(i);
     if (std::any_of(candidates.begin(), begin, is_alike)) continue;
     for (const std::vector<double>& values : shapes_to_try(candidates[i])) {
+      if (predictor.is_stopped()) return;
       const auto alteration = candidates[i].effect->bind(facts, values, candidates[i].meter);
       predictor.parts_kW(fit.theta, alteration.get());
       spans.take(predictor.hours_kW());

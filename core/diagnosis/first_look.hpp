@@ -2,8 +2,8 @@
 /// it.
 ///
 /// Linear: one run of the model per shape, with the base parameters only integrated out, not
-/// refitted. Decides which candidates are worth a fit, which cannot be distinguished, and which
-/// cannot be seen at all.
+/// refitted. Decides which candidates are worth a fit where signatures do not, and which cannot be
+/// distinguished or seen.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,7 @@ struct CandidateLook {
   Look best;                ///< The shape that fits the residuals best.
   double log_bayes_factor;  ///< Averaged over the shapes tried.
   double most_detectable;   ///< Largest d over the shapes.
-  bool visible;             ///< d reaches at least 3: the effect may be named at this site.
+  bool visible;             ///< d reaches at least 3: its residuals show it at this site.
 };
 
 struct FirstLook {

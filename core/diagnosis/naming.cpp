@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "core/diagnosis/candidate_shapes.hpp"
@@ -107,6 +108,18 @@ std::vector<std::size_t> survivors_of(const FirstLook& look, const std::vector<d
   return kept;
 }
 
+/// The base model's mode, with an effect of these values.
+Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate,
+                         const std::vector<double>& values) {
+  const auto q = none.scores.size();
+  Eigen::VectorXd start(q + std::ssize(candidate.parameters));
+  start.head(q) = none.scores;
+  for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+    start[q + static_cast<Eigen::Index>(j)] = score_of(candidate.parameters[j].prior, values[j]);
+  }
+  return start;
+}
+
 /// The base model's mode, with the amount of the effect that the first look estimates by
 /// its linear model.
 Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const Look& look) {
@@ -114,14 +127,42 @@ Eigen::VectorXd start_at(const JointFit& none, const Candidate& candidate, const
   constexpr double kMost = 3.0;
   const double factor = look.detectability > 0.0 ? look.score / look.detectability : 1.0;
   const double taken = std::copysign(std::clamp(std::abs(factor), kLeast, kMost), factor);
-  const std::vector<double> values = with_amount(candidate, look.values, taken);
-  const auto q = none.scores.size();
-  Eigen::VectorXd start(q + static_cast<Eigen::Index>(candidate.parameters.size()));
-  start.head(q) = none.scores;
-  for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
-    start[q + static_cast<Eigen::Index>(j)] = score_of(candidate.parameters[j].prior, values[j]);
+  return start_at(none, candidate, with_amount(candidate, look.values, taken));
+}
+
+/// A candidate to be fitted, and from where.
+struct FitStart {
+  std::size_t candidate;  ///< Index into the list.
+  Eigen::VectorXd start;  ///< (q + r) scores.
+};
+
+std::vector<FitStart> starts_of(const std::vector<std::size_t>& chosen,
+                                const std::vector<Candidate>& candidates, const FirstLook& look,
+                                const JointFit& none) {
+  std::vector<FitStart> rivals;
+  for (const std::size_t i : chosen) {
+    rivals.push_back({i, start_at(none, candidates[i], look.candidates[i].best)});
   }
-  return start;
+  return rivals;
+}
+
+/// The likeliest effects by signatures, in order.
+std::vector<FitStart> likeliest(const SignatureNames& names,
+                                const std::vector<Candidate>& candidates, const JointFit& none) {
+  constexpr std::size_t kFitted = 3;
+  std::vector<std::size_t> order(names.evidence.effects.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) {
+    return names.probabilities[static_cast<Eigen::Index>(i)];
+  });
+  order.resize(std::min(order.size(), kFitted));
+  std::vector<FitStart> rivals;
+  for (const std::size_t i : order) {
+    const EffectEvidence& e = names.evidence.effects[i];
+    rivals.push_back({static_cast<std::size_t>(e.shape.candidate - candidates.data()),
+                      start_at(none, *e.shape.candidate, e.values)});
+  }
+  return rivals;
 }
 
 /// sum |with - without| / sum without, for the meter where it is largest.
@@ -198,10 +239,32 @@ std::vector<NameProbability> probabilities_of(const std::vector<Explanation>& ex
   return list;
 }
 
+/// The names by signatures. An effect that was not fitted keeps its probability.
+std::vector<NameProbability> probabilities_of(const SignatureNames& names,
+                                              const std::vector<Explanation>& explanations,
+                                              const std::vector<Candidate>& candidates) {
+  std::vector<NameProbability> list{{"none", -1, names.none, {}},
+                                    {"unknown", -1, names.unknown, {}}};
+  for (std::size_t i = 0; i < names.evidence.effects.size(); ++i) {
+    const Candidate& candidate = *names.evidence.effects[i].shape.candidate;
+    const auto found = std::ranges::find_if(
+        explanations, [&](const Explanation& e) { return &candidates[e.candidate] == &candidate; });
+    std::optional<std::size_t> explanation;
+    if (found != explanations.end()) {
+      explanation = static_cast<std::size_t>(found - explanations.begin());
+    }
+    list.push_back({std::string{candidate.effect->id}, candidate.meter,
+                    names.probabilities[static_cast<Eigen::Index>(i)], explanation});
+  }
+  std::ranges::stable_sort(list, std::greater{}, &NameProbability::probability);
+  return list;
+}
+
 /// The conditions for every name.
 struct Grounds {
-  bool settled;  ///< The base calibration is at its mode.
-  int months;    ///< With readings.
+  bool settled;        ///< The base calibration is at its mode.
+  int months;          ///< With readings.
+  bool by_signatures;  ///< These say how sure a name is.
 };
 
 int months_read(const SiteProblem& site) {
@@ -218,7 +281,7 @@ int months_read(const SiteProblem& site) {
 std::string objection(const Explanation& e, const Grounds& grounds, const Naming& naming,
                       const NamingRules& rules) {
   const double least = std::max(rules.least_evidence, naming.null_threshold);
-  if (e.support / e.null_scale < least) {
+  if (!grounds.by_signatures && e.support / e.null_scale < least) {
     return "its evidence is no stronger than in buildings with nothing hidden";
   }
   if (grounds.months < rules.least_months) {
@@ -227,7 +290,8 @@ std::string objection(const Explanation& e, const Grounds& grounds, const Naming
            "needed";
   }
   if (!grounds.settled) return "the base calibration of the hourly model did not converge";
-  if (e.first_look < naming.null_threshold) return "the residuals alone do not support it";
+  if (!grounds.by_signatures && e.first_look < naming.null_threshold)
+    return "the residuals alone do not support it";
   if (e.selected_gain < -rules.most_against * e.null_scale - 2.0 * e.selected_se) {
     return "the months set aside for choosing contradict it";
   }
@@ -302,6 +366,7 @@ void sort_by_support(std::vector<Explanation>& explanations) {
 // Number of best rivals to restart, if they have half of the support that a name needs.
 constexpr std::size_t kRestarts = 3;
 constexpr double kWorthRestarts = 0.5;
+constexpr double kLikely = 0.5;  // By signatures: so probable that it is worth restarts.
 const FitOptions kRestart{.hops = 2};
 
 bool is_worth_restarts(const std::vector<Explanation>& sorted, const NamingRules& rules) {
@@ -376,11 +441,14 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
                         data.fit.grid[static_cast<std::size_t>(none.best_node)], data.select,
                         data.levels};
   const std::vector<double> scales = scales_of(look, candidates, rules);
-  const std::vector<std::size_t> rivals =
-      rules.only.empty() ? survivors_of(look, scales, rules) : rules.only;
-  for (const std::size_t i : rivals) {
-    auto fit = fit_jointly(predictor, data.fit, candidates[i],
-                           start_at(none, candidates[i], look.candidates[i].best));
+  const SignatureNames* names = rules.only.empty() ? data.names : nullptr;
+  const std::vector<FitStart> rivals =
+      names != nullptr
+          ? likeliest(*names, candidates, none)
+          : starts_of(rules.only.empty() ? survivors_of(look, scales, rules) : rules.only,
+                      candidates, look, none);
+  for (const auto& [i, start] : rivals) {
+    auto fit = fit_jointly(predictor, data.fit, candidates[i], start);
     if (!fit) return tl::unexpected(fit.error());
     Explanation e = explanation_of(std::move(*fit), none, scales[i]);
     e.candidate = i;
@@ -388,8 +456,11 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     settle_support(rules, e);
     naming.explanations.push_back(std::move(e));
   }
-  sort_by_support(naming.explanations);
-  if (is_worth_restarts(naming.explanations, rules)) {
+  if (names == nullptr) sort_by_support(naming.explanations);
+  const bool is_worth = names != nullptr
+                            ? !rivals.empty() && names->probabilities.maxCoeff() >= kLikely
+                            : is_worth_restarts(naming.explanations, rules);
+  if (is_worth) {
     auto better = Restarts{predictor, data.fit, candidates, none, naming.explanations}.run();
     if (!better) return tl::unexpected(better.error());
     naming.better_base = std::move(*better);
@@ -398,7 +469,7 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
   const MonthScores base_scores = judge.scores(base, data.usual);
   const double owed = base.log_evidence - none.log_evidence;
   naming.unknown_gain = data.unknown_log_evidence - none.log_evidence - owed;
-  const Grounds grounds{none.converged, months_read(data.fit.site)};
+  const Grounds grounds{none.converged, months_read(data.fit.site), names != nullptr};
   for (Explanation& e : naming.explanations) {
     e.evidence_gain -= owed;
     settle_support(rules, e);
@@ -409,9 +480,13 @@ Result<Naming> name_effect(Predictor& predictor, const NamingData& data, const J
     e.at_truncation = is_at_truncation(candidates[e.candidate], e.fit);
     e.objection = objection(e, grounds, naming, rules);
   }
-  sort_by_support(naming.explanations);
-  naming.probabilities =
-      probabilities_of(naming.explanations, candidates, naming.unknown_gain, rules);
+  if (names != nullptr) {
+    naming.probabilities = probabilities_of(*names, naming.explanations, candidates);
+  } else {
+    sort_by_support(naming.explanations);
+    naming.probabilities =
+        probabilities_of(naming.explanations, candidates, naming.unknown_gain, rules);
+  }
   decide(naming, rules);
   return naming;
 }

@@ -1,8 +1,9 @@
 /// Decides which effect is present, and how certain that is, or that none can be named.
 ///
-/// The survivors of the first look, no effect, and an unknown effect are fitted alike and compared
-/// by evidence. A name needs a high probability, more evidence than chance gives where nothing is
-/// hidden, and support from months that were not fitted.
+/// Signatures of the meters say how probable each effect is. The likeliest are fitted. A name needs
+/// a high probability, and support from months that were not fitted. Where the model is exact
+/// (tests), the survivors of the first look, no effect and an unknown effect are fitted alike and
+/// compared by evidence instead.
 #pragma once
 
 #include <optional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "core/diagnosis/first_look.hpp"
+#include "core/diagnosis/signature_names.hpp"
 #include "core/diagnosis/usual_errors.hpp"
 #include "core/executor.hpp"
 
@@ -18,7 +20,8 @@ namespace recald::diagnosis {
 enum class Outcome { named, confusable, unknown, none };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
 
-/// Fixed with the training population and published with every result.
+/// Fixed with the training population and published with every result. By signatures, those of
+/// evidence, survivors and priors do not count.
 struct NamingRules {
   double temperature = 1.0;     ///< T >= 1: supports, in units of their null scales, divided by it.
   double unknown_scale = 20.0;  ///< The unknown model's evidence is divided by it.
@@ -67,7 +70,7 @@ struct NameProbability {
 struct Naming {
   Outcome outcome = Outcome::none;
   std::vector<NameProbability> probabilities;  ///< Descending.
-  std::vector<Explanation> explanations;       ///< Descending in support divided by null scale.
+  std::vector<Explanation> explanations;       ///< Descending in probability.
   std::optional<std::size_t> named;            ///< Index into explanations.
   std::vector<std::string> confusable;         ///< Ids of the set.
   double unknown_gain = 0.0;                   ///< L_U - L_none
@@ -85,6 +88,8 @@ struct NamingData {
   const Observations& select;          ///< Months to choose by; may be empty.
   std::span<const NoiseLevel> levels;  ///< Of the fitted noise.
   const UsualErrors& usual;            ///< Used in all fits.
+  /// By signatures, of the same candidates; null: by the evidence of the fits.
+  const SignatureNames* names = nullptr;
 };
 
 [[nodiscard]] Result<Naming> name_effect(Predictor& predictor, const NamingData& data,

@@ -113,6 +113,16 @@ SiteFacts SiteProblem::facts() const {
   return facts;
 }
 
+SiteProblem without_shown_months(SiteProblem site) {
+  for (Eigen::Index i = 0; i < site.day_parts.count(); ++i) {
+    if (site.roles[static_cast<std::size_t>(i)] != Role::show) continue;
+    const DayPart& part = site.day_parts.parts[static_cast<std::size_t>(i)];
+    site.measured_kW.middleRows(part.first_hour, part.hours) = kAbsent;
+    site.measured_parts_kW.row(i) = kAbsent;
+  }
+  return site;
+}
+
 std::string Candidate::key(const SiteProblem& site) const {
   if (effect == nullptr) return "none";
   std::string text{effect->id};
@@ -163,8 +173,8 @@ Predictor::Predictor(const SiteProblem& site,
       accepted_(std::move(accepted)),
       building_(site.nominal),
       hourly_(site.drivers),
-      hours_kW_(static_cast<Eigen::Index>(site.drivers->hours.size()),
-                static_cast<Eigen::Index>(site.meters.size())),
+      hours_kW_(Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(site.drivers->hours.size()),
+                                      static_cast<Eigen::Index>(site.meters.size()))),
       parts_kW_(Eigen::ArrayXXd::Zero(site.day_parts.count(), hours_kW_.cols())),
       proceed_(std::move(proceed)) {
   for (const MeterData& meter : site.meters) maps_.push_back(meter.end_uses);

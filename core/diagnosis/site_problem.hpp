@@ -46,6 +46,9 @@ struct SiteProblem {
   [[nodiscard]] SiteFacts facts() const;
 };
 
+/// The same, as if the months of the final check had not been read yet.
+[[nodiscard]] SiteProblem without_shown_months(SiteProblem site);
+
 /// One way in which the site may differ from its model.
 struct Candidate {
   const Effect* effect = nullptr;           ///< Null: none.

@@ -1,10 +1,9 @@
-// What naming learns from: for each case of a population the signatures of its meters, those of its
-// fitted model, and how each parameter and each possible effect would change them.
+// What naming learns from: for each case of a population what the signatures of its meters say.
 //
-//   signature_table --population DIR --out DIR [--cases 1-20] [--no-effects]
+//   signature_table --population DIR --out DIR [--cases 1-20] [--twins] [--null FILE]
 //
-// CASE.json names what CASE.f32 holds: little-endian floats, rows of all signatures. The last row
-// is what the same meters show without the effect, where the population has twins.
+// Without a null: what the fitted model leaves unexplained, for null.py. With one: the evidence for
+// each possible effect, for study.py. Months of a diagnosis' final check are not read.
 
 #include <fmt/format.h>
 
@@ -12,13 +11,16 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/expected_changes.hpp"
+#include "core/diagnosis/signature_fit.hpp"
+#include "core/diagnosis/signature_names.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/model/modelled_site.hpp"
@@ -32,7 +34,7 @@ using namespace recald::diagnosis;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A case as a diagnosis sees it.
+/// A case as a diagnosis sees it before the months of the final check are read.
 Result<SiteProblem> problem_of(const fs::path& folder) {
   auto site = daemon::open_site(folder / "site.toml");
   if (!site) return failure(ErrorCode::malformed, site.error().front());
@@ -42,7 +44,9 @@ Result<SiteProblem> problem_of(const fs::path& folder) {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   auto modelled = daemon::load_modelled_site(std::move(*site), now);
   if (!modelled) return tl::unexpected(modelled.error());
-  return daemon::prepare_diagnosis(*modelled);
+  auto problem = daemon::prepare_diagnosis(*modelled);
+  if (!problem) return tl::unexpected(problem.error());
+  return without_shown_months(std::move(*problem));
 }
 
 /// As for a diagnosis. Besides, what people may change one day may begin within the record, and
@@ -70,62 +74,95 @@ std::vector<Candidate> candidates_of(const SiteProblem& site) {
   return candidates;
 }
 
-/// Writes a case's table beside `stem`.
-/// @param twin     The same without its effect; null: there is none.
-/// @param effects  Whether possible effects are in it.
-void write_table(const SiteProblem& site, const SiteProblem* twin, bool effects,
-                 const fs::path& stem) {
-  const SignatureReader reader(site);
-  Predictor predictor(site);
-  const SignatureFit fit = fit_signatures(site, reader, predictor);
-  std::ofstream file(stem.string() + ".f32", std::ios::binary);
-  const auto write = [&](const Eigen::VectorXd& row) {
-    const Eigen::VectorXf floats = row.cast<float>();
-    file.write(reinterpret_cast<const char*>(floats.data()), floats.size() * 4);
+/// What null.py has learnt, without the case's own row.
+SignatureNull null_from(const Json& json, const std::string& name) {
+  const auto vector_of = [](const Json& list) {
+    Eigen::VectorXd values(std::ssize(list));
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      const Json& value = list[static_cast<std::size_t>(i)];
+      values[i] = value.is_null() ? kAbsent : value.get<double>();
+    }
+    return values;
   };
-  write(fit.measured);
-  write(fit.nominal);
-  write(fit.fitted);
-  for (Eigen::Index j = 0; j < fit.jacobian.cols(); ++j) write(fit.jacobian.col(j));
-  Json shapes = Json::array();
-  const auto candidates = effects ? candidates_of(site) : std::vector<Candidate>{};
-  expect_changes(site, reader, fit, candidates, predictor, [&](const ExpectedChange& expected) {
-    write(expected.change);
-    shapes.push_back({{"effect", expected.candidate->key(site)},
-                      {"values", expected.values},
-                      {"from", expected.from_day},
-                      {"to", expected.to_day}});
-  });
-  if (twin != nullptr) {
-    const Eigen::MatrixXd without = reader.read(twin->measured_kW);
-    write(Eigen::Map<const Eigen::VectorXd>(without.data(), without.size()));
+  SignatureNull null;
+  null.spread = vector_of(json["spread"]);
+  null.centre = json["centre"].get<std::map<std::string, double>>();
+  null.reach = json["reach"].get<std::map<std::string, double>>();
+  null.own = Eigen::VectorXd::Constant(null.spread.size(), json["own"].get<double>());
+  const Json& rows = json["rows"];
+  null.patterns.resize(null.spread.size(), std::ssize(rows));
+  Eigen::Index k = 0;
+  for (const Json& row : rows) {
+    if (row["name"] == name) continue;
+    null.patterns.col(k++) = vector_of(row["values"]);
   }
-  Json parameters = Json::array();
+  null.patterns.conservativeResize(Eigen::NoChange, k);
+  return null;
+}
+
+Json list_of(const Eigen::VectorXd& values) {
+  Json list = Json::array();
+  for (const double value : values) {
+    list.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+  }
+  return list;
+}
+
+Json scores_of(const SiteProblem& site, const Eigen::VectorXd& scores) {
+  Json named = Json::object();
   for (std::size_t j = 0; j < site.parameters.size(); ++j) {
-    parameters.push_back(
-        {{"name", site.parameters[j].name}, {"score", fit.scores[static_cast<Eigen::Index>(j)]}});
+    named[site.parameters[j].name] = scores[static_cast<Eigen::Index>(j)];
   }
-  const Json json{
-      {"signatures", fit.measured.size()}, {"parameters", parameters}, {"objective", fit.objective},
-      {"runs", predictor.runs()},          {"shapes", shapes},         {"twin", twin != nullptr}};
-  std::ofstream(stem.string() + ".json") << json.dump();
+  return named;
+}
+
+/// What the fitted model leaves unexplained.
+Json left_by_fit(const SiteProblem& site) {
+  Predictor predictor(site);
+  const SignatureFit fit = fit_signatures(site, SignatureReader(site), predictor);
+  return {{"left", list_of(fit.measured - fit.fitted)}, {"scores", scores_of(site, fit.scores)}};
+}
+
+Json evidence_json(const SiteProblem& site, const SignatureNull& null) {
+  Predictor predictor(site);
+  const auto candidates = candidates_of(site);
+  const SignatureEvidence evidence = evidence_of(site, candidates, null, predictor);
+  const Eigen::MatrixXd features = effect_features(evidence);
+  Json effects = Json::array();
+  for (const EffectEvidence& e : evidence.effects) {
+    const auto row = std::ssize(effects);
+    effects.push_back({{"effect", e.shape.candidate->effect->id},
+                       {"shape", e.shape.candidate->key(site)},
+                       {"values", list_of(Eigen::Map<const Eigen::VectorXd>(e.values.data(),
+                                                                            std::ssize(e.values)))},
+                       {"log_gain", e.log_gain},
+                       {"misfit", e.misfit},
+                       {"factor", e.factor},
+                       {"fitted", e.is_fitted},
+                       {"features", list_of(features.row(row).transpose())}});
+  }
+  return {{"misfit", evidence.misfit},
+          {"count", evidence.count},
+          {"features", list_of(site_features(evidence))},
+          {"runs", predictor.runs()},
+          {"effects", effects}};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Tabulates signatures of the cases of a population.", "signature_table"};
-  fs::path population, out;
+  CLI::App app{"Tabulates what signatures say of the cases of a population.", "signature_table"};
+  fs::path population, out, null_file;
   std::string cases;
+  bool twins = false;
   app.add_option("--population", population, "folder that holds cases/")->required();
   app.add_option("--out", out, "folder for the tables")->required();
   app.add_option("--cases", cases, "only these, such as 1-20");
-  bool no_effects = false;
-  app.add_flag("--no-effects", no_effects, "only the fits: enough where nothing is hidden");
+  app.add_flag("--twins", twins, "the buildings without what is hidden in them");
+  app.add_option("--null", null_file, "of null.py: evidence beside it");
   CLI11_PARSE(app, argc, argv);
-  fs::create_directories(out);
-  std::ofstream(out / "names.json") << Json(signature_names()).dump(1);
-  const auto listed = blind::cases_in(population / "cases");
+  const fs::path folder = population / (twins ? "twins" : "cases");
+  const auto listed = blind::cases_in(folder);
   if (!listed) {
     std::cerr << listed.error().message << '\n';
     return 1;
@@ -136,36 +173,37 @@ int main(int argc, char** argv) {
     std::cerr << fmt::format("--cases {}: give 1 to {}\n", cases, names.size());
     return 2;
   }
+  std::optional<Json> null;
+  if (!null_file.empty()) {
+    null = Json::parse(std::ifstream(null_file), nullptr, false);
+    if (null->is_discarded()) {
+      std::cerr << null_file.string() << ": not a file of null.py\n";
+      return 1;
+    }
+    const std::size_t entries = signature_names().size() * kSignatureMeters;
+    if ((*null)["spread"].size() != entries) {
+      std::cerr << fmt::format("{}: {} signatures instead of {}; run null.py again\n",
+                               null_file.string(), (*null)["spread"].size(), entries);
+      return 1;
+    }
+  }
+  fs::create_directories(out);
   for (std::size_t i = range->first - 1; i < range->last; ++i) {
-    if (fs::exists(out / (names[i] + ".json"))) continue;
+    const fs::path file = out / (names[i] + ".json");
+    if (fs::exists(file)) continue;
     const auto begin = std::chrono::steady_clock::now();
-    const auto problem = problem_of(population / "cases" / names[i]);
+    const auto problem = problem_of(folder / names[i]);
     if (!problem) {
       std::cerr << names[i] << ": " << problem.error().message << '\n';
       continue;
     }
-    std::optional<SiteProblem> twin;
-    if (const fs::path folder = population / "twins" / names[i]; fs::exists(folder)) {
-      auto without = problem_of(folder);
-      if (!without) {
-        std::cerr << names[i] << ", its twin: " << without.error().message << '\n';
-        continue;
-      }
-      const Eigen::ArrayXXd& with_kW = problem->measured_kW;
-      const Eigen::ArrayXXd& without_kW = without->measured_kW;
-      if (without_kW.rows() == with_kW.rows() && without_kW.cols() == with_kW.cols() &&
-          (without_kW.isFinite() == with_kW.isFinite()).all()) {
-        twin = std::move(*without);
-      } else {
-        std::cerr << names[i] << ": its twin has other gaps, which would be taken for an effect\n";
-      }
-    }
-    const auto loaded = std::chrono::steady_clock::now();
-    write_table(*problem, twin ? &*twin : nullptr, !no_effects, out / names[i]);
-    const std::chrono::duration<double> load = loaded - begin;
-    const std::chrono::duration<double> rest = std::chrono::steady_clock::now() - loaded;
-    std::cout << fmt::format("{} {:.1f} s + {:.1f} s", names[i], load.count(), rest.count())
-              << std::endl;
+    const Json json =
+        null ? evidence_json(*problem, null_from(*null, names[i])) : left_by_fit(*problem);
+    const fs::path unfinished = file.string() + ".part";
+    std::ofstream(unfinished) << json.dump();
+    fs::rename(unfinished, file);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    std::cout << fmt::format("{} {:.1f} s", names[i], took.count()) << std::endl;
   }
   return 0;
 }

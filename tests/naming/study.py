@@ -2,9 +2,10 @@
 
     study.py OWN_TABLES:OWN_ANSWERS[,…] ENERGYPLUS_TABLES:ENERGYPLUS_ANSWERS[,…]
 
-A conditional logit over the possible effects, none and unknown weighs the evidence (evidence.py) with a few weights that
-all effects share. P(none) is a half before any evidence. Printed for each world: which of the effects comes first (none
-and unknown do not take part in that), and what is named at P >= 0.5, by the strength of what is hidden.
+The tables hold the evidence for each possible effect (signature_table --null). A conditional logit over the possible
+effects, none and unknown weighs it with a few weights that all effects share. P(none) is a half before any evidence. Printed
+for each world: which of the effects comes first (none and unknown do not take part in that), and what is named at P >= 0.5,
+by the strength of what is hidden.
 """
 import collections
 import pathlib
@@ -13,23 +14,26 @@ import sys
 import numpy as np
 from scipy.optimize import minimize
 
-import evidence as ev
+import cases as tables
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "long"))
 from binomial import binomial  # noqa: E402
 
 PENALTY = 1.0
 BINS = ((0.1, "above 10 %"), (0.03, "3 to 10 %"), (0.01, "1 to 3 %"), (0.0, "below 1 %"))
+# As core/diagnosis/signature_names.hpp has them.
+FEATURES = ["log gain", "its root", "root of share explained", "share explained", "wrong sign", "too much", "too little",
+            "visibility"]
 
 
 class Judged:
     """A case as the logit sees it: features of its possible effects and of itself, and which answer is right."""
 
-    def __init__(self, case, null):
-        features, self.itself = ev.evidence(case, null)
-        self.effects = list(features)
-        self.features = np.array(list(features.values()))
+    def __init__(self, case):
         self.case = case
+        self.effects = [of["effect"] for of in case.table["effects"]]
+        self.features = np.array([of["features"] for of in case.table["effects"]])
+        self.itself = np.array(case.table["features"])
         hidden = case.hidden
         # Two at once, or one that nobody could name here, are unknown.
         self.right = "none" if not hidden else hidden[0] if len(hidden) == 1 and hidden[0] in self.effects else "unknown"
@@ -40,20 +44,25 @@ class Judged:
 
 
 class Logit:
-    def __init__(self, judged):
+    def __init__(self, *worlds):
+        """Learnt from lists of cases, each list counting alike."""
+        judged, weight = [], []
+        for cases in worlds:
+            nothing = sum(j.right == "none" for j in cases)
+            # Prior odds are stated, not learnt: as many with nothing hidden as with something.
+            share = 0.5 * sum(map(len, worlds)) / len(worlds)
+            weight += [share / max(nothing if j.right == "none" else len(cases) - nothing, 1) for j in cases]
+            judged += cases
         shared, own = judged[0].features.shape[1], len(judged[0].itself)
-        nothing = sum(j.right == "none" for j in judged)
-        # Prior odds are stated, not learnt: as many with nothing hidden as with something.
-        weight = [0.5 / max(nothing, 1) if j.right == "none" else 0.5 / max(len(judged) - nothing, 1) for j in judged]
         right = [j.answers.index(j.right) for j in judged]
 
         def loss(w):
             total, slope = 0.5 * PENALTY * w @ w, PENALTY * w
             for j, r, v in zip(judged, right, weight):
                 p = self.of(w, j)
-                total -= len(judged) * v * np.log(p[r] + 1e-12)
+                total -= v * np.log(p[r] + 1e-12)
                 p[r] -= 1.0
-                p *= len(judged) * v
+                p *= v
                 slope[:shared] += p[:-2] @ j.features
                 slope[shared:shared + own] += p[-2] * j.itself
                 slope[shared + own:] += p[-1] * j.itself
@@ -70,6 +79,11 @@ class Logit:
 
     def probabilities(self, j):
         return dict(zip(j.answers, self.of(self.weights, j)))
+
+
+def judged_of(world, folders):
+    """Those whose meters signatures know."""
+    return [Judged(case) for case in tables.load(world, folders) if case.table["effects"]]
 
 
 def bin_of(j):
@@ -104,25 +118,14 @@ def report(title, rows):
 
 
 def main():
-    worlds = {}
-    for world, argument in zip(("own", "energyplus"), sys.argv[1:]):
-        pairs = [pair.split(":") for pair in argument.split(",")]
-        worlds[world] = [case for tables, answers in pairs for case in ev.load(tables, world, answers)]
-    # Whoever has a decoy has something in the records that does not belong there.
-    worlds = {world: [case for case in cases if not case.answer["decoys"]] for world, cases in worlds.items()}
-    nothing = [case for cases in worlds.values() for case in cases if not case.hidden]
-    null = ev.Null(nothing)
-
-    def judge(case):
-        return Judged(case, null if case.hidden else ev.Null([each for each in nothing if each is not case]))
-
-    # A table made with --no-effects only tells what buildings with nothing hidden look like.
-    all_judged = {world: [judge(case) for case in cases if case.effects.size] for world, cases in worlds.items()}
-    for world, judged in all_judged.items():
+    worlds = {world: judged_of(world, folders) for world, folders in zip(("own", "energyplus"), sys.argv[1:])}
+    for world, judged in worlds.items():
         # The null is of both worlds, without the case; the weights are the other world's alone.
-        learnt = Logit(next(others for name, others in all_judged.items() if name != world))
-        report(f"{world}: {len(judged)} cases, weights learnt in the other world", [(j, learnt.probabilities(j)) for j in judged])
-        print("  weights: " + ", ".join(f"{name} {value:.2f}" for name, value in zip(ev.FEATURES, learnt.weights)))
+        learnt = Logit(next(others for name, others in worlds.items() if name != world))
+        for population in sorted({j.case.name.split("-")[0] for j in judged}):
+            report(f"{world}, {population}, weights learnt in the other world",
+                   [(j, learnt.probabilities(j)) for j in judged if j.case.name.startswith(population)])
+        print("  weights: " + ", ".join(f"{name} {value:.2f}" for name, value in zip(FEATURES, learnt.weights)))
 
 
 if __name__ == "__main__":

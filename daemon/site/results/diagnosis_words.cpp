@@ -229,7 +229,7 @@ std::vector<std::pair<std::string, int>> leads_of(const Diagnosis& d) {
   return leads;
 }
 
-/// Summed over the meters of an effect; NaN where it was not fitted.
+/// Summed over the meters of an effect; NaN where it was not weighed.
 double probability_of(const diagnosis::Naming& naming, std::string_view effect) {
   double sum = kAbsent;
   for (const NameProbability& p : naming.probabilities) {
@@ -333,8 +333,16 @@ std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
     const auto [at, is_new] = most_detectable.try_emplace(name, detectability);
     if (!is_new) at->second = std::max(at->second, detectability);
   }
+  const auto was_weighed = [&](const auto& name) {
+    return std::ranges::any_of(d.passes.front().naming.probabilities,
+                               [&](const NameProbability& p) { return p.effect == name.first; });
+  };
+  const auto is_told = [&](const auto& name) {
+    return std::ranges::any_of(d.not_identifiable,
+                               [&](const auto& n) { return n.effect == name.first; });
+  };
   for (const auto& [name, detectability] : most_detectable) {
-    if (std::isinf(detectability)) continue;
+    if (std::isinf(detectability) || was_weighed(name) || is_told(name)) continue;
     list.push_back({name.first, name.second,
                     fmt::format("too small for these meters: a typical one is {:.1f} times the "
                                 "noise, and {:.0f} times are needed",

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <vector>
+
 #include "tests/support/sample_problem.hpp"
 
 namespace recald::diagnosis::diagnose_test {
@@ -55,6 +59,23 @@ TEST(Diagnose, EndsAtTheRunAtWhichItIsToldTo) {
   }
 }
 
+TEST(Diagnose, CanBeEndedWhileItLooksAtSignatures) {
+  const SiteProblem site = site_with(nullptr, {}, 12);
+  int before = 0;  // the runs up to the first look at disagreements
+  ASSERT_FALSE(diagnose(site, {}, [&](const char* what, double) {
+                 ++before;
+                 return std::string_view{what} == "calibrating the hourly model";
+               }).has_value());
+  for (const int more : {1, 60, 200}) {
+    int asked = 0;
+    const auto stopped =
+        diagnose(site, {}, [&](const char*, double) { return ++asked < before + more; });
+    ASSERT_FALSE(stopped.has_value());
+    EXPECT_EQ(stopped.error().code, ErrorCode::cancelled) << stopped.error().message;
+    EXPECT_EQ(asked, before + more);
+  }
+}
+
 TEST(Diagnose, NamesNothingWhereNothingIsHidden) {
   const SiteProblem site = site_with(nullptr, {});
   const auto diagnosis = diagnose(site, exact_model());
@@ -80,6 +101,28 @@ TEST(Diagnose, NamesAHiddenEffectAndShowsThatTheGapShrank) {
   ASSERT_TRUE(diagnosis->gap.has_value());
   EXPECT_TRUE(diagnosis->gap->confirmed);
   EXPECT_LT(diagnosis->gap->after[2].cvrmse_daily, diagnosis->gap->before[2].cvrmse_daily);
+}
+
+TEST(Diagnose, ProbabilitiesAreThoseOfTheSignatures) {
+  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {40.0}, 18);
+  const auto diagnosis = diagnose(site, {});
+  ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
+  const Naming& naming = diagnosis->passes.front().naming;
+  double sum = 0.0;
+  std::vector<std::size_t> fitted;
+  for (const NameProbability& p : naming.probabilities) {
+    sum += p.probability;
+    if (p.explanation) fitted.push_back(*p.explanation);
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+  EXPECT_GT(naming.probabilities.size(), 20u);
+  EXPECT_EQ(fitted, (std::vector<std::size_t>{0, 1, 2}));  // the likeliest, in their order
+  const auto& first = diagnosis->candidates[naming.explanations[0].candidate];
+  EXPECT_EQ(first.effect->id, "steam_trap_leak");
+  // What is not asked of the model is told.
+  EXPECT_TRUE(std::ranges::any_of(diagnosis->not_identifiable, [](const NotIdentifiable& n) {
+    return n.effect == "stuck_meter";
+  }));
 }
 
 TEST(Diagnose, SameInputsGiveTheSameResult) {

@@ -104,6 +104,8 @@ TEST_F(DiagnosisFiles, TakesBackWhatWasNotConfirmed) {
 
 TEST_F(DiagnosisFiles, NamesEachEffectThatCannotBeSeenOnce) {
   Diagnosis d = recald::testing::nothing_named(site_);
+  std::erase_if(d.passes[0].naming.probabilities,
+                [](const auto& p) { return p.effect == "server_room"; });
   // The server room stands twice, always and since a day; neither is visible.
   d.candidates.push_back(recald::testing::candidate_of(site_, "server_room", true));
   d.passes[0].look.candidates.push_back(d.passes[0].look.candidates[1]);
@@ -116,6 +118,28 @@ TEST_F(DiagnosisFiles, NamesEachEffectThatCannotBeSeenOnce) {
   EXPECT_EQ(list[0]["effect"], "wind_infiltration");
   EXPECT_EQ(list[1]["effect"], "server_room");
   EXPECT_THAT(list[1]["why"].get<std::string>(), HasSubstr("2.5 times the noise"));
+}
+
+// Signatures may weigh, and name, what the first look does not see.
+TEST_F(DiagnosisFiles, DoesNotCallTooSmallWhatWasWeighed) {
+  Diagnosis d = recald::testing::nothing_named(site_);
+  d.passes[0].look.candidates[0].visible = false;
+  std::erase_if(d.passes[0].naming.probabilities,
+                [](const auto& p) { return p.effect == "server_room"; });
+  const json list = json_of(d)["not_identifiable_here"];
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0]["effect"], "wind_infiltration");
+  EXPECT_EQ(list[1]["effect"], "server_room");
+}
+
+TEST_F(DiagnosisFiles, GivesTheProbabilityOfWhatWasNotFitted) {
+  Diagnosis d = recald::testing::nothing_named(site_);
+  d.passes[0].naming.probabilities.push_back({"plug_growth", -1, 0.02, {}});
+  const json candidates = json_of(d)["candidates"];
+  ASSERT_EQ(candidates.size(), 5u);
+  EXPECT_EQ(candidates[4]["effect"], "plug_growth");
+  EXPECT_EQ(candidates[4]["probability"], 0.02);
+  EXPECT_FALSE(candidates[4].contains("evidence_gain"));
 }
 
 TEST_F(DiagnosisFiles, GivesOtherModelsAnEntryOfTheirOwn) {

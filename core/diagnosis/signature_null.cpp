@@ -1,0 +1,44 @@
+#include "core/diagnosis/signature_null.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+namespace recald::diagnosis {
+
+double SignatureNull::centre_of(const std::string& parameter) const {
+  const auto found = centre.find(parameter);
+  return found == centre.end() ? 0.0 : found->second;
+}
+
+double SignatureNull::reach_of(const std::string& parameter) const {
+  constexpr double kLeast = 0.4;  // What few buildings have shown is not known better than that.
+  const auto found = reach.find(parameter);
+  return found == reach.end() ? 1.0 : std::max(found->second, kLeast);
+}
+
+SignatureMetric::SignatureMetric(const SignatureNull& null, const Eigen::VectorXd& there) {
+  assert(null.spread.size() == there.size() && null.own.size() == there.size());
+  assert(null.patterns.rows() == there.size());
+  for (Eigen::Index i = 0; i < there.size(); ++i) {
+    if (std::isfinite(there[i]) && std::isfinite(null.spread[i])) there_.push_back(i);
+  }
+  spread_ = null.spread(there_);
+  const Eigen::MatrixXd patterns = null.patterns(there_, Eigen::all);
+  Eigen::MatrixXd covariance = patterns * patterns.transpose();
+  covariance.diagonal() += null.own(there_);
+  root_ = covariance.llt().matrixL();
+}
+
+Eigen::MatrixXd SignatureMetric::whiten(const Eigen::Ref<const Eigen::MatrixXd>& changes,
+                                        double most) const {
+  Eigen::MatrixXd in_spreads = changes(there_, Eigen::all);
+  in_spreads.array().colwise() /= spread_.array();
+  in_spreads = in_spreads.unaryExpr(
+      [&](double x) { return std::isfinite(x) ? std::clamp(x, -most, most) : 0.0; });
+  return root_.triangularView<Eigen::Lower>().solve(in_spreads);
+}
+
+}  // namespace recald::diagnosis
