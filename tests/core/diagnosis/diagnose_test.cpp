@@ -104,7 +104,7 @@ TEST(Diagnose, NamesAHiddenEffectAndShowsThatTheGapShrank) {
 }
 
 TEST(Diagnose, ProbabilitiesAreThoseOfTheSignatures) {
-  const SiteProblem site = site_with(find_effect("steam_trap_leak"), {40.0}, 18);
+  const SiteProblem site = site_with(find_effect("weekend_operation"), {0.8, 0.8}, 18);
   const auto diagnosis = diagnose(site, {});
   ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
   const Naming& naming = diagnosis->passes.front().naming;
@@ -118,7 +118,7 @@ TEST(Diagnose, ProbabilitiesAreThoseOfTheSignatures) {
   EXPECT_GT(naming.probabilities.size(), 20u);
   EXPECT_EQ(fitted, (std::vector<std::size_t>{0, 1, 2}));  // the likeliest, in their order
   const auto& first = diagnosis->candidates[naming.explanations[0].candidate];
-  EXPECT_EQ(first.effect->id, "steam_trap_leak");
+  EXPECT_EQ(first.effect->id, "weekend_operation");
   // What is not asked of the model is told.
   EXPECT_TRUE(std::ranges::any_of(diagnosis->not_identifiable, [](const NotIdentifiable& n) {
     return n.effect == "stuck_meter";
