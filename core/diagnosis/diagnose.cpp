@@ -335,7 +335,9 @@ class Search {
     const JointFit& base = naming.better_base ? *naming.better_base : now().none;
     MonthScores change = difference(judge.scores(e.fit, *now().usual),  //
                                     judge.scores(base, *now().usual));
-    const bool confirmed = is_confirmed(change, e.null_scale);
+    const bool confirmed =
+        is_confirmed(change, e.null_scale,
+                     held_errors_kW(site_, e.fit.parts_kW) - held_errors_kW(site_, base.parts_kW));
     return {std::move(change), confirmed};
   }
 

@@ -9,7 +9,7 @@
 namespace recald::diagnosis {
 namespace {
 
-// Of the gain of other meters.
+// Of what the errors of other meters shrink by.
 constexpr double kMostHarm = 0.25;
 
 /// Root mean square error over groups of parts (days, months), relative to the mean of the groups.
@@ -79,14 +79,34 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
 
 bool is_worse(const ScoreGain& meter) { return meter.sum < -2.0 * meter.se - 1.0; }
 
-bool is_confirmed(const MonthScores& change, double null_scale) {
-  double gained = 0.0;
-  double lost = 0.0;
-  for (const ScoreGain& meter : gain_by_meter(change)) {
-    gained += std::max(meter.sum, 0.0);
-    if (is_worse(meter)) lost -= meter.sum;
+Eigen::ArrayXd held_errors_kW(const SiteProblem& site, const Eigen::ArrayXXd& parts_kW) {
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(parts_kW.cols());
+  Eigen::ArrayXd count = squares;
+  for (Eigen::Index i = 0; i < parts_kW.rows(); ++i) {
+    if (site.roles[static_cast<std::size_t>(i)] != Role::show) continue;
+    for (Eigen::Index g = 0; g < parts_kW.cols(); ++g) {
+      const double off_kW = parts_kW(i, g) - site.measured_parts_kW(i, g);
+      if (!std::isfinite(off_kW)) continue;
+      squares[g] += off_kW * off_kW;
+      count[g] += 1.0;
+    }
   }
-  return gain_over(change).sum > kLeastConfirmation * null_scale && lost < kMostHarm * gained;
+  return (squares / count).sqrt();
+}
+
+bool is_confirmed(const MonthScores& change, double null_scale,
+                  const Eigen::ArrayXd& error_change_kW) {
+  double shrunk_kW = 0.0;
+  double grown_kW = 0.0;
+  const std::vector<ScoreGain> gains = gain_by_meter(change);
+  for (std::size_t g = 0; g < gains.size(); ++g) {
+    const double change_kW = error_change_kW[static_cast<Eigen::Index>(g)];
+    if (!std::isfinite(change_kW)) continue;
+    shrunk_kW += std::max(-change_kW, 0.0);
+    if (is_worse(gains[g])) grown_kW += std::max(change_kW, 0.0);
+  }
+  return gain_over(change).sum > kLeastConfirmation * null_scale &&
+         grown_kW <= kMostHarm * shrunk_kW;
 }
 
 GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,

@@ -42,13 +42,20 @@ inline constexpr double kLeastConfirmation = 1.1;
 /// By more than two standard errors plus one nat.
 [[nodiscard]] bool is_worse(const ScoreGain& meter);
 
-/// Better by `kLeastConfirmation` in units of the effect's null scale, and meters that get worse
-/// lose less than a quarter of what the others gain, because an effect that is certainly present
-/// may have a side effect on another meter that the model gets wrong.
+/// (m) root mean square error of the parts of held-out months, kW; NaN without readings.
+[[nodiscard]] Eigen::ArrayXd held_errors_kW(const SiteProblem& site,
+                                            const Eigen::ArrayXXd& parts_kW);
+
+/// Better by `kLeastConfirmation` in units of the effect's null scale, and the errors of meters
+/// whose scores get worse grow by no more than a quarter of what errors of others shrink by: an
+/// effect that is certainly present may have a side effect on another meter that the model gets
+/// wrong. Harm counts in kW, because in nats a precise meter outweighs all others.
 /// @param change  Of the scores of months that chose nothing: the effect and the base parameters
 ///                fitted together, minus the base parameters fitted alone on the same ground. Two
 ///                models from separate searches would also differ in their modes.
-[[nodiscard]] bool is_confirmed(const MonthScores& change, double null_scale);
+/// @param error_change_kW  (m) held-out errors with the effect minus without.
+[[nodiscard]] bool is_confirmed(const MonthScores& change, double null_scale,
+                                const Eigen::ArrayXd& error_change_kW);
 
 /// @param changes  One per added effect.
 [[nodiscard]] GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,

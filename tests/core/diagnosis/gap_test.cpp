@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/null_scale.hpp"
 #include "tests/support/sample_problem.hpp"
 
@@ -110,7 +111,7 @@ TEST(Gap, AModelIsNotConfirmedAgainstItself) {
   const HeldJudge judge = judge_of(site, ground, ground.show);
   const MonthScores scores = judge.scores(ground.none, *ground.usual);
   const MonthScores change = difference(scores, scores);
-  EXPECT_FALSE(is_confirmed(change, 1.0));
+  EXPECT_FALSE(is_confirmed(change, 1.0, Eigen::ArrayXd::Zero(3)));
   const auto gaps = gaps_of(site, ground, judge);
   const GapChange gap = change_of(gaps, gaps, std::span{&change, 1});
   for (const ScoreGain& meter : gap.log_score_change) EXPECT_EQ(meter.sum, 0.0);
@@ -129,12 +130,29 @@ TEST(Gap, ScoresOfSeveralAdditionsAddUpMonthByMonth) {
 
 TEST(Gap, IsConfirmedByWhatAllMonthsSayInUnitsOfTheNullScaleAndByNoMetersHarm) {
   const MonthScores better{{{3, 8.0}, {7, 6.0}}, {{3, 0.0}, {7, -1.0}}};
-  EXPECT_TRUE(is_confirmed(better, 10.0));
-  EXPECT_FALSE(is_confirmed(better, 12.0));  // 13 nats are not 1.1 times 12
+  const Eigen::ArrayXd shrunk = Eigen::Array2d(-10.0, 0.0);
+  EXPECT_TRUE(is_confirmed(better, 10.0, shrunk));
+  EXPECT_FALSE(is_confirmed(better, 12.0, shrunk));  // 13 nats are not 1.1 times 12
+  // Surely 4 nats worse on the second meter: it counts by how much its error grows.
   const MonthScores harmful{{{3, 8.0}, {7, 6.0}}, {{3, -2.0}, {7, -2.0}}};
-  EXPECT_FALSE(is_confirmed(harmful, 1.0));  // surely 4 nats worse on the second meter
-  const MonthScores echo{{{3, 80.0}, {7, 60.0}}, {{3, -2.0}, {7, -2.0}}};
-  EXPECT_TRUE(is_confirmed(echo, 1.0));  // 4 nats beside 140
+  EXPECT_FALSE(is_confirmed(harmful, 1.0, Eigen::Array2d(-10.0, 3.0)));
+  EXPECT_TRUE(is_confirmed(harmful, 1.0, Eigen::Array2d(-10.0, 2.0)));
+  EXPECT_TRUE(is_confirmed(better, 1.0, Eigen::Array2d(-10.0, 3.0)));  // its score is not worse
+  EXPECT_FALSE(is_confirmed(harmful, 1.0, Eigen::Array2d(kAbsent, 3.0)));
+}
+
+TEST(Gap, HeldErrorsAreThoseOfHeldMonthsAlone) {
+  SiteProblem site = noisy_site();
+  Eigen::ArrayXXd modelled = site.measured_parts_kW;
+  site.measured_parts_kW.col(2).setConstant(kAbsent);
+  for (Eigen::Index i = 0; i < modelled.rows(); ++i) {
+    const bool is_held = site.roles[static_cast<std::size_t>(i)] == Role::show;
+    modelled(i, 0) += is_held ? -3.0 : 50.0;
+  }
+  const Eigen::ArrayXd errors_kW = held_errors_kW(site, modelled);
+  EXPECT_NEAR(errors_kW[0], 3.0, 1e-9);
+  EXPECT_EQ(errors_kW[1], 0.0);
+  EXPECT_TRUE(std::isnan(errors_kW[2]));
 }
 
 TEST(Ground, NamesTheMeterThatHasTooFewReadings) {
