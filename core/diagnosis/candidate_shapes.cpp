@@ -15,19 +15,6 @@ bool is_amount(const EffectParameter& parameter) {
   return std::isfinite(parameter.neutral) && parameter.scan.empty();
 }
 
-AmountPrior factor_prior(const EffectParameter& parameter) {
-  const double typical = std::abs(typical_value(parameter) - parameter.neutral);
-  const Prior& prior = parameter.prior;
-  const bool one_sided = prior.min() >= parameter.neutral || prior.max() <= parameter.neutral;
-  if (!one_sided) return {AmountPriorKind::normal, std::sqrt(prior.variance()) / typical};
-  if (std::holds_alternative<UniformPrior>(prior.distribution())) {
-    return {AmountPriorKind::uniform, (prior.max() - prior.min()) / typical};
-  }
-  // For a half-normal: its second moment about the neutral value is the scale squared.
-  const double shift = prior.mean() - parameter.neutral;
-  return {AmountPriorKind::half_normal, std::sqrt(prior.variance() + shift * shift) / typical};
-}
-
 /// Without the first and last days.
 std::span<const EffectParameter> own_parameters(const Candidate& candidate) {
   const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
@@ -70,11 +57,12 @@ double typical_value(const EffectParameter& parameter) {
   return std::abs(mean - parameter.neutral) > 0.1 * sd ? mean : parameter.neutral + sd;
 }
 
-AmountPrior amount_prior(const Candidate& candidate) {
+bool may_take_away(const Candidate& candidate) {
   for (const EffectParameter& parameter : candidate.parameters) {
-    if (is_amount(parameter)) return factor_prior(parameter);
+    if (!is_amount(parameter)) continue;
+    return parameter.prior.min() < parameter.neutral && parameter.prior.max() > parameter.neutral;
   }
-  return {AmountPriorKind::half_normal, 1.0};  // only shapes: present or absent
+  return false;  // Only shapes: present or absent.
 }
 
 std::vector<double> with_amount(const Candidate& candidate, std::vector<double> values,

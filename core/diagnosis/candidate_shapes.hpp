@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "core/diagnosis/posterior_algebra.hpp"
 #include "core/diagnosis/site_problem.hpp"
 
 namespace recald::diagnosis {
@@ -12,9 +11,8 @@ namespace recald::diagnosis {
 /// the mean is neutral.
 [[nodiscard]] double typical_value(const EffectParameter& parameter);
 
-/// Prior of the factor on the typical deviation from neutral, for the candidate's first amount;
-/// half-normal of scale 1 if it has only shapes.
-[[nodiscard]] AmountPrior amount_prior(const Candidate& candidate);
+/// Whether the effect may take away as well as add: its amount has either sign.
+[[nodiscard]] bool may_take_away(const Candidate& candidate);
 
 /// The values with all amounts at `factor` times their deviation from neutral, within their priors.
 [[nodiscard]] std::vector<double> with_amount(const Candidate& candidate,

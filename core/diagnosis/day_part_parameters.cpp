@@ -10,10 +10,9 @@ namespace {
 
 struct DayPartParameter {
   std::string_view name;
-  double log_sd = 0.0;        ///< 0: the library's prior.
-  double median = 0.0;        ///< 0: the drawings' value.
-  double if_none = 0.0;       ///< The median where the drawings say 0.
-  double second_start = 0.0;  ///< A score.
+  double log_sd = 0.0;   ///< 0: the library's prior.
+  double median = 0.0;   ///< 0: the drawings' value.
+  double if_none = 0.0;  ///< The median where the drawings say 0.
   bool of_own_chiller = false;
   bool of_reheat_boxes = false;
 };
@@ -32,14 +31,14 @@ constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {.name = "minimum_supply_flow", .log_sd = 0.35, .of_reheat_boxes = true},
     {"hot_water_volume", 0.6},
     {"base_heat", 0.7},
-    {.name = "closet_share", .second_start = -2.0, .of_reheat_boxes = true},
+    {.name = "closet_share", .of_reheat_boxes = true},
     {"gains_to_core"},
     {.name = "supply_reset", .of_reheat_boxes = true},
     {"warm_up"},
     {"closed_start"},
     // Not in any drawing: approximate values of the training buildings.
     {"mass_coupling", 0.5, 0.5},
-    {.name = "core_mass", .log_sd = 0.9, .median = 0.3, .second_start = -1.0},
+    {.name = "core_mass", .log_sd = 0.9, .median = 0.3},
     {"air_capacity", 0.5, 35.0},
     {.name = "night_fan", .of_reheat_boxes = true},
     {.name = "chiller_lift", .of_own_chiller = true},
@@ -81,15 +80,6 @@ std::optional<Prior> wide_prior(std::string_view name, const model::Building& no
   const double median = parameter->median > 0.0 ? parameter->median : said;
   if (!(median > 0.0)) return std::nullopt;
   return Prior{LogNormalPrior{.median = median, .log_sd = parameter->log_sd}};
-}
-
-Eigen::VectorXd second_start_of(std::span<const Parameter> parameters) {
-  Eigen::VectorXd scores = Eigen::VectorXd::Zero(std::ssize(parameters));
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const DayPartParameter* found = find_day_part_parameter(parameters[j].name);
-    if (found != nullptr) scores[static_cast<Eigen::Index>(j)] = found->second_start;
-  }
-  return scores;
 }
 
 }  // namespace recald::diagnosis

@@ -25,9 +25,4 @@ namespace recald::diagnosis {
 [[nodiscard]] std::optional<Prior> wide_prior(std::string_view name,
                                               const model::Building& nominal);
 
-/// (parameters) scores of a second start, because the middle of the priors may be misleading:
-/// rooms that are cool at night have either closets or little mass, and no small step leads from
-/// one to the other.
-[[nodiscard]] Eigen::VectorXd second_start_of(std::span<const Parameter> parameters);
-
 }  // namespace recald::diagnosis

@@ -6,7 +6,7 @@
 
 #include "core/absent.hpp"
 #include "core/diagnosis/ground.hpp"
-#include "core/diagnosis/null_scale.hpp"
+#include "core/diagnosis/signature_fit.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -101,7 +101,8 @@ Visibility visibility_of(double signal, const Eigen::VectorXd& imitated,
 
 Result<FootprintGauge> FootprintGauge::calibrate(const SiteProblem& twin) {
   Predictor predictor{twin};
-  const auto ground = lay_ground(predictor, twin);
+  const SignatureReader reader(twin);
+  const auto ground = lay_ground(predictor, twin, fit_signatures(twin, reader, predictor).scores);
   if (!ground) return tl::unexpected(ground.error());
   const auto node = static_cast<std::size_t>(ground->none.best_node);
   return make(twin, ground->fit, ground->grid[node], ground->none.jacobian);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/diagnosis/candidate_shapes.hpp"
 #include "core/diagnosis/learnt_names.hpp"
 #include "core/diagnosis/monthly_impact.hpp"
 #include "core/display/id_words.hpp"
@@ -16,7 +17,6 @@ namespace recald::diagnosis {
 namespace {
 
 constexpr int kDraws = 200;
-constexpr double kMuchBetter = 20.0;  // nats
 
 using Alterations = std::vector<std::shared_ptr<const model::hourly::Alteration>>;
 
@@ -52,7 +52,6 @@ Addition addition_of(Predictor& predictor, const SiteProblem& site,
                     .draws = draw_effect(candidates[e.candidate], e.fit, rng),
                     .probability = probability_of(naming, candidates[e.candidate]),
                     .evidence_gain = e.evidence_gain,
-                    .null_scale = e.null_scale,
                     .monthly_kWh = {},
                     .effect_kW = e.fit.parts_kW - predictor.parts_kW(e.fit.theta)};
   addition.monthly_kWh =
@@ -83,25 +82,13 @@ std::vector<Candidate> still_open(const CandidateList& list, const std::vector<A
   return open;
 }
 
-/// One pass: where the gap is, and which effect explains it. @param now  The current model,
-/// with `accepted`.
-Result<Pass> search(Predictor& predictor, const SiteProblem& site, const Ground& now,
-                    const HeldJudge& shown, const std::vector<Candidate>& open,
-                    const NamingRules& rules, const SignatureNames* names, Rng& rng) {
-  auto located = locate(now.context(site), now.none, rng);
-  if (!located) return tl::unexpected(located.error());
-  auto look = look_at(predictor, now.context(site), now.none, open, rng);
-  if (!look) return tl::unexpected(look.error());
-  const auto unknown = unknown_log_evidence(site, now);
-  if (!unknown) return tl::unexpected(unknown.error());
-  const NamingData data{now.context(site), *unknown, now.select, now.levels, *now.usual, names};
-  auto naming = name_effect(predictor, data, now.none, open, *look, rules);
-  if (!naming) return tl::unexpected(naming.error());
-  return Pass{.located = std::move(*located),
-              .look = std::move(*look),
-              .naming = std::move(*naming),
-              .modelled_kW = now.none.parts_kW,
-              .gaps = gaps_of(site, now, shown)};
+/// Values of a candidate's parameters to start a fit from.
+std::vector<double> a_typical(const Candidate& candidate) {
+  std::vector<double> values = shapes_to_try(candidate).front();
+  for (std::size_t j = values.size(); j < candidate.parameters.size(); ++j) {
+    values.push_back(candidate.parameters[j].prior.quantile(0.5));
+  }
+  return values;
 }
 
 /// Indices of the candidates in `open` with an id such as "scale_fault:steam".
@@ -134,13 +121,6 @@ std::vector<ParameterBelief> beliefs_of(const SiteProblem& site, const JointFit&
     beliefs.push_back({fit.theta[j], value(fit.scores[k] - reach), value(fit.scores[k] + reach)});
   }
   return beliefs;
-}
-
-/// Treats the best fit among the assumed effects as named.
-void take_as_named(Naming& naming) {
-  naming.outcome = Outcome::named;
-  naming.named = 0;
-  naming.why = "it was assumed to be present";
 }
 
 void take_back(const char* why, Diagnosis& result) {
@@ -211,17 +191,16 @@ class Search {
         before_show_(without_shown_months(site)),
         list_(list_candidates(before_show_)) {
     result_.not_identifiable = list_.not_identifiable;
-    if (options.rules.errs_as_learnt) {
-      result_.not_identifiable.push_back(
-          {"stuck_meter",
-           "readings that stand still are marked as suspect and left out before a diagnosis"});
-    }
+    result_.not_identifiable.push_back(
+        {"stuck_meter",
+         "readings that stand still are marked as suspect and left out before a diagnosis"});
     result_.candidates = list_.candidates;
   }
 
   Result<void> begin() {
     Predictor base{site_, {}, proceed_};
-    auto first = lay_ground(base, site_, errors());
+    if (auto asked = ask(base); !asked) return asked;
+    auto first = lay_ground(base, site_, question_.names.evidence.scores);
     if (!first) return tl::unexpected(first.error());
     first_ = std::move(*first);
     result_.model_runs += base.runs();
@@ -233,29 +212,13 @@ class Search {
     const std::size_t count = result_.passes.size();
     Rng rng{options_.seed, streams::kPasses[count]};
     Predictor predictor{site_, accepted_, proceed_};
-    const std::vector<Candidate> open = still_open(list_, result_.added);
-    NamingRules rules = options_.rules;
-    const bool assumed = count < options_.assumed.size();
-    if (assumed) {
-      auto meant = meant_by(options_.assumed[count], open, site_, list_);
-      if (!meant) return tl::unexpected(meant.error());
-      rules.only = std::move(*meant);
-    }
-    std::optional<SignatureNames> names;
-    if (rules.errs_as_learnt && rules.only.empty()) {
-      SignatureEvidence evidence = evidence_of(before_show_, open, learnt_null(), predictor);
-      if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
-      names = names_by(std::move(evidence), learnt_weights());
-    }
-    auto pass = search_again(predictor, open, rules, names ? &*names : nullptr, rng);
+    auto pass = search(predictor, rng);
     if (!pass) return tl::unexpected(pass.error());
-    if (assumed) take_as_named(pass->naming);
     const bool named = pass->naming.outcome == Outcome::named && may_add(count);
     if (named) {
-      result_.added.push_back(addition_of(predictor, site_, open, pass->naming, rng));
+      result_.added.push_back(addition_of(predictor, site_, question_.open, pass->naming, rng));
       if (first_.show.count() > 0) shown_.push_back(show(pass->naming));
     }
-    pass->naming.better_base.reset();  // large, and not needed any more
     result_.passes.push_back(std::move(*pass));
     result_.model_runs += predictor.runs();
     if (!named) return false;
@@ -264,7 +227,7 @@ class Search {
     if (!added) return tl::unexpected(added.error());
     // An addition that the held-out months do not confirm is withdrawn, together
     // with all later ones.
-    return assumed || (!shown_.empty() && shown_.back().confirmed);
+    return question_.assumed || (!shown_.empty() && shown_.back().confirmed);
   }
 
   Diagnosis end() && {
@@ -302,25 +265,54 @@ class Search {
   [[nodiscard]] const Ground& now() const { return latest_ ? *latest_ : first_; }
   [[nodiscard]] Ground& now() { return latest_ ? *latest_ : first_; }
 
-  /// If the rivals find a much better mode of the base model, the first look used the wrong mode:
-  /// search again from the better one.
-  Result<Pass> search_again(Predictor& predictor, const std::vector<Candidate>& open,
-                            const NamingRules& rules, const SignatureNames* names, Rng& rng) {
-    const auto once = [&] {
-      return search(predictor, site_, now(), judge_of(site_, first_, first_.show), open, rules,
-                    names, rng);
-    };
-    auto pass = once();
-    if (!pass || !pass->naming.better_base) return pass;
-    JointFit& better = *pass->naming.better_base;
-    if (better.log_evidence - now().none.log_evidence < kMuchBetter) return pass;
-    auto moved = move_ground(predictor, site_, std::move(better), now(), errors());
-    if (!moved) return tl::unexpected(moved.error());
-    return once();
+  /// What the signatures of the meters say of the effects that the model does not have yet.
+  Result<void> ask(Predictor& predictor) {
+    const std::size_t count = result_.passes.size();
+    question_ = {.open = still_open(list_, result_.added)};
+    if (count >= options_.assumed.size()) {
+      question_.names = names_by(
+          evidence_of(before_show_, question_.open, learnt_null(), predictor), learnt_weights());
+    } else if (auto assumed = assume(options_.assumed[count], predictor); !assumed) {
+      return assumed;
+    }
+    if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
+    return {};
   }
 
-  [[nodiscard]] ModelErrors errors() const {
-    return options_.rules.errs_as_learnt ? ModelErrors::usual : ModelErrors::none;
+  /// Where the signatures put an effect that is known to be present.
+  Result<void> assume(const std::string& id, Predictor& predictor) {
+    const auto meant = meant_by(id, question_.open, site_, list_);
+    if (!meant) return tl::unexpected(meant.error());
+    std::vector<Candidate> asked;
+    for (const std::size_t i : *meant) asked.push_back(question_.open[i]);
+    SignatureEvidence evidence = evidence_of(before_show_, asked, learnt_null(), predictor);
+    if (evidence.effects.empty()) {  // Other meters may still show it.
+      question_.assumed = {meant->front(), a_typical(asked.front())};
+    } else {
+      const EffectEvidence& e = evidence.effects.front();
+      const auto which = static_cast<std::size_t>(e.shape.candidate - asked.data());
+      question_.assumed = {(*meant)[which], e.values, e.scores};
+    }
+    question_.names.evidence = {.scores = std::move(evidence.scores)};
+    return {};
+  }
+
+  /// One pass: where the gap is, and which effect explains it.
+  Result<Pass> search(Predictor& predictor, Rng& rng) {
+    if (!result_.passes.empty()) {
+      if (auto asked = ask(predictor); !asked) return tl::unexpected(asked.error());
+    }
+    auto located = locate(now().context(site_), now().none, rng);
+    if (!located) return tl::unexpected(located.error());
+    auto naming = question_.assumed ? take_as_named(predictor, site_, *question_.assumed,
+                                                    question_.open, options_.rules, now())
+                                    : name_effect(predictor, site_, question_.names, question_.open,
+                                                  options_.rules, now());
+    if (!naming) return tl::unexpected(naming.error());
+    return Pass{.located = std::move(*located),
+                .naming = std::move(*naming),
+                .modelled_kW = now().none.parts_kW,
+                .gaps = gaps_of(site_, now(), judge_of(site_, first_, first_.show))};
   }
 
   [[nodiscard]] bool may_add(std::size_t count) const {
@@ -332,12 +324,11 @@ class Search {
   [[nodiscard]] Shown show(const Naming& naming) const {
     const Explanation& e = naming.explanations[*naming.named];
     const HeldJudge judge = judge_of(site_, now(), now().show);
-    const JointFit& base = naming.better_base ? *naming.better_base : now().none;
+    const JointFit& base = now().none;
     MonthScores change = difference(judge.scores(e.fit, *now().usual),  //
                                     judge.scores(base, *now().usual));
-    const bool confirmed =
-        is_confirmed(change, e.null_scale,
-                     held_errors_kW(site_, e.fit.parts_kW) - held_errors_kW(site_, base.parts_kW));
+    const bool confirmed = is_confirmed(
+        change, held_errors_kW(site_, e.fit.parts_kW) - held_errors_kW(site_, base.parts_kW));
     return {std::move(change), confirmed};
   }
 
@@ -345,7 +336,7 @@ class Search {
   Result<void> take_up(const Addition& addition, const JointFit& found) {
     accepted_.push_back(alteration_of(addition.candidate, site_.facts(), addition.eta));
     Predictor altered{site_, accepted_, proceed_};
-    auto next = lay_next_ground(altered, site_, now(), found, errors());
+    auto next = lay_next_ground(altered, site_, now(), found);
     if (!next) return tl::unexpected(next.error());
     latest_ = std::move(*next);
     if (!shown_.empty()) shown_.back().parameters = beliefs_of(site_, latest_->none);
@@ -353,11 +344,19 @@ class Search {
     return {};
   }
 
+  /// Which effects the model does not have yet, and what the signatures say of them.
+  struct Question {
+    std::vector<Candidate> open;
+    SignatureNames names;
+    std::optional<EffectStart> assumed = {};  ///< Then nothing else is asked.
+  };
+
   const SiteProblem& site_;
   const DiagnoseOptions& options_;
   std::function<bool()> proceed_;
   SiteProblem before_show_;  ///< What may be known before the final check.
   CandidateList list_;
+  Question question_;
   Alterations accepted_;
   Ground first_;
   std::optional<Ground> latest_;  ///< Of the model with all additions.

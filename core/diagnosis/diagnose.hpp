@@ -33,7 +33,6 @@ struct Addition {
   std::vector<std::vector<double>> draws;  ///< (draws x r) of the posterior.
   double probability;
   double evidence_gain;
-  double null_scale;
   std::vector<double> monthly_kWh;  ///< (m) with the effect minus without, mean of its months.
   Eigen::ArrayXXd effect_kW;        ///< (parts x m) with the effect minus without.
 };
@@ -48,7 +47,6 @@ struct ParameterBelief {
 /// One pass of the search.
 struct Pass {
   std::vector<Misfit> located;
-  FirstLook look;
   Naming naming;
   Eigen::ArrayXXd modelled_kW;  ///< (parts x m) the model at the start of the pass.
   std::vector<MeterGap> gaps;   ///< (m) its gap on the shown months.

@@ -94,8 +94,8 @@ Eigen::ArrayXd held_errors_kW(const SiteProblem& site, const Eigen::ArrayXXd& pa
   return (squares / count).sqrt();
 }
 
-bool is_confirmed(const MonthScores& change, double null_scale,
-                  const Eigen::ArrayXd& error_change_kW) {
+bool is_confirmed(const MonthScores& change, const Eigen::ArrayXd& error_change_kW) {
+  constexpr double kThreeToOne = 1.1;  // Nats.
   double shrunk_kW = 0.0;
   double grown_kW = 0.0;
   const std::vector<ScoreGain> gains = gain_by_meter(change);
@@ -105,8 +105,8 @@ bool is_confirmed(const MonthScores& change, double null_scale,
     shrunk_kW += std::max(-change_kW, 0.0);
     if (is_worse(gains[g])) grown_kW += std::max(change_kW, 0.0);
   }
-  return gain_over(change).sum > kLeastConfirmation * null_scale &&
-         grown_kW <= kMostHarm * shrunk_kW;
+  const ScoreGain all = gain_over(change);
+  return all.sum > std::max(2.0 * all.se, kThreeToOne) && grown_kW <= kMostHarm * shrunk_kW;
 }
 
 GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,

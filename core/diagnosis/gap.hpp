@@ -25,9 +25,6 @@ struct GapChange {
   bool confirmed = false;                   ///< Every added effect is confirmed.
 };
 
-/// Three to one: the support from held-out months that an effect needs.
-inline constexpr double kLeastConfirmation = 1.1;
-
 /// The judge of `ground` itself: its fitted months teach, its noise scores.
 /// @param held  Months of `ground` to score.
 [[nodiscard]] HeldJudge judge_of(const SiteProblem& site, const Ground& ground,
@@ -46,7 +43,7 @@ inline constexpr double kLeastConfirmation = 1.1;
 [[nodiscard]] Eigen::ArrayXd held_errors_kW(const SiteProblem& site,
                                             const Eigen::ArrayXXd& parts_kW);
 
-/// Better by `kLeastConfirmation` in units of the effect's null scale, and the errors of meters
+/// Better by more than two standard errors, and at least three to one; and the errors of meters
 /// whose scores get worse grow by no more than a quarter of what errors of others shrink by: an
 /// effect that is certainly present may have a side effect on another meter that the model gets
 /// wrong. Harm counts in kW, because in nats a precise meter outweighs all others.
@@ -54,8 +51,7 @@ inline constexpr double kLeastConfirmation = 1.1;
 ///                fitted together, minus the base parameters fitted alone on the same ground. Two
 ///                models from separate searches would also differ in their modes.
 /// @param error_change_kW  (m) held-out errors with the effect minus without.
-[[nodiscard]] bool is_confirmed(const MonthScores& change, double null_scale,
-                                const Eigen::ArrayXd& error_change_kW);
+[[nodiscard]] bool is_confirmed(const MonthScores& change, const Eigen::ArrayXd& error_change_kW);
 
 /// @param changes  One per added effect.
 [[nodiscard]] GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,

@@ -12,13 +12,9 @@ constexpr std::size_t kLeastGround = 100;
 // If residuals spread more than this at the upper half of the levels than at the lower half, a
 // meter uses the square-root scale.
 constexpr double kSpreadRatio = 1.6;
-constexpr double kGenerous = 1.5;        // patterns of the unknown model, relative to all others
-constexpr double kGenerousErrors = 3.0;  // and its errors of the kinds in the catalogue
-constexpr int kFirstIterations = 25;     // from the middle of the priors
-constexpr int kIterations = 8;
-constexpr int kLastIterations = 30;  // the mode that everything is compared with
-constexpr int kHops = 2;
-constexpr int kLastHops = 6;
+// A mode that is only to show scales and noise may be a rough one.
+constexpr FitOptions kRough{.iterations_max = 12, .small_gain = 10.0};
+constexpr FitOptions kFine{.iterations_max = 40};  // the mode that everything is compared with
 constexpr double kLeastNodeWeight = 1e-6;  // relative to the likeliest; below it nodes are ignored
 // Possible sizes of the anonymous patterns, in units of a meter's mean; the likeliest is used.
 constexpr std::array kPatternShares{0.02, 0.06, 0.15};
@@ -130,30 +126,12 @@ void set_spreads(const SiteProblem& site, const Ground& ground, std::vector<Mete
 /// With nearly white noise and no usual errors, so that the parameters first explain all they can.
 Ground plain_ground(const SiteProblem& site) {
   Ground ground;
-  ground.fit = observe(site, parts_of(site, {Role::fit}),
-                       std::vector<MeterScale>(site.meters.size()), Patterns::modest);
+  ground.fit =
+      observe(site, parts_of(site, {Role::fit}), std::vector<MeterScale>(site.meters.size()));
   ground.errors = UsualErrors{}.columns(ground.fit);
   ground.search = search_noise(ground.fit, {});
   ground.grid = {ground.search};
   return ground;
-}
-
-Result<JointFit> plain_fit(Predictor& predictor, const SiteProblem& site, const Ground& plain,
-                           const Eigen::VectorXd& start) {
-  return fit_jointly(predictor, plain.context(site), Candidate{}, start,
-                     {.iterations_max = kFirstIterations});
-}
-
-/// Fits the base model from the middle of the priors and from the site's second start;
-/// returns the likelier.
-Result<JointFit> first_fit(Predictor& predictor, const SiteProblem& site, const Ground& plain) {
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(std::ssize(site.parameters));
-  auto best = plain_fit(predictor, site, plain, start);
-  if (!best || site.second_start.size() == 0) return best;
-  start.head(site.second_start.size()) = site.second_start;
-  auto other = plain_fit(predictor, site, plain, start);
-  if (!other) return other;
-  return other->log_density > best->log_density ? std::move(other) : std::move(best);
 }
 
 Result<void> require_parts(const SiteProblem& site, const Observations& fit) {
@@ -180,27 +158,25 @@ void set_levels_scale(const Ground& ground, std::vector<MeterScale>& scales) {
 }
 
 /// The usual errors at the current mode: base parameters move when errors are added, and the
-/// errors' shapes with them. @return scores to start from
-Eigen::VectorXd draw_errors(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
-                            Ground& ground) {
-  ground.usual = std::make_shared<const UsualErrors>(
-      errors == ModelErrors::usual ? UsualErrors::draw(predictor, site, ground.none.theta)
-                                   : UsualErrors{});
+/// errors' shapes with them.
+void draw_errors(Predictor& predictor, const SiteProblem& site, Ground& ground) {
+  ground.usual =
+      std::make_shared<const UsualErrors>(UsualErrors::draw(predictor, site, ground.none.theta));
   ground.errors = ground.usual->columns(ground.fit);
-  Eigen::VectorXd start = ground.none.scores;
-  if (start.size() != std::ssize(site.parameters) + ground.usual->count()) {
-    start.conservativeResizeLike(
-        Eigen::VectorXd::Zero(std::ssize(site.parameters) + ground.usual->count()));
-  }
-  return start;
+  const auto q = std::ssize(site.parameters);
+  Eigen::VectorXd scores = Eigen::VectorXd::Zero(q + ground.usual->count());
+  scores.head(q) = ground.none.scores.head(q);
+  // The same effects as before, drawn elsewhere, are needed in about the same amounts.
+  if (ground.none.scores.size() == scores.size()) scores = ground.none.scores;
+  ground.none.scores = std::move(scores);
 }
 
 /// Noise of the residuals at the current mode, for the search and for scoring.
 /// @param last  Start near the known levels, and use a whole grid.
-Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last) {
+Result<void> learn_noise(Ground& ground, bool last) {
   const Eigen::VectorXd gap = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
   ground.search = search_noise(ground.fit, gap);
-  const Eigen::VectorXd left = gap - ground.errors * start.tail(ground.errors.cols());
+  const Eigen::VectorXd left = gap - ground.errors * ground.none.scores.tail(ground.errors.cols());
   auto levels = levels_of(ground.fit, left, last ? ground.levels : std::vector<NoiseLevel>{});
   if (!levels) return tl::unexpected(levels.error());
   ground.levels = std::move(*levels);
@@ -212,106 +188,67 @@ Result<void> learn_noise(Ground& ground, const Eigen::VectorXd& start, bool last
 
 /// Keeps the nodes that matter; the likeliest becomes the reference.
 void keep_likely_nodes(Ground& ground) {
-  const Eigen::VectorXd& weights = ground.none.node_weights;
+  const Eigen::VectorXd weights = ground.none.node_weights;
   std::vector<NoiseNode> likely;
+  std::vector<double> kept;
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     if (weights[i] < kLeastNodeWeight * weights.maxCoeff()) continue;
     if (i == ground.none.best_node) ground.reference_node = likely.size();
     likely.push_back(std::move(ground.grid[static_cast<std::size_t>(i)]));
+    kept.push_back(weights[i]);
   }
   ground.grid = std::move(likely);
-}
-
-/// Draws the usual errors at the mode, and fits the base model again from there.
-Result<void> settle(Predictor& predictor, const SiteProblem& site, ModelErrors errors,
-                    Ground& ground) {
-  const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
-  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
-                          {.iterations_max = kLastIterations, .hops = kLastHops});
-  if (!none) return tl::unexpected(none.error());
-  ground.none = std::move(*none);
-  return {};
+  ground.none.node_weights = Eigen::Map<const Eigen::VectorXd>(kept.data(), std::ssize(kept));
+  ground.none.best_node = static_cast<Eigen::Index>(ground.reference_node);
 }
 
 /// Usual errors, noise and mode once each, in this order.
-Result<void> learn(Predictor& predictor, const SiteProblem& site, ModelErrors errors, bool last,
-                   Ground& ground) {
-  const Eigen::VectorXd start = draw_errors(predictor, site, errors, ground);
-  if (auto learnt = learn_noise(ground, start, last); !learnt) return learnt;
-  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, start,
-                          {.iterations_max = kIterations, .hops = kHops});
+Result<void> learn(Predictor& predictor, const SiteProblem& site, bool last, Ground& ground) {
+  draw_errors(predictor, site, ground);
+  if (auto learnt = learn_noise(ground, last); !learnt) return learnt;
+  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, ground.none.scores,
+                          last ? kFine : kRough);
   if (!none) return tl::unexpected(none.error());
   ground.none = std::move(*none);
+  if (last) keep_likely_nodes(ground);
   return {};
 }
 
 }  // namespace
 
-Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site, ModelErrors errors) {
+Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
+                          const Eigen::VectorXd& start) {
   Ground ground = plain_ground(site);
   if (auto enough = require_parts(site, ground.fit); !enough) {
     return tl::unexpected(enough.error());
   }
-  auto plain = first_fit(predictor, site, ground);
+  auto plain = fit_jointly(predictor, ground.context(site), Candidate{}, start, kRough);
   if (!plain) return tl::unexpected(plain.error());
   ground.none = std::move(*plain);
   std::vector<MeterScale> scales(site.meters.size());
   set_levels_scale(ground, scales);
 
   for (const bool last : {false, true}) {
-    ground.fit = observe(site, parts_of(site, {Role::fit}), scales, Patterns::modest);
-    if (auto learnt = learn(predictor, site, errors, last, ground); !learnt) {
+    ground.fit = observe(site, parts_of(site, {Role::fit}), scales);
+    if (auto learnt = learn(predictor, site, last, ground); !learnt) {
       return tl::unexpected(learnt.error());
     }
     if (!last) set_spreads(site, ground, scales);
   }
-  keep_likely_nodes(ground);
-  // The mode has moved again under the final noise.
-  if (auto settled = settle(predictor, site, errors, ground); !settled) {
-    return tl::unexpected(settled.error());
-  }
-  ground.select = observe(site, parts_of(site, {Role::select}), scales, Patterns::modest);
-  ground.show = observe(site, parts_of(site, {Role::show}), scales, Patterns::modest);
+  ground.select = observe(site, parts_of(site, {Role::select}), scales);
+  ground.show = observe(site, parts_of(site, {Role::show}), scales);
   return ground;
 }
 
 Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site, const Ground& before,
-                               const JointFit& found, ModelErrors errors) {
-  const auto q = std::ssize(site.parameters);
+                               const JointFit& found) {
   Ground ground = before;
   ground.none = found;
-  ground.none.scores.conservativeResize(q + found.usual.size());
-  if (auto learnt = learn(predictor, site, errors, true, ground); !learnt) {
+  ground.none.scores.conservativeResize(std::ssize(site.parameters) + found.usual.size());
+  if (auto learnt = learn(predictor, site, true, ground); !learnt) {
     return tl::unexpected(learnt.error());
   }
-  keep_likely_nodes(ground);
-  if (auto settled = settle(predictor, site, errors, ground); !settled) {
-    return tl::unexpected(settled.error());
-  }
   return ground;
-}
-
-Result<void> move_ground(Predictor& predictor, const SiteProblem& site, JointFit mode,
-                         Ground& ground, ModelErrors errors) {
-  ground.none = std::move(mode);
-  return settle(predictor, site, errors, ground);
-}
-
-Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground) {
-  std::vector<MeterScale> scales;
-  for (const MeterRows& meter : ground.fit.meters) scales.push_back(meter.scale);
-  Observations generous = observe(site, parts_of(site, {Role::fit}), scales, Patterns::generous);
-  std::vector<NoiseLevel> levels = ground.levels;
-  for (std::size_t g = 0; g < levels.size(); ++g) {
-    generous.meters[g].design.gated = ground.fit.meters[g].design.gated;
-    levels[g].pattern_sd *= kGenerous;
-  }
-  Eigen::MatrixXd jacobian = ground.none.jacobian;
-  jacobian.rightCols(ground.errors.cols()) *= kGenerousErrors;
-  const auto evidence = evidence_over(noise_grid(generous, levels, true), generous,
-                                      ground.none.linear_residual(), jacobian);
-  if (!evidence) return tl::unexpected(evidence.error());
-  return evidence->log_evidence;
 }
 
 }  // namespace recald::diagnosis

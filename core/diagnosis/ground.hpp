@@ -13,12 +13,6 @@
 
 namespace recald::diagnosis {
 
-/// The assumed errors of the model, besides its parameters and noise.
-enum class ModelErrors {
-  usual,  ///< As learnt from models of buildings with nothing hidden.
-  none,   ///< None: the model itself made the data (tests).
-};
-
 /// Observations by role, noise and base fit of one version of the model.
 struct Ground {
   Observations fit;                          ///< Months to fit.
@@ -37,28 +31,20 @@ struct Ground {
   }
 };
 
-/// Log evidence of the unknown model: the base model, linearised at its mode, with larger patterns
-/// and one in date.
-[[nodiscard]] Result<double> unknown_log_evidence(const SiteProblem& site, const Ground& ground);
-
 /// Finds scales, noise and mode in turn: the first fit gives the scales, the second the noise, and
 /// the third is the result.
 /// @param predictor  With the effects that the model already has.
+/// @param start      (q) scores near the mode, such as those of the signatures' fit.
 /// @return the ground; not_enough_data if a meter has fewer than 100 measured parts to fit; or
 ///         not_finite, not_positive_definite from the fits.
 [[nodiscard]] Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
-                                        ModelErrors errors = ModelErrors::usual);
+                                        const Eigen::VectorXd& start);
 
 /// The ground of a model with one more effect, starting where that effect was found: same scales,
 /// new noise and mode. Two grounds then differ by the effect and not by another mode.
 /// @param predictor  With the effect.
 /// @param found      The base parameters fitted together with it, on `before`.
 [[nodiscard]] Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site,
-                                             const Ground& before, const JointFit& found,
-                                             ModelErrors errors = ModelErrors::usual);
-
-/// Moves the ground to a better mode of the same model. @param mode  Base parameters alone.
-[[nodiscard]] Result<void> move_ground(Predictor& predictor, const SiteProblem& site, JointFit mode,
-                                       Ground& ground, ModelErrors errors = ModelErrors::usual);
+                                             const Ground& before, const JointFit& found);
 
 }  // namespace recald::diagnosis

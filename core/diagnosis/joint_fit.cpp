@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
-#include <cstdint>
-
-#include "core/random/rng.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -24,13 +21,6 @@ constexpr double kLeastDamping = 3.0;
 constexpr double kMoreDamping = 8.0;
 constexpr double kLessDamping = 0.1;
 constexpr double kNoDamping = 0.05;
-// How far a hop goes in each score, how often it climbs, and how far below it is abandoned.
-constexpr double kHop = 0.4;
-constexpr int kHopIterations = 6;
-constexpr int kHopTrial = 3;
-constexpr double kHopSmallGain = 0.5;
-constexpr double kHopHopeless = 60.0;
-constexpr std::uint64_t kHopSeed = 1;
 
 /// Runs the model at its own scores v = [theta | eta] (q + r) and stacks the result.
 class ScoredModel {
@@ -162,37 +152,22 @@ class ModeSearch {
 
   /// @return whether it converged
   Result<bool> climb(int iterations_max, double small_gain) {
-    for (int i = 0; i < iterations_max; ++i) {
-      const auto gain = iterate();
+    // With slopes made anew and then learnt from each step, as long as that brings much.
+    constexpr double kMuch = 0.1;  // Of the gain with new slopes.
+    constexpr int kQuickStepsMax = 4;
+    for (iterations = 1; iterations <= iterations_max; ++iterations) {
+      auto gain = iterate();
       if (model_.is_stopped()) return tl::unexpected(diagnosis_cancelled());
       if (!gain) return tl::unexpected(gain.error());
       if (*gain < small_gain) return true;
+      const double much = std::max(kMuch * *gain, small_gain);
+      for (int i = 0; i < kQuickStepsMax && *gain >= much; ++i) {
+        gain = step_by(place.jacobian);
+        if (model_.is_stopped()) return tl::unexpected(diagnosis_cancelled());
+        if (!gain) return tl::unexpected(gain.error());
+      }
     }
     return false;
-  }
-
-  /// Restarts from nearby points, in case this mode is not the highest. Days and choices stay.
-  /// @return whether a higher mode was found
-  Result<bool> hop(int hops) {
-    Rng rng{kHopSeed};
-    bool higher = false;
-    for (int i = 0; i < hops; ++i) {
-      const Place here = place;
-      Eigen::VectorXd start = here.own;
-      for (Eigen::Index j = 0; j < model_.theta_count(); ++j) start[j] += kHop * rng.normal();
-      move_to(start.cwiseMax(-kScoreLimit).cwiseMin(kScoreLimit));
-      auto ended = climb(kHopTrial, kHopSmallGain);
-      if (ended && !*ended && place.log_density > here.log_density - kHopHopeless) {
-        ended = climb(kHopIterations - kHopTrial, kHopSmallGain);
-      }
-      if (!ended) return tl::unexpected(ended.error());
-      if (place.log_density > here.log_density) {
-        higher = true;
-      } else {
-        place = here;
-      }
-    }
-    return higher;
   }
 
   Place place;
@@ -211,14 +186,15 @@ class ModeSearch {
     return -0.5 * (noise_.squared_norms(observations_, residual)[0] + own.squaredNorm());
   }
 
-  /// Linearises and steps. @return the gain of the step, 0 if none helped
+  /// Linearises and steps; the slopes learn from the step.
+  /// @see Broyden (1965), A class of methods for solving nonlinear simultaneous equations. @return
+  /// the gain of the step, 0 if none helped
   Result<double> iterate() {
     if (!std::isfinite(place.log_density)) {
       return failure(
           ErrorCode::not_finite,
           "the hourly model does not give a finite power for some values of its parameters");
     }
-    ++iterations;
     place.jacobian = model_.jacobian(place.own, observations_.measured - place.residual);
     auto gain = step_by(place.jacobian);
     if (!gain || *gain > 0.0 || !model_.has_days()) return gain;
@@ -227,10 +203,10 @@ class ModeSearch {
     return step_by(model_.with_days_held(place.jacobian));
   }
 
-  Result<double> step_by(const Eigen::MatrixXd& jacobian) {
-    const Eigen::VectorXd linear = place.residual + jacobian * place.own;
-    const GramSystem system = noise_.gram(observations_, beside(linear, jacobian));
-    const auto moves = jacobian.colwise().squaredNorm().transpose().array() > 0.0;
+  Result<double> step_by(const Eigen::MatrixXd& slopes) {
+    const Eigen::VectorXd linear = place.residual + slopes * place.own;
+    const GramSystem system = noise_.gram(observations_, beside(linear, slopes));
+    const auto moves = slopes.colwise().squaredNorm().transpose().array() > 0.0;
     for (int trial = 0; trial < kTrialsMax; ++trial) {
       const auto target = posterior(system, (1.0 + place.damping) * unit_precision(model_.count()));
       if (!target) return tl::unexpected(target.error());
@@ -243,6 +219,9 @@ class ModeSearch {
       const double density = log_density(residual, tried);
       if (density > place.log_density) {
         const double gain = density - place.log_density;
+        const Eigen::VectorXd step = tried - place.own;
+        const Eigen::VectorXd unforeseen = place.residual - residual - place.jacobian * step;
+        place.jacobian += unforeseen * (step / step.squaredNorm()).transpose();
         place.own = tried;
         place.residual = residual;
         place.log_density = density;
@@ -335,12 +314,6 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   ModeSearch search{model, context, own_scores(start, q, r)};
   auto ended = search.climb(options.iterations_max, options.small_gain);
   if (!ended) return tl::unexpected(ended.error());
-  if (options.hops > 0) {
-    const auto higher = search.hop(options.hops);
-    if (!higher) return tl::unexpected(higher.error());
-    if (*higher) ended = search.climb(options.iterations_max, options.small_gain);
-    if (!ended) return tl::unexpected(ended.error());
-  }
 
   if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
   const Place& place = search.place;

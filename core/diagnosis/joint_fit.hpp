@@ -21,11 +21,8 @@
 namespace recald::diagnosis {
 
 struct FitOptions {
-  int iterations_max = 8;
-  double small_gain = 0.05;  ///< Stop when an iteration gains less log posterior density than this.
-  /// Number of restarts from points near the mode: a model with thermostats has many
-  /// neighbouring modes.
-  int hops = 0;
+  int iterations_max = 20;
+  double small_gain = 1.0;  ///< Stop when an iteration gains less log posterior density than this.
 };
 
 /// A model linearised at its mode, with the likeliest usual errors there.

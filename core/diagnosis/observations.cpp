@@ -78,7 +78,7 @@ SplineOver spline_over(const SiteProblem& site, PartValue value, int count) {
   return {value, Hats::at_quantiles(std::move(values), count)};
 }
 
-std::vector<SplineOver> splines_of(const SiteProblem& site, Patterns patterns) {
+std::vector<SplineOver> splines_of(const SiteProblem& site) {
   std::vector<SplineOver> splines;
   splines.push_back(spline_over(
       site, [](const DayPart& p) { return p.dry_bulb_C; }, kTemperatureSplines));
@@ -95,13 +95,13 @@ std::vector<SplineOver> splines_of(const SiteProblem& site, Patterns patterns) {
   const double days = parts.back().day_index - parts.front().day_index + 1.0;
   add([](const DayPart& p) { return static_cast<double>(p.day_index); },
       std::max(3, static_cast<int>(days / kDaysPerDateSpline)));
-  splines.back().factor = patterns == Patterns::modest ? kDateFactor : 1.0;
+  splines.back().factor = kDateFactor;
   return splines;
 }
 
 BlockDesign design_of(const SiteProblem& site, const std::vector<Eigen::Index>& rows,
-                      bool electricity, Patterns patterns) {
-  const std::vector<SplineOver> splines = splines_of(site, patterns);
+                      bool electricity) {
+  const std::vector<SplineOver> splines = splines_of(site);
   // A spline in outdoor temperature for each part of the day, separately for workdays and other
   // days: the errors of a simple building model depend on hour and weather.
   const SplineOver by_part = spline_over(
@@ -158,7 +158,7 @@ Eigen::VectorXd Observations::stack(const Eigen::ArrayXXd& parts_kW) const {
 }
 
 Observations observe(const SiteProblem& site, const std::vector<bool>& part_flags,
-                     std::span<const MeterScale> scales, Patterns patterns) {
+                     std::span<const MeterScale> scales) {
   Observations result;
   const SiteFacts facts = site.facts();
   Eigen::Index offset = 0;
@@ -174,8 +174,8 @@ Observations observe(const SiteProblem& site, const std::vector<bool>& part_flag
       }
     }
     if (!meter.rows.empty()) {
-      meter.design = design_of(site, meter.rows,
-                               site.meters[g].utility == metering::Utility::electricity, patterns);
+      meter.design =
+          design_of(site, meter.rows, site.meters[g].utility == metering::Utility::electricity);
     }
     offset += static_cast<Eigen::Index>(meter.rows.size());
     result.meters.push_back(std::move(meter));

@@ -42,17 +42,10 @@ struct Observations {
   [[nodiscard]] Eigen::VectorXd stack(const Eigen::ArrayXXd& parts_kW) const;
 };
 
-/// The size of the anonymous terms.
-enum class Patterns {
-  modest,    ///< In every model: part of week, season, weather, outdoor temperature by part of the
-             ///< day.
-  generous,  ///< The unknown model: larger, and date as well.
-};
-
 /// @param scales  (m)
 /// @param part_flags  (parts) which parts to use.
 [[nodiscard]] Observations observe(const SiteProblem& site, const std::vector<bool>& part_flags,
-                                   std::span<const MeterScale> scales, Patterns patterns);
+                                   std::span<const MeterScale> scales);
 
 /// How the spread of a meter's residuals depends on the part of the day, separately for workdays
 /// and other days, and on outdoor temperature: errors are largest where consumption is.

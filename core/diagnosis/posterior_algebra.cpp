@@ -48,35 +48,6 @@ Eigen::VectorXd visible_scale(const GramSystem& system) {
   return d.unaryExpr([least](double value) { return value > least ? 1.0 / value : 0.0; });
 }
 
-/// log erfc(x).
-double log_erfc(double x) {
-  if (x < 20.0) return std::log(std::erfc(x));
-  // Abramowitz, Stegun (1964), 7.1.23; the first omitted term is below 2e-13 from x = 20 on.
-  const double y = 0.5 / (x * x);
-  const double series = y * (-1.0 + y * (3.0 + y * (-15.0 + y * (105.0 - y * 945.0))));
-  return -x * x - std::log(x * std::sqrt(std::numbers::pi)) + std::log1p(series);
-}
-
-/// log of the mean over x in (0, c) of exp(x z - x^2 / 2).
-double log_mean_likelihood(double c, double z) {
-  if (c * (1.0 + std::abs(z)) < 1e-3) {
-    // The difference below would lose its digits; the series has a fourth-order error, < 1e-12.
-    return c * z / 2.0 + c * c * (z * z / 24.0 - 1.0 / 6.0) - c * c * c * z / 24.0;
-  }
-  // The integral is sqrt(2 pi) exp(z^2 / 2) times the normal mass between -z and c - z. Computed
-  // from the tail that contains both ends, so that neither is lost against 1.
-  double near = -z;
-  double far = c - z;
-  if (near + far < 0.0) {
-    near = z - c;
-    far = z;
-  }
-  const double log_near = log_erfc(near / std::numbers::sqrt2);
-  const double log_far = log_erfc(far / std::numbers::sqrt2);
-  const double log_mass = log_near + std::log(-std::expm1(log_far - log_near)) - std::numbers::ln2;
-  return 0.5 * (log_two_pi + z * z) + log_mass - std::log(c);
-}
-
 }  // namespace
 
 void GramSystem::add(const BlockNoise& noise, const Eigen::MatrixXd& columns) {
@@ -151,23 +122,6 @@ Eigen::VectorXd absorbed_share(const GramSystem& before, const GramSystem& after
   return 1.0 - left / before.gram.diagonal().tail(k).array();
 }
 
-double log_normal_cdf(double x) {
-  if (x > 0.0) return std::log1p(-0.5 * std::erfc(x / std::numbers::sqrt2));
-  return log_erfc(-x / std::numbers::sqrt2) - std::numbers::ln2;
-}
-
-double log_bayes_factor(double detectability, double score, const AmountPrior& prior) {
-  assert(detectability >= 0.0 && prior.scale > 0.0);
-  const double reach = prior.scale * detectability;  // tau d, or b d
-  if (reach == 0.0) return 0.0;
-  if (prior.kind == AmountPriorKind::uniform) return log_mean_likelihood(reach, score);
-  const double spread = std::hypot(1.0, reach);
-  const double standardised = score * reach / spread;  // posterior mean over posterior sd
-  const double normal = -std::log(spread) + 0.5 * standardised * standardised;
-  if (prior.kind == AmountPriorKind::normal) return normal;
-  return normal + std::numbers::ln2 + log_normal_cdf(standardised);
-}
-
 double combine_nodes(const Eigen::VectorXd& log_evidences, const Eigen::VectorXd& log_weights) {
   return calibration::log_sum(log_evidences + log_weights);
 }
@@ -212,25 +166,5 @@ double exceedance(const Eigen::VectorXd& maxima, double statistic) {
 }
 
 double normal_p_value(double score) { return std::erfc(std::abs(score) / std::numbers::sqrt2); }
-
-double null_threshold(std::span<const CandidateScale> candidates,
-                      const Eigen::MatrixXd& confusability, double probability, int draws,
-                      Rng& rng) {
-  assert(!candidates.empty() && draws > 0);
-  assert(confusability.rows() == static_cast<Eigen::Index>(candidates.size()));
-  const Eigen::MatrixXd scores = draw_scores(confusability, draws, rng);
-  Eigen::VectorXd best(draws);
-  for (Eigen::Index draw = 0; draw < draws; ++draw) {
-    double largest = -std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-      largest = std::max(largest, log_bayes_factor(candidates[k].detectability,
-                                                   scores(static_cast<Eigen::Index>(k), draw),
-                                                   candidates[k].prior));
-    }
-    best[draw] = largest;
-  }
-  std::sort(best.begin(), best.end());
-  return quantile_of_sorted(best, probability);
-}
 
 }  // namespace recald::diagnosis

@@ -74,26 +74,6 @@ struct GaussianPosterior {
 /// @param after   The same with J integrated out.
 [[nodiscard]] Eigen::VectorXd absorbed_share(const GramSystem& before, const GramSystem& after);
 
-enum class AmountPriorKind {
-  normal,       ///< N(0, scale^2)
-  half_normal,  ///< As above, for eta > 0.
-  uniform,      ///< U(0, scale)
-};
-
-/// Prior of the amount eta of an effect, in units of the effect of its column.
-struct AmountPrior {
-  AmountPriorKind kind;
-  double scale;  ///< > 0; sd of the normal, upper end of the uniform.
-};
-
-/// Log Bayes factor of "the effect, amount by its prior" against "no effect". Exact for a linear
-/// effect. Signs are the column's, so a prior on negative amounts needs the column reversed.
-/// @param detectability  d >= 0.   @param score  z.
-[[nodiscard]] double log_bayes_factor(double detectability, double score, const AmountPrior& prior);
-
-/// log Phi(x), accurate in both tails.
-[[nodiscard]] double log_normal_cdf(double x);
-
 /// Evidence over nodes of a grid:  log sum_i w_i exp(L_i).
 /// @param log_evidences  (m) L_i   @param log_weights  (m) prior weights of the nodes, summing
 /// to 1.
@@ -116,19 +96,5 @@ struct AmountPrior {
 
 /// Two-sided p-value of a standard normal score.
 [[nodiscard]] double normal_p_value(double score);
-
-/// What one candidate contributes to the null distribution of the best log Bayes factor.
-struct CandidateScale {
-  double detectability;
-  AmountPrior prior;
-};
-
-/// c_99: quantile of the largest log Bayes factor over all candidates if none is true.
-/// @param candidates     (k), in the order of `confusability`.
-/// @param confusability  kappa (k x k).
-/// @param probability    0.99
-[[nodiscard]] double null_threshold(std::span<const CandidateScale> candidates,
-                                    const Eigen::MatrixXd& confusability, double probability,
-                                    int draws, Rng& rng);
 
 }  // namespace recald::diagnosis

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/diagnosis/candidate_shapes.hpp"
 #include "core/diagnosis/expected_changes.hpp"
 #include "core/diagnosis/joint_fit.hpp"
 #include "core/diagnosis/signature_fit.hpp"
@@ -150,7 +151,7 @@ class EvidenceSearch {
         search_(site, reader_, null, predictor, fit_.measured, fit_.fitted) {}
 
   SignatureEvidence run() {
-    if (search_.metric().count() == 0) return {};  // meters that signatures do not know
+    if (search_.metric().count() == 0) return {.scores = fit_.scores};  // no meter they know
     SignaturePoint drawings = search_.base_at(Eigen::VectorXd::Zero(search_.parameters()));
     search_.linearise(drawings, nullptr);
     mode_ = search_.settled(search_.base_at(fit_.scores), nullptr);
@@ -163,6 +164,7 @@ class EvidenceSearch {
       if (predictor_.is_stopped()) return {};
       fit_effect(effect, from);
     }
+    settle_leaders();
     look_for_better_base();
     return predictor_.is_stopped() ? SignatureEvidence{} : conclude();
   }
@@ -224,8 +226,19 @@ class EvidenceSearch {
       fitted.point = search_.improved(std::move(fitted.point), &look.shape);
       if (!best || fitted.cost() < best->cost()) best = std::move(fitted);
     }
-    best->point = search_.settled(std::move(best->point), &best->look->shape);
     fitted_.push_back(std::move(*best));
+  }
+
+  /// Those that may still come first; new slopes cost as many runs as there are parameters.
+  void settle_leaders() {
+    constexpr std::size_t kLeaders = 8;
+    constexpr double kOutOfReach = 15.0;
+    std::ranges::sort(fitted_, {}, &Fitted::cost);
+    const double best = fitted_.empty() ? 0.0 : fitted_.front().cost();
+    for (std::size_t i = 0; i < std::min(fitted_.size(), kLeaders); ++i) {
+      if (fitted_[i].cost() > best + kOutOfReach) break;
+      fitted_[i].point = search_.settled(std::move(fitted_[i].point), &fitted_[i].look->shape);
+    }
   }
 
   /// A better place of the base model to which an effect has led is no evidence for the effect.
@@ -268,6 +281,7 @@ class EvidenceSearch {
     return {.shape = look.shape,
             .factor = look.factor,
             .values = look.shape.with_factor(look.factor),
+            .scores = {},
             .log_gain = std::min(look.gain + look.log_choice(), 0.0),
             .misfit = mode_.misfit,
             .visibility = look.across,
@@ -282,6 +296,7 @@ class EvidenceSearch {
     const bool has_amount = fitted.point.at.size() > search_.parameters();
     evidence.factor = has_amount ? std::exp(fitted.point.at[search_.parameters()]) : 1.0;
     evidence.values = evidence.shape.with_factor(evidence.factor);
+    evidence.scores = search_.scores_of(fitted.point);
     return evidence;
   }
 

@@ -13,6 +13,7 @@ struct EffectEvidence {
   EffectShape shape;
   double factor = 1.0;         ///< On the typical amount.
   std::vector<double> values;  ///< Of all the candidate's parameters, with that amount.
+  Eigen::VectorXd scores;      ///< (q) of the base parameters fitted with it; empty if it was not.
   double log_gain = 0.0;       ///< Log Bayes factor against none, over shapes and amounts.
   double misfit = 0.0;         ///< With it; that of the base model if it was not worth a fit.
   double visibility = 0.0;     ///< Squared distance by which its typical amount moves signatures
@@ -25,7 +26,7 @@ struct SignatureEvidence {
   std::vector<EffectEvidence> effects;  ///< One for each effect, in order of their ids.
   double misfit = 0.0;                  ///< Of the base model.
   int count = 0;                        ///< Signatures measured.
-  Eigen::VectorXd scores;               ///< (q) of the base model.
+  Eigen::VectorXd scores;               ///< (q) of the base model alone.
 };
 
 /// The base model and the effects that look likeliest are each fitted from the drawings and from

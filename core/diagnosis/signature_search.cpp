@@ -27,10 +27,6 @@ std::vector<double> EffectShape::with_factor(double factor) const {
   return with_amount(*candidate, values, sign * factor);
 }
 
-bool may_take_away(const Candidate& candidate) {
-  return amount_prior(candidate).kind == AmountPriorKind::normal;
-}
-
 SignatureSearch::SignatureSearch(const SiteProblem& site, const SignatureReader& reader,
                                  const SignatureNull& null, Predictor& predictor,
                                  Eigen::VectorXd measured, const Eigen::VectorXd& modelled)

@@ -28,9 +28,6 @@ struct EffectShape {
   [[nodiscard]] std::vector<double> with_factor(double factor) const;
 };
 
-/// Whether an effect may take away as well as add.
-[[nodiscard]] bool may_take_away(const Candidate& candidate);
-
 /// A place of the model. With an amount there is one entry more than parameters: its logarithm.
 struct SignaturePoint {
   Eigen::VectorXd at;        ///< (q or q + 1) u, log a

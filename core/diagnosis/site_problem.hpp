@@ -29,9 +29,6 @@ struct SiteProblem {
   model::Building nominal;
   std::vector<const model::ParameterDefinition*> definitions;  ///< (q)
   std::vector<Parameter> parameters;                           ///< (q) with their original priors.
-  /// (q) scores of a second starting point for the base model, besides the middle of the
-  /// priors; empty: none.
-  Eigen::VectorXd second_start;
   std::shared_ptr<const model::Drivers> drivers;
   bool has_sun = true;            ///< False: it was assumed, and nothing may be concluded from it.
   std::vector<MeterData> meters;  ///< (m)

@@ -1,10 +1,10 @@
 #include "core/diagnosis/usual_errors.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/diagnosis/candidate_shapes.hpp"
-#include "core/diagnosis/learnt.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -15,7 +15,11 @@ constexpr std::size_t kShapesMax = 6;
 // Training population of seed 601, 34 buildings with nothing hidden: the sizes with maximum
 // likelihood for their residuals (expectation maximisation), at most 3.
 constexpr double kAnyEffect = 0.26;
-constexpr auto kUsualAmounts = std::to_array<Learnt>({
+struct UsualAmount {
+  std::string_view effect;
+  double sd;
+};
+constexpr auto kUsualAmounts = std::to_array<UsualAmount>({
     {"after_hours", 0.04},
     {"chiller_part_load", 0.78},
     {"constant_flow_pumps", 2.23},
@@ -101,7 +105,8 @@ Eigen::MatrixXd UsualErrors::columns(const Observations& observations) const {
 }
 
 double usual_amount_sd(std::string_view effect) {
-  return learnt_of(kUsualAmounts, effect, kAnyEffect);
+  const auto found = std::ranges::find(kUsualAmounts, effect, &UsualAmount::effect);
+  return found == kUsualAmounts.end() ? kAnyEffect : found->sd;
 }
 
 }  // namespace recald::diagnosis

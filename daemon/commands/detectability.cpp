@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/write_file.hpp"
-#include "core/diagnosis/null_scale.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/diagnose/footprint.hpp"

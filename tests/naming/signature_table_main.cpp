@@ -9,7 +9,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -18,7 +17,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/absent.hpp"
 #include "core/diagnosis/signature_fit.hpp"
 #include "core/diagnosis/signature_names.hpp"
 #include "daemon/commands/open_site.hpp"
@@ -47,31 +45,6 @@ Result<SiteProblem> problem_of(const fs::path& folder) {
   auto problem = daemon::prepare_diagnosis(*modelled);
   if (!problem) return tl::unexpected(problem.error());
   return without_shown_months(std::move(*problem));
-}
-
-/// As for a diagnosis. Besides, what people may change one day may begin within the record, and
-/// hours are shapes: the third hour shows elsewhere than the first.
-std::vector<Candidate> candidates_of(const SiteProblem& site) {
-  constexpr std::array<std::string_view, 11> kMayBegin{
-      "chiller_part_load",    "clock_offset",      "constant_flow_pumps", "deep_drying",
-      "demand_ventilation",   "early_start",       "humidifier",          "seasonal_hot_water",
-      "supply_reset_missing", "weekend_operation", "wind_infiltration"};
-  std::vector<Candidate> candidates = list_candidates(site).candidates;
-  for (Candidate& candidate : candidates) {
-    if (candidate.effect->id == "after_hours") candidate.parameters[0].scan = {1.0, 2.0, 4.0};
-    if (candidate.effect->id == "early_start") {
-      candidate.parameters[0].scan = {0.0, 1.0, 3.0};
-      candidate.parameters[1].scan = {0.0, 0.03, 0.1};
-    }
-  }
-  for (std::size_t i = candidates.size(); i-- > 0;) {
-    if (std::ranges::find(kMayBegin, candidates[i].effect->id) == kMayBegin.end()) continue;
-    candidates.push_back(candidates[i]);
-    candidates.back().begins = true;
-    candidates.back().parameters.push_back(
-        {.name = "first_day", .unit = "d", .prior = UniformPrior{0.0, 1.0}, .neutral = kAbsent});
-  }
-  return candidates;
 }
 
 /// What null.py has learnt, without the case's own row.
@@ -125,7 +98,7 @@ Json left_by_fit(const SiteProblem& site) {
 
 Json evidence_json(const SiteProblem& site, const SignatureNull& null) {
   Predictor predictor(site);
-  const auto candidates = candidates_of(site);
+  const auto candidates = list_candidates(site).candidates;
   const SignatureEvidence evidence = evidence_of(site, candidates, null, predictor);
   const Eigen::MatrixXd features = effect_features(evidence);
   Json effects = Json::array();

@@ -20,7 +20,11 @@ class AfterHours final : public model::hourly::Alteration {
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts&) {
-  return {{.name = "late_stop", .unit = "h", .prior = half_normal(3.0), .neutral = 0.0}};
+  return {{.name = "late_stop",
+           .unit = "h",
+           .prior = half_normal(3.0),
+           .neutral = 0.0,
+           .scan = {1.0, 2.0, 4.0}}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,

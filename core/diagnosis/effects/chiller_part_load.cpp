@@ -80,6 +80,7 @@ Effect chiller_part_load() {
               "power = cooling/COP x (1 + p (1/r - 1)) x (1 + c (T_cw - 30 C)); r load over "
               "design load, at least 0.1; T_cw = max(T_out + 5 K, 20 C); p in -, c in 1/K",
           .effect_class = EffectClass::plant,
+          .dating = Dating::may_begin,
           .needs = {.own_chiller = true},
           .confusable = {{"fouling",
                           "Chiller power at one load and tower temperature, this year and last."},

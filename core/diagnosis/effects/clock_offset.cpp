@@ -51,6 +51,7 @@ Effect clock_offset() {
           "clock or time zone is wrong, or the stamps mark the end of the interval.",
       .physics = "y(t + D); y recorded power in kW, D in h, between intervals linear",
       .effect_class = EffectClass::meter,
+      .dating = Dating::may_begin,
       .of_one_meter = true,
       .confusable = {{"early_start",
                       "The other meters: a schedule moves them all, a wrong clock only this one."},

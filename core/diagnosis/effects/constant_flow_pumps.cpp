@@ -107,6 +107,7 @@ Effect constant_flow_pumps() {
           "P_pumps [kW] += P_p·plant(t); plant: 1 in all, the warm or the cold months, else "
           "0; P_p [kW] ≥ 0",
       .effect_class = EffectClass::air_system,
+      .dating = Dating::may_begin,
       .confusable =
           {{"server_room",
             "Chilled water on winter nights: servers need it, pumps leave it unchanged."},

@@ -50,6 +50,7 @@ Effect deep_drying() {
           "h_fg [J/kg], w [kg/kg]; x [kg/kg] ≥ 0; with units in the rooms, of what passes through "
           "their coils",
       .effect_class = EffectClass::air_system,
+      .dating = Dating::may_begin,
       .needs = {.air_system = true, .humidity = true},
       .confusable =
           {{"economiser_changeover",

@@ -59,6 +59,7 @@ Effect demand_ventilation() {
           "V_oa [m³/s] = V_oa,drawn·((1−b) + b·occ), occ people present [–] 0…1, b [–] 0…1, in "
           "handlers of daytime rooms",
       .effect_class = EffectClass::outdoor_air,
+      .dating = Dating::may_begin,
       .confusable =
           {{"outdoor_air_amount",
             "CO₂ of the return air over a day: constant with demand control; without it, rising "

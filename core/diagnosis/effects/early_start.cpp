@@ -23,8 +23,16 @@ class EarlyStart final : public model::hourly::Alteration {
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts&) {
-  return {{.name = "lead", .unit = "h", .prior = half_normal(2.0), .neutral = 0.0},
-          {.name = "lead_per_cold", .unit = "h/K", .prior = half_normal(0.1), .neutral = 0.0}};
+  return {{.name = "lead",
+           .unit = "h",
+           .prior = half_normal(2.0),
+           .neutral = 0.0,
+           .scan = {0.0, 1.0, 3.0}},
+          {.name = "lead_per_cold",
+           .unit = "h/K",
+           .prior = half_normal(0.1),
+           .neutral = 0.0,
+           .scan = {0.0, 0.03, 0.1}}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
@@ -47,6 +55,7 @@ Effect early_start() {
           "t_on [h] = t_on,drawn − (Δh_0 + b·max(θ_heat,occ − θ_e, 0)); Δh_0 [h] ≥ 0, "
           "b [h/K] ≥ 0, θ_e outdoor air [°C] of the hour",
       .effect_class = EffectClass::schedule,
+      .dating = Dating::may_begin,
       .confusable = {{"thermal_mass",
                       "Fan power before the timetable's start: thermal mass changes only heat, an "
                       "early start also shows in electricity."},

@@ -59,6 +59,7 @@ Effect humidifier() {
           "Q [W] = f·ρ V_oa h_fg·max(w_set − w_o, 0), V_oa [m³/s], h_fg [J/kg], w [kg/kg]; f [–] "
           "0…1",
       .effect_class = EffectClass::air_system,
+      .dating = Dating::may_begin,
       .needs = {.air_system = true, .humidity = true},
       .confusable =
           {{"supply_reset_missing",

@@ -61,6 +61,7 @@ Effect seasonal_hot_water() {
           "Q = V rho c (-A cos(2 pi (day - 230)/365)) + L; V draw in m3/s, A half the "
           "yearly swing of the mains in K, L loop loss in kW before efficiencies",
       .effect_class = EffectClass::plant,
+      .dating = Dating::may_begin,
       .confusable = {{"steam_trap_leak",
                       "Steam on an August night with the circulation pump stopped for an hour."},
                      {"ground_coupling", "The hot-water sub-meter, or steam on a summer weekend."},

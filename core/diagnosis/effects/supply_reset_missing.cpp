@@ -58,6 +58,7 @@ Effect supply_reset_missing() {
           "θ_supply [°C] = θ_supply,model − min(k·max(θ_r − θ_e, 0), 5 K); extra cooling and "
           "reheat ≈ ρ c V_min·Δθ_supply [W]; k [K/K] ≥ 0, θ_r [°C]",
       .effect_class = EffectClass::air_system,
+      .dating = Dating::may_begin,
       .needs = {.reheat_boxes = true},
       .confusable =
           {{"simultaneous_heating_cooling",

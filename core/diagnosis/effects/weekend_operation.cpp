@@ -61,6 +61,7 @@ Effect weekend_operation() {
           "on(Sat, Sun) = max(on, φ_day·on_weekday); φ_Sat, φ_Sun [–] 0…1: share of the "
           "daytime rooms that is served at weekday hours",
       .effect_class = EffectClass::schedule,
+      .dating = Dating::may_begin,
       .confusable =
           {{"constant_speed_fans",
             "Fan power on a Saturday: zero outside the timetable if only the speed is wrong."},

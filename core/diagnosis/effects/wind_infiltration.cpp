@@ -49,6 +49,7 @@ Effect wind_infiltration() {
               "open louvres, worn door seals and broken window gaskets.",
           .physics = "infiltration x (1 + k v^n); v wind speed in m/s, k in 1/(m/s)^n, n in -",
           .effect_class = EffectClass::envelope,
+          .dating = Dating::may_begin,
           .needs = {.wind = true},
           .confusable =
               {{"stack_infiltration",

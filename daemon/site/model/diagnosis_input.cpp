@@ -235,7 +235,6 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   if (!chosen) return tl::unexpected(chosen.error());
   problem.definitions = std::move(chosen->definitions);
   problem.parameters = std::move(chosen->parameters);
-  problem.second_start = diagnosis::second_start_of(problem.parameters);
   problem.day_parts = diagnosis::make_day_parts(*problem.drivers);
   problem.measured_parts_kW = diagnosis::measured_parts(problem.day_parts, problem.measured_kW);
   problem.roles = diagnosis::part_roles(problem.day_parts, problem.month_roles, split.buffer_days);

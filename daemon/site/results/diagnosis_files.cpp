@@ -75,12 +75,8 @@ void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosi
   entry["title"] = candidate.effect->title;
   entry["parameters"] = parameters_json(site, posterior_of(candidate, e.fit));
   entry["evidence_gain"] = results::number(e.evidence_gain);
-  entry["log_likelihood_gain"] = results::number(e.likelihood_gain);
-  entry["first_look"] = results::number(e.first_look);
-  entry["support"] = results::number(e.support);
-  entry["selected_gain"] = results::number(e.selected_gain);
-  entry["selected_se"] = results::number(e.selected_se);
-  entry["null_scale"] = results::number(e.null_scale);
+  entry["selected_gain"] = results::number(e.selected.sum);
+  entry["selected_se"] = results::number(e.selected.se);
   if (!e.objection.empty()) entry["objection"] = e.objection;
   entry["at_truncation"] = e.at_truncation;
   Json confusable = Json::array();
@@ -101,23 +97,6 @@ Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
     Json entry = {{"effect", p.effect}, {"probability", results::number(p.probability)}};
     if (p.meter >= 0) entry["meter"] = meter_name(site, p.meter);
     if (p.explanation) add_explanation(site, d, naming.explanations[*p.explanation], entry);
-    list.push_back(std::move(entry));
-  }
-  return list;
-}
-
-/// All candidates as the residuals alone see them, before any was fitted.
-Json first_look_json(const SiteProblem& site, const Diagnosis& d) {
-  Json list = Json::array();
-  const diagnosis::FirstLook& look = d.passes.front().look;
-  for (std::size_t i = 0; i < look.candidates.size(); ++i) {
-    const diagnosis::CandidateLook& c = look.candidates[i];
-    Json entry = {{"effect", d.candidates[i].effect->id},
-                  {"key", d.candidates[i].key(site)},
-                  {"log_bayes_factor", results::number(c.log_bayes_factor)},
-                  {"score", results::number(c.best.score)},
-                  {"detectability", results::number(c.best.detectability)}};
-    if (d.candidates[i].meter >= 0) entry["meter"] = meter_name(site, d.candidates[i].meter);
     list.push_back(std::move(entry));
   }
   return list;
@@ -256,9 +235,6 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"confusable", first.naming.confusable},
                {"added", added_json(d)},
                {"additions", additions_json(site, d)},
-               {"null_threshold", results::number(first.naming.null_threshold)},
-               {"unknown_gain", results::number(first.naming.unknown_gain)},
-               {"first_look", first_look_json(site, d)},
                {"parameters_before", base_parameters_json(site, d.parameters_before)},
                {"parameters_after", base_parameters_json(site, d.parameters_after)},
                {"base_fit", gaps_json(site, d.base_fit)},

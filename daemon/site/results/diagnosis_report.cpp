@@ -84,7 +84,6 @@ report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d,
   } else if (p.effect == "unknown") {
     bar.kind = report::CandidateKind::unknown;
     bar.meaning = "The gap has a pattern that no effect of the catalogue causes.";
-    bar.evidence_gain = naming.unknown_gain;
   } else if (const diagnosis::Effect* effect = diagnosis::find_effect(p.effect)) {
     bar.meaning = effect->meaning;
   }

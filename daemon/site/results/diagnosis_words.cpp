@@ -323,30 +323,18 @@ std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
   std::vector<NotSeen> list;
   for (const diagnosis::NotIdentifiable& n : d.not_identifiable)
     list.push_back({n.effect, -1, n.why});
-  // An effect stands in the list of candidates once for each way of dating it: the best one counts.
-  std::map<std::pair<std::string, int>, double> most_detectable;
-  const auto& looks = d.passes.front().look.candidates;
-  for (std::size_t i = 0; i < std::min(looks.size(), d.candidates.size()); ++i) {
-    const std::pair name{std::string{d.candidates[i].effect->id}, d.candidates[i].meter};
-    const double detectability =
-        looks[i].visible ? std::numeric_limits<double>::infinity() : looks[i].most_detectable;
-    const auto [at, is_new] = most_detectable.try_emplace(name, detectability);
-    if (!is_new) at->second = std::max(at->second, detectability);
-  }
-  const auto was_weighed = [&](const auto& name) {
+  const auto is_told = [&](std::string_view effect) {
+    return std::ranges::any_of(list, [&](const NotSeen& n) { return n.effect == effect; });
+  };
+  const auto was_weighed = [&](std::string_view effect) {
     return std::ranges::any_of(d.passes.front().naming.probabilities,
-                               [&](const NameProbability& p) { return p.effect == name.first; });
+                               [&](const NameProbability& p) { return p.effect == effect; });
   };
-  const auto is_told = [&](const auto& name) {
-    return std::ranges::any_of(d.not_identifiable,
-                               [&](const auto& n) { return n.effect == name.first; });
-  };
-  for (const auto& [name, detectability] : most_detectable) {
-    if (std::isinf(detectability) || was_weighed(name) || is_told(name)) continue;
-    list.push_back({name.first, name.second,
-                    fmt::format("too small for these meters: a typical one is {:.1f} times the "
-                                "noise, and {:.0f} times are needed",
-                                detectability, diagnosis::kLeastDetectability)});
+  // An effect stands in the list of candidates once for each meter and way of dating it.
+  for (const diagnosis::Candidate& candidate : d.candidates) {
+    const std::string_view effect = candidate.effect->id;
+    if (is_told(effect) || was_weighed(effect)) continue;
+    list.push_back({std::string{effect}, -1, "it would not show at these meters"});
   }
   return list;
 }

@@ -23,8 +23,7 @@ inline Json candidate(const char* effect, double probability) {
   return {{"effect", effect},
           {"probability", probability},
           {"parameters", Json::array({parameter("amount", "kW", 1.0, 2.0)})},
-          {"evidence_gain", 40.0},
-          {"first_look", 30.0}};
+          {"evidence_gain", 40.0}};
 }
 
 inline Json addition(const char* effect, Json posterior) {
@@ -52,7 +51,6 @@ inline Json diagnosis() {
       {"added", {"scale_fault", "clock_offset"}},
       {"additions", Json::array({addition("scale_fault", parameter("scale", "-", 0.9, 0.94)),
                                  addition("clock_offset", parameter("offset", "h", -1.0, 0.5))})},
-      {"unknown_gain", 2.0},
       {"gap",
        {{"hourly",
          {{"before", {{"electricity", fit(-60.0, 0.2)}, {"heating", fit(-50.0, 0.1)}}},

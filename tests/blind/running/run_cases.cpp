@@ -12,7 +12,6 @@
 
 #include "adapters/system/child_process.hpp"
 #include "adapters/system/scratch_folder.hpp"
-#include "tests/blind/running/baseline_lines.hpp"
 #include "tests/blind/running/calibration_line.hpp"
 #include "tests/blind/running/diagnosis_line.hpp"
 #include "tests/blind/running/drift_line.hpp"
@@ -146,15 +145,6 @@ class Runner {
       if (std::ranges::binary_search(pending->cases, name)) open_.push_back(std::move(name));
     }
     summary_.found = summary_.cases - open_.size();
-    return request_.baselines ? list_baselines() : Result<void>{};
-  }
-
-  /// A run that was stopped between a baseline's line and the case's own has the former already.
-  Result<void> list_baselines() {
-    if (!fs::exists(request_.results)) return {};
-    const auto log = read_results({&request_.results, 1}, Reruns::replace);
-    if (!log) return tl::unexpected(log.error());
-    for (const CaseResult& result : log->results) there_.insert({result.case_id, result.method});
     return {};
   }
 
@@ -233,10 +223,6 @@ class Runner {
         diagnosis ? line_of(*diagnosis, run) : Result<Json>(tl::unexpected(diagnosis.error()));
     if (!line) why = line.error().message;
     const std::lock_guard lock(mutex_);
-    if (request_.baselines) {
-      const auto noted = note_baselines(line ? &*diagnosis : nullptr, run, why);
-      if (!noted) return noted;
-    }
     if (const auto noted = append(line ? *line : failure_line(run, why)); !noted) return noted;
     ++summary_.done;
     if (!line) ++summary_.failed;
@@ -273,23 +259,6 @@ class Runner {
                        : diagnosis_line(diagnosis, run);
   }
 
-  /// @param diagnosis  nullptr where there is none: then no method has anything to say.
-  Result<void> note_baselines(const Json* diagnosis, CaseRun run, const std::string& why) {
-    for (const std::string_view baseline : kBaselines) {
-      run.method = baseline;
-      if (there_.contains({run.case_id, run.method})) continue;
-      const auto line = diagnosis != nullptr ? baseline_line(*diagnosis, run)
-                                             : Result<Json>(failure_line(run, why));
-      if (!line && line.error().code == ErrorCode::not_found) {
-        ++summary_.without_baseline[run.method];
-        continue;
-      }
-      const auto noted = append(line ? *line : failure_line(run, line.error().message));
-      if (!noted) return noted;
-    }
-    return {};
-  }
-
   [[nodiscard]] Result<void> append(const Json& line) const {
     return append_result(request_.results,
                          line.dump(-1, ' ', false, Json::error_handler_t::replace), Reruns::refuse);
@@ -302,8 +271,7 @@ class Runner {
   const RunObserver& observer_;
   std::optional<system::ScratchFolder> scratch_;
   std::string version_;
-  std::vector<std::string> open_;                        // cases without a line
-  std::set<std::pair<std::string, std::string>> there_;  // case and method
+  std::vector<std::string> open_;  // cases without a line
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> ended_ = false;  // by an error
   std::mutex mutex_;                 // of what stands below
@@ -317,12 +285,6 @@ std::optional<Error> misuse_of(const RunRequest& request) {
   std::string what;
   if (oracle == request.answers.empty()) {
     what = oracle ? "method oracle needs --answers" : "--answers is for method oracle alone";
-  } else if (request.baselines && (request.method == kCalibrate || request.method == kDrift)) {
-    what = "baselines come from a diagnosis, not from a calibration or from drift";
-  } else if (oracle && request.baselines) {
-    what = "baselines come from a diagnosis that was told nothing";
-  } else if (std::ranges::find(kBaselines, request.method) != kBaselines.end()) {
-    what = "--baselines makes the lines of " + request.method;
   }
   if (what.empty()) return std::nullopt;
   return Error{ErrorCode::invalid_value, what};

@@ -24,7 +24,6 @@ struct RunRequest {
   std::string cases;              ///< "1-20" of the sorted cases; empty: all.
   unsigned jobs = 2;
   double limit_s = 90.0;  ///< Wall time of a diagnosis.
-  bool baselines = false;
 };
 
 struct RunSummary {
@@ -34,16 +33,12 @@ struct RunSummary {
   std::size_t failed = 0;  ///< Of these, without a diagnosis.
   std::size_t over_limit = 0;  ///< Of these, because of the limit.
   bool stopped = false;
-  /// Baseline -> cases without its line, because diagnosis.json lacks what it needs.
-  std::map<std::string, std::size_t> without_baseline;
   std::vector<std::string> torn;  ///< Lines that a power cut tore, in words.
 };
 
 /// Told after each case: how many are done, of how many, and how many failed.
 using RunObserver = std::function<void(std::size_t done, std::size_t of, std::size_t failed)>;
 
-/// A case's baselines are appended before its own line: whoever has the one has the others.
-///
 /// A diagnosis that fails, is killed, takes longer than the limit or writes what makes no line is
 /// a line of outcome "none". What would spoil every case ends the run instead: a program that
 /// cannot be started or refuses the command line, results that cannot be appended.

@@ -35,7 +35,6 @@ void add_options(CLI::App& app, RunRequest& request) {
   app.add_option("--limit-s", request.limit_s, "wall time of a diagnosis")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  app.add_flag("--baselines", request.baselines, "also lines of simpler methods");
   app.add_option("--keep", request.keep,
                  "folder that gets each case's diagnosis.json, calibration.json or drift.json");
   app.add_option("--recald", request.program, "the program")->capture_default_str();
@@ -48,11 +47,6 @@ void show_progress(std::size_t done, std::size_t of, std::size_t failed) {
 void report(const RunRequest& request, const RunSummary& summary) {
   if (summary.done > 0) std::cerr << '\n';
   for (const std::string& torn : summary.torn) std::cerr << "blind_run: " << torn << '\n';
-  for (const auto& [baseline, cases] : summary.without_baseline) {
-    std::cerr << fmt::format(
-        "blind_run: no line of {} for {} cases: diagnosis.json lacks what it needs\n", baseline,
-        cases);
-  }
   std::cout << fmt::format(
       "{}: {} of {} cases have a line in {}, {} of them new; {} of the new without a diagnosis, "
       "{} of these over {:g} s\n",

@@ -202,27 +202,6 @@ TEST_F(BlindRun, WhoStopsItLosesNothing) {
   EXPECT_EQ(results()[0].case_id, "a");
 }
 
-TEST_F(BlindRun, BaselinesCostNoDiagnosisMore) {
-  add_case("a");
-  add_case("b", "exit 1");
-  ASSERT_EQ(run("--jobs 1 --baselines"), 0) << said_;
-  EXPECT_EQ(cases_called().size(), 2u);
-  EXPECT_THAT(said_, HasSubstr("no line of aic for 1 cases"));
-  std::vector<std::string> methods;
-  for (const CaseResult& result : results()) methods.push_back(result.case_id + result.method);
-  EXPECT_THAT(methods, ElementsAre("arefit_only", "aunknown_only", "arecald", "brefit_only", "baic",
-                                   "bfirst_look", "bunknown_only", "brecald"));
-}
-
-TEST_F(BlindRun, ABaselineFromBeforeTheStopIsNotMadeTwice) {
-  add_case("a");
-  testing::write_text(folder_ / "r",
-                      R"({"case": "a", "method": "refit_only", "outcome": "none", "named": []})"
-                      "\n");
-  ASSERT_EQ(run("--baselines"), 0) << said_;
-  EXPECT_EQ(results().size(), 3u);
-}
-
 TEST_F(BlindRun, KeepsDiagnosesIfAsked) {
   add_case("a");
   ASSERT_EQ(run("--keep kept"), 0) << said_;
@@ -265,7 +244,6 @@ TEST_F(BlindRun, WhoHasNoUseForAnswersIsNotGivenThem) {
   EXPECT_EQ(run("--answers answers"), 2);
   EXPECT_THAT(said_, HasSubstr("--answers is for method oracle alone"));
   EXPECT_EQ(run("--method oracle"), 2);
-  EXPECT_EQ(run("--method oracle --answers answers --baselines"), 2);
   EXPECT_EQ(run("--method aic"), 2);
   EXPECT_EQ(run("--cases 2"), 2);
   EXPECT_THAT(said_, HasSubstr("--cases 2: give one number or two with a dash, 1 to 1"));

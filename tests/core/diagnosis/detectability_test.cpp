@@ -51,7 +51,7 @@ struct Made {
 Made made_up(const SiteProblem& site, ResidualScale scale) {
   const std::vector<MeterScale> scales(2, MeterScale{scale});
   Made made;
-  made.observations = observe(site, parts_of(site, {Role::fit}), scales, Patterns::modest);
+  made.observations = observe(site, parts_of(site, {Role::fit}), scales);
   for (MeterRows& meter : made.observations.meters) {
     meter.design.gated.assign(meter.rows.size(), false);
     meter.design.gated[40] = true;

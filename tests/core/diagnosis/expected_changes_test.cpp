@@ -134,7 +134,7 @@ TEST_F(FittedSite, DatesCostNoRunAndAreThoseOfTheirOwnSpans) {
   const int runs = predictor_.runs();
   expect_changes(site_, reader, fit, dated, predictor_,
                  [&](const ExpectedChange& expected) { told.push_back(expected); });
-  EXPECT_EQ(predictor_.runs() - runs, 2) << "one for each effect";
+  EXPECT_EQ(predictor_.runs() - runs, 4) << "three late stops and one empty floor";
   const int days = site_.drivers->hours.back().day_index + 1;
   EXPECT_TRUE(std::ranges::any_of(
       told, [&](const ExpectedChange& expected) { return expected.to_day < days; }));

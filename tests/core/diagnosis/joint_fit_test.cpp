@@ -26,6 +26,19 @@ struct Fitted {
   JointFit fit;
 };
 
+/// As if a model had no errors besides its parameters and noise.
+Ground ground_without_errors(Predictor& predictor, const SiteProblem& site) {
+  const Eigen::VectorXd middle = Eigen::VectorXd::Zero(std::ssize(site.parameters));
+  auto ground = lay_ground(predictor, site, middle);
+  EXPECT_TRUE(ground.has_value());
+  ground->errors.resize(ground->fit.count(), 0);
+  auto none = fit_jointly(predictor, ground->context(site), Candidate{}, middle,
+                          {.iterations_max = 30, .small_gain = 1e-3});
+  EXPECT_TRUE(none.has_value());
+  ground->none = std::move(*none);
+  return std::move(*ground);
+}
+
 /// The sample building shut on holidays that its site file lacks, fitted with one calendar chosen.
 Fitted fit_holidays(double chosen) {
   SiteProblem site = testing::sample_problem(kParameters, 14);
@@ -38,18 +51,17 @@ Fitted fit_holidays(double chosen) {
   Rng rng{5};
   for (double& value : site.measured_parts_kW.reshaped()) value *= 1.0 + 0.01 * rng.normal();
 
-  const auto ground = lay_ground(predictor, site, ModelErrors::none);
-  EXPECT_TRUE(ground.has_value());
-  const auto q = ground->none.scores.size();
+  const Ground ground = ground_without_errors(predictor, site);
+  const auto q = ground.none.scores.size();
   Eigen::VectorXd start(q + 3);
-  start.head(q) = ground->none.scores;
+  start.head(q) = ground.none.scores;
   for (int j = 0; j < 3; ++j) {
     const Prior& prior = holidays.parameters[static_cast<std::size_t>(j)].prior;
     start[q + j] = score_of(prior, j < 2 ? 0.5 : chosen);
   }
-  auto fit = fit_jointly(predictor, ground->context(site), holidays, start);
+  auto fit = fit_jointly(predictor, ground.context(site), holidays, start);
   EXPECT_TRUE(fit.has_value());
-  return {ground->none.log_evidence, std::move(*fit)};
+  return {ground.none.log_evidence, std::move(*fit)};
 }
 
 // Half way between two calendars there is none: the one chosen is kept to the digit, and known.
@@ -77,9 +89,7 @@ struct NoisyFit {
     site.measured_parts_kW = predictor->parts_kW(theta);
     Rng rng{7};
     for (double& value : site.measured_parts_kW.reshaped()) value *= 1.0 + 0.03 * rng.normal();
-    auto laid = lay_ground(*predictor, site, ModelErrors::none);
-    EXPECT_TRUE(laid.has_value());
-    ground = std::move(*laid);
+    ground = ground_without_errors(*predictor, site);
   }
 };
 
@@ -119,21 +129,6 @@ TEST(FitJointly, ParametersExplainWhatUsualErrorsCould) {
   ASSERT_TRUE(fit.has_value());
   EXPECT_NEAR(fit->scores[0], none.scores[0], 0.05);
   EXPECT_LT(std::abs(fit->usual[0]), 0.05);
-}
-
-TEST(FitJointly, HopsNeverLeadLower) {
-  NoisyFit noisy;
-  const FitContext context = noisy.ground.context(noisy.site);
-  const Eigen::VectorXd far = Eigen::VectorXd::Constant(2, -2.5);
-  const auto once = fit_jointly(*noisy.predictor, context, Candidate{}, far, {.iterations_max = 1});
-  const auto hopped =
-      fit_jointly(*noisy.predictor, context, Candidate{}, far, {.iterations_max = 1, .hops = 4});
-  ASSERT_TRUE(once && hopped);
-  EXPECT_GT(hopped->log_density, once->log_density + 1.0);
-  const auto settled = fit_jointly(*noisy.predictor, context, Candidate{}, hopped->scores,
-                                   {.iterations_max = 30, .hops = 4});
-  ASSERT_TRUE(settled.has_value());
-  EXPECT_GE(settled->log_density, hopped->log_density);
 }
 
 // What is known to be there is added, and nothing else is asked.

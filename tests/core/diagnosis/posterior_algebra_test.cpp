@@ -63,22 +63,6 @@ TEST_F(Toy, DetectabilityAndScore) {
   EXPECT_NEAR(score(after)[0], 5.747704, 5e-7);
 }
 
-TEST_F(Toy, BayesFactorIsTheDifferenceOfEvidences) {
-  const auto with_effect = marginalise(before, Eigen::MatrixXd::Identity(3, 3));
-  ASSERT_TRUE(with_effect.has_value());
-  EXPECT_NEAR(log_evidence(*with_effect), -8.421283, 5e-7);
-  EXPECT_NEAR(log_evidence(after), -22.681423, 5e-7);
-  // In two steps it is the same integral.
-  EXPECT_NEAR(log_evidence(marginalise(after, Eigen::MatrixXd::Identity(1, 1)).value()),
-              log_evidence(*with_effect), 1e-12);
-  const double d = detectability(after)[0];
-  const double z = score(after)[0];
-  const double gain = log_bayes_factor(d, z, {AmountPriorKind::normal, 1.0});
-  EXPECT_NEAR(gain, 14.260140, 5e-7);
-  EXPECT_NEAR(gain, log_evidence(*with_effect) - log_evidence(after), 1e-11);
-  EXPECT_NEAR(log_bayes_factor(d, z, {AmountPriorKind::half_normal, 1.0}), 14.953287, 5e-7);
-}
-
 TEST_F(Toy, PosteriorOfParametersAndAmount) {
   const auto base = posterior(before, Eigen::MatrixXd::Identity(2, 2)).value();
   EXPECT_NEAR(base.mean[0], 0.744868, 5e-7);
@@ -153,75 +137,6 @@ TEST(PosteriorAlgebra, RefusesWhatHasNoFactor) {
             ErrorCode::not_positive_definite);
 }
 
-/// log of the integral of exp(eta d z - eta^2 d^2 / 2) p(eta), Simpson's rule.
-double bayes_factor_by_quadrature(double d, double z, const AmountPrior& prior) {
-  const bool uniform = prior.kind == AmountPriorKind::uniform;
-  const double range = uniform ? prior.scale : 60.0 * prior.scale;
-  const double least = prior.kind == AmountPriorKind::normal ? -range : 0.0;
-  // Fourteen posterior sd either side of the mode hold all but 1e-44 of the integral.
-  const double precision = d * d + (uniform ? 0.0 : 1.0 / (prior.scale * prior.scale));
-  const double mode = std::clamp(d * z / precision, least, range);
-  const double low = std::max(least, mode - 14.0 / std::sqrt(precision));
-  const double high = std::min(range, mode + 14.0 / std::sqrt(precision));
-  constexpr int cells = 20'000;  // even
-  std::vector<double> logs;
-  for (int i = 0; i <= cells; ++i) {
-    const double eta = low + (high - low) * i / cells;
-    double log_prior = -std::log(range);
-    if (!uniform) {
-      log_prior = -0.5 * std::pow(eta / prior.scale, 2) -
-                  std::log(prior.scale * std::sqrt(2.0 * std::numbers::pi)) +
-                  (prior.kind == AmountPriorKind::half_normal ? std::log(2.0) : 0.0);
-    }
-    const double simpson_weight = i == 0 || i == cells ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
-    logs.push_back(eta * d * z - 0.5 * eta * eta * d * d + log_prior + std::log(simpson_weight));
-  }
-  const double largest = *std::max_element(logs.begin(), logs.end());
-  double sum = 0.0;
-  for (const double value : logs) sum += std::exp(value - largest);
-  return largest + std::log(sum * (high - low) / (3.0 * cells));
-}
-
-TEST(LogBayesFactor, IsTheIntegralOverThePrior) {
-  for (const auto kind :
-       {AmountPriorKind::normal, AmountPriorKind::half_normal, AmountPriorKind::uniform}) {
-    for (const double d : {1e-6, 1e-3, 0.3, 2.0, 8.0, 60.0}) {
-      for (const double z : {-30.0, -4.0, 0.0, 0.7, 5.0, 25.0}) {
-        for (const double scale : {0.2, 1.0, 3.0}) {
-          SCOPED_TRACE(::testing::Message()
-                       << static_cast<int>(kind) << " d " << d << " z " << z << " scale " << scale);
-          const AmountPrior prior{kind, scale};
-          const double expected = bayes_factor_by_quadrature(d, z, prior);
-          EXPECT_NEAR(log_bayes_factor(d, z, prior), expected, 1e-8 * (1.0 + std::abs(expected)));
-        }
-      }
-    }
-  }
-}
-
-// The series for a short range and the difference of tails must be one curve where they meet.
-TEST(LogBayesFactor, HasNoStepBetweenItsBranches) {
-  for (const double z : {-40.0, -3.0, 0.0, 3.0, 40.0}) {
-    const double meeting = 1e-3 / (1.0 + std::abs(z));
-    const AmountPrior prior{AmountPriorKind::uniform, 1.0};
-    EXPECT_NEAR(log_bayes_factor(meeting * (1.0 - 1e-9), z, prior),
-                log_bayes_factor(meeting * (1.0 + 1e-9), z, prior), 5e-10)
-        << z;
-  }
-  EXPECT_EQ(log_bayes_factor(0.0, 0.0, {AmountPriorKind::uniform, 1.0}), 0.0);
-}
-
-// R: pnorm(x, log.p = TRUE)
-TEST(LogNormalCdf, KeepsItsDigitsFarOut) {
-  EXPECT_NEAR(log_normal_cdf(0.0), -0.69314718055994530942, 1e-15);
-  EXPECT_NEAR(log_normal_cdf(-10.0), -53.23128515051247, 1e-11);
-  EXPECT_NEAR(log_normal_cdf(-40.0), -804.6084420137538, 1e-9);
-  EXPECT_NEAR(log_normal_cdf(10.0), -7.619853024160527e-24, 1e-36);
-  // Both sides of the change to the asymptotic series; the slope is x to first order.
-  const double x = 20.0 * std::sqrt(2.0);
-  EXPECT_NEAR(log_normal_cdf(-x * (1 + 1e-12)), log_normal_cdf(-x * (1 - 1e-12)), 5e-9);
-}
-
 TEST(Nodes, AreCombinedByTheirWeights) {
   const Eigen::Vector3d logs(-1000.0, -1001.0, -5000.0);
   const Eigen::Vector3d weights = Eigen::Vector3d(0.25, 0.5, 0.25).array().log();
@@ -269,25 +184,6 @@ TEST(NullScores, MaximaOfIndependentScoresHaveTheirClosedForm) {
   EXPECT_NEAR(exceedance(maxima, 99.0), 1.0 / (draws + 1.0), 1e-15);
   EXPECT_NEAR(normal_p_value(1.959963984540054), 0.05, 1e-12);
   EXPECT_EQ(normal_p_value(-3.0), normal_p_value(3.0));
-}
-
-// One candidate under a normal prior: its log Bayes factor rises with |z|, so the quantile is that
-// of |z|. A twin of it changes nothing, an independent rival raises it.
-TEST(NullThreshold, IsTheQuantileOfTheLargestBayesFactor) {
-  constexpr int draws = 100'000;
-  const CandidateScale candidate{5.0, {AmountPriorKind::normal, 1.0}};
-  const std::vector<CandidateScale> one{candidate};
-  const std::vector<CandidateScale> pair{candidate, candidate};
-  Rng rng(13);
-  const double alone = null_threshold(one, Eigen::MatrixXd::Ones(1, 1), 0.99, draws, rng);
-  const double twins = null_threshold(pair, Eigen::MatrixXd::Ones(2, 2), 0.99, draws, rng);
-  const double rivals = null_threshold(pair, Eigen::MatrixXd::Identity(2, 2), 0.99, draws, rng);
-  // Standard error of the 99 % quantile of |z|: sqrt(0.01 0.99 / n) / density = 0.011; times d
-  // BF/dz.
-  EXPECT_NEAR(alone, log_bayes_factor(5.0, 2.575829, candidate.prior), 0.11);
-  EXPECT_NEAR(twins, alone, 0.15);
-  const double pair_quantile = 2.806336;  // P(|z| <= x)^2 = 0.99
-  EXPECT_NEAR(rivals, log_bayes_factor(5.0, pair_quantile, candidate.prior), 0.13);
 }
 
 // The whole chain on data that the model made: base parameters and noise drawn, bins scanned. The

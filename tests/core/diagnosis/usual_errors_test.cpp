@@ -30,8 +30,7 @@ TEST(UsualErrors, AColumnIsALittleOfItsEffect) {
   Predictor predictor{site};
   const std::vector<double> theta = middle_of(site);
   const UsualErrors errors = UsualErrors::draw(predictor, site, theta);
-  const Observations all =
-      observe(site, std::vector<bool>(site.roles.size(), true), linear(site), Patterns::modest);
+  const Observations all = observe(site, std::vector<bool>(site.roles.size(), true), linear(site));
   const Eigen::MatrixXd columns = errors.columns(all);
   ASSERT_EQ(columns.cols(), errors.count());
 
@@ -66,22 +65,13 @@ TEST(UsualErrors, HoldNoClockAndNothingDated) {
   EXPECT_FALSE(holds("equipment_step"));
 }
 
-TEST(UsualErrors, AModelMayHaveNone) {
-  const SiteProblem site = testing::sample_problem(kParameters, 12);
-  Predictor predictor{site};
-  const auto ground = lay_ground(predictor, site, ModelErrors::none);
-  ASSERT_TRUE(ground.has_value()) << ground.error().message;
-  EXPECT_EQ(ground->errors.cols(), 0);
-  EXPECT_EQ(ground->none.scores.size(), std::ssize(site.parameters));
-}
-
 // Where a little of an effect is usual, it takes much of it to stand out.
 TEST(UsualErrors, MakeTheirOwnEffectsLessVisible) {
   SiteProblem site = testing::sample_problem(kParameters, 12);
   Rng rng{4};
   for (double& value : site.measured_parts_kW.reshaped()) value *= 1.0 + 0.02 * rng.normal();
   Predictor predictor{site};
-  const auto ground = lay_ground(predictor, site);
+  const auto ground = lay_ground(predictor, site, Eigen::VectorXd::Zero(2));
   ASSERT_TRUE(ground.has_value()) << ground.error().message;
   const auto& effects = ground->usual->effects();
   const auto damper = std::ranges::find(effects, "damper_stuck_open") - effects.begin();
@@ -102,8 +92,7 @@ TEST(UsualErrors, MakeTheirOwnEffectsLessVisible) {
 // A meter that errs three times as much by day as by night.
 TEST(Spread, FollowsThePartOfTheDay) {
   const SiteProblem site = testing::sample_problem(kParameters, 24);
-  const Observations all =
-      observe(site, std::vector<bool>(site.roles.size(), true), linear(site), Patterns::modest);
+  const Observations all = observe(site, std::vector<bool>(site.roles.size(), true), linear(site));
   const MeterRows& meter = all.meters[1];
   Rng rng{3};
   Eigen::VectorXd residual(std::ssize(meter.rows));
@@ -131,15 +120,15 @@ TEST(Spread, DividesWhatIsStacked) {
   const SiteProblem site = testing::sample_problem(kParameters, 12);
   std::vector<MeterScale> scales = linear(site);
   const std::vector<bool> flags(site.roles.size(), true);
-  const Eigen::VectorXd plain = observe(site, flags, scales, Patterns::modest).measured;
+  const Eigen::VectorXd plain = observe(site, flags, scales).measured;
   scales[0].spread = Eigen::ArrayXd::Constant(site.day_parts.count(), 4.0);
-  const Observations spread = observe(site, flags, scales, Patterns::modest);
+  const Observations spread = observe(site, flags, scales);
   const auto n = std::ssize(spread.meters[0].rows);
   EXPECT_LT((4.0 * spread.measured.head(n) - plain.head(n)).norm(), 1e-9 * plain.head(n).norm());
   EXPECT_EQ(spread.measured.tail(plain.size() - n), plain.tail(plain.size() - n));
 }
 
-// A fit begins at the amount that the first look saw; what is scanned, a humidity, is no amount.
+// What is scanned, a humidity, is no amount.
 TEST(CandidateShapes, AnAmountIsScaledFromNeutralWithinItsPriorAndAShapeStays) {
   const SiteProblem site = testing::sample_problem(kParameters, 12);
   const auto candidates = list_candidates(site).candidates;

@@ -71,13 +71,5 @@ TEST_F(SiteProblemTest, OnlyAnOwnChillerHasALiftAndIdles) {
   EXPECT_NEAR(problem().parameters[*idle].prior.at_score(0.0).value, 0.4, 1e-9);
 }
 
-TEST_F(SiteProblemTest, TheSecondStartHasFewClosetsAndALightCore) {
-  const SiteProblem depot = problem();
-  ASSERT_EQ(depot.second_start.size(), static_cast<Eigen::Index>(depot.parameters.size()));
-  EXPECT_LT(depot.second_start[index_of(depot, "closet_share").value()], -1.0);
-  EXPECT_LT(depot.second_start[index_of(depot, "core_mass").value()], 0.0);
-  EXPECT_EQ(depot.second_start[index_of(depot, "cooling_setpoint").value()], 0.0);
-}
-
 }  // namespace
 }  // namespace recald::daemon

@@ -60,8 +60,7 @@ inline diagnosis::Explanation explanation_of(const std::vector<diagnosis::Candid
     e.fit.eta.push_back(p.prior.at_score(0.5).value);
   }
   e.evidence_gain = 30.0;
-  e.selected_gain = 12.0;
-  e.selected_se = 3.0;
+  e.selected = {12.0, 3.0};
   return e;
 }
 
@@ -88,12 +87,6 @@ inline diagnosis::Diagnosis nothing_named(const diagnosis::SiteProblem& site) {
                                {"steam_trap_leak", -1, 0.3, 0},
                                {"server_room", -1, 0.15, 1},
                                {"unknown", -1, 0.05, {}}};
-  for (const bool visible : {true, false}) {
-    pass.look.candidates.push_back({.best = {},
-                                    .log_bayes_factor = 0.0,
-                                    .most_detectable = visible ? 9.0 : 1.5,
-                                    .visible = visible});
-  }
   d.modelled_kW = pass.modelled_kW;
   d.gaps = pass.gaps;
   d.base_fit = pass.gaps;
