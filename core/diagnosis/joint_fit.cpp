@@ -186,9 +186,8 @@ class ModeSearch {
     return -0.5 * (noise_.squared_norms(observations_, residual)[0] + own.squaredNorm());
   }
 
-  /// Linearises and steps; the slopes learn from the step.
-  /// @see Broyden (1965), A class of methods for solving nonlinear simultaneous equations. @return
-  /// the gain of the step, 0 if none helped
+  /// Linearises and steps.
+  /// @return the gain of the step, 0 if none helped
   Result<double> iterate() {
     if (!std::isfinite(place.log_density)) {
       return failure(
@@ -203,6 +202,8 @@ class ModeSearch {
     return step_by(model_.with_days_held(place.jacobian));
   }
 
+  /// Steps with these slopes, and lets the place's own slopes learn from the step.
+  /// @see Broyden (1965), A class of methods for solving nonlinear simultaneous equations.
   Result<double> step_by(const Eigen::MatrixXd& slopes) {
     const Eigen::VectorXd linear = place.residual + slopes * place.own;
     const GramSystem system = noise_.gram(observations_, beside(linear, slopes));

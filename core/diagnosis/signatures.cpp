@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <optional>
 
 #include "core/absent.hpp"
 
@@ -14,6 +16,23 @@ namespace {
 using metering::Utility;
 using model::DayType;
 using model::DriverHour;
+
+/// Place of its signatures.
+std::optional<std::size_t> kind_of(Utility utility) {
+  switch (utility) {
+    case Utility::electricity:
+      return 0;
+    case Utility::chilled_water:
+      return 1;
+    case Utility::heating:
+    case Utility::steam:
+    case Utility::gas:
+      return 2;
+    case Utility::water:
+      break;
+  }
+  return std::nullopt;
+}
 
 constexpr int kSeasons = 3;
 constexpr double kCold_C = 8.0;
@@ -263,36 +282,23 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
   }
   for (std::size_t d = 1; d < hours_before_.size(); ++d) hours_before_[d] += hours_before_[d - 1];
   for (const Means& day : warmth) day_C_.push_back(day.mean());
-  double all_kW = 0.0;
+  std::vector<double> means_kW;
   for (Eigen::Index g = 0; g < site.measured_kW.cols(); ++g) {
     Means meter;
     for (const double kW : site.measured_kW.col(g)) {
       if (std::isfinite(kW)) meter.add(kW);
     }
-    if (meter.count > 0) all_kW += meter.mean();
+    means_kW.push_back(meter.count > 0 ? meter.mean() : 0.0);
   }
-  const auto make = [&](int column) {
-    // A meter that counts next to nothing must not look as if it changed by many times itself.
-    constexpr double kLeastShare = 0.05;
-    return make_meter(column, kLeastShare * all_kW);
-  };
+  const double all_kW = std::accumulate(means_kW.begin(), means_kW.end(), 0.0);
+  // What a model gets wrong of a meter that counts next to nothing says nothing of the building.
+  constexpr double kNextToNothing = 0.02;
+  // Nor must a small meter look as if it changed by many times itself.
+  constexpr double kLeastShare = 0.05;
   for (std::size_t g = site.meters.size(); g-- > 0;) {
-    const int column = static_cast<int>(g);
-    switch (site.meters[g].utility) {
-      case Utility::electricity:
-        meters_[0] = make(column);
-        break;
-      case Utility::chilled_water:
-        meters_[1] = make(column);
-        break;
-      case Utility::heating:
-      case Utility::steam:
-      case Utility::gas:
-        meters_[2] = make(column);
-        break;
-      case Utility::water:
-        break;
-    }
+    if (means_kW[g] < kNextToNothing * all_kW) continue;
+    const auto kind = kind_of(site.meters[g].utility);
+    if (kind) meters_[*kind] = make_meter(static_cast<int>(g), kLeastShare * all_kW);
   }
 }
 

@@ -15,7 +15,7 @@
 namespace recald::diagnosis {
 
 /// The meters that signatures speak of. Gas and steam count as heat; of two meters of a kind the
-/// first is taken.
+/// first is taken. A meter that counts less than 2 % of all is left out.
 enum class SignatureMeter { electricity, cooling, heat };
 inline constexpr std::size_t kSignatureMeters = 3;
 [[nodiscard]] std::string_view to_string(SignatureMeter meter);

@@ -71,6 +71,19 @@ TEST_F(Signatures, HaveEachANameOfItsOwn) {
   EXPECT_TRUE(values.col(1).array().isNaN().all()) << "no chilled water";
 }
 
+TEST_F(Signatures, LeaveOutAMeterThatCountsNextToNothing) {
+  const double share = 0.025 * site_.measured_kW.col(0).mean() / site_.measured_kW.col(1).mean();
+  site_.measured_kW.col(1) *= share;
+  const auto told = [&](const char* what) {
+    const Eigen::MatrixXd values = SignatureReader(site_).read(site_.measured_kW);
+    EXPECT_TRUE(values.col(0).array().isFinite().any()) << what;
+    return values.col(2).array().isFinite().any();
+  };
+  EXPECT_TRUE(told("2.4 % of all"));
+  site_.measured_kW.col(1) *= 0.8;
+  EXPECT_FALSE(told("1.96 % of all"));
+}
+
 // A model errs by a share of what is there, and by a little where nothing is.
 TEST_F(Signatures, MeansAreInUnitsOfWhatIsMeasuredThenAndAQuarterOfTheMean) {
   const double quarter_kW = 0.25 * site_.measured_kW.col(0).mean();
