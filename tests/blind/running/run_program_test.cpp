@@ -244,7 +244,6 @@ TEST_F(BlindRun, WhoHasNoUseForAnswersIsNotGivenThem) {
   EXPECT_EQ(run("--answers answers"), 2);
   EXPECT_THAT(said_, HasSubstr("--answers is for method oracle alone"));
   EXPECT_EQ(run("--method oracle"), 2);
-  EXPECT_EQ(run("--method aic"), 2);
   EXPECT_EQ(run("--cases 2"), 2);
   EXPECT_THAT(said_, HasSubstr("--cases 2: give one number or two with a dash, 1 to 1"));
   EXPECT_EQ(cases_called().size(), 0u);
