@@ -330,6 +330,7 @@ std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
     return std::ranges::any_of(d.passes.front().naming.probabilities,
                                [&](const NameProbability& p) { return p.effect == effect; });
   };
+  if (!was_weighed("none")) return list;  // an effect was assumed, and no other was asked for
   // An effect stands in the list of candidates once for each meter and way of dating it.
   for (const diagnosis::Candidate& candidate : d.candidates) {
     const std::string_view effect = candidate.effect->id;

@@ -115,6 +115,14 @@ TEST_F(DiagnosisFiles, NamesEachEffectThatCannotBeSeenOnce) {
   EXPECT_THAT(list[1]["why"].get<std::string>(), HasSubstr("would not show"));
 }
 
+TEST_F(DiagnosisFiles, SaysNothingOfWhatWasNotAskedBesideAnAssumedEffect) {
+  Diagnosis d = recald::testing::one_named(site_);
+  d.passes[0].naming.probabilities = {{"steam_trap_leak", -1, 1.0, 0}};
+  const json list = json_of(d)["not_identifiable_here"];
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0]["effect"], "wind_infiltration");
+}
+
 TEST_F(DiagnosisFiles, GivesTheProbabilityOfWhatWasNotFitted) {
   Diagnosis d = recald::testing::nothing_named(site_);
   d.passes[0].naming.probabilities.push_back({"plug_growth", -1, 0.02, {}});
