@@ -107,6 +107,9 @@ struct AirSystem {
   /// Share of the fans' design power used while rooms are heated and the handlers are off by
   /// schedule; 0: heaters in the rooms do it. Only the hourly model uses it.
   double night_fan_share = 0.0;
+  /// Share of the design power that fans keep as flow goes to zero, because the pressure in the
+  /// ducts is kept up, over the curve of EnergyPlus's defaults. Only the hourly model uses it.
+  double fan_idle_share = 0.0;
 };
 
 /// Hot water at the taps.

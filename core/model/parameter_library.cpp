@@ -172,6 +172,8 @@ const std::array kLibrary = std::to_array<ParameterDefinition>({
    [](const Building& b) { return 1e-3 * b.air_capacity_J_m2K; }, [](Building& b, double v) { b.air_capacity_J_m2K = 1e3 * v; }},
   {"night_fan", "-", "Share of the fans that runs while rooms are heated at night", "system operation", kAbsolute, 0.0, 1.0,
    [](const Building& b) { return b.air ? b.air->night_fan_share : 0.0; }, [](Building& b, double v) { if (b.air) b.air->night_fan_share = v; }, 0.0, 1.0},
+  {"fan_idle", "-", "Share of their design power that fans keep at little flow", "system operation", kAbsolute, 0.0, 0.25,
+   [](const Building& b) { return b.air ? b.air->fan_idle_share : 0.0; }, [](Building& b, double v) { if (b.air) b.air->fan_idle_share = v; }, 0.0, 1.0},
   {"chiller_lift", "1/K", "More chiller electricity per K of outdoor wet bulb", "plant", kAbsolute, 0.0, 0.06,
    [](const Building& b) { return b.chiller_lift_per_K; }, [](Building& b, double v) { b.chiller_lift_per_K = v; }},
   {"cooling_idle", "W/m2", "Electricity of the cooling plant whenever it runs, over its load's", "plant", kRelative, 0.3, 2.0,

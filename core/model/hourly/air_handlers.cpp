@@ -64,9 +64,9 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
   const double return_C = zones.scheduled_return_W / zones.scheduled_W_K;
   const double flow_ratio = supply_m3_s / (running_share * air.supply_flow_design_m3_s);
   const double variable = epc::fan_power_share(flow_ratio);
-  const double constant = operation.constant_fan_share;
+  const double slowing = (1.0 - air.fan_idle_share) * (1.0 - operation.constant_fan_share);
   const double fan_W =
-      1000.0 * air.fan_design_kW * running_share * (variable + constant * (1.0 - variable));
+      1000.0 * air.fan_design_kW * running_share * (1.0 - slowing * (1.0 - variable));
   const double outdoor_share = outdoor_air_share(
       operation, std::min(operation.outdoor_air_m3_s * running_share / supply_m3_s, 1.0), return_C,
       fan_W / zones.scheduled_W_K);

@@ -409,6 +409,28 @@ TEST(Hourly, NightFansRunWhileRoomsAreHeatedAndOnlyThen) {
   EXPECT_TRUE((fanned.rightCols(2) == plain.rightCols(2)).all());
 }
 
+// Pressure in the ducts is kept up however little air flows.
+TEST(Hourly, FansKeepAShareOfTheirPower) {
+  Hourly hourly = make_hourly(12);
+  Building building = sample_building();
+  const Eigen::ArrayXXd plain = power_of(hourly, building);
+  building.air->fan_idle_share = 0.2;
+  const Eigen::ArrayXXd idle = power_of(hourly, building);
+  const auto& hours = hourly.drivers().hours;
+  const double least_share =
+      building.air->supply_flow_min_m3_s / building.air->supply_flow_design_m3_s;
+  const double most_kW = 0.2 * building.air->fan_design_kW;
+  double largest_kW = 0.0;
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double more_kW = idle(row, 0) - plain(row, 0);
+    ASSERT_GE(more_kW, -1e-9) << i;
+    largest_kW = std::max(largest_kW, more_kW);
+  }
+  EXPECT_LT(largest_kW, most_kW);
+  EXPECT_GT(largest_kW, most_kW * (1.0 - least_share));
+}
+
 TEST(Hourly, IdleHandlersThatLeakCostHeat) {
   Hourly hourly = make_hourly(1);
   Building building = sample_building();
