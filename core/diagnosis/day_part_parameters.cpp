@@ -41,6 +41,7 @@ constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {.name = "core_mass", .log_sd = 0.9, .median = 0.3},
     {"air_capacity", 0.5, 35.0},
     {.name = "night_fan", .of_reheat_boxes = true},
+    {.name = "fan_idle", .of_reheat_boxes = true},
     {.name = "chiller_lift", .of_own_chiller = true},
     {.name = "cooling_idle", .log_sd = 1.0, .if_none = 1.5, .of_own_chiller = true},
     // The profile is what the meter has without the plant of the drawings: if the real one idles

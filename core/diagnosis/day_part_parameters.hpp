@@ -2,9 +2,7 @@
 /// priors in a diagnosis.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 

@@ -46,14 +46,16 @@ double probability_of(const Naming& naming, const Candidate& candidate) {
 Addition addition_of(Predictor& predictor, const SiteProblem& site,
                      const std::vector<Candidate>& candidates, const Naming& naming, Rng& rng) {
   const Explanation& e = naming.explanations[*naming.named];
-  Addition addition{.candidate = candidates[e.candidate],
-                    .eta = e.fit.eta,
-                    .eta_sd = {},
-                    .draws = draw_effect(candidates[e.candidate], e.fit, rng),
-                    .probability = probability_of(naming, candidates[e.candidate]),
-                    .evidence_gain = e.evidence_gain,
-                    .monthly_kWh = {},
-                    .effect_kW = e.fit.parts_kW - predictor.parts_kW(e.fit.theta)};
+  Addition addition{
+      .candidate = candidates[e.candidate],
+      .eta = e.fit.eta,
+      .eta_sd = {},
+      .draws = draw_effect(candidates[e.candidate], e.fit, rng),
+      .probability = probability_of(naming, candidates[e.candidate]),
+      .evidence_gain = e.evidence_gain,
+      .monthly_kWh = {},
+      .effect_kW = predictor.change_kW(
+          e.fit.theta, *alteration_of(candidates[e.candidate], site.facts(), e.fit.eta))};
   addition.monthly_kWh =
       monthly_impact_kWh(site, addition.candidate, addition.eta, addition.effect_kW);
   for (std::size_t j = 0; j < addition.eta.size(); ++j) {
@@ -219,6 +221,7 @@ class Search {
       result_.added.push_back(addition_of(predictor, site_, question_.open, pass->naming, rng));
       if (first_.show.count() > 0) shown_.push_back(show(pass->naming));
     }
+    if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
     result_.passes.push_back(std::move(*pass));
     result_.model_runs += predictor.runs();
     if (!named) return false;
@@ -270,8 +273,9 @@ class Search {
     const std::size_t count = result_.passes.size();
     question_ = {.open = still_open(list_, result_.added)};
     if (count >= options_.assumed.size()) {
-      question_.names = names_by(
-          evidence_of(before_show_, question_.open, learnt_null(), predictor), learnt_weights());
+      question_.names =
+          names_by(evidence_of(before_show_, question_.open, learnt_null(), predictor),
+                   learnt_weights(), options_.prior_none);
     } else if (auto assumed = assume(options_.assumed[count], predictor); !assumed) {
       return assumed;
     }

@@ -298,7 +298,9 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
   for (std::size_t g = site.meters.size(); g-- > 0;) {
     if (means_kW[g] < kNextToNothing * all_kW) continue;
     const auto kind = kind_of(site.meters[g].utility);
-    if (kind) meters_[*kind] = make_meter(static_cast<int>(g), kLeastShare * all_kW);
+    if (!kind) continue;
+    meters_[*kind] = make_meter(static_cast<int>(g), kLeastShare * all_kW);
+    if (site.meters[g].utility == Utility::electricity) make_cells(meters_[*kind]);
   }
 }
 
@@ -454,8 +456,41 @@ void SignatureReader::make_darkness(Meter& meter) const {
   }
 }
 
+void SignatureReader::make_cells(Meter& meter) const {
+  constexpr int kCells = static_cast<int>(model::kDayTypes) * 24;
+  const auto& hours = site_->drivers->hours;
+  std::vector<int> cell(hours.size(), -1);
+  std::vector<int> count(kCells);
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    if (meter.group[i] < 0) continue;
+    cell[i] = static_cast<int>(hours[i].day) * 24 + hours[i].local_hour;
+    ++count[static_cast<std::size_t>(cell[i])];
+  }
+  Eigen::MatrixXd of_cells = Eigen::MatrixXd::Zero(std::ssize(signature_names()), kCells);
+  std::vector<double> kW(hours.size());
+  for (int c = 0; c < kCells; ++c) {
+    const int of = count[static_cast<std::size_t>(c)];
+    if (of == 0) continue;
+    for (std::size_t i = 0; i < hours.size(); ++i) kW[i] = cell[i] == c ? 1.0 / of : 0.0;
+    add_power(meter, kW.data(), 0, hours.size(), of_cells.col(c).data());
+  }
+  meter.cell = std::move(cell);
+  meter.of_cells = std::move(of_cells);
+}
+
 void SignatureReader::add(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
                           double* values) const {
+  add_power(meter, kW, from, to, values);
+  if (meter.cell.empty()) return;
+  Eigen::VectorXd sums_kWh = Eigen::VectorXd::Zero(meter.of_cells.cols());
+  for (std::size_t i = from; i < to; ++i) {
+    if (meter.cell[i] >= 0) sums_kWh[meter.cell[i]] += kW[i];
+  }
+  Eigen::Map<Eigen::VectorXd>(values, meter.of_cells.rows()) -= meter.of_cells * sums_kWh;
+}
+
+void SignatureReader::add_power(const Meter& meter, const double* kW, std::size_t from,
+                                std::size_t to, double* values) const {
   std::array<double, kGroups> sums{};
   for (std::size_t i = from; i < to; ++i) {
     if (meter.group[i] >= 0) sums[static_cast<std::size_t>(meter.group[i])] += kW[i];

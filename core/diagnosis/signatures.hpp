@@ -3,6 +3,10 @@
 /// The same numbers are taken of the measured and of the modelled hours, so that their difference
 /// says where the two disagree: at night, on Saturdays, when it is humid, in the mornings of cold
 /// days. All are linear in the power: means over groups of hours, and coefficients of regressions.
+///
+/// The model's lights and plugs are read off the electricity meter, so what plant uses at the same
+/// hours all year is among them. Electricity is therefore read without its mean by kind of day and
+/// hour.
 #pragma once
 
 #include <Eigen/Core>
@@ -54,15 +58,21 @@ class SignatureReader {
     std::vector<double> darkness;     ///< (hours) weight of a kW in its kind of darkness …
     std::vector<int> dark_kind;       ///< … (hours) which is this; -1: none.
     std::vector<double> no_darkness;  ///< (kinds) 0; NaN where there are too few hours.
+    std::vector<int> cell;            ///< (hours) kind of day and hour; empty: all power counts.
+    /// (signatures x cells) what a kWh in one of a cell's hours takes from each by its mean.
+    Eigen::MatrixXd of_cells;
   };
   [[nodiscard]] Meter make_meter(int column, double least_kW) const;
   /// The unit of powers at hours when so much was measured.
   [[nodiscard]] static double unit_at(const Meter& meter, double level_kW);
   [[nodiscard]] Regime make_regime(const Meter& meter, int kind) const;
   void make_darkness(Meter& meter) const;
+  void make_cells(Meter& meter) const;
   /// Adds what the hours from one to another contribute to the signatures.
   void add(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
            double* values) const;
+  void add_power(const Meter& meter, const double* kW, std::size_t from, std::size_t to,
+                 double* values) const;
 
   const SiteProblem* site_;
   std::array<Meter, kSignatureMeters> meters_;

@@ -14,7 +14,6 @@ using metering::Utility;
 
 // A first or last day this close to an end of the record shows nothing of the time before or after.
 constexpr double kLeastDaysAtEnds = 21.0;
-constexpr double kDaysBetweenLooks = 14.0;
 
 bool has(const SiteProblem& site, Utility utility) {
   return std::ranges::any_of(site.meters,
@@ -56,11 +55,7 @@ std::string lacking(const Effect& effect, const SiteProblem& site) {
 }
 
 EffectParameter day_parameter(const char* name, double first_day, double last_day) {
-  EffectParameter day{name, "day", UniformPrior{first_day, last_day}, kAbsent};
-  for (double d = first_day + 0.5 * kDaysBetweenLooks; d < last_day; d += kDaysBetweenLooks) {
-    day.scan.push_back(d);
-  }
-  return day;
+  return {name, "day", UniformPrior{first_day, last_day}, kAbsent};
 }
 
 Candidate make_candidate(const Effect& effect, const SiteFacts& facts, int meter, Dating dating,
@@ -166,6 +161,56 @@ std::unique_ptr<model::hourly::Alteration> alteration_of(const Candidate& candid
   return within_dates(std::move(alteration), from, to);
 }
 
+ProfileReading::ProfileReading(const SiteProblem& site) : site_(&site) {
+  const auto found = std::ranges::find(site.meters, Utility::electricity, &MeterData::utility);
+  if (found == site.meters.end() || site.measured_kW.size() == 0) return;
+  meter_ = found - site.meters.begin();
+  const auto& hours = site.drivers->hours;
+  counts_.assign(hours.size(), 0);
+  for (std::size_t p = 0; p < site.roles.size(); ++p) {
+    if (site.roles[p] == Role::show) continue;
+    const DayPart& part = site.day_parts.parts[p];
+    for (int i = part.first_hour; i < part.first_hour + part.hours; ++i) {
+      counts_[static_cast<std::size_t>(i)] = std::isfinite(site.measured_kW(i, meter_)) ? 1 : 0;
+    }
+  }
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    const auto cell =
+        static_cast<std::size_t>(hours[i].day) * 24 + static_cast<std::size_t>(hours[i].local_hour);
+    cell_.push_back(cell);
+    least_kW_[cell] = -1e-3 * (hours[i].lights_W + hours[i].plugs_W);
+    if (counts_[i] == 0) continue;
+    measured_kW_[cell] += site.measured_kW(static_cast<Eigen::Index>(i), meter_);
+    per_hour_[cell] += 1.0;
+  }
+  for (std::size_t cell = 0; cell < kCells; ++cell) {
+    if (per_hour_[cell] == 0.0) continue;
+    per_hour_[cell] = 1.0 / per_hour_[cell];
+    measured_kW_[cell] *= per_hour_[cell];
+  }
+}
+
+void ProfileReading::apply(const Eigen::ArrayXXd& hours_kW, Eigen::ArrayXXd& parts_kW) {
+  if (meter_ < 0) return;
+  std::array<double, kCells> more_kW{};
+  for (std::size_t i = 0; i < cell_.size(); ++i) {
+    if (counts_[i] != 0) more_kW[cell_[i]] += hours_kW(static_cast<Eigen::Index>(i), meter_);
+  }
+  for (std::size_t cell = 0; cell < kCells; ++cell) {
+    if (per_hour_[cell] == 0.0) continue;
+    const double off_kW = measured_kW_[cell] - more_kW[cell] * per_hour_[cell];
+    more_kW[cell] = std::max(off_kW, least_kW_[cell]);
+  }
+  for (Eigen::Index p = 0; p < parts_kW.rows(); ++p) {
+    const DayPart& part = site_->day_parts.parts[static_cast<std::size_t>(p)];
+    double sum_kWh = 0.0;
+    for (int i = 0; i < part.hours; ++i) {
+      sum_kWh += more_kW[cell_[static_cast<std::size_t>(part.first_hour + i)]];
+    }
+    parts_kW(p, meter_) += sum_kWh / part.hours;
+  }
+}
+
 Predictor::Predictor(const SiteProblem& site,
                      std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted,
                      std::function<bool()> proceed)
@@ -173,6 +218,7 @@ Predictor::Predictor(const SiteProblem& site,
       accepted_(std::move(accepted)),
       building_(site.nominal),
       hourly_(site.drivers),
+      profile_(site),
       hours_kW_(Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(site.drivers->hours.size()),
                                       static_cast<Eigen::Index>(site.meters.size()))),
       parts_kW_(Eigen::ArrayXXd::Zero(site.day_parts.count(), hours_kW_.cols())),
@@ -194,8 +240,19 @@ const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
   if (extra != nullptr) active_.push_back(extra);
   hourly_.run(building_, active_, maps_, hours_kW_);
   site_->day_parts.average_into(hours_kW_, parts_kW_);
+  profile_.apply(hours_kW_, parts_kW_);
   ++runs_;
   return parts_kW_;
+}
+
+Eigen::ArrayXXd Predictor::change_kW(std::span<const double> theta,
+                                     const model::hourly::Alteration& effect) {
+  parts_kW(theta, &effect);
+  const Eigen::ArrayXXd with_kW = hours_kW_;
+  parts_kW(theta);
+  Eigen::ArrayXXd change = parts_kW_;
+  site_->day_parts.average_into(with_kW - hours_kW_, change);
+  return change;
 }
 
 Error diagnosis_cancelled() { return {ErrorCode::cancelled, "the diagnosis was cancelled"}; }

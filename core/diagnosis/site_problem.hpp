@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -76,6 +77,33 @@ struct CandidateList {
 [[nodiscard]] std::unique_ptr<model::hourly::Alteration> alteration_of(
     const Candidate& candidate, const SiteFacts& facts, std::span<const double> values);
 
+/// What the lights and plugs would be if they had been read off the electricity meter with another
+/// plant.
+///
+/// A profile by kind of day and hour is the meter less the plant of the drawings. If more or less
+/// plant runs, lights and plugs are as much smaller or larger, so the meter's mean by kind of day
+/// and hour is no evidence. The change of their heat in the rooms is left out: it is small.
+class ProfileReading {
+ public:
+  explicit ProfileReading(const SiteProblem& site);
+
+  /// Adds the change to the day parts of the electricity meter, if there is one.
+  /// @param hours_kW  (hours x m) as modelled with the profile of the drivers.
+  /// @param parts_kW  (parts x m) in place.
+  void apply(const Eigen::ArrayXXd& hours_kW, Eigen::ArrayXXd& parts_kW);
+
+ private:
+  static constexpr std::size_t kCells = model::kDayTypes * 24;
+
+  const SiteProblem* site_;
+  Eigen::Index meter_ = -1;
+  std::vector<std::size_t> cell_;  ///< (hours) kind of day and hour.
+  std::vector<char> counts_;       ///< (hours) 1: measured, and may be known to the profile.
+  std::array<double, kCells> measured_kW_{};  ///< Means.
+  std::array<double, kCells> per_hour_{};     ///< 1 / hours that count; 0: none.
+  std::array<double, kCells> least_kW_{};     ///< Lights and plugs cannot get below zero.
+};
+
 /// Runs the hourly model for a site and reduces it to day parts. Use one instance per thread.
 class Predictor {
  public:
@@ -90,11 +118,15 @@ class Predictor {
 
   /// @param theta  (q) in the parameters' units.
   /// @param extra  Applied after the accepted ones; may be null.
-  /// @return (parts x m) kW, valid until the next call.
+  /// @return (parts x m) kW, with lights and plugs as read off the meter with this plant. Valid
+  ///         until the next call.
   const Eigen::ArrayXXd& parts_kW(std::span<const double> theta,
                                   const model::hourly::Alteration* extra = nullptr);
-  /// From the last call: (hours x m) kW.
+  /// From the last call: (hours x m) kW, with lights and plugs as the drivers have them.
   [[nodiscard]] const Eigen::ArrayXXd& hours_kW() const { return hours_kW_; }
+  /// What the effect changes while lights and plugs stay. @return (parts x m) kW
+  [[nodiscard]] Eigen::ArrayXXd change_kW(std::span<const double> theta,
+                                          const model::hourly::Alteration& effect);
   [[nodiscard]] int runs() const { return runs_; }
 
  private:
@@ -104,6 +136,7 @@ class Predictor {
   std::vector<model::MeterMap> maps_;
   model::Building building_;
   model::hourly::Hourly hourly_;
+  ProfileReading profile_;
   Eigen::ArrayXXd hours_kW_;
   Eigen::ArrayXXd parts_kW_;
   int runs_ = 0;
