@@ -21,11 +21,14 @@ std::string parameter_words(const std::vector<EffectParameterRow>& rows) {
 
 Table candidate_table(const DiagnosisData& data) {
   Table table("Every explanation that was weighed, the likeliest first");
-  table.columns({"Explanation", "Probability", "What it would mean", "Its size (5 to 95 %)",
+  table.columns({"Explanation", "Probability", "If half of all models lack nothing",
+                 "If nine in ten lack nothing", "What it would mean", "Its size (5 to 95 %)",
                  "Evidence above no effect, nats"});
   for (const CandidateBar& bar : data.candidates) {
     table.row({{bar.label},
                {probability_text(bar.probability), "number"},
+               {probability_text(bar.if_half_lack_nothing), "number"},
+               {probability_text(bar.if_nine_in_ten_lack_nothing), "number"},
                {bar.meaning, "words"},
                {parameter_words(bar.parameters), "words"},
                {number_text(bar.evidence_gain), "number"}});
@@ -52,12 +55,15 @@ void write_separations(Html& html, const DiagnosisData& data) {
 void write_candidate_section(Html& html, const DiagnosisData& data) {
   if (data.candidates.empty()) return;
   open_section(html, "candidates", "What could explain it?");
-  html.element("p",
-               "The likeliest effects were each put into the model and everything fitted anew. "
-               "\"No effect\" and \"something else\" compete with them; \"something else\" stands "
-               "for a gap that has "
-               "a pattern, but none that the catalogue knows. Probabilities are of the first "
-               "search, before anything was added, and they sum to one.");
+  html.element(
+      "p",
+      "The likeliest effects were each put into the model and everything fitted anew. "
+      "\"No effect\" and \"something else\" compete with them; \"something else\" stands "
+      "for a gap that has "
+      "a pattern, but none that the catalogue knows. Probabilities are of the first "
+      "search, before anything was added, and they sum to one. How many models lack nothing "
+      "is for the reader to say ([diagnosis] prior_none in the site file); the table has "
+      "two answers.");
   write_figure(html,
                {.kind = "candidates",
                 .index = 0,

@@ -50,6 +50,8 @@ struct CandidateBar {
   std::string meaning;
   CandidateKind kind;
   double probability;
+  double if_half_lack_nothing;         ///< Probability where half of all models lack nothing …
+  double if_nine_in_ten_lack_nothing;  ///< … and where nine in ten do.
   double evidence_gain;  ///< Log evidence compared with no effect, nats; NaN if not applicable.
   std::vector<EffectParameterRow> parameters;
 };

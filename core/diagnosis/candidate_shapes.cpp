@@ -21,6 +21,17 @@ std::span<const EffectParameter> own_parameters(const Candidate& candidate) {
   return {candidate.parameters.data(), candidate.parameters.size() - days};
 }
 
+/// Whether an effect of these values changes nothing.
+bool is_neutral(std::span<const EffectParameter> parameters, const std::vector<double>& values) {
+  bool has_neutral = false;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    if (!std::isfinite(parameters[j].neutral)) continue;
+    if (values[j] != parameters[j].neutral) return false;
+    has_neutral = true;
+  }
+  return has_neutral;
+}
+
 constexpr std::ptrdiff_t kAllAmounts = -1;
 
 /// All combinations of the scanned values, with typical amounts.
@@ -46,6 +57,8 @@ std::vector<std::vector<double>> shapes_with(std::span<const EffectParameter> pa
     }
     shapes = std::move(longer);
   }
+  std::erase_if(shapes,
+                [&](const std::vector<double>& shape) { return is_neutral(parameters, shape); });
   return shapes;
 }
 

@@ -37,7 +37,7 @@ struct EffectParameter {
   Prior prior;     ///< With physical sign and bounds.
   double neutral;  ///< At this value the model equals its parent, bit for bit. Shape parameters
                    ///< have none: NaN.
-  /// Values at which a shape is tried (threshold, hour, date); empty: an amount.
+  /// Values at which a shape is tried (threshold, hour, weekday); empty: an amount.
   std::vector<double> scan = {};
   /// Only the scanned values are possible (for example a calendar). Chosen, not fitted.
   bool choice = false;

@@ -210,8 +210,9 @@ Result<void> learn(Predictor& predictor, const SiteProblem& site, bool last, Gro
                           last ? kFine : kRough);
   if (!none) return tl::unexpected(none.error());
   ground.none = std::move(*none);
-  if (last) keep_likely_nodes(ground);
-  return {};
+  if (!last) return {};
+  keep_likely_nodes(ground);
+  return take_usual_errors(ground.context(site), ground.none);
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ Eigen::MatrixXd unit_precision(Eigen::Index q) { return Eigen::MatrixXd::Identit
 struct Place {
   Eigen::VectorXd own;       ///< (q + r)
   Eigen::VectorXd residual;  ///< (n) measured - modelled
-  Eigen::MatrixXd jacobian;  ///< (n x (q + r)) of the model, at `own` or one step earlier.
+  Eigen::MatrixXd jacobian;  ///< (n x (q + r)) of the model near `own`, as last made or learnt.
   double log_density = 0.0;  ///< Posterior under the search's noise, up to a constant.
   double damping = 0.0;
 };
@@ -147,7 +147,7 @@ class ModeSearch {
  public:
   ModeSearch(ScoredModel& model, const FitContext& context, const Eigen::VectorXd& start)
       : model_(model), observations_(context.observations), noise_(context.search) {
-    move_to(start);
+    move_to(start.cwiseMax(-kScoreLimit).cwiseMin(kScoreLimit));
   }
 
   /// @return whether it converged
@@ -155,23 +155,27 @@ class ModeSearch {
     // With slopes made anew and then learnt from each step, as long as that brings much.
     constexpr double kMuch = 0.1;  // Of the gain with new slopes.
     constexpr int kQuickStepsMax = 4;
-    for (iterations = 1; iterations <= iterations_max; ++iterations) {
+    for (int iteration = 0; iteration < iterations_max; ++iteration) {
+      const bool is_free = place.damping == 0.0;
       auto gain = iterate();
-      if (model_.is_stopped()) return tl::unexpected(diagnosis_cancelled());
       if (!gain) return tl::unexpected(gain.error());
-      if (*gain < small_gain) return true;
+      if (*gain < small_gain) {
+        if (is_free) return true;
+        place.damping = 0.0;  // A damped step is short, wherever the mode is.
+        continue;
+      }
       const double much = std::max(kMuch * *gain, small_gain);
       for (int i = 0; i < kQuickStepsMax && *gain >= much; ++i) {
+        const double damping = place.damping;
         gain = step_by(place.jacobian);
-        if (model_.is_stopped()) return tl::unexpected(diagnosis_cancelled());
         if (!gain) return tl::unexpected(gain.error());
+        if (*gain == 0.0) place.damping = damping;  // The slopes were poor, not the length.
       }
     }
     return false;
   }
 
   Place place;
-  int iterations = 0;
 
  private:
   void move_to(const Eigen::VectorXd& own) {
@@ -205,6 +209,7 @@ class ModeSearch {
   /// Steps with these slopes, and lets the place's own slopes learn from the step.
   /// @see Broyden (1965), A class of methods for solving nonlinear simultaneous equations.
   Result<double> step_by(const Eigen::MatrixXd& slopes) {
+    if (model_.is_stopped()) return tl::unexpected(diagnosis_cancelled());
     const Eigen::VectorXd linear = place.residual + slopes * place.own;
     const GramSystem system = noise_.gram(observations_, beside(linear, slopes));
     const auto moves = slopes.colwise().squaredNorm().transpose().array() > 0.0;
@@ -239,6 +244,34 @@ class ModeSearch {
   const Observations& observations_;
   const NoiseNode& noise_;
 };
+
+/// The evidence of a linear model, by node of the noise.
+struct GridEvidence {
+  double log_evidence;
+  Eigen::VectorXd node_weights;
+  Eigen::Index best_node;
+};
+
+Result<GridEvidence> evidence_over(const std::vector<NoiseNode>& grid,
+                                   const Observations& observations,
+                                   const Eigen::VectorXd& linear_residual,
+                                   const Eigen::MatrixXd& jacobian) {
+  const Eigen::MatrixXd columns = beside(linear_residual, jacobian);
+  const auto nodes = static_cast<Eigen::Index>(grid.size());
+  Eigen::VectorXd evidences(nodes);
+  Eigen::VectorXd weights(nodes);
+  for (Eigen::Index i = 0; i < nodes; ++i) {
+    const NoiseNode& node = grid[static_cast<std::size_t>(i)];
+    const auto reduced =
+        marginalise(node.gram(observations, columns), unit_precision(jacobian.cols()));
+    if (!reduced) return tl::unexpected(reduced.error());
+    evidences[i] = log_evidence(*reduced);
+    weights[i] = node.log_weight;
+  }
+  GridEvidence result{combine_nodes(evidences, weights), node_weights(evidences, weights), 0};
+  result.node_weights.maxCoeff(&result.best_node);
+  return result;
+}
 
 /// The three kinds of scores in order: (q + k + r).
 Eigen::VectorXd all_scores(const Eigen::VectorXd& own, const Eigen::VectorXd& usual,
@@ -283,25 +316,17 @@ double score_of(const Prior& prior, double value, double limit) {
   return std::clamp(boost::math::quantile(boost::math::normal{}, p), -limit, limit);
 }
 
-Result<GridEvidence> evidence_over(const std::vector<NoiseNode>& grid,
-                                   const Observations& observations,
-                                   const Eigen::VectorXd& linear_residual,
-                                   const Eigen::MatrixXd& jacobian) {
-  const Eigen::MatrixXd columns = beside(linear_residual, jacobian);
-  const auto nodes = static_cast<Eigen::Index>(grid.size());
-  Eigen::VectorXd evidences(nodes);
-  Eigen::VectorXd weights(nodes);
-  for (Eigen::Index i = 0; i < nodes; ++i) {
-    const NoiseNode& node = grid[static_cast<std::size_t>(i)];
-    const auto reduced =
-        marginalise(node.gram(observations, columns), unit_precision(jacobian.cols()));
-    if (!reduced) return tl::unexpected(reduced.error());
-    evidences[i] = log_evidence(*reduced);
-    weights[i] = node.log_weight;
-  }
-  GridEvidence result{combine_nodes(evidences, weights), node_weights(evidences, weights), 0};
-  result.node_weights.maxCoeff(&result.best_node);
-  return result;
+Result<void> take_usual_errors(const FitContext& context, JointFit& fit) {
+  const NoiseNode& reference = context.grid[context.reference_node];
+  const Eigen::Index k = context.errors.cols();
+  const Eigen::VectorXd left = fit.residual + context.errors * fit.usual;
+  const auto usual = posterior(reference.gram(context.observations, beside(left, context.errors)),
+                               unit_precision(k));
+  if (!usual) return tl::unexpected(usual.error());
+  fit.usual = usual->mean;
+  fit.scores.segment(std::ssize(context.site.parameters), k) = fit.usual;
+  fit.residual = left - context.errors * fit.usual;
+  return {};
 }
 
 Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
@@ -315,22 +340,17 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   ModeSearch search{model, context, own_scores(start, q, r)};
   auto ended = search.climb(options.iterations_max, options.small_gain);
   if (!ended) return tl::unexpected(ended.error());
-
   if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
   const Place& place = search.place;
   JointFit fit;
   fit.converged = *ended;
-  fit.iterations = search.iterations;
   fit.log_density = place.log_density;
   fit.theta = model.theta(place.own);
-  const NoiseNode& reference = context.grid[context.reference_node];
-  const auto usual = posterior(reference.gram(observations, beside(place.residual, context.errors)),
-                               unit_precision(k));
-  if (!usual) return tl::unexpected(usual.error());
-  fit.usual = usual->mean;
   fit.eta = model.eta(place.own);
-  fit.scores = all_scores(place.own, fit.usual, q);
-  fit.residual = place.residual - context.errors * fit.usual;
+  fit.scores = all_scores(place.own, Eigen::VectorXd::Zero(k), q);
+  fit.residual = place.residual;
+  fit.usual = Eigen::VectorXd::Zero(k);
+  if (auto taken = take_usual_errors(context, fit); !taken) return tl::unexpected(taken.error());
   fit.jacobian.resize(observations.count(), q + k + r);
   fit.jacobian << place.jacobian.leftCols(q), context.errors, place.jacobian.rightCols(r);
   fit.parts_kW = model.run(place.own);
@@ -341,7 +361,6 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   fit.node_weights = evidence->node_weights;
   fit.best_node = evidence->best_node;
   const NoiseNode& best = context.grid[static_cast<std::size_t>(fit.best_node)];
-  fit.log_likelihood = best.log_density(observations, fit.residual);
   auto spread = posterior(best.gram(observations, beside(fit.linear_residual(), fit.jacobian)),
                           unit_precision(q + k + r));
   if (!spread) return tl::unexpected(spread.error());

@@ -36,11 +36,9 @@ struct JointFit {
   Eigen::ArrayXXd parts_kW;      ///< (parts x m) the model at the mode, whole period, without E b.
   double log_density = 0.0;      ///< Of theta and eta under the search's noise, up to a constant.
   double log_evidence = 0.0;     ///< Over the grid.
-  double log_likelihood = 0.0;   ///< Of all scores at the mode, at the best node.
   Eigen::VectorXd node_weights;  ///< (nodes) posterior.
   Eigen::Index best_node = 0;
   GaussianPosterior posterior;  ///< Of the scores at the best node.
-  int iterations = 0;
   bool converged = false;
 
   /// r + J u: the residual column of the linear model with prior N(0, I) at score 0.
@@ -64,16 +62,8 @@ struct FitContext {
                                            const Candidate& candidate, const Eigen::VectorXd& start,
                                            const FitOptions& options = {});
 
-/// The evidence of an existing linearisation with another noise, without running the model.
-struct GridEvidence {
-  double log_evidence;
-  Eigen::VectorXd node_weights;
-  Eigen::Index best_node;
-};
-[[nodiscard]] Result<GridEvidence> evidence_over(const std::vector<NoiseNode>& grid,
-                                                 const Observations& observations,
-                                                 const Eigen::VectorXd& linear_residual,
-                                                 const Eigen::MatrixXd& jacobian);
+/// The likeliest amounts of the usual errors at the context's reference node, in place.
+[[nodiscard]] Result<void> take_usual_errors(const FitContext& context, JointFit& fit);
 
 /// The values of scores. @param priors  (r) in order.
 [[nodiscard]] std::vector<double> values_at(std::span<const Prior> priors,

@@ -11,6 +11,7 @@ namespace {
 
 // Of the prior's range: a value this near its upper bound counts as limited by it.
 constexpr double kNearEnd = 0.05;
+constexpr FitOptions kFine{.iterations_max = 40};
 
 /// sum |with - without| / sum without, for the meter where it is largest.
 double largest_move(const Eigen::ArrayXXd& with_kW, const Eigen::ArrayXXd& without_kW) {
@@ -69,9 +70,12 @@ class Rivals {
     for (const Explanation& e : rivals_) {
       Eigen::VectorXd from = ground_.none.scores;
       from.head(parameters()) = e.fit.scores.head(parameters());
-      auto base = fit_jointly(predictor_, ground_.context(site_), Candidate{}, from);
+      auto base = fit_jointly(predictor_, ground_.context(site_), Candidate{}, from, kFine);
       if (!base) return tl::unexpected(base.error());
-      if (base->log_evidence > ground_.none.log_evidence) ground_.none = std::move(*base);
+      const bool is_settled = base->converged || !ground_.none.converged;
+      if (is_settled && base->log_evidence > ground_.none.log_evidence) {
+        ground_.none = std::move(*base);
+      }
     }
     if (ground_.none.log_evidence <= before) return {};
     for (Explanation& e : rivals_) {
@@ -112,7 +116,8 @@ class Rivals {
   }
 
   Result<JointFit> fit_of(const Explanation& e, const Eigen::VectorXd& from) {
-    auto fit = fit_jointly(predictor_, ground_.context(site_), candidates_[e.candidate], from);
+    auto fit =
+        fit_jointly(predictor_, ground_.context(site_), candidates_[e.candidate], from, kFine);
     if (fit) fit->jacobian.resize(0, 0);  // the largest part of a fit, and not needed any more
     return fit;
   }
@@ -220,10 +225,23 @@ std::string_view to_string(Outcome outcome) {
   return "none";
 }
 
+std::vector<double> probabilities_at(const Naming& naming, double prior_none) {
+  const auto odds_of = [](double probability) { return probability / (1.0 - probability); };
+  const double factor = odds_of(prior_none) / odds_of(naming.prior_none);
+  std::vector<double> probabilities;
+  double sum = 0.0;
+  for (const NameProbability& p : naming.probabilities) {
+    probabilities.push_back(p.probability * (p.effect == "none" ? factor : 1.0));
+    sum += probabilities.back();
+  }
+  for (double& probability : probabilities) probability /= sum;
+  return probabilities;
+}
+
 Result<Naming> name_effect(Predictor& predictor, const SiteProblem& site,
                            const SignatureNames& names, const std::vector<Candidate>& candidates,
                            const NamingRules& rules, Ground& ground) {
-  Naming naming{.probabilities = probabilities_of(names)};
+  Naming naming{.probabilities = probabilities_of(names), .prior_none = names.prior_none};
   Rivals rivals{predictor, site, candidates, ground};
   std::size_t fits = 0;
   for (NameProbability& p : naming.probabilities) {

@@ -52,7 +52,12 @@ struct Naming {
   std::optional<std::size_t> named;            ///< Index into explanations.
   std::vector<std::string> confusable;         ///< Ids of the set.
   std::string why;                             ///< Why this outcome, one sentence.
+  double prior_none = kEvenPrior;  ///< That nothing is missing, as the probabilities have it.
 };
+
+/// The probabilities of `naming`, in their order, had another prior been stated for none.
+/// @param prior_none  0…1
+[[nodiscard]] std::vector<double> probabilities_at(const Naming& naming, double prior_none);
 
 /// Where the fit of an effect starts.
 struct EffectStart {

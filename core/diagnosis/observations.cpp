@@ -265,11 +265,6 @@ Eigen::VectorXd NoiseNode::squared_norms(const Observations& observations,
   return squares;
 }
 
-double NoiseNode::log_density(const Observations& observations,
-                              const Eigen::VectorXd& residual) const {
-  return log_evidence(gram(observations, residual));
-}
-
 std::vector<NoiseNode> noise_grid(const Observations& observations,
                                   std::span<const NoiseLevel> levels, bool whole) {
   constexpr std::array<double, 3> kStructure{0.6, 1.0, 1.7};

@@ -72,9 +72,6 @@ struct NoiseNode {
   /// x' Sigma^-1 x of each stacked column (k).
   [[nodiscard]] Eigen::VectorXd squared_norms(
       const Observations& observations, const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
-  /// log N(r; 0, Sigma)
-  [[nodiscard]] double log_density(const Observations& observations,
-                                   const Eigen::VectorXd& residual) const;
 };
 
 /// Common factors on structure_sd, correlation_h and white_sd: 3 x 3 x 3 nodes around the fitted

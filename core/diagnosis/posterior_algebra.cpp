@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "core/calibration/log_sum.hpp"
-#include "core/statistics/quantile.hpp"
 
 namespace recald::diagnosis {
 namespace {

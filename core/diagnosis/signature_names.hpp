@@ -12,11 +12,12 @@
 
 namespace recald::diagnosis {
 
-inline constexpr Eigen::Index kEffectFeatures = 8;
+inline constexpr Eigen::Index kEffectFeatures = 10;
 inline constexpr Eigen::Index kSiteFeatures = 3;
 
 /// (effects x kEffectFeatures) log gain and its root, share of the misfit explained and its root,
-/// wrong sign, too much, too little, visibility.
+/// wrong sign, too much, too little, visibility, how far the gain is behind the best one, and its
+/// root where the base model fits badly.
 [[nodiscard]] Eigen::MatrixXd effect_features(const SignatureEvidence& evidence);
 /// One, misfit of the base model, strongest effect.
 [[nodiscard]] Eigen::VectorXd site_features(const SignatureEvidence& evidence);
@@ -27,14 +28,20 @@ struct NameWeights {
   Eigen::Vector<double, kSiteFeatures> unknown;
 };
 
+/// Weights are learnt where nothing is hidden in half of the buildings.
+inline constexpr double kEvenPrior = 0.5;
+
 struct SignatureNames {
   SignatureEvidence evidence;
   Eigen::VectorXd probabilities;  ///< Of `evidence.effects`, in their order.
   double none = 1.0;
   double unknown = 0.0;
+  double prior_none = kEvenPrior;
 };
 
-/// None for sure where the site has no signatures.
-[[nodiscard]] SignatureNames names_by(SignatureEvidence evidence, const NameWeights& weights);
+/// @param prior_none  Probability before any reading that nothing is missing from the model, 0…1.
+/// @return none for sure where the site has no signatures.
+[[nodiscard]] SignatureNames names_by(SignatureEvidence evidence, const NameWeights& weights,
+                                      double prior_none = kEvenPrior);
 
 }  // namespace recald::diagnosis

@@ -44,7 +44,10 @@ Result<SiteDiagnosis> diagnose_aloud(const ModelledSite& modelled,
     return !guard.interrupted();
   };
   return diagnose_site(modelled, problem,
-                       {.rules = {}, .seed = arguments.seed, .assumed = arguments.assumed},
+                       {.rules = {},
+                        .prior_none = modelled.site.config.prior_none,
+                        .seed = arguments.seed,
+                        .assumed = arguments.assumed},
                        observer);
 }
 

@@ -215,8 +215,10 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
   if (!modelled) return tl::unexpected(modelled.error());
   const auto problem = prepare_diagnosis(*modelled);
   if (!problem) return tl::unexpected(problem.error());
-  const auto done = diagnose_site(*modelled, *problem, {.rules = {}, .seed = kSeed},
-                                  [&](const char*, double) { return goes_on(); });
+  const auto done =
+      diagnose_site(*modelled, *problem,
+                    {.rules = {}, .prior_none = modelled->site.config.prior_none, .seed = kSeed},
+                    [&](const char*, double) { return goes_on(); });
   if (!done) return tl::unexpected(done.error());
   modelled->facts.seed = kSeed;
   JobOutcome outcome{.accepted = true,

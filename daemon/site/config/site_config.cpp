@@ -690,6 +690,11 @@ void read_root(TomlReader root, SiteConfig& config) {
   if (auto table = root.table("recalibration")) {
     config.recalibration = read_recalibration(*table, config.file);
   }
+  if (auto diagnosis = root.table("diagnosis")) {
+    constexpr NumberRange kPriorOfNone{.min = 0.01, .max = 0.99};
+    config.prior_none = diagnosis->number("prior_none", kPriorOfNone).value_or(config.prior_none);
+    diagnosis->finish();
+  }
   if (auto buses = root.table("bus")) {
     for (const std::string& name : buses->keys()) {
       if (auto bus = buses->table(name)) config.buses.push_back(read_bus(*bus, name));

@@ -148,6 +148,8 @@ struct SiteConfig {
   StoreConfig store;
   std::optional<HttpConfig> http;  ///< Absent: nothing is served.
   RecalibrationConfig recalibration;
+  /// [diagnosis] Probability that the model lacks nothing, before a reading is seen.
+  double prior_none = 0.5;
   tariff::Tariff tariff;
   std::vector<BusConfig> buses;
   std::vector<MeterConfig> meters;

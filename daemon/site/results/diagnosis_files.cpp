@@ -92,9 +92,15 @@ void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosi
 /// Of the first search: there all rivals started from the model as drawn.
 Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
   const diagnosis::Naming& naming = d.passes.front().naming;
+  const std::vector<double> even = probabilities_at(naming, 0.5);
+  const std::vector<double> rare = probabilities_at(naming, 0.9);
   Json list = Json::array();
-  for (const diagnosis::NameProbability& p : naming.probabilities) {
-    Json entry = {{"effect", p.effect}, {"probability", results::number(p.probability)}};
+  for (std::size_t i = 0; i < naming.probabilities.size(); ++i) {
+    const diagnosis::NameProbability& p = naming.probabilities[i];
+    Json entry = {{"effect", p.effect},
+                  {"probability", results::number(p.probability)},
+                  {"probability_at_prior_none",
+                   {{"0.5", results::number(even[i])}, {"0.9", results::number(rare[i])}}}};
     if (p.meter >= 0) entry["meter"] = meter_name(site, p.meter);
     if (p.explanation) add_explanation(site, d, naming.explanations[*p.explanation], entry);
     list.push_back(std::move(entry));
@@ -211,12 +217,10 @@ Json additions_json(const SiteProblem& site, const Diagnosis& d) {
   return list;
 }
 
-Json not_identifiable_json(const SiteProblem& site, const Diagnosis& d) {
+Json not_identifiable_json(const Diagnosis& d) {
   Json list = Json::array();
-  for (const NotSeen& n : not_seen_here(d)) {
-    Json entry = {{"effect", n.effect}, {"why", n.why}};
-    if (n.meter >= 0) entry["meter"] = meter_name(site, n.meter);
-    list.push_back(std::move(entry));
+  for (const diagnosis::NotIdentifiable& n : not_seen_here(d)) {
+    list.push_back({{"effect", n.effect}, {"why", n.why}});
   }
   return list;
 }
@@ -231,6 +235,7 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"most_likely", most_likely_words(d, site)},
                {"not_confirmed", d.not_confirmed},
                {"located", located_json(site, first.located)},
+               {"prior_none", results::number(first.naming.prior_none)},
                {"candidates", candidates_json(site, d)},
                {"confusable", first.naming.confusable},
                {"added", added_json(d)},
@@ -240,7 +245,7 @@ std::string diagnosis_json(const Diagnosis& d, const SiteProblem& site, const Ru
                {"base_fit", gaps_json(site, d.base_fit)},
                {"held_fit", gaps_json(site, d.passes.front().gaps)},
                {"gap", gap_json(site, d, others)},
-               {"not_identifiable_here", not_identifiable_json(site, d)},
+               {"not_identifiable_here", not_identifiable_json(d)},
                {"warnings", display::texts_of(d.warnings)},
                {"model_runs", d.model_runs},
                {"seed", facts.seed},

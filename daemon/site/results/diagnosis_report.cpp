@@ -69,15 +69,18 @@ report::AddedEffectCard card_of(const SiteProblem& site, const Addition& additio
   return card;
 }
 
-report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d,
-                            const diagnosis::NameProbability& p) {
+/// @param which  Index among the probabilities.
+report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d, std::size_t which) {
+  const diagnosis::Naming& naming = d.passes.front().naming;
+  const diagnosis::NameProbability& p = naming.probabilities[which];
   report::CandidateBar bar{.label = effect_label(site, p.effect, p.meter),
                            .meaning = {},
                            .kind = report::CandidateKind::effect,
                            .probability = p.probability,
+                           .if_half_lack_nothing = probabilities_at(naming, 0.5)[which],
+                           .if_nine_in_ten_lack_nothing = probabilities_at(naming, 0.9)[which],
                            .evidence_gain = kAbsent,
                            .parameters = {}};
-  const diagnosis::Naming& naming = d.passes.front().naming;
   if (p.effect == "none") {
     bar.kind = report::CandidateKind::none;
     bar.meaning = "Nothing that these meters can show is missing from the model.";
@@ -205,8 +208,8 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
   if (!d.added.empty() && d.passes.size() > 1) {
     data.located_after = d.passes.back().located;
   }
-  for (const auto& p : d.passes.front().naming.probabilities) {
-    data.candidates.push_back(bar_of(site, d, p));
+  for (std::size_t i = 0; i < d.passes.front().naming.probabilities.size(); ++i) {
+    data.candidates.push_back(bar_of(site, d, i));
   }
   data.separations = separations_of(d, site);
   data.steps = steps_of(site, d);
@@ -218,8 +221,8 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
   }
   data.signatures = signatures_of(site, d, limits_C);
   data.base_fit = d.base_fit;
-  for (const NotSeen& n : not_seen_here(d)) {
-    data.not_identifiable.push_back({effect_label(site, n.effect, n.meter), n.why});
+  for (const diagnosis::NotIdentifiable& n : not_seen_here(d)) {
+    data.not_identifiable.push_back({effect_label(site, n.effect, -1), n.why});
   }
   return data;
 }

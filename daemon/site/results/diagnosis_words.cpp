@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -28,6 +26,7 @@ using diagnosis::ChangeInterval;
 using diagnosis::Diagnosis;
 using diagnosis::ModelGap;
 using diagnosis::NameProbability;
+using diagnosis::NotIdentifiable;
 using diagnosis::Outcome;
 using diagnosis::ParameterPosterior;
 using diagnosis::SiteProblem;
@@ -319,12 +318,10 @@ std::vector<report::Separation> separations_of(const Diagnosis& d, const SitePro
   return list;
 }
 
-std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
-  std::vector<NotSeen> list;
-  for (const diagnosis::NotIdentifiable& n : d.not_identifiable)
-    list.push_back({n.effect, -1, n.why});
+std::vector<NotIdentifiable> not_seen_here(const Diagnosis& d) {
+  std::vector<NotIdentifiable> list = d.not_identifiable;
   const auto is_told = [&](std::string_view effect) {
-    return std::ranges::any_of(list, [&](const NotSeen& n) { return n.effect == effect; });
+    return std::ranges::any_of(list, [&](const NotIdentifiable& n) { return n.effect == effect; });
   };
   const auto was_weighed = [&](std::string_view effect) {
     return std::ranges::any_of(d.passes.front().naming.probabilities,
@@ -335,7 +332,7 @@ std::vector<NotSeen> not_seen_here(const Diagnosis& d) {
   for (const diagnosis::Candidate& candidate : d.candidates) {
     const std::string_view effect = candidate.effect->id;
     if (is_told(effect) || was_weighed(effect)) continue;
-    list.push_back({std::string{effect}, -1, "it would not show at these meters"});
+    list.push_back({std::string{effect}, "it would not show at these meters"});
   }
   return list;
 }

@@ -49,11 +49,7 @@ struct OutcomeWords {
                                                              const diagnosis::SiteProblem& site);
 
 /// Effects that cannot be judged at this site, and why; each once.
-struct NotSeen {
-  std::string effect;  ///< Id.
-  int meter = -1;      ///< Of an effect of one meter.
-  std::string why;
-};
-[[nodiscard]] std::vector<NotSeen> not_seen_here(const diagnosis::Diagnosis& diagnosis);
+[[nodiscard]] std::vector<diagnosis::NotIdentifiable> not_seen_here(
+    const diagnosis::Diagnosis& diagnosis);
 
 }  // namespace recald::daemon

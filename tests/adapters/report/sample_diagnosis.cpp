@@ -95,16 +95,18 @@ void add_words(DiagnosisData& data) {
                   finding(0, "Jul 2021", -0.061, 0.02, -420.0)};
   data.located_after = {finding(0, "Jul 2021", -0.055, 0.02, -390.0)};
   data.candidates = {
-      {"Night set-back missing", "Rooms are kept warm at night.", CandidateKind::effect, 0.93, 41.2,
+      {"Night set-back missing", "Rooms are kept warm at night.", CandidateKind::effect, 0.93, 0.93, 0.9, 41.2,
        data.added[0].parameters},
-      {"Something else", "A pattern that no effect makes.", CandidateKind::unknown, 0.04, 18.0, {}},
+      {"Something else", "A pattern that no effect makes.", CandidateKind::unknown, 0.04, 0.04, 0.035, 18.0, {}},
       {"Steam or heat leaks in the pipes",
        "Heat is drawn day and night.",
        CandidateKind::effect,
        0.025,
+       0.025,
+       0.024,
        22.5,
        {{"heat loss", "41 kW", "30 kW", "52 kW"}}},
-      {"No effect", "The model lacks nothing.", CandidateKind::none, 0.005, kNothing, {}}};
+      {"No effect", "The model lacks nothing.", CandidateKind::none, 0.005, 0.005, 0.041, kNothing, {}}};
   data.separations = {{"Night set-back missing", "Steam or heat leaks in the pipes", 0.025,
                        "Room temperature of two winter nights: a leak warms no room."},
                       {"Night set-back missing", "Thermal mass", kNothing,

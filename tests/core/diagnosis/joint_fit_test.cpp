@@ -113,6 +113,44 @@ TEST(FitJointly, UsualErrorsAreTheLikeliestAtTheMode) {
   EXPECT_LT(slope.cwiseAbs().maxCoeff(), 1e-6 * std::max(1.0, fit->usual.cwiseAbs().maxCoeff()));
 }
 
+// Slopes that are learnt from steps lead to the same mode from wherever it starts.
+TEST(FitJointly, FindsTheModeFromAFarStart) {
+  NoisyFit noisy;
+  const JointFit& none = noisy.ground.none;
+  ASSERT_TRUE(none.converged);
+  for (const double far : {-4.0, 7.0}) {
+    auto fit = fit_jointly(*noisy.predictor, noisy.ground.context(noisy.site), Candidate{},
+                           Eigen::VectorXd::Constant(2, far), {.iterations_max = 30});
+    ASSERT_TRUE(fit.has_value());
+    EXPECT_TRUE(fit->converged) << far;
+    EXPECT_NEAR(fit->log_density, none.log_density, 1.5) << far;
+    EXPECT_LT((fit->scores - none.scores).norm(), 0.1) << far;
+  }
+}
+
+// The base model and its rivals have the usual errors of one node, that of the ground.
+TEST(Ground, HasTheUsualErrorsOfItsReferenceNode) {
+  NoisyFit noisy;
+  Predictor predictor{noisy.site};
+  auto ground = lay_ground(predictor, noisy.site, Eigen::VectorXd::Zero(2));
+  ASSERT_TRUE(ground.has_value());
+  ASSERT_GT(ground->usual->count(), 0);
+  ASSERT_GT(ground->grid.size(), 1u);
+  const Eigen::VectorXd gap = ground->none.residual + ground->errors * ground->none.usual;
+  const auto slope_of = [&](const JointFit& fit) {
+    const NoiseNode& node = ground->grid[ground->reference_node];
+    return (ground->errors.transpose() * node.solve(ground->fit, fit.residual) - fit.usual).norm();
+  };
+  EXPECT_LT(slope_of(ground->none), 1e-6);
+  JointFit moved = ground->none;
+  ground->reference_node = ground->reference_node == 0 ? 1 : 0;
+  EXPECT_GT(slope_of(moved), 1e-3);
+  ASSERT_TRUE(take_usual_errors(ground->context(noisy.site), moved).has_value());
+  EXPECT_LT(slope_of(moved), 1e-6);
+  EXPECT_LT((moved.residual + ground->errors * moved.usual - gap).norm(), 1e-9 * gap.norm());
+  EXPECT_LT((moved.scores.tail(moved.usual.size()) - moved.usual).norm(), 1e-12);
+}
+
 // An error that looks like a parameter must not stand in for it: footprints are drawn where the
 // parameters are.
 TEST(FitJointly, ParametersExplainWhatUsualErrorsCould) {

@@ -27,9 +27,11 @@ TEST(SignatureNames, FeaturesAreWhatTheyAreCalled) {
   ASSERT_EQ(features.rows(), 3);
   ASSERT_EQ(features.cols(), kEffectFeatures);
   Eigen::MatrixXd expected(3, kEffectFeatures);
-  expected << -0.1, 0.0, 0.0, 0.0, 0.0, std::log(2.0), 0.0, 0.5 * std::log1p(std::sqrt(4.5)), 1.8,
-      2.0, std::sqrt(0.75), 0.75, 0.0, 0.0, 0.0, 0.5 * std::log1p(std::sqrt(2.0)),  //
-      0.0, 0.0, 0.0, 0.0, 1.0, 0.0, std::log(3.0), 0.0;
+  expected << -0.1, 0.0, 0.0, 0.0, 0.0, std::log(2.0), 0.0, 0.5 * std::log1p(std::sqrt(4.5)), -2.0,
+      0.0,  //
+      1.8, 2.0, std::sqrt(0.75), 0.75, 0.0, 0.0, 0.0, 0.5 * std::log1p(std::sqrt(2.0)), 0.0,
+      2.0 * std::log(2.0),  //
+      0.0, 0.0, 0.0, 0.0, 1.0, 0.0, std::log(3.0), 0.0, -2.0, 0.0;
   EXPECT_TRUE(features.isApprox(expected, 1e-12)) << features;
   const Eigen::Vector3d site(1.0, std::log(2.0), 0.5 * std::log(75.0) - 1.0);
   EXPECT_TRUE(site_features(sample_evidence()).isApprox(site, 1e-12));
@@ -45,6 +47,17 @@ TEST(SignatureNames, AnswersShareWhatIsCertain) {
   EXPECT_NEAR(names.probabilities[1], std::exp(3.6) / sum, 1e-12);
   EXPECT_NEAR(names.none, std::exp(1.0) / sum, 1e-12);
   EXPECT_NEAR(names.probabilities.sum() + names.none + names.unknown, 1.0, 1e-12);
+}
+
+TEST(SignatureNames, APriorOfNoneIsItsOdds) {
+  NameWeights weights{};
+  weights.effect[0] = 2.0;
+  const SignatureNames even = names_by(sample_evidence(), weights);
+  const SignatureNames rare = names_by(sample_evidence(), weights, 0.9);
+  EXPECT_NEAR(rare.none / rare.unknown, 9.0 * even.none / even.unknown, 1e-12);
+  EXPECT_NEAR(rare.probabilities[1] / rare.unknown, even.probabilities[1] / even.unknown, 1e-12);
+  EXPECT_NEAR(rare.probabilities.sum() + rare.none + rare.unknown, 1.0, 1e-12);
+  EXPECT_EQ(rare.prior_none, 0.9);
 }
 
 TEST(SignatureNames, WithoutSignaturesNothingIsSaid) {

@@ -50,6 +50,25 @@ TEST(UsualErrors, AColumnIsALittleOfItsEffect) {
   EXPECT_GT(footprint.norm(), 0.0);
 }
 
+// Scanned values may all be neutral: such a shape is no effect.
+TEST(UsualErrors, NoShapeIsWithoutAnEffect) {
+  const SiteProblem site = testing::sample_problem(kParameters, 12);
+  Predictor predictor{site};
+  const std::vector<double> theta = middle_of(site);
+  predictor.parts_kW(theta);
+  const Eigen::ArrayXXd base = predictor.hours_kW();
+  int shapes = 0;
+  for (const Candidate& candidate : list_candidates(site).candidates) {
+    if (candidate.effect->id != "early_start" || candidate.begins) continue;
+    for (const std::vector<double>& shape : own_shapes(candidate)) {
+      predictor.parts_kW(theta, alteration_of(candidate, site.facts(), shape).get());
+      EXPECT_GT((predictor.hours_kW() - base).abs().maxCoeff(), 0.0);
+      ++shapes;
+    }
+  }
+  EXPECT_EQ(shapes, 8);
+}
+
 // A clock is right or wrong, and what has a first day is no habit of models.
 TEST(UsualErrors, HoldNoClockAndNothingDated) {
   const SiteProblem site = testing::sample_problem(kParameters, 12);

@@ -571,6 +571,19 @@ TEST(SiteConfig, UnitsOfDisplayAreSiUnlessSaid) {
   EXPECT_THROW((void)units("units = \"metric\"\n"), std::runtime_error);
 }
 
+TEST(SiteConfig, APriorOfNoneIsAProbability) {
+  const auto prior = [](const std::string& table) {
+    return parse_site(std::string{kSampleMeters} + table, "site.toml");
+  };
+  EXPECT_EQ(prior("")->prior_none, 0.5);
+  EXPECT_EQ(prior("\n[diagnosis]\nprior_none = 0.9\n")->prior_none, 0.9);
+  const auto wrong = prior("\n[diagnosis]\nprior_none = 1\n");
+  ASSERT_FALSE(wrong.has_value());
+  EXPECT_THAT(
+      wrong.error(),
+      ElementsAre(::testing::HasSubstr("'prior_none' is 1; it must be between 0.01 and 0.99")));
+}
+
 // Each meter is compared with those of its address alone, and a map is read once.
 TEST(SiteConfig, ALargePortfolioIsReadOnceAndComparedLittle) {
   const auto allocations_for = [](int meters) {

@@ -133,6 +133,21 @@ TEST_F(DiagnosisFiles, GivesTheProbabilityOfWhatWasNotFitted) {
   EXPECT_FALSE(candidates[4].contains("evidence_gain"));
 }
 
+// Odds of nine against even: 0.7 of none becomes 6.3 / 6.6.
+TEST_F(DiagnosisFiles, GivesProbabilitiesForOtherPriors) {
+  Diagnosis d = recald::testing::nothing_named(site_);
+  d.passes[0].naming.probabilities = {{"none", -1, 0.7, {}}, {"steam_trap_leak", -1, 0.3, {}}};
+  const json even = json_of(d);
+  EXPECT_EQ(even["prior_none"], 0.5);
+  const json& leak = even["candidates"][1];
+  EXPECT_EQ(leak["probability_at_prior_none"]["0.5"], 0.3);
+  EXPECT_NEAR(leak["probability_at_prior_none"]["0.9"].get<double>(), 0.3 / 6.6, 1e-12);
+  EXPECT_NEAR(page_data(d).candidates[0].if_nine_in_ten_lack_nothing, 6.3 / 6.6, 1e-12);
+  d.passes[0].naming.prior_none = 0.9;
+  EXPECT_NEAR(json_of(d)["candidates"][1]["probability_at_prior_none"]["0.5"].get<double>(),
+              0.3 / (0.3 + 0.7 / 9.0), 1e-12);
+}
+
 TEST_F(DiagnosisFiles, GivesOtherModelsAnEntryOfTheirOwn) {
   const ModelGap epc{.model = ModelKind::epc,
                      .outputs = {"steam_daily_kWh"},
