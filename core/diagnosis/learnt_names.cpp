@@ -1640,11 +1640,11 @@ constexpr std::array<std::int8_t, kLearntEntries * kLearntPatterns> kLearntPatte
     0, 0, 0, 0, 28, -42, -31, -18, -15};
 
 constexpr std::array<double, kEffectFeatures> kLearntOfEffect{
-    0.4108, 1.835, 1.028, 0.4253, -0.3795, -0.1887, -0.3867, -0.1791, 0.3928, -0.265};
+    0.118, 1.798, 1.058, 0.3834, -0.3754, -0.2691, -0.4045, -0.1401, 0.4441};
 constexpr std::array<double, kSiteFeatures> kLearntOfNone{
-    4.153, -0.04959, -0.6137};
+    4.182, 0.01833, -0.6881};
 constexpr std::array<double, kSiteFeatures> kLearntOfUnknown{
-    1.563, 0.3965, -0.0286};
+    1.546, 0.473, -0.04455};
 // clang-format on
 
 SignatureNull unpack_null() {

@@ -195,7 +195,7 @@ void decide(Naming& naming, const NamingRules& rules) {
     set.push_back(p.effect);
     supported = supported && naming.explanations[*p.explanation].objection.empty();
   }
-  if (set.size() >= 2 && share >= rules.least_probability && supported) {
+  if (set.size() >= 2 && share >= rules.set_probability && supported) {
     naming.outcome = Outcome::confusable;
     naming.confusable = std::move(set);
     naming.why = "several effects explain the gap equally well";

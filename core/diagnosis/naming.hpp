@@ -19,8 +19,9 @@ enum class Outcome { named, confusable, unknown, none };
 
 /// Fixed, and published with every result.
 struct NamingRules {
-  double least_probability = 0.8;
-  double worth_a_fit = 0.1;  ///< Probability. Also that of each member of a confusable set.
+  double least_probability = 0.5;  ///< Of a name: likelier than all others together.
+  double set_probability = 0.8;    ///< Of a confusable set: of all its members together.
+  double worth_a_fit = 0.1;        ///< Probability. Also that of each member of a set.
   std::size_t fits_max = 3;
   double unknown_probability = 0.5;
   int least_months = 10;      ///< With readings; in a shorter record a season looks like an effect.

@@ -29,12 +29,12 @@ Eigen::MatrixXd effect_features(const SignatureEvidence& evidence) {
     const EffectEvidence& e = evidence.effects[i];
     const double factor = std::max(e.factor, 1e-3);
     const double explained = std::max(1.0 - e.misfit / std::max(evidence.misfit, 1e-9), 0.0);
-    const double root = std::sqrt(std::max(e.log_gain, 0.0)) / 3.0;
-    features.row(static_cast<Eigen::Index>(i)) << std::clamp(e.log_gain, -10.0, 150.0) / 20.0, root,
-        std::sqrt(explained), explained, e.is_wrong_sign ? 1.0 : 0.0,
-        std::max(std::log(factor / kMuch), 0.0), std::max(std::log(kLittle / factor), 0.0),
+    features.row(static_cast<Eigen::Index>(i)) << std::clamp(e.log_gain, -10.0, 150.0) / 20.0,
+        std::sqrt(std::max(e.log_gain, 0.0)) / 3.0, std::sqrt(explained), explained,
+        e.is_wrong_sign ? 1.0 : 0.0, std::max(std::log(factor / kMuch), 0.0),
+        std::max(std::log(kLittle / factor), 0.0),
         0.5 * std::log1p(std::sqrt(e.visibility / inflated)),
-        std::max(e.log_gain - best, -kFarBehind) / 5.0, root * std::log(inflated);
+        std::max(e.log_gain - best, -kFarBehind) / 5.0;
   }
   return features;
 }

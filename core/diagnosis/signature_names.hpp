@@ -12,12 +12,11 @@
 
 namespace recald::diagnosis {
 
-inline constexpr Eigen::Index kEffectFeatures = 10;
+inline constexpr Eigen::Index kEffectFeatures = 9;
 inline constexpr Eigen::Index kSiteFeatures = 3;
 
 /// (effects x kEffectFeatures) log gain and its root, share of the misfit explained and its root,
-/// wrong sign, too much, too little, visibility, how far the gain is behind the best one, and its
-/// root where the base model fits badly.
+/// wrong sign, too much, too little, visibility, how far the gain is behind the best one.
 [[nodiscard]] Eigen::MatrixXd effect_features(const SignatureEvidence& evidence);
 /// One, misfit of the base model, strongest effect.
 [[nodiscard]] Eigen::VectorXd site_features(const SignatureEvidence& evidence);
