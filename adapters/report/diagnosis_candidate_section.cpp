@@ -21,7 +21,7 @@ std::string parameter_words(const std::vector<EffectParameterRow>& rows) {
 
 Table candidate_table(const DiagnosisData& data) {
   Table table("Every explanation that was weighed, the likeliest first");
-  table.columns({"Explanation", "Probability", "If half of all models lack nothing",
+  table.columns({"Explanation", "Probability here", "If half of all models lack nothing",
                  "If nine in ten lack nothing", "What it would mean", "Its size (5 to 95 %)",
                  "Evidence above no effect, nats"});
   for (const CandidateBar& bar : data.candidates) {

@@ -45,7 +45,7 @@ constexpr auto kDayPartParameters = std::to_array<DayPartParameter>({
     {.name = "chiller_lift", .of_own_chiller = true},
     {.name = "cooling_idle", .log_sd = 1.0, .if_none = 1.5, .of_own_chiller = true},
     // The profile is what the meter has without the plant of the drawings: if the real one idles
-    // more, the profile has its idle power too.
+    // more, the profile has its idle power too, which heats no room.
     {.name = "electric_use", .log_sd = 0.15, .of_own_chiller = true},
 });
 

@@ -163,7 +163,8 @@ Result<Detectability> FootprintGauge::measure(
   assert(footprint_kW.cols() == twin_->measured_kW.cols());
   // Averaging is linear, so parts of (twin + s) minus parts of the twin equal those of s, with
   // the twin's mask.
-  const Eigen::ArrayXXd counted = twin_->measured_kW.isFinite().select(footprint_kW, kAbsent);
+  Eigen::ArrayXXd counted = twin_->measured_kW.isFinite().select(footprint_kW, kAbsent);
+  ProfileReading{*twin_}.take_usual_day_from(counted);
   const Eigen::ArrayXXd parts_kW = measured_parts(twin_->day_parts, counted);
   const Eigen::VectorXd footprint =
       observations_.stack(twin_->measured_parts_kW + parts_kW) - observations_.measured;

@@ -18,7 +18,7 @@ namespace recald::diagnosis {
 struct DiagnoseOptions {
   NamingRules rules;
   int additions_max = 4;
-  double prior_none = kEvenPrior;  ///< That nothing is missing, before any reading; 0…1.
+  double prior_none = kEvenPrior;  ///< That nothing is missing, before any reading; > 0, < 1.
   std::uint64_t seed = 1;
   /// Effects known to be present, "damper_stuck_open" or "scale_fault:steam". They are
   /// added in this order and kept, whatever their probability and the held-out scores.

@@ -88,18 +88,24 @@ Eigen::ArrayXXd changes_over(Predictor& predictor, const SiteProblem& site,
   Eigen::Index grid_points = 1;
   for (const auto& values : nodes) grid_points *= static_cast<Eigen::Index>(values.size());
   const SiteFacts facts = site.facts();
-  const auto averages = [&](const Alteration* effect) {
-    predictor.parts_kW(theta, effect);
-    return daily_averages(site, predictor.hours_kW());
+  predictor.parts_kW(theta);
+  const Eigen::ArrayXXd without_kW = predictor.hours_kW();
+  // The monthly model's profile has what the effect does at the same hours all year.
+  const ProfileReading profile{site};
+  const auto averages = [&](const Alteration& effect) -> Eigen::ArrayXd {
+    predictor.parts_kW(theta, &effect);
+    Eigen::ArrayXXd change_kW = predictor.hours_kW() - without_kW;
+    profile.take_usual_day_from(change_kW);
+    return daily_averages(site, without_kW + change_kW);
   };
   const auto months = static_cast<Eigen::Index>(site.drivers->months.size());
   const bool of_record = candidate.meter >= 0;
-  const Eigen::ArrayXd without = averages(nullptr);
+  const Eigen::ArrayXd without = daily_averages(site, without_kW);
   Eigen::ArrayXXd table(of_record ? months : without.size(), grid_points);
   std::vector<double> values(nodes.size());
   for (Eigen::Index point = 0; point < grid_points; ++point) {
     values_at_point(nodes, point, values);
-    const Eigen::ArrayXd with = averages(alteration_of(candidate, facts, values).get());
+    const Eigen::ArrayXd with = averages(*alteration_of(candidate, facts, values));
     if (of_record) {
       const Eigen::Index first = candidate.meter * months;
       table.col(point) = ratios(with.segment(first, months), without.segment(first, months));

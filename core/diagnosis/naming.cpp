@@ -44,6 +44,11 @@ int months_read(const SiteProblem& site) {
   return static_cast<int>(months.size());
 }
 
+/// Evidence counts at a mode alone, so a fit that found one is better than one that did not.
+bool is_better(const JointFit& a, const JointFit& b) {
+  return a.converged != b.converged ? a.converged : a.log_evidence > b.log_evidence;
+}
+
 /// Fits of effects beside a base model.
 class Rivals {
  public:
@@ -66,18 +71,17 @@ class Rivals {
   /// Moves the base model to where the effects have led, if it is better there. From a better
   /// place all effects are fitted again.
   Result<void> be_fair() {
-    const double before = ground_.none.log_evidence;
+    bool has_moved = false;
     for (const Explanation& e : rivals_) {
       Eigen::VectorXd from = ground_.none.scores;
       from.head(parameters()) = e.fit.scores.head(parameters());
       auto base = fit_jointly(predictor_, ground_.context(site_), Candidate{}, from, kFine);
       if (!base) return tl::unexpected(base.error());
-      const bool is_settled = base->converged || !ground_.none.converged;
-      if (is_settled && base->log_evidence > ground_.none.log_evidence) {
-        ground_.none = std::move(*base);
-      }
+      if (!is_better(*base, ground_.none)) continue;
+      ground_.none = std::move(*base);
+      has_moved = true;
     }
-    if (ground_.none.log_evidence <= before) return {};
+    if (!has_moved) return {};
     for (Explanation& e : rivals_) {
       Eigen::VectorXd from = e.fit.scores;
       from.head(parameters()) = ground_.none.scores.head(parameters());
@@ -125,7 +129,7 @@ class Rivals {
   Result<void> fit_again(Explanation& e, const Eigen::VectorXd& from) {
     auto again = fit_of(e, from);
     if (!again) return tl::unexpected(again.error());
-    if (again->log_evidence > e.fit.log_evidence) e.fit = std::move(*again);
+    if (is_better(*again, e.fit)) e.fit = std::move(*again);
     return {};
   }
 
@@ -139,7 +143,7 @@ class Rivals {
     }
     if (!ground_.none.converged) return "the base calibration of the hourly model did not converge";
     if (is_worse(e.selected)) return "the months set aside for choosing contradict it";
-    if (e.move < rules.least_move) return "it would hardly change any meter";
+    if (e.move < rules.least_move) return "it would hardly show at any meter";
     if (e.at_truncation) return "its size is at the limit of what is thought possible";
     return {};
   }

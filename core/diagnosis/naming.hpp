@@ -57,7 +57,7 @@ struct Naming {
 };
 
 /// The probabilities of `naming`, in their order, had another prior been stated for none.
-/// @param prior_none  0…1
+/// @param prior_none  Above 0 and below 1.
 [[nodiscard]] std::vector<double> probabilities_at(const Naming& naming, double prior_none);
 
 /// Where the fit of an effect starts.

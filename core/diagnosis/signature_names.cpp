@@ -49,7 +49,9 @@ Eigen::VectorXd site_features(const SignatureEvidence& evidence) {
 }
 
 SignatureNames names_by(SignatureEvidence evidence, const NameWeights& weights, double prior_none) {
-  if (evidence.count == 0) return {.evidence = std::move(evidence)};
+  if (evidence.count == 0) {
+    return {.evidence = std::move(evidence), .probabilities = {}, .prior_none = prior_none};
+  }
   const Eigen::Index effects = std::ssize(evidence.effects);
   const Eigen::VectorXd site = site_features(evidence);
   Eigen::VectorXd scores(effects + 2);

@@ -38,7 +38,9 @@ struct SignatureNames {
   double prior_none = kEvenPrior;
 };
 
-/// @param prior_none  Probability before any reading that nothing is missing from the model, 0…1.
+/// @param prior_none  Probability before any reading that nothing is missing from the model; above
+/// 0
+///                    and below 1.
 /// @return none for sure where the site has no signatures.
 [[nodiscard]] SignatureNames names_by(SignatureEvidence evidence, const NameWeights& weights,
                                       double prior_none = kEvenPrior);

@@ -300,7 +300,7 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
     const auto kind = kind_of(site.meters[g].utility);
     if (!kind) continue;
     meters_[*kind] = make_meter(static_cast<int>(g), kLeastShare * all_kW);
-    if (site.meters[g].utility == Utility::electricity) make_cells(meters_[*kind]);
+    if (static_cast<Eigen::Index>(g) == profile_meter(site)) make_cells(meters_[*kind]);
   }
 }
 

@@ -161,10 +161,19 @@ std::unique_ptr<model::hourly::Alteration> alteration_of(const Candidate& candid
   return within_dates(std::move(alteration), from, to);
 }
 
+Eigen::Index profile_meter(const SiteProblem& site) {
+  const auto found = std::ranges::find_if(site.meters, [](const MeterData& meter) {
+    return meter.utility == Utility::electricity &&
+           (meter.end_uses[model::EndUse::lighting] > 0.0 ||
+            meter.end_uses[model::EndUse::plugs] > 0.0);
+  });
+  return found == site.meters.end() ? -1 : found - site.meters.begin();
+}
+
 ProfileReading::ProfileReading(const SiteProblem& site) : site_(&site) {
-  const auto found = std::ranges::find(site.meters, Utility::electricity, &MeterData::utility);
-  if (found == site.meters.end() || site.measured_kW.size() == 0) return;
-  meter_ = found - site.meters.begin();
+  if (site.measured_kW.size() == 0) return;
+  meter_ = profile_meter(site);
+  if (meter_ < 0) return;
   const auto& hours = site.drivers->hours;
   counts_.assign(hours.size(), 0);
   for (std::size_t p = 0; p < site.roles.size(); ++p) {
@@ -178,28 +187,39 @@ ProfileReading::ProfileReading(const SiteProblem& site) : site_(&site) {
     const auto cell =
         static_cast<std::size_t>(hours[i].day) * 24 + static_cast<std::size_t>(hours[i].local_hour);
     cell_.push_back(cell);
-    least_kW_[cell] = -1e-3 * (hours[i].lights_W + hours[i].plugs_W);
-    if (counts_[i] == 0) continue;
-    measured_kW_[cell] += site.measured_kW(static_cast<Eigen::Index>(i), meter_);
-    per_hour_[cell] += 1.0;
+    lights_kW_[cell] = 1e-3 * hours[i].lights_W;
+    plugs_kW_[cell] = 1e-3 * hours[i].plugs_W;
+    per_hour_[cell] += counts_[i];
   }
-  for (std::size_t cell = 0; cell < kCells; ++cell) {
-    if (per_hour_[cell] == 0.0) continue;
-    per_hour_[cell] = 1.0 / per_hour_[cell];
-    measured_kW_[cell] *= per_hour_[cell];
+  for (double& per_hour : per_hour_) per_hour = per_hour > 0.0 ? 1.0 / per_hour : 0.0;
+  measured_kW_ = means_of(site.measured_kW);
+}
+
+ProfileReading::Cells ProfileReading::means_of(const Eigen::ArrayXXd& hours_kW) const {
+  Cells means{};
+  for (std::size_t i = 0; i < cell_.size(); ++i) {
+    if (counts_[i] != 0) means[cell_[i]] += hours_kW(static_cast<Eigen::Index>(i), meter_);
+  }
+  for (std::size_t cell = 0; cell < kCells; ++cell) means[cell] *= per_hour_[cell];
+  return means;
+}
+
+void ProfileReading::take_usual_day_from(Eigen::ArrayXXd& change_kW) const {
+  if (meter_ < 0) return;
+  const Cells means = means_of(change_kW);
+  for (std::size_t i = 0; i < cell_.size(); ++i) {
+    change_kW(static_cast<Eigen::Index>(i), meter_) -= means[cell_[i]];
   }
 }
 
-void ProfileReading::apply(const Eigen::ArrayXXd& hours_kW, Eigen::ArrayXXd& parts_kW) {
+void ProfileReading::apply(const model::Use& use, const Eigen::ArrayXXd& hours_kW,
+                           Eigen::ArrayXXd& parts_kW) const {
   if (meter_ < 0) return;
-  std::array<double, kCells> more_kW{};
-  for (std::size_t i = 0; i < cell_.size(); ++i) {
-    if (counts_[i] != 0) more_kW[cell_[i]] += hours_kW(static_cast<Eigen::Index>(i), meter_);
-  }
+  Cells more_kW = means_of(hours_kW);
   for (std::size_t cell = 0; cell < kCells; ++cell) {
     if (per_hour_[cell] == 0.0) continue;
-    const double off_kW = measured_kW_[cell] - more_kW[cell] * per_hour_[cell];
-    more_kW[cell] = std::max(off_kW, least_kW_[cell]);
+    const double all_kW = use.lights_scale * lights_kW_[cell] + use.plugs_scale * plugs_kW_[cell];
+    more_kW[cell] = std::max(measured_kW_[cell] - more_kW[cell], -all_kW);
   }
   for (Eigen::Index p = 0; p < parts_kW.rows(); ++p) {
     const DayPart& part = site_->day_parts.parts[static_cast<std::size_t>(p)];
@@ -240,7 +260,7 @@ const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
   if (extra != nullptr) active_.push_back(extra);
   hourly_.run(building_, active_, maps_, hours_kW_);
   site_->day_parts.average_into(hours_kW_, parts_kW_);
-  profile_.apply(hours_kW_, parts_kW_);
+  profile_.apply(building_.use, hours_kW_, parts_kW_);
   ++runs_;
   return parts_kW_;
 }

@@ -77,31 +77,45 @@ struct CandidateList {
 [[nodiscard]] std::unique_ptr<model::hourly::Alteration> alteration_of(
     const Candidate& candidate, const SiteFacts& facts, std::span<const double> values);
 
+/// Index of the meter that lights and plugs are read off: the first of electricity that counts
+/// them. -1: there is none.
+[[nodiscard]] Eigen::Index profile_meter(const SiteProblem& site);
+
 /// What the lights and plugs would be if they had been read off the electricity meter with another
 /// plant.
 ///
 /// A profile by kind of day and hour is the meter less the plant of the drawings. If more or less
 /// plant runs, lights and plugs are as much smaller or larger, so the meter's mean by kind of day
-/// and hour is no evidence. The change of their heat in the rooms is left out: it is small.
+/// and hour is no evidence. Means are plain, where those of a profile are trimmed. The change of
+/// the heat in the rooms is left out: it is small.
 class ProfileReading {
  public:
   explicit ProfileReading(const SiteProblem& site);
 
   /// Adds the change to the day parts of the electricity meter, if there is one.
+  /// @param use       Of the building as it was run.
   /// @param hours_kW  (hours x m) as modelled with the profile of the drivers.
   /// @param parts_kW  (parts x m) in place.
-  void apply(const Eigen::ArrayXXd& hours_kW, Eigen::ArrayXXd& parts_kW);
+  void apply(const model::Use& use, const Eigen::ArrayXXd& hours_kW,
+             Eigen::ArrayXXd& parts_kW) const;
+  /// Takes from what something adds to the meters what the profile has of it already.
+  /// @param change_kW  (hours x m) in place.
+  void take_usual_day_from(Eigen::ArrayXXd& change_kW) const;
 
  private:
   static constexpr std::size_t kCells = model::kDayTypes * 24;
+  using Cells = std::array<double, kCells>;
+  /// Of the meter, over the hours that count.
+  [[nodiscard]] Cells means_of(const Eigen::ArrayXXd& hours_kW) const;
 
   const SiteProblem* site_;
   Eigen::Index meter_ = -1;
   std::vector<std::size_t> cell_;  ///< (hours) kind of day and hour.
   std::vector<char> counts_;       ///< (hours) 1: measured, and may be known to the profile.
-  std::array<double, kCells> measured_kW_{};  ///< Means.
-  std::array<double, kCells> per_hour_{};     ///< 1 / hours that count; 0: none.
-  std::array<double, kCells> least_kW_{};     ///< Lights and plugs cannot get below zero.
+  Cells per_hour_{};               ///< 1 / hours that count; 0: none.
+  Cells measured_kW_{};            ///< Means.
+  Cells lights_kW_{};              ///< Of the drivers. With the plugs they cannot get below zero.
+  Cells plugs_kW_{};
 };
 
 /// Runs the hourly model for a site and reduces it to day parts. Use one instance per thread.

@@ -46,6 +46,7 @@ class UsualErrors {
 };
 
 /// Standard deviation of an effect's amount where it is absent, in units of its typical amount.
+/// Learnt before lights and plugs were read off the meter anew in each run.
 /// @return the median of all effects for one that was not visible in the training population.
 /// @see tests/results/diagnosis.md for that population.
 [[nodiscard]] double usual_amount_sd(std::string_view effect);

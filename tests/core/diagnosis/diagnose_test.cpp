@@ -19,11 +19,10 @@ SiteProblem site_with(const Effect* hidden, const std::vector<double>& values, i
   Predictor predictor{site};
   std::vector<double> theta;
   for (const Parameter& p : site.parameters) theta.push_back(p.prior.quantile(0.4));
-  site.measured_parts_kW = predictor.parts_kW(theta);
-  if (hidden != nullptr) {
-    const auto alteration = hidden->bind(site.facts(), values, -1);
-    site.measured_parts_kW = predictor.parts_kW(theta, alteration.get());
-  }
+  const auto alteration = hidden == nullptr ? nullptr : hidden->bind(site.facts(), values, -1);
+  predictor.parts_kW(theta, alteration.get());
+  site.measured_kW = predictor.hours_kW();
+  site.day_parts.average_into(site.measured_kW, site.measured_parts_kW);
   Rng rng{7};
   for (Eigen::Index g = 0; g < 3; ++g) {
     const double mean = site.measured_parts_kW.col(g).mean();
@@ -33,7 +32,6 @@ SiteProblem site_with(const Effect* hidden, const std::vector<double>& values, i
       site.measured_parts_kW(i, g) += slow + 0.02 * mean * rng.normal();
     }
   }
-  site.measured_kW = predictor.hours_kW();
   return site;
 }
 

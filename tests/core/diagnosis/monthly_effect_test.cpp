@@ -18,18 +18,23 @@ SiteProblem sample_site(int months) {
   return testing::sample_problem(kParameters, months);
 }
 
-/// (meters * months) kWh/day of the hourly model.
+/// (meters * months) kWh/day of the hourly model; of the effect, what the profile does not have.
 std::vector<double> hourly_sum(const SiteProblem& site, const Alteration* effect,
                                const std::vector<double>& theta = {}) {
   Predictor predictor{site};
+  predictor.parts_kW(theta);
+  Eigen::ArrayXXd hours_kW = predictor.hours_kW();
   predictor.parts_kW(theta, effect);
+  Eigen::ArrayXXd change_kW = predictor.hours_kW() - hours_kW;
+  ProfileReading{site}.take_usual_day_from(change_kW);
+  hours_kW += change_kW;
   const std::size_t months = site.drivers->months.size();
   std::vector<double> sums(3 * months, 0.0);
   for (std::size_t g = 0; g < 3; ++g) {
     for (std::size_t i = 0; i < site.drivers->hours.size(); ++i) {
       const auto month = static_cast<std::size_t>(site.drivers->hours[i].month);
       sums[g * months + month] +=
-          predictor.hours_kW()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g)) /
+          hours_kW(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g)) /
           metering::days_in(site.drivers->months[month]);
     }
   }
@@ -85,6 +90,33 @@ TEST(MonthlyEffect, IsTheHourlySumForEveryEffectOfTheCatalogue) {
     if (candidate.meter > 0) continue;  // one meter stands for all
     EXPECT_LT(worst_error(site, candidate), 0.01) << candidate.key(site);
   }
+}
+
+// The profile of a monthly model is read off the meter: what always runs is in it already. What
+// begins is in it in part, so the months before are lower, and those after higher.
+TEST(MonthlyEffect, CountsNothingTwiceThatTheProfileHas) {
+  const SiteProblem site = sample_site(12);
+  const auto electricity = [&](bool begins) {
+    const auto candidates = list_candidates(site).candidates;
+    const auto room = std::ranges::find_if(candidates, [&](const Candidate& c) {
+      return c.effect->id == "server_room" && c.begins == begins;
+    });
+    EXPECT_NE(room, candidates.end());
+    std::vector<double> eta{20.0, 0.0, 0.0};
+    if (begins) eta.push_back(180.0);
+    std::vector<ParameterRange> ranges;
+    for (const double value : eta) ranges.push_back({value, value});
+    std::vector<double> change(3 * site.drivers->months.size(), 1e6);
+    tabulate_effect(site, {}, *room, ranges).apply({}, eta, change);
+    for (double& value : change) value -= 1e6;
+    return std::vector<double>(change.begin(), change.begin() + 12);
+  };
+  // Its heat makes the fans run more in summer and less in winter.
+  for (const double kWh_day : electricity(false)) EXPECT_NEAR(kWh_day, 0.0, 0.05 * 480.0);
+  const std::vector<double> begun = electricity(true);
+  EXPECT_LT(begun[1], -100.0);
+  EXPECT_GT(begun[9], 100.0);
+  EXPECT_NEAR(begun[9] - begun[1], 480.0, 25.0) << "20 kW, day and night";
 }
 
 TEST(MonthlyEffect, IsExactAtItsNodes) {

@@ -60,7 +60,8 @@ TEST(SignatureNames, APriorOfNoneIsItsOdds) {
 }
 
 TEST(SignatureNames, WithoutSignaturesNothingIsSaid) {
-  const SignatureNames names = names_by({}, learnt_weights());
+  const SignatureNames names = names_by({}, learnt_weights(), 0.9);
+  EXPECT_EQ(names.prior_none, 0.9);
   EXPECT_EQ(names.none, 1.0);
   EXPECT_EQ(names.probabilities.size(), 0);
 }

@@ -34,6 +34,12 @@ class Signatures : public ::testing::Test {
     });
   }
 
+  /// The meter that lights and plugs are read off.
+  void become_electricity() {
+    site_.meters[0].utility = Utility::electricity;
+    site_.meters[0].end_uses = *model::default_meter_map(Utility::electricity);
+  }
+
   template <class Power>
   Eigen::ArrayXXd hourly(Power power) const {
     const auto& hours = site_.drivers->hours;
@@ -229,7 +235,7 @@ TEST_F(Signatures, AreLinearInThePower) {
 // Lights and plugs are read off the electricity meter: what runs at the same hours all year is
 // among them, and says nothing.
 TEST_F(Signatures, OfElectricityKnowNoUsualDay) {
-  site_.meters[0].utility = Utility::electricity;
+  become_electricity();
   const Eigen::ArrayXXd fans = hourly([&](const DriverHour& hour, Eigen::Index) {
     return hour.day == model::DayType::saturday ? 12.0 : 0.5 * hour.local_hour;
   });
@@ -251,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(Of, SpansOf,
 
 // What is told of a span without reading the record anew.
 TEST_P(SpansOf, AreThoseOfTheMixedRecord) {
-  site_.meters[0].utility = GetParam();
+  if (GetParam() == Utility::electricity) become_electricity();
   const Eigen::ArrayXXd other = hourly([&](const DriverHour& hour, Eigen::Index meter) {
     const double earlier = hour.local_hour == 5 || hour.local_hour == 6 ? 40.0 : 0.0;
     return meter == 1 ? 2.0 * std::max(17.0 - hour.dry_bulb_C, 0.0)
