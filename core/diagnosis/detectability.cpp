@@ -164,6 +164,7 @@ Result<Detectability> FootprintGauge::measure(
   // Averaging is linear, so parts of (twin + s) minus parts of the twin equal those of s, with
   // the twin's mask.
   Eigen::ArrayXXd counted = twin_->measured_kW.isFinite().select(footprint_kW, kAbsent);
+  const Eigen::ArrayXXd whole_kW = measured_parts(twin_->day_parts, counted);
   ProfileReading{*twin_}.take_usual_day_from(counted);
   const Eigen::ArrayXXd parts_kW = measured_parts(twin_->day_parts, counted);
   const Eigen::VectorXd footprint =
@@ -178,7 +179,7 @@ Result<Detectability> FootprintGauge::measure(
                        .day = at(day_, footprint),
                        .block = block,
                        .d_star = block.detectability / null_score_spread,
-                       .meters = moves(parts_kW)};
+                       .meters = moves(whole_kW)};
 }
 
 Visibility FootprintGauge::at_block(const Eigen::VectorXd& footprint) const {
