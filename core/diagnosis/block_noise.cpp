@@ -205,10 +205,21 @@ struct BlockNoise::Whitened {
 void BlockNoise::factor_patterns() {
   const Eigen::Index p = patterns_->cols();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(p, p);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(p, columns_of_strip);
+  Eigen::Array<double, columns_of_strip, Eigen::Dynamic> strip;
   for (Eigen::Index j = 0; j < p; j += columns_of_strip) {
     const Eigen::Index count = std::min<Eigen::Index>(columns_of_strip, p - j);
-    const Eigen::MatrixXd some = patterns_->middleCols(j, count);
-    matrix.middleCols(j, count) += level_.pattern_sd * whiten_and_gather(some).in_patterns;
+    strip.setZero(columns_of_strip, points());
+    for (Eigen::Index c = 0; c < count; ++c) {
+      for (SparseColumn entry(*patterns_, j + c); entry; ++entry) {
+        strip(c, entry.index()) = entry.value();
+      }
+    }
+    whiten_strip(strip);
+    whiten_strip_transposed(strip);
+    gather(strip, products, j);  // The factor reads what is below the diagonal.
+    matrix.middleCols(j, count).bottomRows(p - j) +=
+        level_.pattern_sd * products.topLeftCorner(p, count).bottomRows(p - j);
   }
   // I plus a positive semi-definite matrix can always be factorised.
   pattern_factor_.compute(matrix);
@@ -238,11 +249,12 @@ void BlockNoise::whiten_strip_transposed(Strip& strip) const {
   }
 }
 
-/// tau Z' X (p x k) of a strip that may have more than k columns.
+/// tau Z' X (p x k) of a strip that may have more than k columns; rows before `from` are left.
 template <class Strip>
-void BlockNoise::gather(const Strip& strip, Eigen::Ref<Eigen::MatrixXd> products) const {
+void BlockNoise::gather(const Strip& strip, Eigen::Ref<Eigen::MatrixXd> products,
+                        Eigen::Index from) const {
   constexpr int width = Strip::RowsAtCompileTime;
-  for (Eigen::Index j = 0; j < patterns_->cols(); ++j) {
+  for (Eigen::Index j = from; j < patterns_->cols(); ++j) {
     Eigen::Array<double, width, 1> sum = Eigen::Array<double, width, 1>::Zero();
     for (SparseColumn entry(*patterns_, j); entry; ++entry) {
       sum += entry.value() * strip.col(entry.index());
@@ -259,7 +271,7 @@ BlockNoise::Whitened BlockNoise::whiten_and_gather(const Eigen::MatrixXd& column
     whiten_strip(strip);
     result.columns.middleCols(first, count) = strip.topRows(count).matrix().transpose();
     whiten_strip_transposed(strip);
-    gather(strip, result.in_patterns.middleCols(first, count));
+    gather(strip, result.in_patterns.middleCols(first, count), 0);
   });
   return result;
 }

@@ -59,7 +59,6 @@ using SparsePatterns = std::shared_ptr<const Eigen::SparseMatrix<double>>;
 /// Factorising costs O(n p^2) at worst, O(n p) for sparse patterns; everything else is linear in n.
 /// Held-out points that must be scored without their neighbours get their own BlockNoise: built on
 /// those points alone, it is their marginal, with u not conditioned on anything else.
-/// built on those points alone it is their marginal, u not conditioned on anything else.
 class BlockNoise {
  public:
   /// @pre sizes agree, times increase, n >= 1, and the level is in the ranges stated there.
@@ -127,7 +126,7 @@ class BlockNoise {
   template <class Strip>
   void whiten_strip_transposed(Strip& strip) const;
   template <class Strip>
-  void gather(const Strip& strip, Eigen::Ref<Eigen::MatrixXd> products) const;
+  void gather(const Strip& strip, Eigen::Ref<Eigen::MatrixXd> products, Eigen::Index from) const;
   /// Diagonal of Sigma^-1 (n).
   [[nodiscard]] Eigen::VectorXd inverse_diagonal() const;
 
