@@ -49,7 +49,8 @@ Eigen::MatrixXd changes_up_to(const SpanReader& reader, int days) {
 
 void expect_changes(const SiteProblem& site, const SignatureReader& reader, const SignatureFit& fit,
                     const std::vector<Candidate>& candidates, Predictor& predictor,
-                    const std::function<void(const ExpectedChange&)>& tell) {
+                    const std::function<void(const ExpectedChange&)>& tell,
+                    std::optional<int> since_day) {
   const SiteFacts facts = site.facts();
   const int days = site.drivers->hours.back().day_index + 1;
   SpanReader spans(reader, fit.hours_kW);
@@ -64,6 +65,15 @@ void expect_changes(const SiteProblem& site, const SignatureReader& reader, cons
       const auto alteration = candidates[i].effect->bind(facts, values, candidates[i].meter);
       predictor.parts_kW(fit.theta, alteration.get());
       spans.take(predictor.hours_kW());
+      if (since_day) {
+        const Eigen::MatrixXd change = spans.change(*since_day, days);
+        for (auto alike = begin; alike != candidates.end(); ++alike) {
+          if (!is_alike(*alike)) continue;
+          tell({&*alike, values, *since_day, days,
+                Eigen::Map<const Eigen::VectorXd>(change.data(), change.size())});
+        }
+        continue;
+      }
       const Eigen::MatrixXd changes = changes_up_to(spans, days);
       for (auto alike = begin; alike != candidates.end(); ++alike) {
         if (!is_alike(*alike)) continue;

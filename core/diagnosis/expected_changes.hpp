@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/diagnosis/signature_fit.hpp"
@@ -22,8 +23,10 @@ struct ExpectedChange {
 /// one run of the model, its dates none: what may begin or not is run once for both.
 /// @param candidates  Must outlive what is told.
 /// @param tell        Called with each change; one at a time, so that nobody needs to keep all.
+/// @param since_day   The day on which all candidates began; absent: dates are tried.
 void expect_changes(const SiteProblem& site, const SignatureReader& reader, const SignatureFit& fit,
                     const std::vector<Candidate>& candidates, Predictor& predictor,
-                    const std::function<void(const ExpectedChange&)>& tell);
+                    const std::function<void(const ExpectedChange&)>& tell,
+                    std::optional<int> since_day = {});
 
 }  // namespace recald::diagnosis

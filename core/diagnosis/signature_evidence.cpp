@@ -142,10 +142,11 @@ struct Fitted {
 class EvidenceSearch {
  public:
   EvidenceSearch(const SiteProblem& site, const std::vector<Candidate>& candidates,
-                 const SignatureNull& null, Predictor& predictor)
+                 const SignatureNull& null, Predictor& predictor, std::optional<int> since_day)
       : site_(site),
         candidates_(candidates),
         predictor_(predictor),
+        since_day_(since_day),
         reader_(site),
         fit_(fit_signatures(site, reader_, predictor)),
         search_(site, reader_, null, predictor, fit_.measured, fit_.fitted) {}
@@ -182,12 +183,14 @@ class EvidenceSearch {
     here.hours_kW = predictor_.hours_kW();
     const Viewpoint viewpoint(search_, point);
     ShapeLooks looks;
-    expect_changes(site_, reader_, here, candidates_, predictor_,
-                   [&](const ExpectedChange& expected) {
-                     // Readings that stand still are no readings, so no model is asked for them.
-                     if (expected.candidate->effect->id == "stuck_meter") return;
-                     viewpoint.look(expected, looks);
-                   });
+    expect_changes(
+        site_, reader_, here, candidates_, predictor_,
+        [&](const ExpectedChange& expected) {
+          // Readings that stand still are no readings, so no model is asked for them.
+          if (expected.candidate->effect->id == "stuck_meter") return;
+          viewpoint.look(expected, looks);
+        },
+        since_day_);
     return looks;
   }
 
@@ -303,6 +306,7 @@ class EvidenceSearch {
   const SiteProblem& site_;
   const std::vector<Candidate>& candidates_;
   Predictor& predictor_;
+  std::optional<int> since_day_;
   SignatureReader reader_;
   SignatureFit fit_;
   SignatureSearch search_;
@@ -314,8 +318,9 @@ class EvidenceSearch {
 }  // namespace
 
 SignatureEvidence evidence_of(const SiteProblem& site, const std::vector<Candidate>& candidates,
-                              const SignatureNull& null, Predictor& predictor) {
-  return EvidenceSearch(site, candidates, null, predictor).run();
+                              const SignatureNull& null, Predictor& predictor,
+                              std::optional<int> since_day) {
+  return EvidenceSearch(site, candidates, null, predictor, since_day).run();
 }
 
 }  // namespace recald::diagnosis

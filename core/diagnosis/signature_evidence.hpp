@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/diagnosis/signature_search.hpp"
@@ -34,8 +35,10 @@ struct SignatureEvidence {
 /// @param candidates  Must outlive the evidence.
 /// @param predictor   Of the same site; what it has accepted counts. If it was stopped, the
 ///                    evidence means nothing.
+/// @param since_day   As of `expect_changes`.
 [[nodiscard]] SignatureEvidence evidence_of(const SiteProblem& site,
                                             const std::vector<Candidate>& candidates,
-                                            const SignatureNull& null, Predictor& predictor);
+                                            const SignatureNull& null, Predictor& predictor,
+                                            std::optional<int> since_day = {});
 
 }  // namespace recald::diagnosis

@@ -304,6 +304,10 @@ SignatureReader::SignatureReader(const SiteProblem& site) : site_(&site) {
   }
 }
 
+bool SignatureReader::reads(int meter) const {
+  return std::ranges::any_of(meters_, [&](const Meter& own) { return own.column == meter; });
+}
+
 SignatureReader::Meter SignatureReader::make_meter(int column, double least_kW) const {
   const auto& hours = site_->drivers->hours;
   Meter meter{.column = column};

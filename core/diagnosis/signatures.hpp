@@ -32,6 +32,10 @@ class SignatureReader {
  public:
   explicit SignatureReader(const SiteProblem& site);
 
+  /// Whether signatures are taken of this meter: of each kind of energy they are of the first one,
+  /// and of none that counts next to nothing. @param meter  Index among the site's.
+  [[nodiscard]] bool reads(int meter) const;
+
   /// @param hours_kW  (hours x m) measured or modelled. Only hours that were measured count.
   /// @return (names x meters) powers in units of what was measured in the same hours plus a quarter
   ///         of the meter's mean, because models err by shares of what is there. The mean counts as

@@ -319,6 +319,8 @@ class Trial {
           return std::pair{factor, since_.with_factor(contest.index, factor) +
                                        of_levels(contest.index, factor - 1.0)};
         });
+      case CauseKind::effect:
+        return;  // The hours put names to causes, later.
     }
   }
 

@@ -27,6 +27,7 @@ enum class CauseKind : std::uint8_t {
   /// An effect that the model lacks: all outputs moved, each by a share of its own, or one alone
   /// and in no month by quite the same share, which a meter's factor is.
   unknown,
+  effect,  ///< One that the model lacks, by name.
 };
 
 struct Cause {
@@ -38,6 +39,8 @@ struct Cause {
   double mean;
   double q05;
   double q95;
+  std::string effect = {};  ///< Id in the catalogue; of a meter, what is likeliest wrong with it.
+  std::string title = {};   ///< Its title.
 };
 
 struct CauseOptions {

@@ -37,6 +37,7 @@ struct Ground {
   std::vector<LevelOutput> levels;
   calibration::HyperPrior prior;
   DailyWatches daily;  ///< Before the first month after the learning ones.
+  AskHours ask_hours;
 };
 
 void extend(FollowedWindow& window, const SequentialCalibration& sequence) {
@@ -133,8 +134,8 @@ Result<FollowedWindow> follow_expanding(const Ground& ground, const FollowOption
   if (daily.is_able()) monthly.months_between_false_alarms *= 2.0;  // days have the other half
   Prequential prequential{sequence_of(ground, windows().front(), options, seed), ground.data,
                           ground.levels, monthly};
-  Inquiries inquiries{ground.model, ground.prior, options.inquiries, seed, drift, prequential,
-                      daily,        proceed};
+  Inquiries inquiries{ground.model, ground.prior, options.inquiries, seed,   drift,
+                      prequential,  daily,        ground.ask_hours,  proceed};
   auto window = follow_window(
       windows().front().name, ground, drift.learning_months, prequential.calibration(), pace,
       [&](std::vector<int> first) { return prequential.learn(std::move(first), proceed); },
@@ -264,7 +265,8 @@ Result<SiteDrift> follow(const FollowedSite& followed,
                                     is_calibrated ? normalisation->pooled_variance : 1.0),
       // Days and months share the false alarms.
       {std::move(beside.days), drift.months, drift.learning_months,
-       2.0 * options.watch.months_between_false_alarms}};
+       2.0 * options.watch.months_between_false_alarms},
+      std::move(beside.ask_hours)};
   if (!has_figures_after(ground, drift.learning_months)) {
     drift.warnings.push_back({"No month after the learning period has a figure to compare."});
   }

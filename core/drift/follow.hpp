@@ -32,6 +32,7 @@ struct SeenBeside {
   std::vector<MeterChange> meter_changes;
   std::vector<Direction> directions;
   std::vector<DailyWatches::Output> days;  ///< Of the meters whose days are watched.
+  AskHours ask_hours = {};                 ///< Empty: months alone say what a change comes from.
 };
 
 /// Follows a site in four windows side by side.

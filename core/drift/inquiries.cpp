@@ -1,6 +1,7 @@
 #include "core/drift/inquiries.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,16 @@ bool could_be_a_unit(const Alarm& alarm) {
   if (!alarm.days) return false;
   const double ratio = 1.0 + alarm.days->excess;
   return ratio >= least_factor || ratio <= 1.0 / least_factor;
+}
+
+/// That the building has changed, in whatever: it is learnt anew all the same.
+double of_building(const std::vector<Cause>& causes) {
+  double sum = 0.0;
+  for (const Cause& cause : causes) {
+    if (cause.kind != CauseKind::nothing && cause.kind != CauseKind::meter)
+      sum += cause.probability;
+  }
+  return sum;
 }
 
 /// A meter that is known to have changed explains whatever it alone shows, even or uneven.
@@ -79,7 +90,7 @@ Result<void> Inquiries::open(const Alarm& alarm, int month) {
     return tl::unexpected(before.error());
   }
   drift_.alarms.push_back({.alarm = alarm, .causes = {}, .explained_until = month});
-  if (before) open_.push_back({drift_.alarms.size() - 1, std::move(*before)});
+  if (before) open_.push_back({drift_.alarms.size() - 1, std::move(*before), {}});
   return {};
 }
 
@@ -120,31 +131,49 @@ const MeterChange* Inquiries::change_of_meter(const Alarm& alarm, int month) con
   return found == drift_.meter_changes.end() ? nullptr : &*found;
 }
 
-Result<bool> Inquiries::weigh(const Open& open, int month) {
+/// Hours take seconds to ask: when something may be done about it, again with twice as many, and in
+/// the newest month, which people read.
+void Inquiries::ask_hours(Open& open, int month) {
+  if (!ask_hours_) return;
+  const Alarm& alarm = drift_.alarms[open.alarm].alarm;
+  const int months = month - alarm.since + 1;
+  const bool is_newest = month + 1 == std::ssize(drift_.months);
+  const bool is_due = months >= options_.months_to_act &&
+                      (!open.names || std::has_single_bit(static_cast<unsigned>(months)));
+  if (is_newest || is_due) open.names = ask_hours_(alarm, month, proceed_);
+}
+
+Result<bool> Inquiries::weigh(Open& open, int month) {
   ExplainedAlarm& alarm = drift_.alarms[open.alarm];
   auto causes = weigh_causes(case_of(alarm.alarm, month), open.before, options_.causes, seed_);
   if (!causes) return tl::unexpected(causes.error());
   alarm.causes = std::move(*causes);
   const MeterChange* change = change_of_meter(alarm.alarm, month);
-  if (change) blame_meter(alarm, *change);
+  if (change) {
+    blame_meter(alarm, *change);
+  } else {
+    ask_hours(open, month);
+    if (open.names) alarm.causes = with_names(std::move(alarm.causes), *open.names);
+  }
   alarm.explained_until = month;
   const int months = month - alarm.alarm.since + 1;
   const int months_to_act = could_be_a_unit(alarm.alarm) && !change
                                 ? std::max(options_.months_to_act, kMonthsToKnowAUnit)
                                 : options_.months_to_act;
+  if (months < months_to_act) return false;
   const Cause& first = alarm.causes.front();
-  if (months < months_to_act || first.probability < options_.act_at) {
-    return months >= kMonthsToAsk;
-  }
   Result<void> done;
-  if (first.kind == CauseKind::meter) {
+  if (first.kind == CauseKind::meter && first.probability >= options_.act_at) {
     done = prequential_.set_aside(first.index, alarm.alarm.since, proceed_);
     daily_.set_aside(first.index);
     alarm.consequence = ExplainedAlarm::Consequence::meter_set_aside;
-  } else if (first.kind != CauseKind::nothing) {
+  } else if (of_building(alarm.causes) >= options_.act_at) {
     done = prequential_.begin_at(alarm.alarm.since, proceed_);
     daily_.begin_at(alarm.alarm.since);
     alarm.consequence = ExplainedAlarm::Consequence::began_anew;
+  } else {
+    const bool is_chance = first.kind == CauseKind::nothing && first.probability >= options_.act_at;
+    return is_chance || months >= kMonthsToAsk;
   }
   if (!done) return tl::unexpected(done.error());
   return true;

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/calibration/hyper_prior.hpp"
 #include "core/drift/cause.hpp"
 #include "core/drift/daily_watches.hpp"
+#include "core/drift/named_change.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/drift/site_drift.hpp"
 #include "core/model/monthly_model.hpp"
@@ -17,7 +19,8 @@ namespace recald::drift {
 
 struct InquiryOptions {
   CauseOptions causes;
-  /// A cause as likely as this is acted upon: the model begins anew, or the meter is set aside.
+  /// A meter as likely as this to be wrong is set aside; where it is as likely that the building has
+  /// changed, in whatever, the model begins anew.
   double act_at = 0.8;
   /// A season shows one meter alone: causes are weighed again with each month, acted upon after so
   /// many, and left open after a year.
@@ -31,7 +34,8 @@ class Inquiries {
   ///               alarms are filled here.
   Inquiries(const MonthlyModel& model, const calibration::HyperPrior& prior,
             const InquiryOptions& options, std::uint64_t seed, SiteDrift& drift,
-            Prequential& prequential, DailyWatches& daily, const std::function<bool()>& proceed)
+            Prequential& prequential, DailyWatches& daily, const AskHours& ask_hours,
+            const std::function<bool()>& proceed)
       : model_(model),
         prior_(prior),
         options_(options),
@@ -39,6 +43,7 @@ class Inquiries {
         drift_(drift),
         prequential_(prequential),
         daily_(daily),
+        ask_hours_(ask_hours),
         proceed_(proceed) {}
 
   /// After a month was taken in. Days say first when something changed.
@@ -49,6 +54,7 @@ class Inquiries {
   struct Open {
     std::size_t alarm;
     std::vector<Eigen::VectorXd> before;
+    std::optional<NamedChange> names;  ///< As the hours said when they were last asked.
   };
 
   [[nodiscard]] Result<void> open(const Alarm& alarm, int month);
@@ -56,7 +62,8 @@ class Inquiries {
   [[nodiscard]] ChangeCase case_of(const Alarm& alarm, int until) const;
   [[nodiscard]] const MeterChange* change_of_meter(const Alarm& alarm, int month) const;
   /// @return whether nothing more is to be asked.
-  [[nodiscard]] Result<bool> weigh(const Open& open, int month);
+  [[nodiscard]] Result<bool> weigh(Open& open, int month);
+  void ask_hours(Open& open, int month);
 
   const MonthlyModel& model_;
   const calibration::HyperPrior& prior_;
@@ -65,6 +72,7 @@ class Inquiries {
   SiteDrift& drift_;
   Prequential& prequential_;
   DailyWatches& daily_;
+  const AskHours& ask_hours_;
   const std::function<bool()>& proceed_;
   std::vector<Open> open_;
 };

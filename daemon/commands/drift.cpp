@@ -48,7 +48,7 @@ int run_drift(const DriftArguments& arguments, const Console& console) {
                                           line.show(progress);
                                           return !guard.interrupted();
                                         }};
-  const auto drift = follow_site(*modelled, options, std::move(version->effects), context);
+  const auto drift = follow_site(*modelled, options, version->effects, context);
   if (!drift) return console.fail(drift.error());
   modelled->facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -79,6 +79,7 @@ TEST_F(DriftCommand, FindsSinceWhenAMeterReadsTooMuchAndRepeatsItself) {
               AllOf(HasSubstr("Chilled water, daily mean has been more"),
                     HasSubstr("If it goes on, it costs about "), HasSubstr(" EUR a year.")));
   // Its days tell before the month is over.
+  EXPECT_EQ(alarm["causes"][0]["kind"], "meter") << alarm["sentence"];
   ASSERT_FALSE(alarm["days"].is_null());
   EXPECT_EQ(alarm["month"], year + "-06");
   EXPECT_GE(alarm["days"]["since_latest"], year + "-06-01");

@@ -114,12 +114,13 @@ std::vector<StoredForecast> forecasts_of(const SiteDrift& drift, const RunFacts&
   return forecasts;
 }
 
-/// The newest month has attributed an alarm to something the model lacks, so it
-/// should be identified.
+/// The newest month has attributed an alarm to something the model lacks, so it should be
+/// identified and added.
 bool asks_for_a_name(const SiteDrift& drift) {
   return std::ranges::any_of(drift.alarms, [&](const ExplainedAlarm& alarm) {
     return alarm.consequence == ExplainedAlarm::Consequence::began_anew &&
-           alarm.causes.front().kind == drift::CauseKind::unknown &&
+           (alarm.causes.front().kind == drift::CauseKind::unknown ||
+            alarm.causes.front().kind == drift::CauseKind::effect) &&
            alarm.explained_until == drift.record.back().month;
   });
 }
@@ -140,7 +141,7 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
   if (!version) return tl::unexpected(version.error());
   modelled->facts.model_version = version_name(*version, modelled->facts.model_version);
   modelled->facts.seed = context.seed;
-  auto drift = follow_site(*modelled, options, std::move(version->effects), context);
+  auto drift = follow_site(*modelled, options, version->effects, context);
   if (!drift) return tl::unexpected(drift.error());
   auto written = write_drift(modelled->site.config, *drift, modelled->facts,
                              metering::to_string(now), drift_json(*drift, modelled->facts), folder);

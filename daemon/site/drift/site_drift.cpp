@@ -11,6 +11,7 @@
 #include "core/display/id_words.hpp"
 #include "core/display/warning.hpp"
 #include "core/metering/lost_readings.hpp"
+#include "daemon/site/drift/hours_since.hpp"
 #include "daemon/site/drift/watched_days.hpp"
 #include "daemon/site/model/meter_rates.hpp"
 
@@ -121,10 +122,10 @@ Result<PeriodConfig> followed_period(const OpenSite& site, const Recording& reco
 }
 
 Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& options,
-                              std::vector<diagnosis::AddedEffect> added,
+                              const std::vector<diagnosis::AddedEffect>& added,
                               const calibration::RunContext& context) {
   auto prepared = prepare_site(modelled.site.config, modelled.site.calendar, modelled.recording,
-                               modelled.weather, std::move(added));
+                               modelled.weather, added);
   if (!prepared) return tl::unexpected(prepared.error());
   auto design =
       calibration::run_design(*prepared->model, prepared->problem, options.design_runs, context);
@@ -142,6 +143,13 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
                                modelled.recording, so_far.month_names.front(), learning_months),
                            .directions = {},
                            .days = days_of_meters(modelled, learning_months, so_far)};
+  if (facts_of(so_far.model).is_of_building) {
+    std::vector<std::string> meters;
+    for (const assessment::OutputCalibration& output : so_far.outputs) {
+      meters.push_back(output.meter_id);
+    }
+    beside.ask_hours = ask_hours_of(modelled, so_far.month_names, std::move(meters), added);
+  }
   if (!prepared->electricity_use.empty()) {
     beside.directions.push_back({.name = "electricity use", .change = prepared->electricity_use});
   }

@@ -32,7 +32,7 @@ using DriftOptions = drift::FollowOptions;
 /// @return or what `prepare_site` finds, an error of the model, cancelled.
 [[nodiscard]] Result<SiteDrift> follow_site(const ModelledSite& modelled,
                                             const DriftOptions& options,
-                                            std::vector<diagnosis::AddedEffect> added,
+                                            const std::vector<diagnosis::AddedEffect>& added,
                                             const calibration::RunContext& context);
 
 }  // namespace recald::daemon

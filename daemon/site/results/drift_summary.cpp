@@ -19,6 +19,8 @@ const char* kind_word(drift::CauseKind kind) {
       return "meter";
     case drift::CauseKind::unknown:
       return "unknown";
+    case drift::CauseKind::effect:
+      return "effect";
   }
   return "unknown";
 }
@@ -35,7 +37,7 @@ const char* consequence_word(ExplainedAlarm::Consequence consequence) {
   return "none";
 }
 
-/// The parameter, use or output that a cause speaks of.
+/// The parameter, use, output or effect that a cause speaks of.
 std::optional<std::string> subject_of(const SiteDrift& drift, const drift::Cause& cause) {
   const auto at = static_cast<std::size_t>(cause.index);
   switch (cause.kind) {
@@ -48,6 +50,8 @@ std::optional<std::string> subject_of(const SiteDrift& drift, const drift::Cause
       return drift.outputs[at].name;
     case drift::CauseKind::meter:
       return drift.outputs[at].name;
+    case drift::CauseKind::effect:
+      return cause.effect;
     case drift::CauseKind::nothing:
       break;
   }

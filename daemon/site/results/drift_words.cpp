@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/absent.hpp"
+#include "core/diagnosis/effect.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/unit.hpp"
 #include "core/display/warning.hpp"
@@ -64,6 +67,64 @@ std::string since_words(const SiteDrift& drift, const drift::Alarm& alarm) {
                      drift.month_name(alarm.since_earliest), drift.month_name(alarm.since_latest));
 }
 
+/// A cause that is as likely as this is settled.
+constexpr double kSettled = 0.8;
+
+/// What would tell the two likeliest causes apart; empty: nobody knows, or nobody need know.
+std::string telling_words(const SiteDrift& drift, const std::vector<drift::Cause>& causes) {
+  const diagnosis::Effect* effect = diagnosis::find_effect(causes[0].effect);
+  if (effect == nullptr || causes[0].probability >= kSettled) return "";
+  const auto rival =
+      std::ranges::find(effect->confusable, causes[1].effect, &diagnosis::Confusable::effect);
+  if (rival == effect->confusable.end()) return "";
+  return " What tells them apart: " +
+         display::with_temperatures_in(drift.units, std::string{rival->separated_by});
+}
+
+/// "heating", "cooling"; empty: a meter that works all year.
+std::string season_of(metering::Utility utility) {
+  switch (utility) {
+    case metering::Utility::heating:
+    case metering::Utility::steam:
+    case metering::Utility::gas:
+      return "heating";
+    case metering::Utility::chilled_water:
+      return "cooling";
+    case metering::Utility::electricity:
+    case metering::Utility::water:
+      break;
+  }
+  return "";
+}
+
+/// Of the months from one to the one before another; NaN: none was measured.
+double mean_of(const FollowedOutput& output, int from, int to) {
+  double sum = 0.0;
+  int count = 0;
+  for (int month = from; month < to; ++month) {
+    const double measured = output.measured[static_cast<std::size_t>(month)];
+    if (std::isnan(measured)) continue;
+    sum += measured;
+    ++count;
+  }
+  return count > 0 ? sum / count : kAbsent;
+}
+
+/// A plant that has been at rest since the change says nothing of it yet.
+std::string wait_words(const SiteDrift& drift, const ExplainedAlarm& alarm) {
+  constexpr double kAtRest = 0.15;  // Of the mean of the months before.
+  if (alarm.causes.front().probability >= kSettled) return "";
+  for (const FollowedOutput& output : drift.outputs) {
+    const std::string season = season_of(output.utility);
+    if (season.empty() || output.name.ends_with("_peak_kW")) continue;
+    const double since = mean_of(output, alarm.alarm.since, alarm.explained_until + 1);
+    if (since < kAtRest * mean_of(output, 0, alarm.alarm.since)) {
+      return fmt::format(" Wait until {} begins: its months will tell more.", season);
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string alarm_sentence(const SiteDrift& drift, const drift::Alarm& alarm) {
@@ -122,9 +183,12 @@ std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
                          drift.directions[at].name, 100.0 * (cause.mean - 1.0),
                          100.0 * (cause.q05 - 1.0), 100.0 * (cause.q95 - 1.0));
     case drift::CauseKind::meter:
-      return fmt::format("the {} meter shows {:.3g} times what it should (90 %: {:.3g} to {:.3g})",
-                         display::id_words(drift.outputs[at].meter), cause.mean, cause.q05,
-                         cause.q95);
+      return fmt::format(
+          "the {} meter shows {:.3g} times what it should (90 %: {:.3g} to {:.3g}){}",
+          display::id_words(drift.outputs[at].meter), cause.mean, cause.q05, cause.q95,
+          cause.title.empty() ? "" : "; by its hours: " + cause.title);
+    case drift::CauseKind::effect:
+      return cause.title;
   }
   return "";
 }
@@ -135,6 +199,7 @@ std::string advice_words(drift::CauseKind kind) {
       return "Wait for another month.";
     case drift::CauseKind::parameter:
     case drift::CauseKind::direction:
+    case drift::CauseKind::effect:
       return "Find out what changed in the building around that time.";
     case drift::CauseKind::meter:
       return "Check the meter: its transformers, its unit, its register map.";
@@ -174,7 +239,8 @@ std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& ala
     sentence += fmt::format("; next ({:.0f} %): {}", 100.0 * second.probability,
                             cause_words(drift, second));
   }
-  return sentence + ". " + advice_words(first.kind);
+  return sentence + ". " + advice_words(first.kind) + telling_words(drift, alarm.causes) +
+         wait_words(drift, alarm);
 }
 
 std::string drift_words(const SiteDrift& drift) {

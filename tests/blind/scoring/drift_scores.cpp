@@ -39,6 +39,22 @@ constexpr auto kUses = std::to_array<std::string_view>(
      "after_hours", "weekend_operation", "missing_holidays", "semester_calendar", "ev_charging",
      "solar_panels", "irrigation_pumps", "cooking", "event_evenings", "data_backup_nights"});
 
+bool is_use(std::string_view effect) { return std::ranges::find(kUses, effect) != kUses.end(); }
+
+bool stands_for(std::string_view effect, std::string_view parameter) {
+  return std::ranges::any_of(kParameters, [&](const Stands& stands) {
+    return stands.effect == effect && stands.parameter == parameter;
+  });
+}
+
+/// Both are the same thing to a person who looks for it.
+bool are_of_a_kind(std::string_view effect, std::string_view other) {
+  return effect == other || (is_use(effect) && is_use(other)) ||
+         std::ranges::any_of(kParameters, [&](const Stands& stands) {
+           return stands.effect == effect && stands_for(other, stands.parameter);
+         });
+}
+
 /// Months from the first to the second, both "2022-03…".
 int months_between(std::string_view from, std::string_view to) {
   const auto count = [](std::string_view month) {
@@ -82,16 +98,12 @@ bool is_right_cause(const HiddenEffect& hidden, const DriftCause& cause) {
     alone.effects = {hidden};
     return cause.kind == "meter" && cause.subject.starts_with(most_affected_meter(alone));
   }
-  if (cause.kind == "parameter") {
-    return std::ranges::any_of(kParameters, [&](const Stands& stands) {
-      return stands.effect == hidden.effect && stands.parameter == cause.subject;
-    });
-  }
-  const bool is_use = std::ranges::find(kUses, hidden.effect) != kUses.end();
-  if (cause.kind == "use") return is_use;
+  if (cause.kind == "effect") return are_of_a_kind(hidden.effect, cause.subject);
+  if (cause.kind == "parameter") return stands_for(hidden.effect, cause.subject);
+  if (cause.kind == "use") return is_use(hidden.effect);
   const bool has_parameter =
       std::ranges::find(kParameters, hidden.effect, &Stands::effect) != kParameters.end();
-  return cause.kind == "unknown" && !has_parameter && !is_use;
+  return cause.kind == "unknown" && !has_parameter && !is_use(hidden.effect);
 }
 
 bool is_right_side(const HiddenEffect& hidden, const DriftCause& cause) {

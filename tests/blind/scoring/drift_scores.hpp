@@ -20,7 +20,8 @@ using Drifts = std::map<std::string, Drift>;
 [[nodiscard]] Drifts drifts_of(std::span<const CaseResult> results);
 
 /// Whether a cause is what a hidden effect would be called, at best: the meter that it falsifies;
-/// the parameter that it changes; a use of electricity; else something that the model lacks.
+/// the effect, or one of its kind (another use of electricity, another that changes the same
+/// parameter); the parameter; a use of electricity; else something that the model lacks.
 [[nodiscard]] bool is_right_cause(const HiddenEffect& hidden, const DriftCause& cause);
 /// Whether it blames the meters or the building rightly; nothing blamed is never right.
 [[nodiscard]] bool is_right_side(const HiddenEffect& hidden, const DriftCause& cause);

@@ -78,6 +78,9 @@ TEST(DriftScores, ACauseIsRightIfItIsWhatTheEffectWouldBestBeCalled) {
   EXPECT_TRUE(is_right_cause(air, {"", "parameter", "outdoor_airflow", 1.0}));
   EXPECT_FALSE(is_right_cause(air, {"", "parameter", "heating_setpoint", 1.0}));
   EXPECT_FALSE(is_right_cause(air, {"", "unknown", "", 1.0})) << "a parameter says it";
+  EXPECT_TRUE(is_right_cause(air, {"", "effect", "outdoor_air_amount", 1.0}));
+  EXPECT_TRUE(is_right_cause(air, {"", "effect", "demand_ventilation", 1.0})) << "the same air";
+  EXPECT_FALSE(is_right_cause(air, {"", "effect", "server_room", 1.0}));
   EXPECT_TRUE(is_right_side(air, {"", "unknown", "", 1.0}));
   const HiddenEffect server = dated("server_room", "electrical", 0.2);
   EXPECT_TRUE(is_right_cause(server, {"", "use", "electricity use", 1.0}));
