@@ -83,6 +83,42 @@ void fill_in(const std::vector<double>& from, std::vector<double>& to) {
   }
 }
 
+std::string effect_text(const ModelEffect& effect) {
+  const auto day = [](const std::optional<Day>& one) {
+    return one ? metering::to_string(*one) : std::string{"-"};
+  };
+  return fmt::format("{} {} {}", effect.patch.effect, day(effect.from), day(effect.to));
+}
+
+/// Whether the effect is there on a day.
+bool is_there(const ModelEffect& effect, Day day) {
+  return (!effect.from || *effect.from <= day) && (!effect.to || day < *effect.to);
+}
+
+/// The first days of the year on which an effect comes or goes, after its first day.
+std::set<Day> changes_in(const std::vector<TargetedParameter>& parameters, int year) {
+  std::set<Day> changes;
+  for (const TargetedParameter& one : parameters) {
+    if (!one.effect) continue;
+    for (const std::optional<Day>& day : {one.effect->from, one.effect->to}) {
+      const bool is_within =
+          day && static_cast<int>(day->year()) == year && *day != std::chrono::year{year} / 1 / 1;
+      if (is_within) changes.insert(*day);
+    }
+  }
+  return changes;
+}
+
+/// From an instant on, what another run of the same days gives.
+void continue_with(const std::vector<MeterOutput>& other, metering::Instant from,
+                   std::vector<MeterOutput>& meters) {
+  for (std::size_t i = 0; i < meters.size(); ++i) {
+    for (std::size_t j = 0; j < meters[i].starts.size(); ++j) {
+      if (meters[i].starts[j] >= from) meters[i].energy_kWh[j] = other[i].energy_kWh[j];
+    }
+  }
+}
+
 bool are_whole(const std::vector<double>& figures) {
   return std::ranges::all_of(figures, [](double figure) { return std::isfinite(figure); });
 }
@@ -108,6 +144,7 @@ Result<std::unique_ptr<EnergyPlusEngine>> EnergyPlusEngine::make(
   }
   for (const TargetedParameter& one : setup.parameters) {
     digest.add(fmt::format("{} {:a}", static_cast<int>(one.change), one.design));
+    if (one.effect) digest.add(effect_text(*one.effect));
     for (const Target& target : one.targets) {
       digest.add(fmt::format("{} {}", static_cast<int>(target.sense), target.most));
       for (const auto& field : target.fields) digest.add(field.to_string());
@@ -147,9 +184,9 @@ std::string EnergyPlusEngine::key_of(const Eigen::VectorXd& values) const {
   return digest.hex().substr(0, kKeyDigits);
 }
 
-Result<RunFigures> EnergyPlusEngine::run_year(const Json& objects, int year,
-                                              const std::filesystem::path& folder,
-                                              const std::function<bool()>& keep_going) const {
+Result<std::vector<MeterOutput>> EnergyPlusEngine::simulate_year(
+    const Json& objects, int year, const std::filesystem::path& folder,
+    const std::function<bool()>& keep_going) const {
   const auto [first, last] = days_to_run(setup_.months, year);
   Json prepared = objects;
   const std::vector<std::string> names = meters_of(setup_.outputs);
@@ -157,11 +194,39 @@ Result<RunFigures> EnergyPlusEngine::run_year(const Json& objects, int year,
   const auto sql = simulate(prepared, setup_.weather.at(year), folder, setup_.program,
                             setup_.limits, keep_going);
   if (!sql) return tl::unexpected(sql.error());
-  const auto meters = read_meters(*sql, names, calendar_.standard_offset(std::chrono::year{year}));
+  return read_meters(*sql, names, calendar_.standard_offset(std::chrono::year{year}));
+}
+
+Result<RunFigures> EnergyPlusEngine::run_year(const Eigen::VectorXd& values, int year,
+                                              const std::filesystem::path& folder,
+                                              const std::function<bool()>& keep_going) const {
+  const Day new_year = std::chrono::year{year} / 1 / 1;
+  auto meters = simulate_year(objects_at(values, new_year), year, folder, keep_going);
   if (!meters) return tl::unexpected(meters.error());
+  for (const Day day : changes_in(setup_.parameters, year)) {
+    const auto since = simulate_year(objects_at(values, day), year, folder, keep_going);
+    if (!since) return tl::unexpected(since.error());
+    continue_with(*since, calendar_.day_span(day).begin, *meters);
+  }
   return RunFigures{
       monthly_figures(*meters, setup_.outputs, setup_.months, calendar_, setup_.peak_window),
       daily_figures(*meters, setup_.outputs, days_, calendar_, setup_.peak_window)};
+}
+
+Json EnergyPlusEngine::objects_at(const Eigen::VectorXd& values, Day day) const {
+  Json objects = setup_.model.objects;
+  for (std::size_t j = 0; j < setup_.parameters.size(); ++j) {
+    const TargetedParameter& one = setup_.parameters[j];
+    const auto row = static_cast<Eigen::Index>(j);
+    for (const Target& target : one.targets) {
+      apply(target, one.change, one.amount(values[row]), objects);
+    }
+    const bool is_first = j == 0 || setup_.parameters[j - 1].effect != one.effect;
+    if (!one.effect || !is_first || !is_there(*one.effect, day)) continue;
+    one.effect->patch.apply({values.data() + row, one.effect->values}, objects);
+  }
+  settle(setup_.model.objects, objects);
+  return objects;
 }
 
 Result<RunFigures> EnergyPlusEngine::run_row(const Eigen::VectorXd& values,
@@ -172,14 +237,6 @@ Result<RunFigures> EnergyPlusEngine::run_row(const Eigen::VectorXd& values,
   const std::filesystem::path kept = setup_.folder / (key + ".json");
   if (auto figures = kept_figures(kept, month_count, day_count)) return std::move(*figures);
 
-  Json objects = setup_.model.objects;
-  for (std::size_t j = 0; j < setup_.parameters.size(); ++j) {
-    const TargetedParameter& one = setup_.parameters[j];
-    for (const Target& target : one.targets) {
-      apply(target, one.change, one.amount(values[static_cast<Eigen::Index>(j)]), objects);
-    }
-  }
-  settle(setup_.model.objects, objects);
   const std::filesystem::path folder = setup_.folder / key;
   RunFigures figures{std::vector<double>(month_count, kAbsent),
                      std::vector<double>(day_count, kAbsent)};
@@ -187,7 +244,7 @@ Result<RunFigures> EnergyPlusEngine::run_row(const Eigen::VectorXd& values,
     const bool has_months = std::ranges::any_of(
         setup_.months, [&](metering::Month month) { return year_of(month) == year; });
     if (!has_months) continue;
-    const auto of_year = run_year(objects, year, folder, keep_going);
+    const auto of_year = run_year(values, year, folder, keep_going);
     if (!of_year) return of_year;
     fill_in(of_year->months, figures.months);
     fill_in(of_year->days, figures.days);

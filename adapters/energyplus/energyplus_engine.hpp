@@ -57,6 +57,11 @@ class EnergyPlusEngine final : public Engine {
   [[nodiscard]] std::vector<Parameter> parameters() const;
   [[nodiscard]] const std::vector<TargetedParameter>& targeted() const { return setup_.parameters; }
 
+  /// What a run of the last month with these values simulates.
+  [[nodiscard]] Json last_model(const Eigen::VectorXd& values) const {
+    return objects_at(values, setup_.months.back() / std::chrono::last);
+  }
+
   /// Of all that a run depends on besides its parameters' values.
   [[nodiscard]] const std::string& fingerprint() const { return fingerprint_; }
 
@@ -72,9 +77,15 @@ class EnergyPlusEngine final : public Engine {
 
   [[nodiscard]] Result<RunFigures> run_row(const Eigen::VectorXd& values,
                                            const std::function<bool()>& keep_going) const;
-  [[nodiscard]] Result<RunFigures> run_year(const Json& objects, int year,
+  /// A year in which an effect comes or goes is run with and without it, and put together.
+  [[nodiscard]] Result<RunFigures> run_year(const Eigen::VectorXd& values, int year,
                                             const std::filesystem::path& folder,
                                             const std::function<bool()>& keep_going) const;
+  [[nodiscard]] Result<std::vector<MeterOutput>> simulate_year(
+      const Json& objects, int year, const std::filesystem::path& folder,
+      const std::function<bool()>& keep_going) const;
+  /// The model at these values, with the effects that are there on the day.
+  [[nodiscard]] Json objects_at(const Eigen::VectorXd& values, metering::Day day) const;
   [[nodiscard]] std::string key_of(const Eigen::VectorXd& values) const;
 
   EngineSetup setup_;

@@ -96,15 +96,15 @@ void write_judgement(Html& html, const DiagnosisData& data) {
 void write_other_models(Html& html, const DiagnosisData& data) {
   if (data.other_gaps.empty()) return;
   Table table(
-      "The model that the site is calibrated with, given the same effects, on the same months");
+      "Other models of the site, given the same effects, on the same months");
   table.columns({"Model and output", "CV(RMSE) before", "after", "Bias, model − meter, before",
                  "after", "Log score a month before", "after"});
   for (const diagnosis::ModelGap& gap : data.other_gaps) {
     for (std::size_t i = 0; i < gap.outputs.size(); ++i) {
       const auto& before = gap.before[i];
       const auto& after = gap.after[i];
-      const std::string_view model =
-          gap.model == ModelKind::epc ? "Monthly model" : name_of(gap.model);
+      const bool is_energyplus = gap.model == ModelKind::energyplus;
+      const std::string_view model = is_energyplus ? "EnergyPlus" : "Monthly model";
       table.row({{fmt::format("{}: {}", model, gap.outputs[i])},
                  {percent_text(before.cvrmse), "number"},
                  {percent_text(after.cvrmse), "number"},

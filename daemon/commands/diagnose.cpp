@@ -1,16 +1,21 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
 #include "core/diagnosis/next_version.hpp"
+#include "core/display/warning.hpp"
 #include "daemon/commands/commands.hpp"
+#include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/diagnose/energyplus_gap.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
+#include "daemon/site/model/energyplus_effects.hpp"
 #include "daemon/site/results/diagnosis_files.hpp"
 #include "daemon/site/results/diagnosis_folder.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
@@ -18,19 +23,53 @@
 namespace recald::daemon {
 namespace {
 
-/// Stores the additions as a version that is not in force yet. @return its name
-Result<std::string> store_version(const models::ModelStore& store, const ModelledSite& modelled,
-                                  const diagnosis::Diagnosis& diagnosis,
-                                  const diagnosis::SiteProblem& site, const std::string& at) {
+/// Stores the additions as a version that is not in force yet.
+Result<diagnosis::ModelVersion> store_version(const models::ModelStore& store,
+                                              const ModelledSite& modelled,
+                                              const diagnosis::Diagnosis& diagnosis,
+                                              const diagnosis::SiteProblem& site,
+                                              const std::string& at) {
   const auto parent = store.active();
   if (!parent) return tl::unexpected(parent.error());
-  auto saved =
-      store.save(diagnosis::next_version(diagnosis, site, *parent,
-                                         {.data_revision = modelled.facts.data_revision,
-                                          .catalogue_version = modelled.facts.recald_version,
-                                          .created_at = at}));
-  if (!saved) return tl::unexpected(saved.error());
-  return std::move(saved->version);
+  return store.save(diagnosis::next_version(diagnosis, site, *parent,
+                                            {.data_revision = modelled.facts.data_revision,
+                                             .catalogue_version = modelled.facts.recald_version,
+                                             .created_at = at}));
+}
+
+bool has_energyplus(const SiteConfig& site) {
+  return std::ranges::any_of(site.other_models,
+                             [](const ModelConfig& model) { return model.energyplus.has_value(); });
+}
+
+/// Gives the site's EnergyPlus model the effects, makes the runs that it needs for that, and asks
+/// it whether it predicts the held-out months better with them. @return or an exit code
+tl::expected<void, int> ask_energyplus(const ModelledSite& modelled,
+                                       const diagnosis::SiteProblem& problem,
+                                       const diagnosis::ModelVersion& version,
+                                       const DiagnoseArguments& arguments, SiteDiagnosis& done,
+                                       const Console& console) {
+  ModelledSite on_runs = modelled;
+  SiteConfig& site = on_runs.site.config;
+  if (auto chosen = choose_model(site, ModelKind::energyplus); !chosen) {
+    return tl::unexpected(console.fail(chosen.error()));
+  }
+  if (auto taken = take_in_effects(version, *site.model); !taken) {
+    done.diagnosis.warnings.push_back(
+        display::warning_of("The EnergyPlus model was left out: " + taken.error().message + "."));
+    return {};
+  }
+  if (!has_all_runs(site)) {
+    console.err << fmt::format("The EnergyPlus model gets the effect too: {} runs into '{}'.\n",
+                               site.model->energyplus->runs,
+                               site.model->energyplus->design.string());
+    const auto made = make_runs_aloud(on_runs, {.seed = arguments.seed}, 0, console);
+    if (!made) return tl::unexpected(made.error());
+  }
+  auto vote = energyplus_gap(on_runs, problem, done.diagnosis.added, arguments.seed);
+  if (!vote) return tl::unexpected(console.fail(vote.error()));
+  take_vote(std::move(*vote), "the EnergyPlus model", done);
+  return {};
 }
 
 /// The diagnosis, with progress on a terminal. @return cancelled after an interrupt, too
@@ -74,7 +113,7 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   if (!arguments.out.empty()) {
     if (auto made = system::make_folder(arguments.out); !made) return console.fail(made.error());
   }
-  const auto done = diagnose_aloud(*modelled, *problem, arguments, console);
+  auto done = diagnose_aloud(*modelled, *problem, arguments, console);
   if (!done) return console.fail(done.error());
   const diagnosis::Diagnosis& diagnosis = done->diagnosis;
   const InterruptGuard until_written;
@@ -86,12 +125,18 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   };
   const std::string at = generated_at();
   const models::ModelStore store{modelled->site.config.file, modelled->site.config.id};
-  const bool keep = arguments.apply && !diagnosis.added.empty() && !diagnosis.not_confirmed;
+  const auto is_kept = [&] {
+    return arguments.apply && !diagnosis.added.empty() && !diagnosis.not_confirmed;
+  };
   std::string applied;
-  if (keep) {
-    auto version = store_version(store, *modelled, diagnosis, *problem, at);
+  if (is_kept()) {
+    const auto version = store_version(store, *modelled, diagnosis, *problem, at);
     if (!version) return fail(version.error());
-    modelled->facts.model_version = applied = std::move(*version);
+    if (has_energyplus(modelled->site.config)) {
+      auto asked = ask_energyplus(*modelled, *problem, *version, arguments, *done, console);
+      if (!asked) return asked.error();
+    }
+    if (is_kept()) modelled->facts.model_version = applied = version->version;
   }
   modelled->facts.seed = arguments.seed;
   modelled->facts.wall_s =
@@ -102,7 +147,7 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
     if (!written) return fail(written.error());
   }
   // Last of all: what is in force has its page.
-  if (keep) {
+  if (!applied.empty()) {
     if (auto active = store.activate(applied, at); !active) return fail(active.error());
   }
   console.out << (arguments.json ? json

@@ -29,6 +29,7 @@ using recald::testing::TemporaryFolder;
 using recald::testing::write_text;
 using ::testing::HasSubstr;
 using testing::multiplied;
+using ::testing::Not;
 using testing::Outcome;
 using testing::run;
 
@@ -284,6 +285,82 @@ TEST_F(OnEnergyPlus, AMeasureSavesWhatItSavesInTheBuildingThatNobodyKnows) {
   ::setenv("RECALD_ENERGYPLUS", program_.c_str(), 1);
   ASSERT_EQ(again.exit_code, kSuccess) << again.err;
   EXPECT_EQ(Json::parse(again.out)["measures"], ecm["measures"]);
+}
+
+/// A building beside the EnergyPlus model, for the hourly model that finds what is missing.
+constexpr std::string_view kBuilding = R"(
+[[model]]
+kind = "hourly"
+outputs = ["electricity"]
+
+[[model.parameter]]
+name = "occupancy_density"
+)";
+
+constexpr std::string_view kFirstBusyDay = "2022-03-01T05:00:00Z";
+
+/// The first readings up to a time, the others from then on.
+std::string joined_at(std::string_view time, const std::string& first, const std::string& others) {
+  std::string text;
+  const auto add = [&](const std::string& readings, bool is_from) {
+    std::istringstream lines{readings};
+    for (std::string line; std::getline(lines, line);) {
+      const bool is_head = line.starts_with("timestamp");
+      if (is_head ? is_from : (line.substr(0, time.size()) >= time) != is_from) continue;
+      text += line + "\n";
+    }
+  };
+  add(first, false);
+  add(others, true);
+  return text;
+}
+
+// From a day on the office has half as many machines again.
+TEST_F(OnEnergyPlus, AnEffectIsAddedToTheModelAndShrinksItsGap) {
+  for (const int year : {kFirstYear, kFirstYear + 1}) {
+    Json building = Json::parse(read_text(*folder_ / fmt::format("truth-{}.epJSON", year)));
+    for (auto& equipment : building["ElectricEquipment"]) {
+      equipment["watts_per_floor_area"] = 1.5 * equipment["watts_per_floor_area"].get<double>();
+    }
+    write_text(*folder_ / fmt::format("busy-{}.epJSON", year), building.dump());
+  }
+  const std::string before = read_text(*folder_ / "readings.csv");
+  const std::string busy = readings_of("busy", 2);
+  write_text(*folder_ / "busier1.csv", joined_at(kFirstBusyDay, before, busy));
+  const double more_kW =
+      (energy_kWh(busy, "electricity") - energy_kWh(before, "electricity")) / (2.0 * 365.0 * 24.0);
+  std::string text = std::string{kSite} + std::string{kBuilding};
+  for (std::size_t at = text.find("readings.csv"); at != std::string::npos;
+       at = text.find("readings.csv", at)) {
+    text.replace(at, 12, "busier1.csv");
+  }
+  const std::string sample = recald::testing::sample_site();
+  const std::string office = site("busier.toml", text + sample.substr(sample.find("[building]")));
+
+  const Outcome done =
+      run({"diagnose", office, "--assume", "equipment_step", "--apply", "--out", path("busier")});
+  ASSERT_EQ(done.exit_code, kSuccess) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("The EnergyPlus model gets the effect too: 14 runs into"));
+  EXPECT_THAT(done.out, HasSubstr("is now in force"));
+  const Json gap = Json::parse(read_text(*folder_ / "busier/diagnosis.json"))["gap"]["energyplus"];
+  const auto cvrmse = [&](const char* when) {
+    return gap[when]["electricity_daily_kWh"]["cvrmse"].get<double>();
+  };
+  EXPECT_LT(cvrmse("after"), 0.6 * cvrmse("before")) << gap.dump(1);
+
+  // From then on the model is the one with the effect, in runs of its own.
+  const Outcome calibrated = run({"calibrate", office, "--json"});
+  ASSERT_EQ(calibrated.exit_code, kSuccess) << calibrated.err;
+  const Json result = Json::parse(calibrated.out);
+  bool is_found = false;
+  for (const Json& parameter : result["parameters"]) {
+    if (parameter["name"] != "equipment_step_power") continue;
+    is_found = true;
+    EXPECT_NEAR(parameter["mean"].get<double>(), more_kW, 0.4 * more_kW);
+  }
+  EXPECT_TRUE(is_found) << result["parameters"].dump();
+  ASSERT_EQ(run({"model", "revert", office, "drawings"}).exit_code, kSuccess);
+  EXPECT_THAT(run({"calibrate", office, "--json"}).out, Not(HasSubstr("equipment_step")));
 }
 
 TEST_F(OnEnergyPlus, AMeasureThatTheModelHasNoPlaceForIsRefused) {

@@ -293,7 +293,7 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
                                   const Recording& recording, const SiteWeather& weather,
                                   std::vector<diagnosis::AddedEffect> added) {
   if (!facts_of(site.model->kind).is_of_building) {
-    return prepare_on_runs(site, calendar, recording, weather, added);
+    return prepare_on_runs(site, calendar, recording, weather);
   }
   auto begun = begin_site(site, recording, weather);
   if (!begun) return tl::unexpected(begun.error());

@@ -252,14 +252,7 @@ Result<regression::DesignData> data_in_site_months(const ModelledSite& modelled,
 
 Result<PreparedSite> prepare_on_runs(const SiteConfig& site,
                                      const metering::LocalCalendar& calendar,
-                                     const Recording& recording, const SiteWeather& weather,
-                                     const std::vector<diagnosis::AddedEffect>& added) {
-  if (!added.empty()) {
-    return failure(ErrorCode::unsupported,
-                   fmt::format("the model version in force has the effect '{}', which only models "
-                               "of a [building] can have; `recald model revert` takes it out",
-                               added.front().title));
-  }
+                                     const Recording& recording, const SiteWeather& weather) {
   auto begun = begin_site(site, recording, weather);
   if (!begun) return tl::unexpected(begun.error());
   PreparedSite prepared{.so_far = std::move(begun->so_far)};

@@ -14,15 +14,14 @@ namespace recald::daemon {
 /// Screens the design in the model's folder, fits the monthly form, and makes a model of the
 /// influential parameters out of it. The others stay at their prior means; what they could move an
 /// output is an error common to its months.
-/// @param added  Effects of the version in force, which such a model cannot have.
 /// @return the site; or not_found: there are no runs yet; not_enough_data: some are missing, or
 ///         months of the site are not among them; invalid_value: the site file asks for other
-///         parameters, priors or outputs than were run; unsupported: effects; or what screening and
-///         fitting find.
+///         parameters, priors or outputs than were run; or what screening and fitting find.
 /// @pre the site's model is of kind energyplus
-[[nodiscard]] Result<PreparedSite> prepare_on_runs(
-    const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
-    const SiteWeather& weather, const std::vector<diagnosis::AddedEffect>& added);
+[[nodiscard]] Result<PreparedSite> prepare_on_runs(const SiteConfig& site,
+                                                   const metering::LocalCalendar& calendar,
+                                                   const Recording& recording,
+                                                   const SiteWeather& weather);
 
 /// Gives the days of a design's runs.
 using DaysOfDesign = std::function<Result<doe::DesignDays>(const doe::DesignFolder& design)>;

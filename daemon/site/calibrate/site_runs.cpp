@@ -74,6 +74,7 @@ std::string settings_digest(const ModelConfig& model) {
   for (const ParameterConfig& parameter : model.parameters) {
     digest.add(fmt::format("{} {} {}\n", parameter.name, static_cast<int>(parameter.change),
                            fmt::join(parameter.targets, " ")));
+    if (parameter.effect) digest.add(parameter.effect->effect);
   }
   return digest.hex();
 }
@@ -99,6 +100,22 @@ Result<void> note_model(const ModelConfig& model) {
     note["reports"][output] = reports_text(model, output);
   }
   return system::write_file(model.energyplus->design / kModelNote, note.dump(2) + "\n");
+}
+
+/// The client's model as the runs have it, effects included, at the priors' means: to open and to
+/// look at.
+Result<void> write_model_copy(const energyplus::EnergyPlusEngine& engine,
+                              const std::filesystem::path& folder) {
+  const std::vector<Parameter> parameters = engine.parameters();
+  const bool has_effects =
+      std::ranges::any_of(engine.targeted(), [](const auto& one) { return one.effect != nullptr; });
+  if (!has_effects) return {};
+  Eigen::VectorXd means(std::ssize(parameters));
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    means[static_cast<Eigen::Index>(j)] = parameters[j].prior.mean();
+  }
+  return system::write_file(folder / "model-with-effects.epJSON",
+                            engine.last_model(means).dump(2) + "\n");
 }
 
 }  // namespace
@@ -213,6 +230,9 @@ Result<MadeRuns> make_runs(const ModelledSite& modelled, const RunsOptions& opti
     if (!written) return tl::unexpected(written.error());
   }
   if (auto noted = note_model(model); !noted) return tl::unexpected(noted.error());
+  if (auto written = write_model_copy(**engine, folder); !written) {
+    return tl::unexpected(written.error());
+  }
   made->notes = std::move(notes);
   return made;
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -91,6 +92,14 @@ struct PeriodConfig {
   std::optional<metering::MonthRange> validation;
 };
 
+/// An effect of the model version in force, one of whose values a parameter is.
+struct EffectOfModel {
+  std::string effect;  ///< Id in the catalogue.
+  std::size_t values;  ///< How many it has, without dates.
+  std::optional<metering::Day> from;
+  std::optional<metering::Day> to;
+};
+
 struct ParameterConfig {
   std::string name;
   std::optional<Prior> prior;  ///< Absent: from the library.
@@ -99,6 +108,8 @@ struct ParameterConfig {
   std::vector<std::string> targets = {};
   model::ChangeKind change = model::ChangeKind::scale;
   std::string unit = "-";
+  /// Of an EnergyPlus model that was given an effect: not from the site file.
+  std::shared_ptr<const EffectOfModel> effect = {};
 };
 
 /// Sizes of the model's own errors that the site knows better (`assessment::ModelErrorSizes`);

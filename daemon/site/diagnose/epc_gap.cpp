@@ -6,6 +6,7 @@
 #include "core/diagnosis/monthly_effect.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
+#include "daemon/site/diagnose/held_figures.hpp"
 #include "daemon/site/model/site_model.hpp"
 #include "daemon/site/model/site_parts.hpp"
 
@@ -13,24 +14,7 @@ namespace recald::daemon {
 namespace {
 
 using diagnosis::MonthlyFigures;
-using diagnosis::Role;
 using metering::Month;
-
-MonthlyFigures measure(const SiteConfig& site, const Recording& recording,
-                       const diagnosis::SiteProblem& problem) {
-  MonthlyFigures measured;
-  for (assessment::OutputCalibration& output :
-       collect_outputs(site, recording, problem.drivers->months)) {
-    measured.outputs.push_back(std::move(output.name));
-    measured.values.push_back(std::move(output.measured));
-  }
-  for (std::size_t i = 0; i < problem.month_roles.size(); ++i) {
-    const Role role = problem.month_roles[i];
-    if (role == Role::fit || role == Role::select) measured.fitted.push_back(i);
-    if (role == Role::show) measured.shown.push_back(i);
-  }
-  return measured;
-}
 
 /// The effects at their modes, one on top of the other.
 std::vector<diagnosis::MonthlyEffect> at_modes(const diagnosis::SiteProblem& problem,
@@ -72,7 +56,7 @@ Result<diagnosis::MonthlyVote> epc_gap(const SiteConfig& as_configured,
                                        std::uint64_t seed) {
   SiteConfig site = as_configured;
   site.model->kind = ModelKind::epc;
-  const MonthlyFigures measured = measure(site, recording, problem);
+  const MonthlyFigures measured = held_figures(site, recording, problem);
   auto chosen = site_parameters(site);
   if (!chosen) return tl::unexpected(chosen.error());
   if (auto enough = diagnosis::require_enough(measured, chosen->parameters.size()); !enough) {

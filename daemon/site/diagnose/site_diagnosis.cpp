@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "core/display/id_words.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/site/model/active_effects.hpp"
 
@@ -25,30 +26,18 @@ Result<void> require_drawings(const SiteConfig& site) {
                              site.file.string(), diagnosis::kBaseVersion));
 }
 
-/// The same effects in the monthly model, which has a vote: if it predicts the held-out months
-/// worse with them, they are not confirmed. Empty if there was nothing to judge.
-std::vector<diagnosis::ModelGap> ask_monthly_model(const ModelledSite& modelled,
-                                                   const diagnosis::SiteProblem& problem,
-                                                   diagnosis::Diagnosis& diagnosis) {
-  if (!diagnosis.gap) return {};
+/// The same effects in the monthly model, which has a vote.
+void ask_monthly_model(const ModelledSite& modelled, const diagnosis::SiteProblem& problem,
+                       SiteDiagnosis& done) {
+  if (!done.diagnosis.gap) return;
   auto monthly = epc_gap(modelled.site.config, modelled.site.calendar, modelled.recording,
-                         modelled.weather, problem, diagnosis.added);
+                         modelled.weather, problem, done.diagnosis.added);
   if (!monthly) {
-    diagnosis.warnings.push_back(
+    done.diagnosis.warnings.push_back(
         display::warning_of("The monthly model was not used: " + monthly.error().message + "."));
-    return {};
+    return;
   }
-  if (!monthly->has_vote()) {
-    diagnosis.warnings.push_back({"The monthly model could not check the result.",
-                                  "No meter has a usable monthly figure in the held-out months."});
-  } else if (!diagnosis.not_confirmed && !monthly->agrees()) {
-    diagnosis.not_confirmed = true;
-    diagnosis.outcome = diagnosis::Outcome::unknown;
-    diagnosis.why =
-        "with what was named the monthly model predicts the held-out months worse, so it was "
-        "withdrawn";
-  }
-  return {std::move(monthly->gap)};
+  take_vote(std::move(*monthly), "the monthly model", done);
 }
 
 }  // namespace
@@ -70,8 +59,23 @@ Result<SiteDiagnosis> diagnose_site(const ModelledSite& modelled,
   if (!diagnosis) return tl::unexpected(diagnosis.error());
   const auto data = data_warnings(modelled.site.config, modelled.recording, modelled.weather);
   diagnosis->warnings.insert(diagnosis->warnings.begin(), data.begin(), data.end());
-  auto others = ask_monthly_model(modelled, problem, *diagnosis);
-  return SiteDiagnosis{std::move(*diagnosis), std::move(others)};
+  SiteDiagnosis done{std::move(*diagnosis), {}};
+  ask_monthly_model(modelled, problem, done);
+  return done;
+}
+
+void take_vote(diagnosis::MonthlyVote vote, const std::string& whose, SiteDiagnosis& done) {
+  diagnosis::Diagnosis& diagnosis = done.diagnosis;
+  if (!vote.has_vote()) {
+    diagnosis.warnings.push_back({display::capitalised(whose) + " could not check the result.",
+                                  "No meter has a usable monthly figure in the held-out months."});
+  } else if (!diagnosis.not_confirmed && !vote.agrees()) {
+    diagnosis.not_confirmed = true;
+    diagnosis.outcome = diagnosis::Outcome::unknown;
+    diagnosis.why =
+        "with what was named " + whose + " predicts the held-out months worse, so it was withdrawn";
+  }
+  done.others.push_back(std::move(vote.gap));
 }
 
 }  // namespace recald::daemon

@@ -1,6 +1,7 @@
 /// One diagnosis of a site from its readings to its files, as the command and the daemon do it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/diagnosis/diagnose.hpp"
@@ -18,8 +19,8 @@ namespace recald::daemon {
 
 struct SiteDiagnosis {
   diagnosis::Diagnosis diagnosis;  ///< Its warnings begin with what the data show.
-  std::vector<diagnosis::ModelGap>
-      others;  ///< Of the monthly model; empty where it had nothing to judge.
+  /// Of the monthly model and the EnergyPlus model, of those that were asked.
+  std::vector<diagnosis::ModelGap> others;
 };
 
 /// Locates, names and shows; then the monthly model has its vote.
@@ -28,5 +29,9 @@ struct SiteDiagnosis {
                                                   const diagnosis::SiteProblem& problem,
                                                   const diagnosis::DiagnoseOptions& options,
                                                   const diagnosis::Observer& observer);
+
+/// If another model predicts the held-out months worse with what was named, it is not confirmed.
+/// @param whose  "the monthly model"
+void take_vote(diagnosis::MonthlyVote vote, const std::string& whose, SiteDiagnosis& done);
 
 }  // namespace recald::daemon

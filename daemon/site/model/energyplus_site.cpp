@@ -46,6 +46,14 @@ Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelD
   return found;
 }
 
+Result<std::shared_ptr<const energyplus::ModelEffect>> find_effect_in(
+    const energyplus::ModelDocument& model, const EffectOfModel& effect) {
+  auto patch = energyplus::find_effect_patch(model, effect.effect);
+  if (!patch) return tl::unexpected(patch.error());
+  return std::make_shared<const energyplus::ModelEffect>(
+      energyplus::ModelEffect{std::move(*patch), effect.values, effect.from, effect.to});
+}
+
 void note_wide_targets(const std::vector<energyplus::TargetedParameter>& parameters,
                        std::vector<std::string>& notes) {
   for (const energyplus::TargetedParameter& one : parameters) {
@@ -149,10 +157,23 @@ Result<EnergyPlusSite> open_energyplus(const EnergyPlusConfig& config) {
 Result<std::vector<energyplus::TargetedParameter>> find_parameters(
     const energyplus::ModelDocument& document, const std::vector<ParameterConfig>& parameters) {
   std::vector<energyplus::TargetedParameter> all;
+  std::map<const EffectOfModel*, std::shared_ptr<const energyplus::ModelEffect>> effects;
   for (const ParameterConfig& parameter : parameters) {
-    auto found = find_parameter_in(document, parameter);
-    if (!found) return tl::unexpected(found.error());
-    all.push_back(std::move(*found));
+    if (!parameter.effect) {
+      auto found = find_parameter_in(document, parameter);
+      if (!found) return tl::unexpected(found.error());
+      all.push_back(std::move(*found));
+      continue;
+    }
+    auto& effect = effects[parameter.effect.get()];
+    if (!effect) {
+      auto found = find_effect_in(document, *parameter.effect);
+      if (!found) return tl::unexpected(found.error());
+      effect = std::move(*found);
+    }
+    all.push_back({.parameter = {parameter.name, parameter.unit, *parameter.prior},
+                   .targets = {},
+                   .effect = effect});
   }
   return all;
 }

@@ -6,6 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "daemon/site/model/active_effects.hpp"
+#include "daemon/site/model/energyplus_effects.hpp"
 #include "daemon/site/model/site_parts.hpp"
 #include "daemon/site/replay/stored_readings.hpp"
 
@@ -115,6 +117,13 @@ Result<Recording> record_site(const OpenSite& site, const ReplayOptions& options
 Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
                                         const ChoosePeriod& choose) {
   if (site.config.model) leave_out_unmodelled_live_meters(site.config);
+  if (site.config.model && site.config.model->energyplus) {
+    const auto version = active_version(site.config);
+    if (!version) return tl::unexpected(version.error());
+    if (auto taken = take_in_effects(*version, *site.config.model); !taken) {
+      return tl::unexpected(taken.error());
+    }
+  }
   VirtualClock clock{metering::Instant{}};
   auto recording = replay_meters(site.config, site.calendar, {}, clock, {});
   if (!recording) return tl::unexpected(recording.error());

@@ -136,7 +136,7 @@ std::string other_model_words(const ModelGap& gap) {
   }
   if (items.empty()) return {};
   return fmt::format("Scatter of months in the {} model: {}.",
-                     gap.model == ModelKind::epc ? "monthly" : name_of(gap.model),
+                     gap.model == ModelKind::energyplus ? "EnergyPlus" : "monthly",
                      listed(items, "and"));
 }
 

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "adapters/energyplus/component_sizes.hpp"
+#include "adapters/energyplus/effect_patch.hpp"
 #include "adapters/energyplus/read_model.hpp"
 #include "adapters/energyplus/trial.hpp"
 #include "adapters/epw/epw_writer.hpp"
@@ -163,6 +164,32 @@ TEST_F(RealEnergyPlus, AParameterChangesTheMonths) {
   ASSERT_EQ(run->daily().cols(), 2 * 59);
   EXPECT_TRUE(run->daily().row(0).head(59).isConstant(24.0, 1e-6)) << "kWh";
   EXPECT_TRUE(run->daily().row(1).tail(59).isConstant(0.5, 1e-6)) << "kW";
+}
+
+// Lamps outside from 10 February: every day before is as without them.
+TEST_F(RealEnergyPlus, AnEffectBeginsOnItsDay) {
+  EngineSetup lit = setup();
+  const auto patch = find_effect_patch(lit.model, "exterior_lighting");
+  ASSERT_TRUE(patch.has_value()) << patch.error().message;
+  const auto effect = std::make_shared<const ModelEffect>(
+      ModelEffect{*patch, 2, std::chrono::year{2021} / 2 / 10, {}});
+  lit.parameters.push_back(
+      {.parameter = {"power", "kW", Prior{0.0, 1.0, 5.0}}, .targets = {}, .effect = effect});
+  lit.parameters.push_back(
+      {.parameter = {"share", "-", Prior{0.0, 0.5, 1.0}}, .targets = {}, .effect = effect});
+  const auto run = engine(lit);
+  const auto outputs =
+      run->run((Eigen::MatrixXd(1, 3) << 1.0, 2.0, 0.0).finished(), for_each_index_serially, {});
+  ASSERT_TRUE(outputs.has_value()) << outputs.error().message;
+  ASSERT_TRUE(run->failed_runs().empty()) << run->failed_runs().front().because;
+  const Eigen::VectorXd days = run->daily().row(0).head(59);
+  EXPECT_TRUE(days.head(40).isConstant(24.0, 1e-6)) << days.transpose();
+  // Some 14 hours of darkness.
+  EXPECT_GT(days.tail(19).minCoeff(), 24.0 + 2.0 * 12.0);
+  EXPECT_LT(days.tail(19).maxCoeff(), 24.0 + 2.0 * 16.0);
+  EXPECT_NE(run->fingerprint(), engine(setup())->fingerprint());
+  EXPECT_TRUE(run->last_model((Eigen::VectorXd(3) << 1.0, 2.0, 0.0).finished())
+                  .contains("Exterior:Lights"));
 }
 
 TEST_F(RealEnergyPlus, WhatWasRunIsNotRunAgain) {

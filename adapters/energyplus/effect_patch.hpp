@@ -1,0 +1,34 @@
+/// Effects of the catalogue as changes of an EnergyPlus model.
+///
+/// A patch says what an effect is to EnergyPlus: a schedule that runs on, air that is let in, a
+/// load that nobody listed. Its parameters are those of the catalogue, in the same order and units,
+/// so that what a diagnosis has found of them holds for the model. What EnergyPlus cannot be told
+/// (a meter that counts wrongly) has no patch.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/energyplus/model_document.hpp"
+#include "core/result.hpp"
+
+namespace recald::energyplus {
+
+struct EffectPatch {
+  std::string effect;  ///< Id in the catalogue.
+  std::string what;    ///< What of the model it changes, for people.
+  /// Changes the objects of such a model. @param values  Of the effect's parameters, no dates.
+  std::function<void(std::span<const double> values, Json& objects)> apply;
+};
+
+/// The ids of effects that some model can have, in order.
+[[nodiscard]] std::vector<std::string_view> patched_effects();
+
+/// @return unsupported: the effect has no patch, or this model nothing that it would change.
+[[nodiscard]] Result<EffectPatch> find_effect_patch(const ModelDocument& model,
+                                                    std::string_view effect);
+
+}  // namespace recald::energyplus
