@@ -95,8 +95,7 @@ void write_judgement(Html& html, const DiagnosisData& data) {
 
 void write_other_models(Html& html, const DiagnosisData& data) {
   if (data.other_gaps.empty()) return;
-  Table table(
-      "Other models of the site, given the same effects, on the same months");
+  Table table("Other models of the site, given the same effects, on the same months");
   table.columns({"Model and output", "CV(RMSE) before", "after", "Bias, model − meter, before",
                  "after", "Log score a month before", "after"});
   for (const diagnosis::ModelGap& gap : data.other_gaps) {

@@ -19,8 +19,8 @@ namespace recald::drift {
 
 struct InquiryOptions {
   CauseOptions causes;
-  /// A meter as likely as this to be wrong is set aside; where it is as likely that the building has
-  /// changed, in whatever, the model begins anew.
+  /// A meter as likely as this to be wrong is set aside; where it is as likely that the building
+  /// has changed, in whatever, the model begins anew.
   double act_at = 0.8;
   /// A season shows one meter alone: causes are weighed again with each month, acted upon after so
   /// many, and left open after a year.
