@@ -32,10 +32,6 @@ constexpr double kUsualWind_m_s = 4.0;
 /// By which rooms are warmer than outdoors on a morning of the heating season.
 constexpr double kUsualCold_K = 15.0;
 
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 // ---- schedules
 
 /// Fields that name schedules by which fans and units run or take in outdoor air.
@@ -195,12 +191,15 @@ std::size_t weaken_set_backs(double missing_share, Json& objects) {
   Fields heating;
   Fields cooling;
   for (Pointer& field : thermostat_fields(objects)) {
-    const bool is_cooling = field.to_string().find("ooling") != std::string::npos;
+    const std::string type = field.parent_pointer().parent_pointer().back();
+    const bool is_cooling =
+        field.back().starts_with("cooling") || type == "ThermostatSetpoint:SingleCooling";
     (is_cooling ? cooling : heating).push_back(std::move(field));
   }
   const auto change = [&](const Fields& fields, bool is_heating) {
-    return change_schedules(fields, "night_setback_missing",
-                            weaker_set_back(missing_share, is_heating), objects);
+    return change_schedules(
+        fields, fmt::format("night_setback_missing {}", is_heating ? "heating" : "cooling"),
+        weaker_set_back(missing_share, is_heating), objects);
   };
   return change(heating, true) + change(cooling, false);
 }
@@ -245,28 +244,56 @@ std::string always_on(Json& objects) {
 /// Electric equipment of rooms, without servers, which EnergyPlus models in another way.
 struct Equipment {
   std::vector<Level> levels;
-  double total_kW = 0.0;
+  double installed_kW = 0.0;
+  double mean_kW = 0.0;  ///< Over a year without holidays.
 };
+
+/// Of a schedule over a year without holidays; 1 where it cannot be read.
+double mean_of_schedule(const Json& objects, const std::string& name) {
+  const auto schedule = read_schedule(objects, name);
+  if (!schedule) return 1.0;
+  double sum = 0.0;
+  double days = 0.0;
+  int begun = 0;
+  for (const ScheduleSpan& span : schedule->spans) {
+    const int end = 31 * (span.month - 1) + span.day;  // nearly a day of the year
+    double of_week = 0.0;
+    for (std::size_t kind = kSunday; kind <= kSaturday; ++kind) {
+      int from = 0;
+      for (const UntilValue& part : span.days[kind]) {
+        of_week += part.value * (part.minute - from) / kMinutesADay;
+        from = part.minute;
+      }
+    }
+    sum += of_week / 7.0 * (end - begun);
+    days += end - begun;
+    begun = end;
+  }
+  return days > 0.0 ? sum / days : 1.0;
+}
 
 Equipment equipment_of(const Json& objects) {
   Equipment found{Rooms{objects}.equipment()};
   std::erase_if(found.levels, [](const Level& level) {
     return !level.field.to_string().starts_with("/ElectricEquipment/");
   });
-  for (const Level& level : found.levels) found.total_kW += level.total / kWattsPerKilowatt;
+  for (const Level& level : found.levels) {
+    const double kW = level.total / kWattsPerKilowatt;
+    const Json& object = objects.at(level.field.parent_pointer());
+    found.installed_kW += kW;
+    found.mean_kW += kW * mean_of_schedule(objects, text_of(object, "schedule_name"));
+  }
   return found;
 }
 
-/// Adds to what is there in proportion. @param schedule  Empty: as what is there.
+/// Adds a share of what is there. @param schedule  Empty: as what is there.
 /// @return how many objects were added.
-std::size_t add_equipment(const Equipment& there, double power_kW, const std::string& schedule,
+std::size_t add_equipment(const Equipment& there, double share, const std::string& schedule,
                           std::string_view label, Json& objects) {
-  if (there.total_kW <= 0.0) return 0;
   for (const Level& level : there.levels) {
     const Pointer place = level.field.parent_pointer();
     Json more = objects.at(place);
     Json& amount = more.at(level.field.back());
-    const double share = power_kW / there.total_kW;
     amount = level.sense == Sense::reciprocal ? amount.get<double>() / share
                                               : amount.get<double>() * share;
     if (!schedule.empty()) more["schedule_name"] = schedule;
@@ -277,22 +304,27 @@ std::size_t add_equipment(const Equipment& there, double power_kW, const std::st
 
 std::size_t add_servers(double power_kW, Json& objects) {
   const Equipment there = equipment_of(objects);
-  return add_equipment(there, power_kW, always_on(objects), "server_room", objects);
+  if (there.installed_kW <= 0.0) return 0;
+  return add_equipment(there, power_kW / there.installed_kW, always_on(objects), "server_room",
+                       objects);
 }
 
+/// @param power_kW  Mean power; what goes goes from what is there, by its hours.
 std::size_t step_equipment(double power_kW, double following_use, Json& objects) {
   const Equipment there = equipment_of(objects);
-  if (power_kW < 0.0 && there.total_kW > 0.0) {
-    const double left = std::max(1.0 + power_kW / there.total_kW, 0.0);
+  if (there.mean_kW <= 0.0) return 0;
+  if (power_kW < 0.0) {
+    const double left = std::max(1.0 + power_kW / there.mean_kW, 0.0);
     for (const Level& level : there.levels) {
       apply({.pattern = "", .fields = {level.field}, .sense = level.sense}, ChangeKind::scale, left,
             objects);
     }
     return there.levels.size();
   }
-  add_equipment(there, (1.0 - following_use) * power_kW, always_on(objects), "equipment_step",
-                objects);
-  return add_equipment(there, following_use * power_kW, "", "equipment_step use", objects);
+  add_equipment(there, (1.0 - following_use) * power_kW / there.installed_kW, always_on(objects),
+                "equipment_step", objects);
+  return add_equipment(there, following_use * power_kW / there.mean_kW, "", "equipment_step use",
+                       objects);
 }
 
 std::size_t light_outside(double power_kW, Json& objects) {
@@ -313,12 +345,13 @@ std::size_t fail_economisers(double failed_share, Json& objects) {
     if (equals_ignoring_case(text_of(controller, "economizer_control_type"), "NoEconomizer")) {
       continue;
     }
-    ++failed;
     const double least = number_of(controller, "minimum_outdoor_air_flow_rate");
     const double most = number_of(controller, "maximum_outdoor_air_flow_rate");
-    if (failed_share >= 1.0 || most <= least) {
+    if (most <= least) continue;  // its flow has no size yet
+    ++failed;
+    if (failed_share >= 1.0) {
       controller["economizer_control_type"] = "NoEconomizer";
-    } else if (failed_share > 0.0) {
+    } else {
       controller["maximum_outdoor_air_flow_rate"] = most - failed_share * (most - least);
     }
   }
@@ -370,10 +403,9 @@ std::size_t scale_parameters(std::initializer_list<std::string_view> names, doub
   return fields;
 }
 
-/// How an effect changes a model; each returns how many things it has changed.
+/// How an effect changes a model; none where it returns 0.
 struct Entry {
   std::string_view effect;
-  const char* things;  ///< "schedule"
   std::size_t (*apply)(Values values, const ModelDocument& model, Json& objects);
   std::vector<double> trial;  ///< Values by which every model that can have the effect changes.
 };
@@ -382,20 +414,17 @@ struct Entry {
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all{
       {"after_hours",
-       "schedule",
        [](Values v, const ModelDocument&, Json& objects) {
          return change_schedules(operation_fields(objects), "after_hours", moved_steps(v[0], true),
                                  objects);
        },
        {2.0}},
       {"constant_speed_fans",
-       "fan",
        [](Values v, const ModelDocument&, Json& objects) {
          return run_fans_at_constant_speed(v[0], objects);
        },
        {0.5}},
       {"early_start",
-       "schedule",
        [](Values v, const ModelDocument&, Json& objects) {
          const double lead_h = v[0] + kUsualCold_K * v[1];
          return change_schedules(operation_fields(objects), "early_start",
@@ -403,57 +432,47 @@ const std::vector<Entry>& entries() {
        },
        {2.0, 0.0}},
       {"economiser_failed",
-       "economiser",
        [](Values v, const ModelDocument&, Json& objects) {
          return fail_economisers(v[0], objects);
        },
        {0.5}},
       {"equipment_step",
-       "load",
        [](Values v, const ModelDocument&, Json& objects) {
          return step_equipment(v[0], v[1], objects);
        },
        {1.0, 0.5}},
       {"exterior_lighting",
-       "load",
        [](Values v, const ModelDocument&, Json& objects) { return light_outside(v[0], objects); },
        {1.0, 0.0}},
       {"night_setback_missing",
-       "schedule",
        [](Values v, const ModelDocument&, Json& objects) {
          return weaken_set_backs(v[0], objects);
        },
        {0.5}},
       {"outdoor_air_amount",
-       "air flow",
        [](Values v, const ModelDocument& model, Json& objects) {
          return scale_parameters({"outdoor_airflow"}, 1.0 + v[0], model, objects);
        },
        {0.2}},
       {"server_room",
-       "load",
        [](Values v, const ModelDocument&, Json& objects) { return add_servers(v[0], objects); },
        {1.0, 0.5, 0.0}},
       {"solar_gain_change",
-       "property of glass",
        [](Values v, const ModelDocument& model, Json& objects) {
          return scale_parameters({"shgc_scale", "solar_transmittance_scale"}, 1.0 - v[0], model,
                                  objects);
        },
        {0.2, 0.0}},
       {"vacancy",
-       "schedule",
        [](Values v, const ModelDocument&, Json& objects) { return empty_rooms(v[0], objects); },
        {0.5}},
       {"weekend_operation",
-       "schedule",
        [](Values v, const ModelDocument&, Json& objects) {
          return change_schedules(operation_fields(objects), "weekend_operation",
                                  weekend_operation(v[0], v[1]), objects);
        },
        {0.8, 0.8}},
       {"wind_infiltration",
-       "leak",
        [](Values v, const ModelDocument&, Json& objects) {
          return leak_in_wind(v[0], v[1], objects);
        },
@@ -479,12 +498,13 @@ Result<EffectPatch> find_effect_patch(const ModelDocument& model, std::string_vi
   Json tried = model.objects;
   const std::size_t changed = entry->apply(entry->trial, model, tried);
   if (changed == 0 || tried == model.objects) {
-    return failure(
-        ErrorCode::unsupported,
-        fmt::format("the EnergyPlus model has nothing that the effect '{}' would change", effect));
+    return failure(ErrorCode::unsupported,
+                   fmt::format("the EnergyPlus model has nothing that the effect '{}' would "
+                               "change, so it cannot be calibrated while a model version with it "
+                               "is in force; `recald model revert` takes it out",
+                               effect));
   }
-  return EffectPatch{std::string{effect}, counted(changed, entry->things),
-                     [entry = *entry, model](Values values, Json& objects) {
+  return EffectPatch{std::string{effect}, [entry = *entry, model](Values values, Json& objects) {
                        entry.apply(values, model, objects);
                      }};
 }

@@ -19,7 +19,6 @@ namespace recald::energyplus {
 
 struct EffectPatch {
   std::string effect;  ///< Id in the catalogue.
-  std::string what;    ///< What of the model it changes, for people.
   /// Changes the objects of such a model. @param values  Of the effect's parameters, no dates.
   std::function<void(std::span<const double> values, Json& objects)> apply;
 };

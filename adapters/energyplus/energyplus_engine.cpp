@@ -221,6 +221,11 @@ Json EnergyPlusEngine::objects_at(const Eigen::VectorXd& values, Day day) const 
     for (const Target& target : one.targets) {
       apply(target, one.change, one.amount(values[row]), objects);
     }
+  }
+  // A patch copies schedules, so what parameters and measures change in them comes first.
+  for (std::size_t j = 0; j < setup_.parameters.size(); ++j) {
+    const TargetedParameter& one = setup_.parameters[j];
+    const auto row = static_cast<Eigen::Index>(j);
     const bool is_first = j == 0 || setup_.parameters[j - 1].effect != one.effect;
     if (!one.effect || !is_first || !is_there(*one.effect, day)) continue;
     one.effect->patch.apply({values.data() + row, one.effect->values}, objects);

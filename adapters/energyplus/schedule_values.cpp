@@ -134,6 +134,7 @@ std::optional<ScheduleValues> read_compact(const Json& object) {
       until = 0;
       continue;
     }
+    if (!field->is_string()) return {};
     const std::string line = to_lower(field->get<std::string>());
     if (const auto date = after(line, "through")) {
       const auto day = date_of(*date);

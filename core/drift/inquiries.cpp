@@ -90,7 +90,7 @@ Result<void> Inquiries::open(const Alarm& alarm, int month) {
     return tl::unexpected(before.error());
   }
   drift_.alarms.push_back({.alarm = alarm, .causes = {}, .explained_until = month});
-  if (before) open_.push_back({drift_.alarms.size() - 1, std::move(*before), {}});
+  if (before) open_.push_back({drift_.alarms.size() - 1, std::move(*before)});
   return {};
 }
 
@@ -131,23 +131,30 @@ const MeterChange* Inquiries::change_of_meter(const Alarm& alarm, int month) con
   return found == drift_.meter_changes.end() ? nullptr : &*found;
 }
 
-/// Hours take seconds to ask: when something may be done about it, again with twice as many, and in
-/// the newest month, which people read.
+/// Hours take seconds to ask: when something may be done about it, and again with twice as many.
 void Inquiries::ask_hours(Open& open, int month) {
-  if (!ask_hours_) return;
   const Alarm& alarm = drift_.alarms[open.alarm].alarm;
   const int months = month - alarm.since + 1;
-  const bool is_newest = month + 1 == std::ssize(drift_.months);
   const bool is_due = months >= options_.months_to_act &&
-                      (!open.names || std::has_single_bit(static_cast<unsigned>(months)));
-  if (is_newest || is_due) open.names = ask_hours_(alarm, month, proceed_);
+                      (!open.is_asked || std::has_single_bit(static_cast<unsigned>(months)));
+  if (!ask_hours_ || !is_due) return;
+  open.is_asked = true;
+  auto names = ask_hours_(alarm, began_at(drift_), month, proceed_);
+  if (names) open.names = std::move(names);
+}
+
+/// What is done must not depend on where the record ends, so this comes after it.
+void Inquiries::name_newest(ExplainedAlarm& alarm, std::vector<Cause> causes, int month) {
+  if (!ask_hours_ || month + 1 != std::ssize(drift_.months)) return;
+  const auto names = ask_hours_(alarm.alarm, began_at(drift_), month, proceed_);
+  if (names) alarm.causes = with_names(std::move(causes), *names);
 }
 
 Result<bool> Inquiries::weigh(Open& open, int month) {
   ExplainedAlarm& alarm = drift_.alarms[open.alarm];
   auto causes = weigh_causes(case_of(alarm.alarm, month), open.before, options_.causes, seed_);
   if (!causes) return tl::unexpected(causes.error());
-  alarm.causes = std::move(*causes);
+  alarm.causes = *causes;
   const MeterChange* change = change_of_meter(alarm.alarm, month);
   if (change) {
     blame_meter(alarm, *change);
@@ -160,8 +167,11 @@ Result<bool> Inquiries::weigh(Open& open, int month) {
   const int months_to_act = could_be_a_unit(alarm.alarm) && !change
                                 ? std::max(options_.months_to_act, kMonthsToKnowAUnit)
                                 : options_.months_to_act;
-  if (months < months_to_act) return false;
-  const Cause& first = alarm.causes.front();
+  if (months < months_to_act) {
+    if (!change) name_newest(alarm, std::move(*causes), month);
+    return false;
+  }
+  const Cause first = alarm.causes.front();
   Result<void> done;
   if (first.kind == CauseKind::meter && first.probability >= options_.act_at) {
     done = prequential_.set_aside(first.index, alarm.alarm.since, proceed_);
@@ -173,6 +183,7 @@ Result<bool> Inquiries::weigh(Open& open, int month) {
     alarm.consequence = ExplainedAlarm::Consequence::began_anew;
   } else {
     const bool is_chance = first.kind == CauseKind::nothing && first.probability >= options_.act_at;
+    if (!change) name_newest(alarm, std::move(*causes), month);
     return is_chance || months >= kMonthsToAsk;
   }
   if (!done) return tl::unexpected(done.error());

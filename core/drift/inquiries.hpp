@@ -54,7 +54,8 @@ class Inquiries {
   struct Open {
     std::size_t alarm;
     std::vector<Eigen::VectorXd> before;
-    std::optional<NamedChange> names;  ///< As the hours said when they were last asked.
+    std::optional<NamedChange> names;  ///< As the hours said when something could be done.
+    bool is_asked = false;
   };
 
   [[nodiscard]] Result<void> open(const Alarm& alarm, int month);
@@ -64,6 +65,8 @@ class Inquiries {
   /// @return whether nothing more is to be asked.
   [[nodiscard]] Result<bool> weigh(Open& open, int month);
   void ask_hours(Open& open, int month);
+  /// In the newest month an alarm that stays open says what the hours say now.
+  void name_newest(ExplainedAlarm& alarm, std::vector<Cause> causes, int month);
 
   const MonthlyModel& model_;
   const calibration::HyperPrior& prior_;

@@ -25,9 +25,9 @@ struct NamedChange {
   double unknown = 0.0;
 };
 
-/// Asked for a change with the months up to `until`; nothing where the hours cannot tell, or when
-/// `proceed` says that it is enough.
-using AskHours = std::function<std::optional<NamedChange>(const Alarm& alarm, int until,
+/// Asked for a change with the months from `first`, before which the building was another one, to
+/// `until`; nothing where the hours cannot tell, or when `proceed` says that it is enough.
+using AskHours = std::function<std::optional<NamedChange>(const Alarm& alarm, int first, int until,
                                                           const std::function<bool()>& proceed)>;
 
 /// Puts names to causes. Hours and months are the same readings, and hours say more of them: which

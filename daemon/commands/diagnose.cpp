@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "adapters/models/model_store.hpp"
@@ -43,33 +44,37 @@ bool has_energyplus(const SiteConfig& site) {
 }
 
 /// Gives the site's EnergyPlus model the effects, makes the runs that it needs for that, and asks
-/// it whether it predicts the held-out months better with them. @return or an exit code
-tl::expected<void, int> ask_energyplus(const ModelledSite& modelled,
-                                       const diagnosis::SiteProblem& problem,
-                                       const diagnosis::ModelVersion& version,
-                                       const DiagnoseArguments& arguments, SiteDiagnosis& done,
-                                       const Console& console) {
+/// it whether it predicts the held-out months better with them.
+/// @return why it could not be asked
+Result<diagnosis::MonthlyVote> ask_energyplus(const ModelledSite& modelled,
+                                              const diagnosis::SiteProblem& problem,
+                                              const diagnosis::ModelVersion& version,
+                                              std::span<const diagnosis::Addition> added,
+                                              std::uint64_t seed, const Console& console) {
   ModelledSite on_runs = modelled;
   SiteConfig& site = on_runs.site.config;
   if (auto chosen = choose_model(site, ModelKind::energyplus); !chosen) {
-    return tl::unexpected(console.fail(chosen.error()));
+    return tl::unexpected(chosen.error());
+  }
+  for (const std::string& output : site.model->outputs) {
+    if (site.meter_index(output)) continue;
+    return failure(ErrorCode::not_found,
+                   fmt::format("its meter '{}' was not read, because the hourly model has no such "
+                               "output",
+                               output));
   }
   if (auto taken = take_in_effects(version, *site.model); !taken) {
-    done.diagnosis.warnings.push_back(
-        display::warning_of("The EnergyPlus model was left out: " + taken.error().message + "."));
-    return {};
+    return tl::unexpected(taken.error());
   }
   if (!has_all_runs(site)) {
     console.err << fmt::format("The EnergyPlus model gets the effect too: {} runs into '{}'.\n",
                                site.model->energyplus->runs,
                                site.model->energyplus->design.string());
-    const auto made = make_runs_aloud(on_runs, {.seed = arguments.seed}, 0, console);
-    if (!made) return tl::unexpected(made.error());
+    if (!make_runs_aloud(on_runs, {.seed = seed}, 0, console)) {
+      return failure(ErrorCode::not_found, "its runs could not be made");
+    }
   }
-  auto vote = energyplus_gap(on_runs, problem, done.diagnosis.added, arguments.seed);
-  if (!vote) return tl::unexpected(console.fail(vote.error()));
-  take_vote(std::move(*vote), "the EnergyPlus model", done);
-  return {};
+  return energyplus_gap(on_runs, problem, added, seed);
 }
 
 /// The diagnosis, with progress on a terminal. @return cancelled after an interrupt, too
@@ -133,8 +138,15 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
     const auto version = store_version(store, *modelled, diagnosis, *problem, at);
     if (!version) return fail(version.error());
     if (has_energyplus(modelled->site.config)) {
-      auto asked = ask_energyplus(*modelled, *problem, *version, arguments, *done, console);
-      if (!asked) return asked.error();
+      auto vote =
+          ask_energyplus(*modelled, *problem, *version, diagnosis.added, arguments.seed, console);
+      if (until_written.interrupted()) return fail(diagnosis::diagnosis_cancelled());
+      if (vote) {
+        take_vote(std::move(*vote), "the EnergyPlus model", *done);
+      } else {
+        done->diagnosis.warnings.push_back(display::warning_of(
+            "The EnergyPlus model was not asked: " + vote.error().message + "."));
+      }
     }
     if (is_kept()) modelled->facts.model_version = applied = version->version;
   }

@@ -55,11 +55,12 @@ bool can_tell(const SiteProblem& problem, const std::string& meter) {
 }
 
 /// Each effect in its likeliest shape. @param meters  As of `ask_hours_of`.
-drift::NamedChange named(const diagnosis::SignatureNames& names, const SiteProblem& problem,
-                         const std::vector<std::string>& meters) {
-  drift::NamedChange change;
+std::optional<drift::NamedChange> named(const diagnosis::SignatureNames& names,
+                                        const SiteProblem& problem,
+                                        const std::vector<std::string>& meters) {
   const double something = 1.0 - names.none;
-  if (something <= 0.0) return change;
+  if (something <= 0.0) return std::nullopt;
+  drift::NamedChange change;
   change.unknown = names.unknown / something;
   for (std::size_t i = 0; i < names.evidence.effects.size(); ++i) {
     const Candidate& candidate = *names.evidence.effects[i].shape.candidate;
@@ -85,13 +86,13 @@ drift::AskHours ask_hours_of(const ModelledSite& modelled, std::vector<std::stri
   if (!modelled.site.config.building) return {};
   return
       [&modelled, months = std::move(months), meters = std::move(meters), added = std::move(added)](
-          const drift::Alarm& alarm, int until,
+          const drift::Alarm& alarm, int begun, int until,
           const std::function<bool()>& proceed) -> std::optional<drift::NamedChange> {
         const auto month_at = [&](int i) {
           return *metering::parse_month(months[static_cast<std::size_t>(i)]);
         };
         const Month since = month_at(alarm.since);
-        const Month first = std::max(month_at(0), since - kMonthsBefore);
+        const Month first = std::max(month_at(begun), since - kMonthsBefore);
         auto made = problem_until(modelled, first, since, month_at(until));
         if (!made) return std::nullopt;
         if (!can_tell(*made, meters[static_cast<std::size_t>(alarm.output)])) return std::nullopt;

@@ -37,8 +37,9 @@ Result<void> require_patch(const AddedEffect& effect) {
   const auto known = energyplus::patched_effects();
   if (std::ranges::find(known, effect.effect) != known.end()) return {};
   return failure(ErrorCode::unsupported,
-                 fmt::format("the model version in force has the effect '{}', which an EnergyPlus "
-                             "model cannot be given; `recald model revert` takes it out",
+                 fmt::format("an EnergyPlus model cannot be given the effect '{}', so it cannot be "
+                             "calibrated while a model version with it is in force; `recald model "
+                             "revert` takes it out",
                              effect.title));
 }
 

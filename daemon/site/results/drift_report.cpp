@@ -58,7 +58,7 @@ report::AlarmCard card_of(const SiteDrift& drift, const ExplainedAlarm& explaine
       .causes = {},
       .consequence = consequence_of(drift, explained),
       .advice = explained.causes.empty() ? "The record before the change is too short to say why."
-                                         : advice_words(explained.causes.front().kind)};
+                                         : advice_words(drift, explained)};
   for (const drift::Cause& cause : explained.causes) {
     if (card.causes.size() == kCausesShown) break;
     card.causes.push_back({cause_words(drift, cause), cause.probability});

@@ -70,15 +70,24 @@ std::string since_words(const SiteDrift& drift, const drift::Alarm& alarm) {
 /// A cause that is as likely as this is settled.
 constexpr double kSettled = 0.8;
 
-/// What would tell the two likeliest causes apart; empty: nobody knows, or nobody need know.
+/// The measurement that tells an effect from another, as the catalogue has it for either; empty: it
+/// has none.
+std::string_view separated_by(std::string_view effect, std::string_view other) {
+  for (const auto& [own, rival] : {std::pair{effect, other}, std::pair{other, effect}}) {
+    const diagnosis::Effect* known = diagnosis::find_effect(own);
+    if (known == nullptr) continue;
+    const auto found = std::ranges::find(known->confusable, rival, &diagnosis::Confusable::effect);
+    if (found != known->confusable.end()) return found->separated_by;
+  }
+  return {};
+}
+
+/// What would tell the two likeliest causes apart; empty: nobody knows.
 std::string telling_words(const SiteDrift& drift, const std::vector<drift::Cause>& causes) {
-  const diagnosis::Effect* effect = diagnosis::find_effect(causes[0].effect);
-  if (effect == nullptr || causes[0].probability >= kSettled) return "";
-  const auto rival =
-      std::ranges::find(effect->confusable, causes[1].effect, &diagnosis::Confusable::effect);
-  if (rival == effect->confusable.end()) return "";
+  const std::string_view measurement = separated_by(causes[0].effect, causes[1].effect);
+  if (measurement.empty()) return "";
   return " What tells them apart: " +
-         display::with_temperatures_in(drift.units, std::string{rival->separated_by});
+         display::with_temperatures_in(drift.units, std::string{measurement});
 }
 
 /// "heating", "cooling"; empty: a meter that works all year.
@@ -113,14 +122,31 @@ double mean_of(const FollowedOutput& output, int from, int to) {
 /// A plant that has been at rest since the change says nothing of it yet.
 std::string wait_words(const SiteDrift& drift, const ExplainedAlarm& alarm) {
   constexpr double kAtRest = 0.15;  // Of the mean of the months before.
-  if (alarm.causes.front().probability >= kSettled) return "";
-  for (const FollowedOutput& output : drift.outputs) {
+  for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
+    const FollowedOutput& output = drift.outputs[k];
     const std::string season = season_of(output.utility);
-    if (season.empty() || output.name.ends_with("_peak_kW")) continue;
+    const bool has_changed = static_cast<int>(k) == alarm.alarm.output;  // a dead meter is at rest
+    if (season.empty() || has_changed || output.name.ends_with("_peak_kW")) continue;
     const double since = mean_of(output, alarm.alarm.since, alarm.explained_until + 1);
     if (since < kAtRest * mean_of(output, 0, alarm.alarm.since)) {
       return fmt::format(" Wait until {} begins: its months will tell more.", season);
     }
+  }
+  return "";
+}
+
+std::string look_at_words(drift::CauseKind kind) {
+  switch (kind) {
+    case drift::CauseKind::nothing:
+      return "Wait for another month.";
+    case drift::CauseKind::parameter:
+    case drift::CauseKind::direction:
+    case drift::CauseKind::effect:
+      return "Find out what changed in the building around that time.";
+    case drift::CauseKind::meter:
+      return "Check the meter: its transformers, its unit, its register map.";
+    case drift::CauseKind::unknown:
+      return "Run `recald diagnose` to find out what it is.";
   }
   return "";
 }
@@ -193,20 +219,12 @@ std::string cause_words(const SiteDrift& drift, const drift::Cause& cause) {
   return "";
 }
 
-std::string advice_words(drift::CauseKind kind) {
-  switch (kind) {
-    case drift::CauseKind::nothing:
-      return "Wait for another month.";
-    case drift::CauseKind::parameter:
-    case drift::CauseKind::direction:
-    case drift::CauseKind::effect:
-      return "Find out what changed in the building around that time.";
-    case drift::CauseKind::meter:
-      return "Check the meter: its transformers, its unit, its register map.";
-    case drift::CauseKind::unknown:
-      return "Run `recald diagnose` to find out what it is.";
-  }
-  return "";
+std::string advice_words(const SiteDrift& drift, const ExplainedAlarm& alarm) {
+  std::string words = look_at_words(alarm.causes.front().kind);
+  const bool is_open = alarm.consequence == ExplainedAlarm::Consequence::none &&
+                       alarm.causes.front().probability < kSettled;
+  if (is_open) words += telling_words(drift, alarm.causes) + wait_words(drift, alarm);
+  return words;
 }
 
 std::string trust_words(const SiteDrift& drift, std::size_t output) {
@@ -239,8 +257,7 @@ std::string explained_sentence(const SiteDrift& drift, const ExplainedAlarm& ala
     sentence += fmt::format("; next ({:.0f} %): {}", 100.0 * second.probability,
                             cause_words(drift, second));
   }
-  return sentence + ". " + advice_words(first.kind) + telling_words(drift, alarm.causes) +
-         wait_words(drift, alarm);
+  return sentence + ". " + advice_words(drift, alarm);
 }
 
 std::string drift_words(const SiteDrift& drift) {

@@ -18,8 +18,9 @@ namespace recald::daemon {
 /// "outdoor_airflow: 5.0 before, 6.9 m3/s since (90 %: 6.2 to 7.6)".
 [[nodiscard]] std::string cause_words(const SiteDrift& drift, const drift::Cause& cause);
 
-/// What to look at. @param kind  Of the likeliest cause.
-[[nodiscard]] std::string advice_words(drift::CauseKind kind);
+/// What to look at; of an alarm that is still open also what would tell its causes apart, and
+/// whether to wait. @pre it has causes
+[[nodiscard]] std::string advice_words(const SiteDrift& drift, const ExplainedAlarm& alarm);
 
 /// How true an output's forecasts were so far.
 [[nodiscard]] std::string trust_words(const SiteDrift& drift, std::size_t output);

@@ -116,13 +116,16 @@ TEST(EffectPatch, LoadsComeWhereEquipmentIs) {
   EXPECT_EQ(read_schedule(objects, always)->spans[0].days[kSunday], (DayValues{{1440, 1.0}}));
   EXPECT_EQ(loads["North plugs"], office().objects["ElectricEquipment"]["North plugs"]);
 
+  // Of 4 kW, 0.9 for 11 hours of five days and else 0.1.
+  const double mean_kW = 4.0 * (5.0 * (11.0 * 0.9 + 13.0 * 0.1) / 24.0 + 2.0 * 0.1) / 7.0;
   const Json step = patched("equipment_step", {1.0, 0.25})["ElectricEquipment"];
-  EXPECT_DOUBLE_EQ(step["South plugs equipment_step"]["design_level"], 0.75 * 750.0);
-  EXPECT_DOUBLE_EQ(step["South plugs equipment_step use"]["design_level"], 0.25 * 750.0);
+  EXPECT_NEAR(step["South plugs equipment_step"]["design_level"], 0.75 * 750.0, 1e-9);
+  EXPECT_NEAR(step["South plugs equipment_step use"]["design_level"], 0.25 * 3000.0 / mean_kW,
+              1e-9);
   EXPECT_EQ(step["South plugs equipment_step use"]["schedule_name"], "Use");
   const Json less = patched("equipment_step", {-1.0, 0.25})["ElectricEquipment"];
-  EXPECT_DOUBLE_EQ(less["South plugs"]["design_level"], 2250.0);
-  EXPECT_DOUBLE_EQ(less["North plugs"]["watts_per_floor_area"], 7.5);
+  EXPECT_NEAR(less["South plugs"]["design_level"], 3000.0 * (1.0 - 1.0 / mean_kW), 1e-9);
+  EXPECT_NEAR(less["North plugs"]["watts_per_floor_area"], 10.0 * (1.0 - 1.0 / mean_kW), 1e-9);
 
   const Json lamps = patched("exterior_lighting", {1.5, 0.0})["Exterior:Lights"];
   EXPECT_DOUBLE_EQ(lamps.front()["design_level"], 1500.0);
