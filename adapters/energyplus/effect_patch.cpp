@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -34,40 +35,33 @@ constexpr double kUsualCold_K = 15.0;
 
 // ---- schedules
 
-/// Fields that name schedules by which fans and units run or take in outdoor air.
-Fields plant_fields(const Json& objects) {
+Fields fields_of(const Json& objects, std::initializer_list<std::string_view> patterns) {
   Fields fields;
-  for (const std::string_view pattern : {
-           "AvailabilityManager:Scheduled/*/schedule_name",
-           "AvailabilityManager:NightCycle/*/fan_schedule_name",
-           "Fan:*/*/availability_schedule_name",
-           "ZoneHVAC:*/*/availability_schedule_name",
-           "ZoneHVAC:*/*/supply_air_fan_operating_mode_schedule_name",
-           "AirLoopHVAC:Unitary*/*/availability_schedule_name",
-           "AirLoopHVAC:Unitary*/*/supply_air_fan_operating_mode_schedule_name",
-           "Controller:OutdoorAir/*/minimum_outdoor_air_schedule_name",
-       }) {
+  for (const std::string_view pattern : patterns) {
     for (Pointer& field : find_fields(objects, pattern)) fields.push_back(std::move(field));
   }
   return fields;
 }
 
-/// Those of thermostats.
+/// Those of thermostats that name schedules.
 Fields thermostat_fields(const Json& objects) {
-  Fields fields;
-  for (const std::string_view pattern : {
-           "ThermostatSetpoint:DualSetpoint/*/heating_setpoint_temperature_schedule_name",
-           "ThermostatSetpoint:DualSetpoint/*/cooling_setpoint_temperature_schedule_name",
-           "ThermostatSetpoint:SingleHeating/*/setpoint_temperature_schedule_name",
-           "ThermostatSetpoint:SingleCooling/*/setpoint_temperature_schedule_name",
-       }) {
-    for (Pointer& field : find_fields(objects, pattern)) fields.push_back(std::move(field));
-  }
-  return fields;
+  return fields_of(objects,
+                   {"ThermostatSetpoint:DualSetpoint/*/heating_setpoint_temperature_schedule_name",
+                    "ThermostatSetpoint:DualSetpoint/*/cooling_setpoint_temperature_schedule_name",
+                    "ThermostatSetpoint:SingleHeating/*/setpoint_temperature_schedule_name",
+                    "ThermostatSetpoint:SingleCooling/*/setpoint_temperature_schedule_name"});
 }
 
+/// Those too by which fans and units run or take in outdoor air.
 Fields operation_fields(const Json& objects) {
-  Fields fields = plant_fields(objects);
+  Fields fields = fields_of(
+      objects, {"AvailabilityManager:Scheduled/*/schedule_name",
+                "AvailabilityManager:NightCycle/*/fan_schedule_name",
+                "Fan:*/*/availability_schedule_name", "ZoneHVAC:*/*/availability_schedule_name",
+                "ZoneHVAC:*/*/supply_air_fan_operating_mode_schedule_name",
+                "AirLoopHVAC:Unitary*/*/availability_schedule_name",
+                "AirLoopHVAC:Unitary*/*/supply_air_fan_operating_mode_schedule_name",
+                "Controller:OutdoorAir/*/minimum_outdoor_air_schedule_name"});
   for (Pointer& field : thermostat_fields(objects)) fields.push_back(std::move(field));
   return fields;
 }
