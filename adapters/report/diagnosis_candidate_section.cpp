@@ -36,6 +36,27 @@ Table candidate_table(const DiagnosisData& data) {
   return table;
 }
 
+void write_signs(Html& html, const DiagnosisData& data) {
+  if (data.signs.empty()) return;
+  html.element("h3", "What speaks for them");
+  html.element("p",
+               "These are the figures by which the meters differ much from the model without the "
+               "effect, and little from the model with it; both are fitted as well as they can be. "
+               "Each difference is a share of what the meter reads at those times plus a quarter "
+               "of its mean; \"with wind\" and the like are the change for one standard deviation "
+               "of the wind.");
+  Table table("Figures of the meters that speak for the likeliest effects");
+  table.columns({"Effect", "Meter", "Where", "Measured minus modelled", "With the effect"});
+  for (const SignRow& sign : data.signs) {
+    table.row({{sign.effect},
+               {sign.meter},
+               {sign.where},
+               {signed_percent_text(sign.without), "number"},
+               {signed_percent_text(sign.with), "number"}});
+  }
+  table.write(html);
+}
+
 void write_separations(Html& html, const DiagnosisData& data) {
   if (data.separations.empty()) return;
   html.element("h3", "What would tell them apart");
@@ -72,6 +93,7 @@ void write_candidate_section(Html& html, const DiagnosisData& data) {
                 .caption = "The likeliest ones; all are in the table.",
                 .size = "small"},
                candidate_table(data));
+  write_signs(html, data);
   write_separations(html, data);
   html.markup("</section>\n");
 }

@@ -56,6 +56,15 @@ struct CandidateBar {
   std::vector<EffectParameterRow> parameters;
 };
 
+/// A figure of a meter by which an effect shows.
+struct SignRow {
+  std::string effect;
+  std::string meter;  ///< "Electricity"
+  std::string where;  ///< "Sundays, when mild, 16 to 18 h"
+  double without;     ///< Measured minus modelled, as a share …
+  double with;        ///< … and with the effect in the model.
+};
+
 /// Two effects that look alike on these meters, and the measurement that would tell them apart.
 struct Separation {
   std::string effect;
@@ -116,6 +125,7 @@ struct DiagnosisData {
   std::vector<diagnosis::Misfit> located;
   std::vector<diagnosis::Misfit> located_after;  ///< With the additions.
   std::vector<CandidateBar> candidates;          ///< Descending in probability.
+  std::vector<SignRow> signs;                    ///< Of likely effects, the likeliest first.
   std::vector<Separation> separations;
   std::vector<GapStep> steps;  ///< Empty: no month was kept back.
   /// Of models other than the hourly one, given the same effects; outputs under

@@ -159,9 +159,11 @@ std::vector<NameProbability> probabilities_of(const SignatureNames& names) {
   std::vector<NameProbability> list{{"none", -1, names.none, {}},
                                     {"unknown", -1, names.unknown, {}}};
   for (std::size_t i = 0; i < names.evidence.effects.size(); ++i) {
-    const Candidate& candidate = *names.evidence.effects[i].shape.candidate;
+    const EffectEvidence& evidence = names.evidence.effects[i];
+    const Candidate& candidate = *evidence.shape.candidate;
     list.push_back({std::string{candidate.effect->id}, candidate.meter,
-                    names.probabilities[static_cast<Eigen::Index>(i)], std::nullopt});
+                    names.probabilities[static_cast<Eigen::Index>(i)], std::nullopt,
+                    evidence.signs});
   }
   std::ranges::stable_sort(list, std::greater{}, &NameProbability::probability);
   return list;

@@ -44,6 +44,7 @@ struct NameProbability {
   int meter = -1;
   double probability;
   std::optional<std::size_t> explanation;  ///< Its fit, if it was likely enough for one.
+  std::vector<EffectSign> signs = {};      ///< By what it shows.
 };
 
 struct Naming {

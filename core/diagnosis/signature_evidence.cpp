@@ -6,7 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -153,9 +155,11 @@ class EvidenceSearch {
 
   SignatureEvidence run() {
     if (search_.metric().count() == 0) return {.scores = fit_.scores};  // no meter they know
+    mode_ = search_.settled(search_.base_at(fit_.scores), nullptr);
+    search_.widen(mode_);
     SignaturePoint drawings = search_.base_at(Eigen::VectorXd::Zero(search_.parameters()));
     search_.linearise(drawings, nullptr);
-    mode_ = search_.settled(search_.base_at(fit_.scores), nullptr);
+    mode_ = search_.settled(search_.base_at(search_.scores_of(mode_)), nullptr);
     take_if_better(search_.settled(drawings, nullptr));
     search_.linearise(mode_, nullptr);
     looks_ = {look_from(drawings), look_from(mode_)};
@@ -269,7 +273,12 @@ class EvidenceSearch {
     }
   }
 
-  [[nodiscard]] SignatureEvidence conclude() const {
+  [[nodiscard]] SignatureEvidence conclude() {
+    constexpr std::size_t kShown = 4;
+    std::ranges::sort(fitted_, {}, &Fitted::cost);
+    for (std::size_t i = 0; i < std::min(fitted_.size(), kShown); ++i) {
+      signs_[fitted_[i].effect] = signs_of(fitted_[i]);
+    }
     SignatureEvidence evidence{.misfit = mode_.misfit,
                                .count = static_cast<int>(search_.metric().count()),
                                .scores = search_.scores_of(mode_)};
@@ -288,6 +297,7 @@ class EvidenceSearch {
             .log_gain = std::min(look.gain + look.log_choice(), 0.0),
             .misfit = mode_.misfit,
             .visibility = look.across,
+            .signs = {},
             .is_wrong_sign = look.shape.sign * look.along < 0.0};
   }
 
@@ -300,7 +310,36 @@ class EvidenceSearch {
     evidence.factor = has_amount ? std::exp(fitted.point.at[search_.parameters()]) : 1.0;
     evidence.values = evidence.shape.with_factor(evidence.factor);
     evidence.scores = search_.scores_of(fitted.point);
+    const auto signs = signs_.find(fitted.effect);
+    if (signs != signs_.end()) evidence.signs = signs->second;
     return evidence;
+  }
+
+  /// The signatures from which the effect takes most of what the base model leaves, each of another
+  /// kind: hours next to each other say the same.
+  [[nodiscard]] std::vector<EffectSign> signs_of(const Fitted& fitted) {
+    constexpr double kMost = 15.0;  // Spreads.
+    constexpr double kLeast = 1.0;  // Of squared spreads.
+    constexpr std::size_t kMany = 3;
+    const Eigen::VectorXd without = search_.left_at(mode_, nullptr);
+    const Eigen::VectorXd with = search_.left_at(fitted.point, &fitted.look->shape);
+    const Eigen::VectorXd gained = search_.metric().in_spreads(without, kMost).cwiseAbs2() -
+                                   search_.metric().in_spreads(with, kMost).cwiseAbs2();
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(gained.size()));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::ranges::stable_sort(order, std::greater{}, [&](Eigen::Index i) { return gained[i]; });
+    const auto names = std::ssize(signature_names());
+    std::vector<EffectSign> signs;
+    std::set<std::pair<Eigen::Index, std::string_view>> kinds;
+    for (const Eigen::Index i : order) {
+      if (gained[i] < kLeast || signs.size() == kMany) break;
+      if (!std::isfinite(without[i]) || !std::isfinite(with[i])) continue;
+      const auto signature = static_cast<std::size_t>(i % names);
+      const std::string_view name = signature_names()[signature];
+      if (!kinds.emplace(i / names, name.substr(0, name.rfind(','))).second) continue;
+      signs.push_back({static_cast<SignatureMeter>(i / names), signature, without[i], with[i]});
+    }
+    return signs;
   }
 
   const SiteProblem& site_;
@@ -313,6 +352,7 @@ class EvidenceSearch {
   SignaturePoint mode_;
   std::array<ShapeLooks, 2> looks_;  ///< From the drawings; from the base model's mode.
   std::vector<Fitted> fitted_;
+  std::map<std::string_view, std::vector<EffectSign>> signs_;
 };
 
 }  // namespace

@@ -9,6 +9,15 @@
 
 namespace recald::diagnosis {
 
+/// A signature by which an effect shows: how far measured is from modelled, as
+/// `SignatureReader::read` has it.
+struct EffectSign {
+  SignatureMeter meter;
+  std::size_t signature;  ///< Index among `signature_names()`.
+  double without;         ///< The base model, as well as it fits …
+  double with;            ///< … and the model with the effect.
+};
+
 /// An effect in its likeliest shape.
 struct EffectEvidence {
   EffectShape shape;
@@ -19,8 +28,9 @@ struct EffectEvidence {
   double misfit = 0.0;         ///< With it; that of the base model if it was not worth a fit.
   double visibility = 0.0;     ///< Squared distance by which its typical amount moves signatures
                                ///< farther than parameters could.
-  bool is_fitted = false;      ///< Together with the parameters; else log_gain is at most zero.
-  bool is_wrong_sign = false;  ///< It would have to take away what it can only add.
+  std::vector<EffectSign> signs;  ///< Of the four that fit best: three at most, clearest first.
+  bool is_fitted = false;         ///< Together with the parameters; else log_gain is at most zero.
+  bool is_wrong_sign = false;     ///< It would have to take away what it can only add.
 };
 
 struct SignatureEvidence {

@@ -37,8 +37,18 @@ class SignatureMetric {
   [[nodiscard]] Eigen::MatrixXd whiten(const Eigen::Ref<const Eigen::MatrixXd>& changes,
                                        double most = 1e9) const;
 
+  /// (entries) How many spreads a change of signatures is, clipped as in `whiten`; no number is
+  /// zero.
+  [[nodiscard]] Eigen::VectorXd in_spreads(const Eigen::VectorXd& change, double most) const;
+
+  /// Widens the spread of each meter by what the model leaves of its signatures beyond what the
+  /// null leaves: a meter that a model gets wrong must not make the others' evidence worthless.
+  /// @param left  (count) of a fitted model, whitened.
+  void widen(const Eigen::VectorXd& left);
+
  private:
   std::vector<Eigen::Index> there_;
+  Eigen::Index per_meter_;  ///< Entries of one meter.
   Eigen::VectorXd spread_;
   Eigen::MatrixXd root_;  ///< L of the covariance L L'.
 };

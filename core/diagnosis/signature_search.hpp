@@ -49,6 +49,8 @@ class SignatureSearch {
 
   [[nodiscard]] const SignatureMetric& metric() const { return metric_; }
   [[nodiscard]] Eigen::Index parameters() const { return centre_.size(); }
+  /// As `SignatureMetric::widen`; points made before are in the metric of before.
+  void widen(const SignaturePoint& base) { metric_.widen(base.residual); }
 
   /// The base model there. @param scores  (q) standard scores of the parameters.
   [[nodiscard]] SignaturePoint base_at(const Eigen::VectorXd& scores);
@@ -73,6 +75,10 @@ class SignatureSearch {
   [[nodiscard]] double log_narrowing(const SignaturePoint& point) const;
   /// (entries) signatures of the model there.
   [[nodiscard]] Eigen::VectorXd modelled(const Eigen::VectorXd& at, const EffectShape* shape);
+  /// (entries) measured minus modelled; NaN where the site has no such signature.
+  [[nodiscard]] Eigen::VectorXd left_at(const SignaturePoint& point, const EffectShape* shape) {
+    return measured_ - modelled(point.at, shape);
+  }
 
  private:
   void evaluate(SignaturePoint& point, const EffectShape* shape);

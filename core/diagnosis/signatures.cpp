@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/absent.hpp"
+#include "core/diagnosis/effects/support/public_holidays.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -41,24 +42,27 @@ constexpr int kPairs = 12;  // of hours
 constexpr int kGroups = static_cast<int>(model::kDayTypes) * kSeasons * kPairs;
 constexpr int kFewestHours = 12;
 
-constexpr std::array<const char*, kSeasons> kSeasonNames{"cold", "mild", "hot"};
-constexpr std::array<const char*, model::kDayTypes> kDayNames{"workday", "Saturday", "Sunday"};
+constexpr std::array<const char*, kSeasons> kSeasonNames{"when cold", "when mild", "when hot"};
+constexpr std::array<const char*, model::kDayTypes> kDayNames{"workdays", "Saturdays", "Sundays"};
 
 /// Hours that are alike.
 enum RegimeKind { kOccupied, kNight, kFreeDay, kRegimes };
-constexpr std::array<const char*, kRegimes> kRegimeNames{"occupied", "night", "free day"};
+constexpr std::array<const char*, kRegimes> kRegimeNames{"occupied hours", "nights", "free days"};
+constexpr std::array<const char*, 12> kMonthNames{"January",   "February", "March",    "April",
+                                                  "May",       "June",     "July",     "August",
+                                                  "September", "October",  "November", "December"};
 constexpr int kFewestRows = 30;
 
 // Outdoor temperature: a broken line whose bends stand here.
 constexpr std::array<double, 5> kBends_C{2.0, 8.0, 14.0, 19.0, 25.0};
-constexpr std::array<const char*, 10> kSlopeNames{"per humidity",
-                                                  "per dryness in the cold",
-                                                  "per wind in the cold",
-                                                  "per wind in the heat",
-                                                  "per sun in the cold",
-                                                  "per sun in the heat",
-                                                  "per warmth of the day before",
-                                                  "per year",
+constexpr std::array<const char*, 10> kSlopeNames{"with humidity",
+                                                  "with dryness in the cold",
+                                                  "with wind in the cold",
+                                                  "with wind in the heat",
+                                                  "with sun in the cold",
+                                                  "with sun in the heat",
+                                                  "with warmth of the day before",
+                                                  "year by year",
                                                   "spring against autumn",
                                                   "summer against winter"};
 constexpr int kCoefficients =
@@ -166,21 +170,24 @@ std::vector<std::string> make_names() {
     const std::string of = std::string(regime) + ", ";
     for (const char* slope : kSlopeNames) names.push_back(of + slope);
     for (int bin = 0; bin < kWarmths; ++bin) {
-      names.push_back(of + std::to_string(static_cast<int>(kCoolest_C + kWarmth_K * bin)) + " C");
+      names.push_back(of + "about " +
+                      std::to_string(static_cast<int>(kCoolest_C + kWarmth_K * bin)) +
+                      " degC outdoors");
     }
     for (int block = 0; block < kBlocks; ++block) {
       names.push_back(of + "twelfth " + std::to_string(block + 1) + " of the record");
     }
-    for (int month = 0; month < 12; ++month) {
-      names.push_back(of + "month " + std::to_string(month + 1));
-    }
-    for (const char* day : {"Monday", "Tuesday", "Wednesday", "Thursday", "Friday"}) {
+    for (const char* month : kMonthNames) names.push_back(of + month);
+    for (const char* day : {"Mondays", "Tuesdays", "Wednesdays", "Thursdays", "Fridays"}) {
       names.push_back(of + day);
     }
-    names.push_back(of + "holiday");
+    names.push_back(of + "holidays");
+    for (const char* calendar : effects::kHolidayCalendars) {
+      names.push_back(of + "workdays that are public holidays in " + calendar);
+    }
   }
-  for (const char* what :
-       {"workday mornings", "workday evenings", "free day mornings", "free day evenings"}) {
+  for (const char* what : {"mornings of workdays", "evenings of workdays", "mornings of free days",
+                           "evenings of free days"}) {
     names.push_back(std::string("dark against light, ") + what);
   }
   return names;
@@ -195,7 +202,9 @@ const std::vector<std::string>& signature_names() {
 
 namespace {
 
-constexpr int kOfRegime = static_cast<int>(kSlopeNames.size()) + kWarmths + kBlocks + 12 + 5 + 1;
+constexpr int kCalendars = static_cast<int>(effects::kHolidayCalendars.size());
+constexpr int kOfRegime =
+    static_cast<int>(kSlopeNames.size()) + kWarmths + kBlocks + 12 + 5 + 1 + kCalendars;
 constexpr int kDarkKinds = 4;
 constexpr int kDarkFrom = kGroups + kRegimes * kOfRegime;  ///< Place of the first.
 
@@ -205,7 +214,9 @@ struct RowGroups {
   std::vector<int> weekday;   ///< 0…4 Monday to Friday of a working day; else -1.
   std::vector<int> month;     ///< 0…11
   std::vector<int> free_day;  ///< 0: a holiday from Monday to Friday; else -1.
-  std::vector<int> warmth;    ///< Bin of outdoor temperature.
+  /// By calendar. 0: a working day at the site that is a public holiday there; else -1.
+  std::array<std::vector<int>, kCalendars> public_day;
+  std::vector<int> warmth;  ///< Bin of outdoor temperature.
 };
 
 /// (groups x rows) that averages each group; NaN for those of fewer than four rows.
@@ -251,6 +262,7 @@ Eigen::MatrixXd signatures_of_rows(const Eigen::MatrixXd& design, const Eigen::M
   put(unexplained(averaging(rows.month, 12), kCoefficients));
   put(unexplained(averaging(rows.weekday, 5), kCoefficients));
   put(unexplained(averaging(rows.free_day, 1), kCoefficients));
+  for (const auto& days : rows.public_day) put(unexplained(averaging(days, 1), kCoefficients));
   assert(next == of_rows.rows());
   return of_rows;
 }
@@ -264,7 +276,8 @@ Eigen::MatrixXd levels_of_rows(const Eigen::MatrixXd& design, const RowGroups& r
   of_rows.topRows(kSlopes) = (there.rowwise() / there.colwise().sum()).matrix().transpose();
   of_rows.bottomRows(kOfRegime - kSlopes) << averaging(rows.warmth, kWarmths),
       averaging(rows.block, kBlocks), averaging(rows.month, 12), averaging(rows.weekday, 5),
-      averaging(rows.free_day, 1);
+      averaging(rows.free_day, 1), averaging(rows.public_day[0], 1),
+      averaging(rows.public_day[1], 1), averaging(rows.public_day[2], 1);
   return of_rows;
 }
 
@@ -385,6 +398,10 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
     groups.weekday.push_back(is_workday ? static_cast<int>(first.weekday) - 1 : -1);
     groups.month.push_back(static_cast<int>(static_cast<unsigned>(first.date.month())) - 1);
     groups.free_day.push_back(is_weekday && !is_workday ? 0 : -1);
+    for (std::size_t c = 0; c < groups.public_day.size(); ++c) {
+      const bool is_public = is_workday && effects::public_holidays(c).contains(first.date);
+      groups.public_day[c].push_back(is_public ? 0 : -1);
+    }
     const auto bin =
         static_cast<int>(std::floor((row.dry_bulb_C.mean() - kCoolest_C) / kWarmth_K + 0.5));
     groups.warmth.push_back(std::clamp(bin, 0, kWarmths - 1));

@@ -24,7 +24,8 @@ enum class SignatureMeter { electricity, cooling, heat };
 inline constexpr std::size_t kSignatureMeters = 3;
 [[nodiscard]] std::string_view to_string(SignatureMeter meter);
 
-/// The names of one meter's signatures, in order of their values: "workday, cold, 06 to 08 h".
+/// The names of one meter's signatures, in order of their values: "workdays, when cold, 06 to 08
+/// h".
 [[nodiscard]] const std::vector<std::string>& signature_names();
 
 /// The groups of hours and the regressions of a site, made once.

@@ -1,100 +1,21 @@
 /// The building is closed on public holidays that are not in its calendar.
+#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
 #include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/date_table.hpp"
+#include "core/diagnosis/effects/support/public_holidays.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
 
-using metering::Day;
-
-/// A holiday on a weekend is observed on the nearest weekday.
-Day observed(std::chrono::sys_days day) {
-  const std::chrono::weekday weekday{day};
-  if (weekday == std::chrono::Saturday) return day - std::chrono::days{1};
-  if (weekday == std::chrono::Sunday) return day + std::chrono::days{1};
-  return day;
-}
-
-void mark_year_end(std::chrono::year year, DateTable& table) {
-  table.mark(year / 12 / 24, year / 12 / 26);
-  table.mark(year / 12 / 31);
-}
-
-/// Days on which most offices in the United States are closed.
-DateTable north_american_holidays() {
-  using namespace std::chrono;  // NOLINT: calendar literals
-  DateTable table;
-  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
-    const year year{y};
-    const sys_days thanksgiving = sys_days{year / November / Thursday[4]};
-    table.mark(observed(year / January / 1));
-    table.mark(sys_days{year / January / Monday[3]});
-    table.mark(sys_days{year / May / Monday[last]});
-    table.mark(observed(year / July / 4));
-    table.mark(sys_days{year / September / Monday[1]});
-    table.mark(thanksgiving, thanksgiving + days{1});
-    table.mark(observed(year / December / 25));
-    mark_year_end(year, table);
-  }
-  return table;
-}
-
-/// Days common to most countries of Western and Central Europe; not moved from weekends.
-DateTable european_holidays() {
-  using namespace std::chrono;  // NOLINT: calendar literals
-  DateTable table;
-  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
-    const year year{y};
-    const sys_days easter = easter_sunday(year);
-    table.mark(year / January / 1);
-    table.mark(easter - days{2});   // Good Friday
-    table.mark(easter + days{1});   // Easter Monday
-    table.mark(easter + days{39});  // Ascension
-    table.mark(easter + days{50});  // Whit Monday
-    table.mark(year / May / 1);
-    mark_year_end(year, table);
-  }
-  return table;
-}
-
-/// A British holiday on a weekend moves to the next working day.
-Day made_up(std::chrono::sys_days day) {
-  const std::chrono::weekday weekday{day};
-  if (weekday == std::chrono::Saturday) return day + std::chrono::days{2};
-  if (weekday == std::chrono::Sunday) return day + std::chrono::days{1};
-  return day;
-}
-
-/// Bank holidays of England and Wales, and the days to New Year, when most offices are closed.
-DateTable british_holidays() {
-  using namespace std::chrono;  // NOLINT: calendar literals
-  DateTable table;
-  for (int y = DateTable::kFirstYear; y <= DateTable::kLastYear; ++y) {
-    const year year{y};
-    const sys_days easter = easter_sunday(year);
-    table.mark(made_up(year / January / 1));
-    table.mark(easter - days{2});  // Good Friday
-    table.mark(easter + days{1});  // Easter Monday
-    table.mark(sys_days{year / May / Monday[1]});
-    table.mark(sys_days{year / May / Monday[last]});
-    table.mark(sys_days{year / August / Monday[last]});
-    table.mark(year / 12 / 24, year / 12 / 31);
-  }
-  return table;
-}
-
+/// @param calendar  As the parameter has it: from 1, chosen, not fitted.
 const DateTable& holidays_of(double calendar) {
-  static const DateTable north_american = north_american_holidays();
-  static const DateTable european = european_holidays();
-  static const DateTable british = british_holidays();
-  if (calendar < 1.5) return north_american;
-  return calendar < 2.5 ? european : british;
+  const double last = static_cast<double>(kHolidayCalendars.size());
+  return public_holidays(static_cast<std::size_t>(std::lround(std::clamp(calendar, 1.0, last))) -
+                         1);
 }
 
 /// The building's own Sundays, by calendar month and local hour, as a model of a holiday.
@@ -194,6 +115,7 @@ Effect missing_holidays() {
           "on public holidays that the calendar has as workdays: on ×(1−a); people [–], "
           "lights [W] and plugs [W] move by a towards their Sunday values; a [–] 0…1",
       .effect_class = EffectClass::schedule,
+      .dating = Dating::may_begin,
       .confusable =
           {{"stuck_meter",
             "The profile of the day: a stuck meter is flat or zero, an empty building shows a weak "

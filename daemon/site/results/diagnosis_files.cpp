@@ -89,6 +89,17 @@ void add_explanation(const SiteProblem& site, const Diagnosis& d, const diagnosi
   entry["separated_by"] = separated;
 }
 
+Json signs_json(const std::vector<diagnosis::EffectSign>& signs) {
+  Json list = Json::array();
+  for (const diagnosis::EffectSign& sign : signs) {
+    list.push_back({{"meter", to_string(sign.meter)},
+                    {"signature", diagnosis::signature_names()[sign.signature]},
+                    {"without", results::number(sign.without)},
+                    {"with", results::number(sign.with)}});
+  }
+  return list;
+}
+
 /// Of the first search: there all rivals started from the model as drawn.
 Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
   const diagnosis::Naming& naming = d.passes.front().naming;
@@ -102,6 +113,7 @@ Json candidates_json(const SiteProblem& site, const Diagnosis& d) {
                   {"probability_at_prior_none",
                    {{"0.5", results::number(even[i])}, {"0.9", results::number(rare[i])}}}};
     if (p.meter >= 0) entry["meter"] = meter_name(site, p.meter);
+    if (!p.signs.empty()) entry["signs"] = signs_json(p.signs);
     if (p.explanation) add_explanation(site, d, naming.explanations[*p.explanation], entry);
     list.push_back(std::move(entry));
   }

@@ -98,6 +98,21 @@ report::CandidateBar bar_of(const SiteProblem& site, const Diagnosis& d, std::si
   return bar;
 }
 
+std::vector<report::SignRow> signs_of(const SiteProblem& site, const Diagnosis& d) {
+  std::vector<report::SignRow> rows;
+  for (const diagnosis::NameProbability& p : d.passes.front().naming.probabilities) {
+    if (!p.explanation) continue;
+    for (const diagnosis::EffectSign& sign : p.signs) {
+      rows.push_back({.effect = effect_label(site, p.effect, p.meter),
+                      .meter = display::capitalised(std::string{diagnosis::to_string(sign.meter)}),
+                      .where = display::capitalised(diagnosis::signature_names()[sign.signature]),
+                      .without = sign.without,
+                      .with = sign.with});
+    }
+  }
+  return rows;
+}
+
 /// A meter without readings in the held-out months has no gap, rather than a gap of zero.
 std::vector<diagnosis::MeterGap> where_measured(const SiteProblem& site,
                                                 std::vector<diagnosis::MeterGap> gaps) {
@@ -211,6 +226,7 @@ report::DiagnosisData diagnosis_report_of(const SiteConfig& config, const Diagno
   for (std::size_t i = 0; i < d.passes.front().naming.probabilities.size(); ++i) {
     data.candidates.push_back(bar_of(site, d, i));
   }
+  data.signs = signs_of(site, d);
   data.separations = separations_of(d, site);
   data.steps = steps_of(site, d);
   data.other_gaps = others;

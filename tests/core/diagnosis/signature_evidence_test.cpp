@@ -71,6 +71,21 @@ TEST_F(Evidence, ComesFirstForWhatIsHiddenWithItsSize) {
   EXPECT_NEAR(first.values[0], 1.5 * typical, 0.15 * typical);
 }
 
+TEST_F(Evidence, SaysByWhichSignaturesAnEffectShows) {
+  measure("steam_trap_leak", {30.0});
+  const std::vector<EffectSign> signs = strongest(evidence()).signs;
+  ASSERT_FALSE(signs.empty());
+  EXPECT_LE(signs.size(), 3u);
+  std::set<std::string> kinds;
+  for (const EffectSign& sign : signs) {
+    const std::string& name = signature_names()[sign.signature];
+    EXPECT_EQ(sign.meter, SignatureMeter::heat) << name;  // Steam, which is lost all year.
+    EXPECT_GT(sign.without, 0.02) << name;
+    EXPECT_LT(std::abs(sign.with), 0.5 * sign.without) << name;
+    EXPECT_TRUE(kinds.insert(name.substr(0, name.rfind(','))).second) << name;
+  }
+}
+
 TEST_F(Evidence, IsWeakWhereNothingIsHidden) {
   measure(nullptr, {});
   const SignatureEvidence found = evidence();

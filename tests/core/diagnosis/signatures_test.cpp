@@ -98,10 +98,11 @@ TEST_F(Signatures, MeansAreInUnitsOfWhatIsMeasuredThenAndAQuarterOfTheMean) {
   const auto change = [&](const std::string& name) {
     return value(kCooling, name, more) - measured(kCooling, name);
   };
-  EXPECT_NEAR(change("workday, mild, 10 to 12 h"), 1.0 / (50.0 + quarter_kW), 1e-12);
-  EXPECT_NEAR(change("Sunday, mild, 10 to 12 h"), 1.0 / (10.0 + quarter_kW), 1e-12);
-  EXPECT_NEAR(change("free day, 13 C"), 1.0 / (10.0 + quarter_kW), 1e-12);
-  EXPECT_NEAR(measured(kCooling, "night, 13 C"), 10.0 / (10.0 + quarter_kW), 1e-12);
+  EXPECT_NEAR(change("workdays, when mild, 10 to 12 h"), 1.0 / (50.0 + quarter_kW), 1e-12);
+  EXPECT_NEAR(change("Sundays, when mild, 10 to 12 h"), 1.0 / (10.0 + quarter_kW), 1e-12);
+  EXPECT_NEAR(change("free days, about 13 degC outdoors"), 1.0 / (10.0 + quarter_kW), 1e-12);
+  EXPECT_NEAR(measured(kCooling, "nights, about 13 degC outdoors"), 10.0 / (10.0 + quarter_kW),
+              1e-12);
 }
 
 TEST_F(Signatures, RegressionsFindWhatDependsOnTheWeather) {
@@ -121,8 +122,8 @@ TEST_F(Signatures, RegressionsFindWhatDependsOnTheWeather) {
   const double deviation = std::sqrt((wind - wind.mean()).square().mean());
   const double mean_kW = site_.measured_kW.col(0).mean();
   const double expected = 0.3 * deviation * mean_kW / (10.0 + 0.25 * mean_kW);
-  EXPECT_NEAR(value(kCooling, "night, per wind in the cold", kW), expected, 0.2 * expected);
-  EXPECT_NEAR(measured(kCooling, "night, per wind in the cold"), 0.0, 1e-6);
+  EXPECT_NEAR(value(kCooling, "nights, with wind in the cold", kW), expected, 0.2 * expected);
+  EXPECT_NEAR(measured(kCooling, "nights, with wind in the cold"), 0.0, 1e-6);
 }
 
 // A slope against next to nothing is anything: here 50 kW for one W/m2 of some early mornings.
@@ -141,7 +142,7 @@ TEST_F(Signatures, TheSunOfNightsIsNothing) {
   site_.drivers = drivers;
   const Eigen::ArrayXXd kW =
       hourly([&](const DriverHour& hour, Eigen::Index) { return is_light(hour) ? 60.0 : 10.0; });
-  const double read = value(kCooling, "night, per sun in the heat", kW);
+  const double read = value(kCooling, "nights, with sun in the heat", kW);
   EXPECT_GT(read, 0.01);
   EXPECT_LT(read, 0.3) << "50 kW x 300 W/m2 / 1 W/m2 would be hundreds";
 }
@@ -151,8 +152,8 @@ TEST_F(Signatures, AStepShowsInThePartsOfTheRecord) {
   const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
     return hour.day_index >= days / 2 ? 12.0 : 10.0;
   });
-  const double before = value(kCooling, "night, twelfth 3 of the record", kW);
-  const double after = value(kCooling, "night, twelfth 10 of the record", kW);
+  const double before = value(kCooling, "nights, twelfth 3 of the record", kW);
+  const double after = value(kCooling, "nights, twelfth 10 of the record", kW);
   EXPECT_GT((after - before) * (10.0 + 0.25 * site_.measured_kW.col(0).mean()), 1.0);
 }
 
@@ -160,7 +161,7 @@ TEST_F(Signatures, LampsAreSeenByTheDark) {
   const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
     return hour.sine_of_sun_altitude < 0.0 ? 14.0 : 10.0;
   });
-  const double read = value(kCooling, "dark against light, workday evenings", kW);
+  const double read = value(kCooling, "dark against light, evenings of workdays", kW);
   const double quarter_kW = 0.25 * site_.measured_kW.col(0).mean();
   // Of the measured evenings some hours are at 10 kW, some at 50.
   EXPECT_LT(read, 4.0 / (10.0 + quarter_kW));
@@ -204,16 +205,16 @@ TEST_F(Signatures, AMonthLeftOutTakesNothingElseAlong) {
   }
   site_.drivers = drivers;
   site_.measured_kW = kept;
-  EXPECT_TRUE(std::isfinite(measured(kHeat, "night, per warmth of the day before")));
-  EXPECT_TRUE(std::isnan(measured(kHeat, "night, month 5")));
-  EXPECT_TRUE(std::isfinite(measured(kHeat, "night, month 6")));
+  EXPECT_TRUE(std::isfinite(measured(kHeat, "nights, with warmth of the day before")));
+  EXPECT_TRUE(std::isnan(measured(kHeat, "nights, May")));
+  EXPECT_TRUE(std::isfinite(measured(kHeat, "nights, June")));
 }
 
 TEST_F(Signatures, SummerAgainstWinterIsPositiveWhereSummerIsHigher) {
   const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index) {
     return 10.0 - std::cos(2.0 * std::numbers::pi * hour.day_of_year / 365.25);
   });
-  EXPECT_GT(value(kCooling, "night, summer against winter", kW), 0.0);
+  EXPECT_GT(value(kCooling, "nights, summer against winter", kW), 0.0);
 }
 
 TEST_F(Signatures, AreLinearInThePower) {
@@ -247,8 +248,8 @@ TEST_F(Signatures, OfElectricityKnowNoUsualDay) {
   const Eigen::ArrayXXd step = hourly([&](const DriverHour& hour, Eigen::Index) {
     return hour.day_index >= days / 2 ? 12.0 : 10.0;
   });
-  EXPECT_GT(value(kElectricity, "night, twelfth 10 of the record", step),
-            value(kElectricity, "night, twelfth 3 of the record", step) + 0.05);
+  EXPECT_GT(value(kElectricity, "nights, twelfth 10 of the record", step),
+            value(kElectricity, "nights, twelfth 3 of the record", step) + 0.05);
 }
 
 class SpansOf : public Signatures, public ::testing::WithParamInterface<Utility> {};
@@ -294,7 +295,7 @@ TEST_F(Signatures, ASmallMeterIsMeasuredByWhatAllMetersCount) {
   const double small_kW = 0.03 * site_.measured_kW.col(0).mean();
   site_.measured_kW.col(1) = small_kW;
   const double all_kW = small_kW + site_.measured_kW.col(0).mean();
-  EXPECT_NEAR(measured(kHeat, "workday, cold, 00 to 02 h"),
+  EXPECT_NEAR(measured(kHeat, "workdays, when cold, 00 to 02 h"),
               small_kW / (0.25 * 0.05 * all_kW + small_kW), 1e-9);
 }
 

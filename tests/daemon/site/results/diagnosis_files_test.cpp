@@ -231,7 +231,7 @@ TEST_F(DiagnosisFiles, WordsNameTheMeasurementThatPartsConfusableEffects) {
   d.passes[0].naming.probabilities = {
       {"seasonal_hot_water", -1, 0.5, 1}, {"steam_trap_leak", -1, 0.45, 0}, {"none", -1, 0.05, {}}};
   const OutcomeWords words = outcome_words(d, site_);
-  EXPECT_THAT(words.headline, StartsWith("Two explanations fit equally well: \"Hot water"));
+  EXPECT_THAT(words.headline, StartsWith("Two explanations fit equally well: \"More hot water"));
   EXPECT_THAT(diagnosis_words(d, site_), HasSubstr("Close the hot-water loop's valve"));
   for (const report::Separation& s : separations_of(d, site_)) {
     EXPECT_THAT(s.rival, Not(HasSubstr("scale"))) << "not in the set";
