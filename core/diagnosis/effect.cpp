@@ -23,6 +23,9 @@ class WithinDates final : public Alteration {
   WithinDates(std::unique_ptr<Alteration> inner, double from_day, double to_day)
       : inner_(std::move(inner)), from_day_(from_day), to_day_(to_day) {}
 
+  void rebuild(model::Building& building) const override { inner_->rebuild(building); }
+  [[nodiscard]] model::hourly::DayRange rebuilt() const override { return {from_day_, to_day_}; }
+
   void operate(const model::DriverHour& hour, StepOperation& operation) const override {
     if (contains(hour)) inner_->operate(hour, operation);
   }

@@ -98,7 +98,7 @@ struct Effect {
 [[nodiscard]] const Effect* find_effect(std::string_view id);
 
 /// Calls `inner` only in hours that start in [from_day, to_day), counted as `DriverHour::day_index`
-/// with the hour as fraction. Never calls `rebuild`, so a dated effect must not use it.
+/// with the hour as fraction. The building is as it rebuilds it between those days alone.
 [[nodiscard]] std::unique_ptr<model::hourly::Alteration> within_dates(
     std::unique_ptr<model::hourly::Alteration> inner, double from_day, double to_day);
 

@@ -1,33 +1,50 @@
-/// Outdoor air enters through stopped handlers.
+/// Outdoor air enters that nobody asked for, while handlers run or while they stand.
+#include <algorithm>
+
+#include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
 
-/// Only stopped handlers change: while they run, the fans' suction sets the outdoor air. The model
-/// itself leaves out rooms that are being served.
+/// A damper that does not close far enough sets a least share of what a running fan supplies, also
+/// while rooms are warmed up. One that does not close at all lets air into stopped handlers; the
+/// model itself leaves out rooms that are being served.
 class DamperStuckOpen final : public model::hourly::Alteration {
  public:
-  explicit DamperStuckOpen(double open_share) : open_share_(open_share) {}
+  DamperStuckOpen(double open_share, bool is_idle) : open_share_(open_share), is_idle_(is_idle) {}
 
   void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    op.idle_outdoor_air_m3_s += open_share_ * op.outdoor_air_m3_s;
+    if (is_idle_) {
+      op.idle_outdoor_air_m3_s += open_share_ * op.outdoor_air_m3_s;
+    } else {
+      op.outdoor_share_min = std::max(op.outdoor_share_min, open_share_);
+    }
   }
 
  private:
   double open_share_;
+  bool is_idle_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+/// Units in the rooms have no share of outdoor air.
+std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+  const bool has_shares = facts.building.air && model::has_reheat_boxes(facts.building);
   return {{.name = "open_share",
-           .unit = "share of the daytime outdoor air",
-           .prior = UniformPrior{0.0, 0.6},
-           .neutral = 0.0}};
+           .unit = "share of the daytime outdoor air, or of the supply air",
+           .prior = UniformPrior{0.0, 0.9},
+           .neutral = 0.0},
+          {.name = "while_stopped",
+           .unit = "-",
+           .prior = UniformPrior{0.0, 1.0},
+           .neutral = kAbsent,
+           .scan = has_shares ? std::vector{0.0, 1.0} : std::vector{1.0},
+           .choice = true}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
                                                 int) {
-  return std::make_unique<DamperStuckOpen>(values[0]);
+  return std::make_unique<DamperStuckOpen>(values[0], values[1] > 0.5);
 }
 
 }  // namespace
@@ -39,15 +56,18 @@ Effect damper_stuck_open() {
       .id = "damper_stuck_open",
       .title = "Outdoor-air damper stuck open",
       .meaning =
-          "At night and on weekends, cold or humid outdoor air enters through an air handler whose "
-          "damper does not close. Heating and the morning cool-down have to make up for it.",
+          "Cold or humid outdoor air enters through a damper that does not close: too much while "
+          "the fans run, or some at night and on weekends through stopped air handlers. Heating "
+          "and cooling have to make up for it.",
       .physics =
-          "V_oa [m³/s] = V_oa,day·max(schedule, φ) with fans off; it meets the rooms directly; φ "
-          "[–] 0…0.6",
+          "fans on: V_oa [m³/s] ≥ φ·V_supply; or fans off: V_oa = φ·V_oa,day, straight into the "
+          "rooms; φ [–] 0…0.9",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .needs = {.air_system = true},
-      .confusable = {{"stack_infiltration",
+      .confusable = {{"outdoor_air_amount",
+                      "The damper itself with the fans running: whether it follows its signal."},
+                     {"stack_infiltration",
                       "Stop the fans for one cold night with the damper closed by hand: leaks "
                       "remain, the damper's share disappears. Leaks also grow more than linearly "
                       "with the temperature difference."},

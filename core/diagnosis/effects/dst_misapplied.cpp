@@ -93,6 +93,7 @@ Effect dst_misapplied() {
               "y(t + D) while daylight saving is on, here or, where it never is, in most places "
               "of the continent, all meters; y recorded power in kW, D in h",
           .effect_class = EffectClass::meter,
+          .dating = Dating::may_begin,
           .confusable = {{"after_hours",
                           "The start and the end of the day in the week of the clock change: a "
                           "clock moves both."},

@@ -1,7 +1,9 @@
 /// Equipment is added or removed on one day.
 #include <algorithm>
 
+#include "core/absent.hpp"
 #include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/effects/support/presence.hpp"
 
 namespace recald::diagnosis::effects {
 
@@ -11,27 +13,39 @@ namespace {
 
 using model::hourly::StepOperation;
 
-double mean_plugs_W(const model::Drivers& drivers) {
-  double sum_W = 0.0;
-  for (const model::DriverHour& hour : drivers.hours) sum_W += hour.plugs_W;
-  return drivers.hours.empty() ? 0.0 : sum_W / static_cast<double>(drivers.hours.size());
-}
-
+/// A part runs all the time, the rest as lights and plugs do above their least of the month. What
+/// is added is plugs; what goes, goes from lights and plugs alike.
 class EquipmentStep final : public model::hourly::Alteration {
  public:
-  EquipmentStep(double power_kW, double following, double mean_plugs_W)
-      : power_W_(1e3 * power_kW), following_(following), mean_plugs_W_(mean_plugs_W) {}
+  EquipmentStep(double power_kW, double following, const model::Drivers& drivers)
+      : power_W_(1e3 * power_kW), following_(following), standby_(drivers) {
+    for (const model::DriverHour& hour : drivers.hours) mean_above_W_ += above_W(hour);
+    mean_above_W_ /= static_cast<double>(std::max(drivers.hours.size(), std::size_t{1}));
+  }
 
   void operate(const model::DriverHour& hour, StepOperation& operation) const override {
-    const double use = mean_plugs_W_ > 0.0 ? hour.plugs_W / mean_plugs_W_ : 1.0;
-    const double shape = 1.0 - following_ + following_ * use;
-    operation.plugs_W = std::max(operation.plugs_W + power_W_ * shape, 0.0);
+    const double use = mean_above_W_ > 0.0 ? above_W(hour) / mean_above_W_ : 1.0;
+    const double change_W = power_W_ * (1.0 - following_ + following_ * use);
+    if (change_W >= 0.0) {
+      operation.plugs_W += change_W;
+      return;
+    }
+    const double there_W = std::max(operation.lights_W + operation.plugs_W, 1e-3);
+    const double left = std::max(1.0 + change_W / there_W, 0.0);
+    operation.lights_W *= left;
+    operation.plugs_W *= left;
   }
 
  private:
+  [[nodiscard]] double above_W(const model::DriverHour& hour) const {
+    return standby_.lights_above_W(hour, hour.lights_W) +
+           standby_.plugs_above_W(hour, hour.plugs_W);
+  }
+
   double power_W_;
   double following_;
-  double mean_plugs_W_;
+  StandbyLoads standby_;
+  double mean_above_W_ = 0.0;
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
@@ -40,35 +54,40 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .unit = "kW",
            .prior = TruncatedNormalPrior{.location = 0.0, .sd = sd_kW},
            .neutral = 0.0},
-          either_share("following_use")};
+          {.name = "following_use",
+           .unit = "-",
+           .prior = UniformPrior{.min = 0.0, .max = 1.0},
+           .neutral = kAbsent,
+           .scan = {0.5, 1.0}}};  // 0 is a server room.
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
                                                 std::span<const double> values, int) {
-  return std::make_unique<EquipmentStep>(values[0], values[1], mean_plugs_W(facts.drivers));
+  return std::make_unique<EquipmentStep>(values[0], values[1], facts.drivers);
 }
 
 }  // namespace
 
 Effect equipment_step() {
-  return {.id = "equipment_step",
-          .title = "Equipment added or removed",
-          .meaning =
-              "From some day on the building uses more electricity (or less), which also warms the "
-              "rooms more (or less): a new machine, or a retrofit.",
-          .physics =
-              "plugs + dP s(t) from the date; s = 1 - b + b plugs/mean plugs, dP mean power "
-              "in kW, b in -",
-          .effect_class = EffectClass::electrical,
-          .dating = Dating::must_begin,
-          .confusable =
-              {{"plug_growth", "Night electricity week by week around the date: step or slope."},
-               {"phase_lost",
-                "Chilled water after the date: equipment moves it, a lost phase does not."},
-               {"vacancy",
-                "The number of people in the building: badge or lift counts after the date."}},
-          .parameters = parameters,
-          .bind = bind};
+  return {
+      .id = "equipment_step",
+      .title = "Equipment added or removed",
+      .meaning =
+          "From some day on the building uses more electricity (or less), which also warms the "
+          "rooms more (or less): a new machine, or a retrofit.",
+      .physics =
+          "lights and plugs + dP s(t) from the date; s = 1 - b + b u/mean u, u what they are above "
+          "their least of the month; dP mean power in kW, b in -",
+      .effect_class = EffectClass::electrical,
+      .dating = Dating::must_begin,
+      .confusable =
+          {{"plug_growth", "Night electricity week by week around the date: step or slope."},
+           {"phase_lost",
+            "Chilled water after the date: equipment moves it, a lost phase does not."},
+           {"vacancy",
+            "The number of people in the building: badge or lift counts after the date."}},
+      .parameters = parameters,
+      .bind = bind};
 }
 
 }  // namespace recald::diagnosis::effects

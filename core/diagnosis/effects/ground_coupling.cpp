@@ -139,6 +139,7 @@ Effect ground_coupling() {
           "Q = H_g (T_in - T_g), T_g = mean - A exp(-2 pi lag/365) cos(2 pi (day - "
           "coldest - lag)/365); H_g in W/K, lag in days, A swing of the outdoor air, K",
       .effect_class = EffectClass::envelope,
+      .dating = Dating::may_begin,
       .confusable =
           {{"damper_stuck_open",
             "Heating in a warm April week: losses to the ground still need it, an open damper does "

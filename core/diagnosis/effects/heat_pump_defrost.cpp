@@ -61,6 +61,7 @@ Effect heat_pump_defrost() {
               "COP x (1 - d exp(-(T_out - 1 C)^2 / 18 K2) m); m = (RH - 0.5)/0.4 within "
               "0...1, d in -",
           .effect_class = EffectClass::plant,
+          .dating = Dating::may_begin,
           .needs = {.humidity = true, .heat_pump = true},
           .confusable =
               {{"humidifier",

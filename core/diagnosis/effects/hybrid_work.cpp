@@ -1,18 +1,26 @@
-/// Occupancy differs between the weekdays.
+/// People work at home, on some weekdays more than on others.
+#include <algorithm>
 #include <array>
 
 #include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/meter_priors.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
 
-/// The meter's profile is the mean of all workdays, so the changes of a week sum to zero.
+/// People at home on average, and how that differs between the days of a week.
 class HybridWork final : public model::hourly::Alteration {
  public:
-  HybridWork(const model::Drivers& drivers, double midweek, double monday_over_friday)
-      : standby_(drivers), change_{0.0,     -1.5 * midweek + monday_over_friday, midweek, midweek,
-                                   midweek, -1.5 * midweek - monday_over_friday, 0.0} {}
+  HybridWork(const model::Drivers& drivers, double at_home, double midweek,
+             double monday_over_friday)
+      : standby_(drivers) {
+    change_.fill(-at_home);  // Sunday first.
+    for (const std::size_t day : {2, 3, 4}) change_[day] += midweek;
+    change_[1] += -1.5 * midweek + monday_over_friday;
+    change_[5] += -1.5 * midweek - monday_over_friday;
+    for (double& change : change_) change = std::max(change, -1.0);
+  }
 
   void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
     if (hour.day != model::DayType::workday) return;
@@ -21,23 +29,24 @@ class HybridWork final : public model::hourly::Alteration {
 
  private:
   StandbyLoads standby_;
-  std::array<double, 7> change_;  // Sunday first.
+  std::array<double, 7> change_;
 };
 
-/// The widths give each single weekday a standard deviation of 0.10…0.18, around the catalogue's
-/// 0.15; the bounds keep the number of people from becoming negative.
+/// Where it has always been so, the mean is in the profile of the electricity meter, and the days
+/// alone tell.
 std::vector<EffectParameter> parameters(const SiteFacts&) {
-  const TruncatedNormalPrior prior{.location = 0.0, .sd = 0.10, .min = -0.4, .max = 0.4};
-  return {{.name = "midweek", .unit = "share of mean presence", .prior = prior, .neutral = 0.0},
-          {.name = "monday_over_friday",
-           .unit = "share of mean presence",
-           .prior = prior,
-           .neutral = 0.0}};
+  const auto difference = [](double sd) {
+    return TruncatedNormalPrior{.location = 0.0, .sd = sd, .min = -0.4, .max = 0.4};
+  };
+  constexpr const char* kUnit = "share of mean presence";
+  return {{.name = "at_home", .unit = kUnit, .prior = half_normal_below(0.25, 0.8), .neutral = 0.0},
+          {.name = "midweek", .unit = kUnit, .prior = difference(0.10), .neutral = 0.0},
+          {.name = "monday_over_friday", .unit = kUnit, .prior = difference(0.07), .neutral = 0.0}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
                                                 std::span<const double> values, int) {
-  return std::make_unique<HybridWork>(facts.drivers, values[0], values[1]);
+  return std::make_unique<HybridWork>(facts.drivers, values[0], values[1], values[2]);
 }
 
 }  // namespace
@@ -47,17 +56,18 @@ Effect hybrid_work();
 Effect hybrid_work() {
   return {
       .id = "hybrid_work",
-      .title = "Presence depends on the weekday",
+      .title = "People work at home on some days",
       .meaning =
-          "More people come on some weekdays than on others, mostly Tuesday to Thursday; in the "
-          "model all workdays are the same.",
+          "Some people work at home, on some weekdays more than on others, mostly on Mondays and "
+          "Fridays; in the model all workdays are the same.",
       .physics =
           "people [–] ×(1+c_d), lights and plugs above their least of the month [W] "
-          "×(1+0.8c_d); c_Tue…Thu = c, c_Mon = −1.5c+m, c_Fri = −1.5c−m; c, m [–]",
+          "×(1+0.8c_d); c_Tue…Thu = c−h, c_Mon = −1.5c+m−h, c_Fri = −1.5c−m−h; c, h, m [–]",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable =
-          {{"weekend_operation",
+          {{"vacancy", "Badge or lift counts by weekday: an absence empties all days alike."},
+           {"weekend_operation",
             "Saturdays and Sundays: presence on weekdays does not change them."},
            {"demand_ventilation",
             "Compare counts of badges, Wi-Fi clients or lift rides by weekday with the air flow."},

@@ -45,7 +45,9 @@ Effect outdoor_air_amount() {
       .confusable =
           {{"demand_ventilation",
             "CO₂ of the return air on busy and on empty days: a wrong amount is wrong on both."},
-           {"damper_stuck_open", "Hours with fans off: the amount matters only while they run."},
+           {"damper_stuck_open",
+            "The damper itself: whether it follows its signal, and whether it closes with the "
+            "fans."},
            {"economiser_failed",
             "Compare weather between 8 and 18 °C with hot and cold weather: the minimum amount "
             "matters in hot and cold weather."},

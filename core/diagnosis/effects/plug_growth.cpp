@@ -29,7 +29,7 @@ class PlugGrowth final : public model::hourly::Alteration {
 std::vector<EffectParameter> parameters(const SiteFacts&) {
   return {{.name = "growth",
            .unit = "1/a",
-           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.05, .min = -0.3, .max = 0.3},
+           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.1, .min = -0.3, .max = 0.3},
            .neutral = 0.0}};
 }
 

@@ -1,4 +1,4 @@
-/// Cold mains in winter, and a pipe loop that loses heat all year.
+/// More hot water, from mains that are cold in winter, through a loop that loses heat all year.
 #include <cmath>
 #include <numbers>
 
@@ -15,37 +15,41 @@ using model::hourly::StepOperation;
 
 constexpr double kWarmestWaterDay = 230.0;              // as in the models' own cold water
 constexpr double kWater_W_per_m3_dayK = 1163.0 / 24.0;  // rho c of a steady draw
+constexpr double kUsualLift_K = 45.0;                   // from the mains to the tap
 
 class SeasonalHotWater final : public model::hourly::Alteration {
  public:
-  SeasonalHotWater(double swing_K, double loop_loss_kW)
-      : swing_K_(swing_K), loop_loss_kW_(loop_loss_kW) {}
+  SeasonalHotWater(double more_kW, double swing_K, double loop_loss_kW)
+      : more_kW_(more_kW), swing_K_(swing_K), loop_loss_kW_(loop_loss_kW) {}
 
   void supply(const model::Building& building, const model::DriverHour& hour, const StepOperation&,
               StepLoads& loads) const override {
     const double angle = 2.0 * std::numbers::pi * (hour.day_of_year - kWarmestWaterDay) / 365.0;
     const double colder_K = -swing_K_ * std::cos(angle);
-    loads.hot_water_W += kWater_W_per_m3_dayK * building.hot_water.volume_m3_day *
-                         loads.hot_water_litres_share * colder_K;
+    const double drawn_W_K = kWater_W_per_m3_dayK * building.hot_water.volume_m3_day;
+    const double more_W = 1e3 * more_kW_ * (1.0 + colder_K / kUsualLift_K);
+    loads.hot_water_W += loads.hot_water_litres_share * (drawn_W_K * colder_K + more_W);
     loads.hot_water_W += 1e3 * loop_loss_kW_;
   }
 
  private:
+  double more_kW_;
   double swing_K_;
   double loop_loss_kW_;
 };
 
 std::vector<EffectParameter> parameters(const SiteFacts& facts) {
-  // A tenth of the summer's heat, which is about 1/2.5 of the mean over the year.
-  const double loop_loss_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.04);
+  // Taps and loop about alike: little is lost at a time, but day and night.
+  const double share_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.06);
   return {
+      {.name = "more_use", .unit = "kW", .prior = half_normal(share_kW), .neutral = 0.0},
       {.name = "mains_swing", .unit = "K", .prior = half_normal_below(8.0, 20.0), .neutral = 0.0},
-      {.name = "loop_loss", .unit = "kW", .prior = half_normal(loop_loss_kW), .neutral = 0.0}};
+      {.name = "loop_loss", .unit = "kW", .prior = half_normal(share_kW), .neutral = 0.0}};
 }
 
 std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
                                                 int) {
-  return std::make_unique<SeasonalHotWater>(values[0], values[1]);
+  return std::make_unique<SeasonalHotWater>(values[0], values[1], values[2]);
 }
 
 }  // namespace
@@ -53,13 +57,14 @@ std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<cons
 Effect seasonal_hot_water() {
   return {
       .id = "seasonal_hot_water",
-      .title = "Hot water: cold mains and loop loss",
+      .title = "More hot water than in the drawings",
       .meaning =
-          "Heating tap water takes more heat in winter, when the mains water is cold, and the "
-          "circulation loop loses heat day and night.",
+          "More hot water is used than the drawings say. Heating it takes more in winter, when the "
+          "mains water is cold, and the circulation loop loses heat day and night.",
       .physics =
-          "Q = V rho c (-A cos(2 pi (day - 230)/365)) + L; V draw in m3/s, A half the "
-          "yearly swing of the mains in K, L loop loss in kW before efficiencies",
+          "Q = V rho c a + M d (1 + a/45 K) + L, a = -A cos(2 pi (day - 230)/365); V drawn use in "
+          "m3/s, M mean heat of the use beside it in kW, d use of the hour over its mean, A half "
+          "the yearly swing of the mains in K, L loop loss in kW before efficiencies",
       .effect_class = EffectClass::plant,
       .dating = Dating::may_begin,
       .confusable = {{"steam_trap_leak",

@@ -112,6 +112,7 @@ Effect semester_calendar() {
           "in term breaks: people [–] ×(1−a), lights and plugs above their least of the "
           "month [W] ×(1−0.8a); a [–] 0…0.7",
       .effect_class = EffectClass::schedule,
+      .dating = Dating::may_begin,
       .confusable = {{"vacancy", "Whether it returns next year on the same term dates."},
                      {"missing_holidays", "The length: single days or whole weeks."},
                      {"hybrid_work", "Whether the weekdays differ from each other during term."},

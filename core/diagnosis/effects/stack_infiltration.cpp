@@ -62,6 +62,7 @@ Effect stack_infiltration() {
           "infiltration x (1 + k sqrt(h dT / (10 m x 10 K))); h building height in m, "
           "dT between indoors and outdoors in K, k in -",
       .effect_class = EffectClass::envelope,
+      .dating = Dating::may_begin,
       .confusable =
           {{"damper_stuck_open",
             "The outdoor damper position, and heating on nights with the fans locked off."},

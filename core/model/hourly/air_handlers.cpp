@@ -24,13 +24,14 @@ double outdoor_air_share(const StepOperation& operation, double least_share, dou
   return least_share + operation.economiser_share * extra;
 }
 
-/// Fans that bring heat to rooms whose handlers are off by schedule. They run the whole hour once
-/// the rooms need what the least flow carries at a difference of one kelvin.
-double night_fan_W(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
+/// Share of the hour and of the fans that bring heat to rooms whose handlers are off by schedule.
+/// They run the whole hour once the rooms need what the least flow carries at a difference of one
+/// kelvin.
+double night_share(const AirSystem& air, double heat_capacity_J_m3K, double running_share,
                    double heating_W) {
   const double whole_W = heat_capacity_J_m3K * air.supply_flow_min_m3_s * kNightLift_K;
   const double hour_share = whole_W > 0.0 ? std::min(heating_W / whole_W, 1.0) : 0.0;
-  return 1000.0 * air.fan_design_kW * air.night_fan_share * (1.0 - running_share) * hour_share;
+  return air.night_fan_share * (1.0 - running_share) * hour_share;
 }
 
 /// Handlers that are off by schedule and are called to maintain a night set-point.
@@ -55,7 +56,12 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
   loads.reheat_W = zones.reheat_W;
   loads.running_share = running_share;
   if (air.night_fan_share > 0.0) {
-    loads.fans_W += night_fan_W(air, heat_capacity_J_m3K, running_share, zones.zone_heating_W);
+    const double share = night_share(air, heat_capacity_J_m3K, running_share, zones.zone_heating_W);
+    loads.fans_W += 1000.0 * air.fan_design_kW * share;
+    // They draw in outdoor air where dampers do not close.
+    loads.zone_heating_W += share * operation.outdoor_share_min * heat_capacity_J_m3K *
+                            air.supply_flow_min_m3_s *
+                            std::max(zones.mean_air_C - operation.dry_bulb_C, 0.0);
   }
   if (zones.on_call_W_K > 0.0) add_on_call(air, zones, heat_capacity_J_m3K, operation, loads);
   if (running_share <= 0.0 || zones.scheduled_W_K <= 0.0) return;
@@ -67,9 +73,11 @@ void add_air_handlers(const AirSystem& air, double heat_capacity_J_m3K, double r
   const double slowing = (1.0 - air.fan_idle_share) * (1.0 - operation.constant_fan_share);
   const double fan_W =
       1000.0 * air.fan_design_kW * running_share * (1.0 - slowing * (1.0 - variable));
-  const double outdoor_share = outdoor_air_share(
-      operation, std::min(operation.outdoor_air_m3_s * running_share / supply_m3_s, 1.0), return_C,
-      fan_W / zones.scheduled_W_K);
+  const double outdoor_share =
+      outdoor_air_share(operation,
+                        std::clamp(operation.outdoor_air_m3_s * running_share / supply_m3_s,
+                                   operation.outdoor_share_min, 1.0),
+                        return_C, fan_W / zones.scheduled_W_K);
   const double incoming_C =
       operation.dry_bulb_C + air.heat_recovery * (return_C - operation.dry_bulb_C);
   const double mixed_C = return_C + outdoor_share * (incoming_C - return_C);

@@ -4,6 +4,7 @@
 /// values an alteration does not change a single bit of the result.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "core/model/building.hpp"
@@ -34,6 +35,7 @@ struct StepOperation {
   // Air handlers.
   double outdoor_air_m3_s;       ///< Least outdoor air while all handlers run.
   double idle_outdoor_air_m3_s;  ///< Drawn in through stopped handlers, into the zone; 0.
+  double outdoor_share_min;      ///< Of what handlers and night fans supply, whatever is asked; 0.
   double supply_C;               ///< Supply air temperature.
   double least_flow_m3_s;        ///< Boxes at minimum, with all handlers running.
   double economiser_lockout_C;   ///< -infinity: no economiser.
@@ -73,14 +75,24 @@ struct StepLoads {
   double heating_cost_factor;  ///< On metered heat, or on the heat pump's electricity; 1.
 };
 
+/// Days as `DriverHour::day_index` counts them, with the local hour as fraction.
+struct DayRange {
+  double from = -std::numeric_limits<double>::infinity();
+  double to = std::numeric_limits<double>::infinity();  ///< Not included.
+  [[nodiscard]] bool contains(double day) const { return from <= day && day < to; }
+};
+
 /// One effect bound to values. Stateless between steps: a run may be repeated, and copies on other
 /// threads may run at the same time.
 class Alteration {
  public:
   virtual ~Alteration() = default;
 
-  /// Called once, before the period: constructions and nameplates.
+  /// Called before the period, after jumps in time and at the ends of `rebuilt`: constructions and
+  /// nameplates. Zones must stay the same, because they keep their temperatures.
   virtual void rebuild(Building&) const {}
+  /// When the building is as `rebuild` makes it.
+  [[nodiscard]] virtual DayRange rebuilt() const { return {}; }
   /// Called in each step, before the zones are solved.
   virtual void operate(const DriverHour&, StepOperation&) const {}
   /// Called in each step, after zones and air handlers, before losses and efficiencies.

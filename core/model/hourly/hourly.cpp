@@ -61,6 +61,8 @@ double closed_share(double closed_h, double since_start_h) {
   return running_h > 0.0 ? std::clamp((closed_h - from_h) / running_h, 0.0, 1.0) : 0.0;
 }
 
+double day_of(const DriverHour& hour) { return hour.day_index + hour.local_hour / 24.0; }
+
 }  // namespace
 
 Hourly::Hourly(std::shared_ptr<const Drivers> drivers, const HourlyOptions& options)
@@ -101,9 +103,14 @@ Eigen::Index Hourly::step_count() const {
   return static_cast<Eigen::Index>(hours_.size()) * options_.steps_per_hour;
 }
 
-void Hourly::prepare(const Building& building, std::span<const Alteration* const> alterations) {
+void Hourly::prepare(const Building& building, std::span<const Alteration* const> alterations,
+                     std::size_t hour) {
   building_ = building;
-  for (const Alteration* alteration : alterations) alteration->rebuild(building_);
+  for (const Alteration* alteration : alterations) {
+    if (alteration->rebuilt().contains(day_of(drivers_->hours[hour]))) {
+      alteration->rebuild(building_);
+    }
+  }
   const Building& b = building_;
   const SetPoints& set = b.set_points;
   const double always = b.air ? std::clamp(b.air->outdoor_air_unoccupied_fraction, 0.0, 1.0) : 0.0;
@@ -139,6 +146,21 @@ void Hourly::prepare(const Building& building, std::span<const Alteration* const
       air.supply_temperature_C, kCoilRelativeHumidity, drivers_->pressure_Pa);
   if (air.economiser_lockout_C) standing_.economiser_lockout_C = *air.economiser_lockout_C;
   if (air.humidification_kg_kg) standing_.humidifier_kg_kg = *air.humidification_kg_kg;
+}
+
+std::size_t Hourly::rebuilt_until(std::size_t from, std::size_t to,
+                                  std::span<const Alteration* const> alterations) const {
+  const auto begin = drivers_->hours.begin();
+  const auto first = begin + static_cast<std::ptrdiff_t>(from) + 1;
+  auto until = begin + static_cast<std::ptrdiff_t>(to);
+  const double now = day_of(begin[static_cast<std::ptrdiff_t>(from)]);
+  for (const Alteration* alteration : alterations) {
+    const DayRange range = alteration->rebuilt();
+    for (const double day : {range.from, range.to}) {
+      if (day > now) until = std::ranges::lower_bound(first, until, day, {}, day_of);
+    }
+  }
+  return static_cast<std::size_t>(until - begin);
 }
 
 /// The plant's day: its timetable, with early start and late stop; supply air is
@@ -356,14 +378,19 @@ void Hourly::run_hours(std::size_t from, std::size_t to,
 template <class Sink>
 void Hourly::simulate(const Building& building, std::span<const Alteration* const> alterations,
                       Sink sink) {
-  prepare(building, alterations);
   for (std::size_t from = 0; from < hours_.size();) {
     std::size_t to = from + 1;
     while (to < hours_.size() && !hours_[to].begins) ++to;
+    prepare(building, alterations, from);
     zones_.reset(middle_C_);
     run_hours(from, std::min(to, from + kWarmUp_h), alterations,
               [](std::size_t, int, const StepLoads&) {});
-    run_hours(from, to, alterations, sink);
+    for (std::size_t hour = from; hour < to;) {
+      if (hour > from) prepare(building, alterations, hour);
+      const std::size_t until = rebuilt_until(hour, to, alterations);
+      run_hours(hour, until, alterations, sink);
+      hour = until;
+    }
     from = to;
   }
 }

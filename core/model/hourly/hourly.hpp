@@ -78,7 +78,12 @@ class Hourly {
   };
 
   void read_meters(std::span<const MeterMap> meters);
-  void prepare(const Building& building, std::span<const Alteration* const> alterations);
+  /// @param hour  As the building is then.
+  void prepare(const Building& building, std::span<const Alteration* const> alterations,
+               std::size_t hour);
+  /// The first hour after `from` at which something begins or ends to be rebuilt; else `to`.
+  [[nodiscard]] std::size_t rebuilt_until(std::size_t from, std::size_t to,
+                                          std::span<const Alteration* const> alterations) const;
   [[nodiscard]] StepOperation operation_of(std::size_t hour, int step) const;
   /// Progress of the start of a day; all 1 later in the day and at night.
   struct Morning {

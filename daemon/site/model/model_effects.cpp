@@ -224,6 +224,7 @@ class AlteredHourlyModel::Slot final : public Alteration {
   void put(std::shared_ptr<const Alteration> effect) { effect_ = std::move(effect); }
 
   void rebuild(model::Building& building) const override { effect_->rebuild(building); }
+  [[nodiscard]] model::hourly::DayRange rebuilt() const override { return effect_->rebuilt(); }
   void operate(const model::DriverHour& hour,
                model::hourly::StepOperation& operation) const override {
     effect_->operate(hour, operation);

@@ -130,6 +130,7 @@ StepOperation drawn(const DriverHour& hour) {
           .heating_unoccupied_C = 16.0,
           .outdoor_air_m3_s = 6.0,
           .idle_outdoor_air_m3_s = 0.0,
+          .outdoor_share_min = 0.0,
           .supply_C = 13.0,
           .least_flow_m3_s = 9.0,
           .economiser_lockout_C = 20.0,
@@ -256,23 +257,30 @@ TEST(EffectsOfOperation, VacancyLeavesStandbyLoads) {
   EXPECT_EQ(effects::vacancy().dating, Dating::window);
 }
 
-TEST(EffectsOfOperation, HybridWorkSumsToZeroOverTheWeek) {
+TEST(EffectsOfOperation, HybridWorkKeepsAShareAtHome) {
   double people = 0.0;
   double lights_W = 0.0;
   for (unsigned day = 4; day <= 8; ++day) {
-    const StepOperation op = operated(effects::hybrid_work(), {0.2, 0.1}, hour_of(1, day, 10));
+    const StepOperation op =
+        operated(effects::hybrid_work(), {0.25, 0.2, 0.1}, hour_of(1, day, 10));
     people += op.people_share;
     lights_W += op.lights_W;
   }
-  EXPECT_NEAR(people, 5.0 * 0.8, 1e-12);
-  EXPECT_NEAR(lights_W, 5.0 * 35e3, 1e-6);
-  const StepOperation monday = operated(effects::hybrid_work(), {0.2, 0.1}, hour_of(1, 4, 10));
-  EXPECT_DOUBLE_EQ(monday.people_share, 0.8 * (1.0 - 1.5 * 0.2 + 0.1));
+  EXPECT_NEAR(people, 5.0 * 0.8 * 0.75, 1e-12);
+  EXPECT_NEAR(lights_W, 5.0 * (35e3 - 0.25 * 0.8 * 30e3), 1e-6);
+  const StepOperation monday =
+      operated(effects::hybrid_work(), {0.25, 0.2, 0.1}, hour_of(1, 4, 10));
+  EXPECT_DOUBLE_EQ(monday.people_share, 0.8 * (1.0 - 0.25 - 1.5 * 0.2 + 0.1));
+  EXPECT_EQ(operated(effects::hybrid_work(), {0.8, 0.3, 0.0}, hour_of(1, 4, 10)).people_share, 0.0);
 }
 
 TEST(EffectsOfOperation, OutdoorAirEffectsChangeTheirField) {
-  EXPECT_DOUBLE_EQ(operated(effects::damper_stuck_open(), {0.25}, night()).idle_outdoor_air_m3_s,
-                   1.5);
+  const StepOperation stopped = operated(effects::damper_stuck_open(), {0.25, 1.0}, night());
+  EXPECT_DOUBLE_EQ(stopped.idle_outdoor_air_m3_s, 1.5);
+  EXPECT_EQ(stopped.outdoor_share_min, 0.0);
+  const StepOperation running = operated(effects::damper_stuck_open(), {0.25, 0.0}, night());
+  EXPECT_EQ(running.idle_outdoor_air_m3_s, 0.0);
+  EXPECT_EQ(running.outdoor_share_min, 0.25);
   EXPECT_DOUBLE_EQ(operated(effects::outdoor_air_amount(), {-0.25}, morning()).outdoor_air_m3_s,
                    4.5);
   EXPECT_DOUBLE_EQ(operated(effects::economiser_failed(), {0.75}, morning()).economiser_share,
@@ -395,8 +403,9 @@ std::vector<Direction> directions() {
       {round_the_clock_zone(), {0.3}, {0.0}, {rises, rises, rises}},
       {semester_calendar(), {0.4, 2.0}, {0.0, 2.0}, {falls, falls, any}} /* less warm water, too */,
       {vacancy(), {0.5}, {0.0}, {falls, falls, any}},
-      {hybrid_work(), {0.15, 0.05}, {0.0, 0.0}, {any, any, any}},
-      {damper_stuck_open(), {0.3}, {0.0}, {any, any, rises}},
+      {hybrid_work(), {0.2, 0.15, 0.05}, {0.0, 0.0, 0.0}, {falls, falls, any}},
+      {damper_stuck_open(), {0.3, 1.0}, {0.0, 1.0}, {any, any, rises}},
+      {damper_stuck_open(), {0.6, 0.0}, {0.0, 0.0}, {any, any, rises}},
       {outdoor_air_amount(), {0.4}, {0.0}, {any, rises, rises}},
       {economiser_failed(), {1.0}, {0.0}, {same, rises, same}},
       {economiser_changeover(), {-4.0}, {0.0}, {same, rises, same}},
@@ -458,7 +467,7 @@ TEST(EffectsOfOperation, SimultaneousHeatingAndCoolingCostsBothMetersTheSame) {
 }
 
 TEST(EffectsOfOperation, HybridWorkEchoesInChilledWater) {
-  const Eigen::ArrayXXd change_kW = office().change_kW(effects::hybrid_work(), {0.15, 0.0});
+  const Eigen::ArrayXXd change_kW = office().change_kW(effects::hybrid_work(), {0.0, 0.15, 0.0});
   Eigen::Array2d midweek_kWh = Eigen::Array2d::Zero();
   Eigen::Array2d fringe_kWh = Eigen::Array2d::Zero();
   const auto& hours = office().drivers().hours;

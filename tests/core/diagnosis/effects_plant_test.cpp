@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/elapsed_days.hpp"
 #include "core/model/hourly/hourly.hpp"
 #include "core/weather/psychrometrics.hpp"
 #include "tests/support/sample_building.hpp"
@@ -176,6 +177,40 @@ TEST_F(PlantEffects, GroundIsAddedWhereDrawingsHaveNone) {
   EXPECT_NEAR(slab.u_W_m2K * slab.area_m2, 500.0, 1e-9);
 }
 
+TEST_F(PlantEffects, GroundThatIsLaidBareLaterLeavesTheTimeBeforeAsItWas) {
+  constexpr double kFrom_d = 150.0;
+  const Eigen::ArrayXXd none_kW = run(nullptr);
+  const Eigen::ArrayXXd whole_kW = run(bind("ground_coupling", {2000.0, 40.0}).get());
+  const Eigen::ArrayXXd later_kW =
+      run(within_dates(bind("ground_coupling", {2000.0, 40.0}), kFrom_d, 1e9).get());
+  const auto is_before = [&](const DriverHour& hour) {
+    return effects::elapsed_days(hour) < kFrom_d;
+  };
+  const auto before = std::ranges::count_if(drivers_->hours, is_before);
+  EXPECT_TRUE((later_kW.topRows(before) == none_kW.topRows(before)).all());
+  // Two months later the building has forgotten when it began.
+  const Eigen::Index settled = later_kW.rows() - before - 60 * 24;
+  ASSERT_GT(settled, 24 * 30);
+  EXPECT_LT((later_kW - whole_kW).bottomRows(settled).abs().maxCoeff(), 1e-6);
+  EXPECT_GT((later_kW - none_kW).bottomRows(settled).abs().maxCoeff(), 1.0);
+}
+
+/// Counts how often the building is made anew.
+class Counted final : public Alteration {
+ public:
+  void rebuild(model::Building&) const override { ++times; }
+  mutable int times = 0;
+};
+
+TEST_F(PlantEffects, ABuildingIsMadeAnewAtItsDatesAlone) {
+  auto counted = std::make_unique<Counted>();
+  const Counted& counter = *counted;
+  const auto later = within_dates(std::move(counted), 150.0, 1e9);
+  run(later.get());
+  EXPECT_GE(counter.times, 1);
+  EXPECT_LE(counter.times, 4);
+}
+
 // --- Plant ---
 
 TEST_F(PlantEffects, ChillerPaysForPartLoadAndWarmCondensers) {
@@ -214,13 +249,16 @@ TEST_F(PlantEffects, FoulingGrowsAndRestartsAfterCleaning) {
   EXPECT_EQ(change_MWh[2], 0.0);
 }
 
-TEST_F(PlantEffects, HotWaterCostsMoreFromColdMainsAndLosesInItsLoop) {
+TEST_F(PlantEffects, HotWaterIsDrawnFromColdMainsAndLosesInItsLoop) {
   // 2 m3/day lifted 8 K more: 2 x 1163/24 x 8 = 775.3 W; on day 47.5 mains are coldest.
   const DriverHour& coldest = hour_at(2, 16, 12);
-  const auto water = bind("seasonal_hot_water", {8.0, 1.5});
+  const auto water = bind("seasonal_hot_water", {0.0, 8.0, 1.5});
   EXPECT_NEAR(supplied(*water, coldest, cold_night(), some_loads()).hot_water_W,
               4e3 + 775.33 + 1.5e3, 0.5);
-  const Eigen::Array3d change_MWh = yearly_change_MWh("seasonal_hot_water", {8.0, 1.5});
+  const auto more = bind("seasonal_hot_water", {2.0, 8.0, 1.5});
+  EXPECT_NEAR(supplied(*more, coldest, cold_night(), some_loads()).hot_water_W,
+              4e3 + 775.33 + 1.5e3 + 2e3 * (1.0 + 8.0 / 45.0), 0.5);
+  const Eigen::Array3d change_MWh = yearly_change_MWh("seasonal_hot_water", {0.0, 8.0, 1.5});
   EXPECT_EQ(change_MWh[0], 0.0);
   EXPECT_EQ(change_MWh[1], 0.0);
   EXPECT_NEAR(change_MWh[2], 1.5 * 8.76 / (0.9 * 0.95), 0.1);
@@ -265,15 +303,15 @@ TEST_F(PlantEffects, PlugsGrowAboutTheMiddleOfTheRecord) {
 
 TEST_F(PlantEffects, EquipmentAddsPowerAndItsHeat) {
   const DriverHour& night = hour_at(1, 20, 3);
-  EXPECT_EQ(operated(*bind("equipment_step", {-5.0, 0.0}), night, cold_night()).plugs_W, 15e3);
-  EXPECT_EQ(operated(*bind("equipment_step", {-50.0, 0.0}), night, cold_night()).plugs_W, 0.0);
-  double mean_W = 0.0;
-  for (const DriverHour& hour : drivers_->hours) mean_W += hour.plugs_W;
-  mean_W /= static_cast<double>(drivers_->hours.size());
-  EXPECT_NEAR(operated(*bind("equipment_step", {5.0, 1.0}), night, cold_night()).plugs_W,
-              20e3 + 5e3 * night.plugs_W / mean_W, 1e-6);
+  EXPECT_NEAR(operated(*bind("equipment_step", {5.0, 0.4}), night, cold_night()).plugs_W,
+              20e3 + 0.6 * 5e3, 1e-6);
+  const StepOperation less = operated(*bind("equipment_step", {-5.0, 0.4}), night, cold_night());
+  const double there_W = cold_night().lights_W + cold_night().plugs_W;
+  EXPECT_NEAR(less.plugs_W + less.lights_W, there_W - 0.6 * 5e3, 1e-6);
+  EXPECT_NEAR(less.plugs_W / less.lights_W, cold_night().plugs_W / cold_night().lights_W, 1e-6);
+  EXPECT_EQ(operated(*bind("equipment_step", {-500.0, 0.4}), night, cold_night()).plugs_W, 0.0);
 
-  const Eigen::Array3d change_MWh = yearly_change_MWh("equipment_step", {10.0, 0.0});
+  const Eigen::Array3d change_MWh = yearly_change_MWh("equipment_step", {10.0, 0.5});
   EXPECT_GT(change_MWh[0], 87.0);
   EXPECT_GT(change_MWh[1], 0.0);
   EXPECT_LT(change_MWh[2], 0.0);

@@ -93,13 +93,13 @@ TEST(UsualErrors, MakeTheirOwnEffectsLessVisible) {
   const auto ground = lay_ground(predictor, site, Eigen::VectorXd::Zero(2));
   ASSERT_TRUE(ground.has_value()) << ground.error().message;
   const auto& effects = ground->usual->effects();
-  const auto damper = std::ranges::find(effects, "damper_stuck_open") - effects.begin();
+  const auto which = std::ranges::find(effects, "ground_coupling") - effects.begin();
   const NoiseNode& node = ground->grid[static_cast<std::size_t>(ground->none.best_node)];
   // d of one usual sd, the first `known` of the base columns being integrated out.
   const auto visibility = [&](Eigen::Index known) {
     Eigen::MatrixXd columns(ground->fit.count(), known + 2);
     columns << ground->none.linear_residual(), ground->none.jacobian.leftCols(known),
-        ground->errors.col(damper);
+        ground->errors.col(which);
     const auto system =
         marginalise(node.gram(ground->fit, columns), Eigen::MatrixXd::Identity(known, known));
     return detectability(*system)[0];
