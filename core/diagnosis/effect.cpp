@@ -4,8 +4,6 @@
 #include <cassert>
 #include <utility>
 
-#include "core/diagnosis/elapsed_days.hpp"
-
 namespace recald::diagnosis {
 namespace {
 
@@ -50,12 +48,12 @@ class WithinDates final : public Alteration {
 
  private:
   bool contains(const model::DriverHour& hour) const {
-    const double day = effects::elapsed_days(hour);
+    const double day = model::elapsed_days(hour);
     return from_day_ <= day && day < to_day_;
   }
 
   static std::size_t first_at(std::span<const model::DriverHour> hours, double day) {
-    const auto found = std::ranges::lower_bound(hours, day, {}, effects::elapsed_days);
+    const auto found = std::ranges::lower_bound(hours, day, {}, model::elapsed_days);
     return static_cast<std::size_t>(found - hours.begin());
   }
 

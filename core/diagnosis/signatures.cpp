@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effects/support/public_holidays.hpp"
+#include "core/diagnosis/public_holidays.hpp"
 
 namespace recald::diagnosis {
 namespace {
@@ -182,7 +182,7 @@ std::vector<std::string> make_names() {
       names.push_back(of + day);
     }
     names.push_back(of + "holidays");
-    for (const char* calendar : effects::kHolidayCalendars) {
+    for (const char* calendar : kHolidayCalendars) {
       names.push_back(of + "workdays that are public holidays in " + calendar);
     }
   }
@@ -202,7 +202,7 @@ const std::vector<std::string>& signature_names() {
 
 namespace {
 
-constexpr int kCalendars = static_cast<int>(effects::kHolidayCalendars.size());
+constexpr int kCalendars = static_cast<int>(kHolidayCalendars.size());
 constexpr int kOfRegime =
     static_cast<int>(kSlopeNames.size()) + kWarmths + kBlocks + 12 + 5 + 1 + kCalendars;
 constexpr int kDarkKinds = 4;
@@ -399,7 +399,7 @@ SignatureReader::Regime SignatureReader::make_regime(const Meter& meter, int kin
     groups.month.push_back(static_cast<int>(static_cast<unsigned>(first.date.month())) - 1);
     groups.free_day.push_back(is_weekday && !is_workday ? 0 : -1);
     for (std::size_t c = 0; c < groups.public_day.size(); ++c) {
-      const bool is_public = is_workday && effects::public_holidays(c).contains(first.date);
+      const bool is_public = is_workday && public_holidays(c).contains(first.date);
       groups.public_day[c].push_back(is_public ? 0 : -1);
     }
     const auto bin =

@@ -52,6 +52,11 @@ struct DriverHour {
   double plugs_W;
 };
 
+/// Local days since the day of the first hour, with the local hour as fraction; never decreases.
+[[nodiscard]] inline double elapsed_days(const DriverHour& hour) {
+  return hour.day_index + hour.local_hour / 24.0;
+}
+
 struct Drivers {
   std::vector<metering::Month> months;
   std::vector<DriverHour> hours;                   ///< In order of time, months adjacent to months.

@@ -3,7 +3,7 @@
 
 #include "core/absent.hpp"
 #include "core/diagnosis/effects/support/meter_priors.hpp"
-#include "core/diagnosis/elapsed_days.hpp"
+#include "core/diagnosis/spanned_days.hpp"
 
 namespace recald::diagnosis::effects {
 

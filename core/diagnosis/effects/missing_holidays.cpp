@@ -6,7 +6,7 @@
 
 #include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/public_holidays.hpp"
+#include "core/diagnosis/public_holidays.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {

@@ -1,5 +1,5 @@
 /// The number of plugged-in devices grows or shrinks every year.
-#include "core/diagnosis/elapsed_days.hpp"
+#include "core/diagnosis/spanned_days.hpp"
 
 namespace recald::diagnosis::effects {
 

@@ -2,8 +2,8 @@
 #include <chrono>
 
 #include "core/absent.hpp"
+#include "core/diagnosis/date_table.hpp"
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/date_table.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
 
 namespace recald::diagnosis::effects {

@@ -61,8 +61,6 @@ double closed_share(double closed_h, double since_start_h) {
   return running_h > 0.0 ? std::clamp((closed_h - from_h) / running_h, 0.0, 1.0) : 0.0;
 }
 
-double day_of(const DriverHour& hour) { return hour.day_index + hour.local_hour / 24.0; }
-
 }  // namespace
 
 Hourly::Hourly(std::shared_ptr<const Drivers> drivers, const HourlyOptions& options)
@@ -107,7 +105,7 @@ void Hourly::prepare(const Building& building, std::span<const Alteration* const
                      std::size_t hour) {
   building_ = building;
   for (const Alteration* alteration : alterations) {
-    if (alteration->rebuilt().contains(day_of(drivers_->hours[hour]))) {
+    if (alteration->rebuilt().contains(elapsed_days(drivers_->hours[hour]))) {
       alteration->rebuild(building_);
     }
   }
@@ -153,11 +151,11 @@ std::size_t Hourly::rebuilt_until(std::size_t from, std::size_t to,
   const auto begin = drivers_->hours.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(from) + 1;
   auto until = begin + static_cast<std::ptrdiff_t>(to);
-  const double now = day_of(begin[static_cast<std::ptrdiff_t>(from)]);
+  const double now = elapsed_days(begin[static_cast<std::ptrdiff_t>(from)]);
   for (const Alteration* alteration : alterations) {
     const DayRange range = alteration->rebuilt();
     for (const double day : {range.from, range.to}) {
-      if (day > now) until = std::ranges::lower_bound(first, until, day, {}, day_of);
+      if (day > now) until = std::ranges::lower_bound(first, until, day, {}, elapsed_days);
     }
   }
   return static_cast<std::size_t>(until - begin);

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/elapsed_days.hpp"
 #include "core/model/hourly/hourly.hpp"
 #include "core/weather/psychrometrics.hpp"
 #include "tests/support/sample_building.hpp"
@@ -184,7 +183,7 @@ TEST_F(PlantEffects, GroundThatIsLaidBareLaterLeavesTheTimeBeforeAsItWas) {
   const Eigen::ArrayXXd later_kW =
       run(within_dates(bind("ground_coupling", {2000.0, 40.0}), kFrom_d, 1e9).get());
   const auto is_before = [&](const DriverHour& hour) {
-    return effects::elapsed_days(hour) < kFrom_d;
+    return model::elapsed_days(hour) < kFrom_d;
   };
   const auto before = std::ranges::count_if(drivers_->hours, is_before);
   EXPECT_TRUE((later_kW.topRows(before) == none_kW.topRows(before)).all());

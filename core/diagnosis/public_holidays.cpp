@@ -1,8 +1,8 @@
-#include "core/diagnosis/effects/support/public_holidays.hpp"
+#include "core/diagnosis/public_holidays.hpp"
 
 #include <chrono>
 
-namespace recald::diagnosis::effects {
+namespace recald::diagnosis {
 namespace {
 
 using metering::Day;
@@ -91,4 +91,4 @@ const DateTable& public_holidays(std::size_t calendar) {
   return tables[calendar];
 }
 
-}  // namespace recald::diagnosis::effects
+}  // namespace recald::diagnosis

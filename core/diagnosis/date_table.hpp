@@ -6,7 +6,7 @@
 
 #include "core/metering/civil_time.hpp"
 
-namespace recald::diagnosis::effects {
+namespace recald::diagnosis {
 
 /// Marked days of all years that recald accepts.
 class DateTable {
@@ -49,4 +49,4 @@ class DateTable {
   return year / (day_from_march / 31) / (day_from_march % 31 + 1);
 }
 
-}  // namespace recald::diagnosis::effects
+}  // namespace recald::diagnosis

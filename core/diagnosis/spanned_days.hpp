@@ -1,4 +1,4 @@
-/// Time as counted for the dates of effects.
+/// Spans of time as counted for effects.
 #pragma once
 
 #include "core/diagnosis/effect.hpp"
@@ -6,11 +6,6 @@
 namespace recald::diagnosis::effects {
 
 inline constexpr double kDaysPerYear = 365.25;
-
-/// Local days since the day of the first hour, with the local hour as fraction; never decreases.
-[[nodiscard]] inline double elapsed_days(const model::DriverHour& hour) {
-  return hour.day_index + hour.local_hour / 24.0;
-}
 
 /// Local days that the drivers span, first to last.
 [[nodiscard]] inline double spanned_days(const model::Drivers& drivers) {
