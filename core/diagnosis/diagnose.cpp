@@ -132,9 +132,9 @@ void take_back(const char* why, Diagnosis& result) {
   result.parameters_after = result.parameters_before;
 }
 
-/// The held-out scores for one addition, and the base parameters with all additions so far.
+/// What one addition does to held-out months, and the base parameters with all additions so far.
 struct Shown {
-  MonthScores change;
+  HeldChange change;
   bool confirmed;
   std::vector<ParameterBelief> parameters = {};
 };
@@ -170,7 +170,7 @@ void conclude(const std::vector<Shown>& shown, bool assumed, Diagnosis& result) 
   const auto doubtful = std::ranges::find_if(shown, [](const Shown& s) { return !s.confirmed; });
   const auto confirmed = static_cast<std::size_t>(doubtful - shown.begin());
   if (!assumed && confirmed > 0 && confirmed < shown.size()) keep_first(confirmed, shown, result);
-  std::vector<MonthScores> changes;
+  std::vector<HeldChange> changes;
   for (std::size_t i = 0; i < result.added.size(); ++i) changes.push_back(shown[i].change);
   result.gap = change_of(result.passes.front().gaps, result.gaps, changes);
   result.gap->confirmed = confirmed >= result.added.size();
@@ -257,7 +257,7 @@ class Search {
   void warn_of_harm() {
     if (!result_.gap || result_.not_confirmed) return;
     for (std::size_t g = 0; g < site_.meters.size(); ++g) {
-      if (!is_worse(result_.gap->log_score_change[g])) continue;
+      if (!grows_errors(result_.gap->error_cut[g])) continue;
       result_.warnings.push_back(
           {display::meter_label(site_.meters[g].id) +
                " is predicted worse than before in the held-out months.",
@@ -324,15 +324,17 @@ class Search {
                                              : options_.assumed.size());
   }
 
-  /// The held-out scores for the effect just named, on the ground where it was found.
+  /// What the effect just named does to held-out months, on the ground where it was found.
   [[nodiscard]] Shown show(const Naming& naming) const {
     const Explanation& e = naming.explanations[*naming.named];
     const HeldJudge judge = judge_of(site_, now(), now().show);
     const JointFit& base = now().none;
-    MonthScores change = difference(judge.scores(e.fit, *now().usual),  //
-                                    judge.scores(base, *now().usual));
-    const bool confirmed = is_confirmed(
-        change, held_errors_kW(site_, e.fit.parts_kW) - held_errors_kW(site_, base.parts_kW));
+    HeldChange change{difference(judge.scores(e.fit, *now().usual),  //
+                                 judge.scores(base, *now().usual)),
+                      error_cuts(site_, e.fit.parts_kW, base.parts_kW)};
+    const bool confirmed =
+        is_confirmed(change.error_cuts,
+                     held_errors_kW(site_, e.fit.parts_kW) - held_errors_kW(site_, base.parts_kW));
     return {std::move(change), confirmed};
   }
 

@@ -11,6 +11,35 @@ namespace {
 
 // Of what the errors of other meters shrink by.
 constexpr double kMostHarm = 0.25;
+// Of a meter's mean square error, for each month.
+constexpr double kLeastOfMean = 0.1;
+
+double square(double x) { return x * x; }
+
+struct SquareSums {
+  double with = 0.0;
+  double without = 0.0;
+  double count = 0.0;
+
+  void add(double of_with, double of_without) {
+    with += of_with;
+    without += of_without;
+    count += 1.0;
+  }
+};
+
+/// Month by month. @param part  The scores to add.
+MonthScores sum_of(std::span<const HeldChange> changes, MonthScores HeldChange::*part) {
+  MonthScores sum;
+  for (const HeldChange& change : changes) {
+    const MonthScores& added = change.*part;
+    sum.resize(added.size());
+    for (std::size_t g = 0; g < added.size(); ++g) {
+      for (const auto& [month, score] : added[g]) sum[g][month] += score;
+    }
+  }
+  return sum;
+}
 
 /// Root mean square error over groups of parts (days, months), relative to the mean of the groups.
 double cvrmse_by(const SiteProblem& site, const MeterRows& rows, Eigen::Index g,
@@ -77,7 +106,35 @@ std::vector<MeterGap> gaps_of(const SiteProblem& site, const Ground& ground,
   return gaps;
 }
 
-bool is_worse(const ScoreGain& meter) { return meter.sum < -2.0 * meter.se - 1.0; }
+bool is_worse(const ScoreGain& scores) { return scores.sum < -2.0 * scores.se - 1.0; }
+
+bool grows_errors(const ScoreGain& error_cut) { return error_cut.sum < -2.0 * error_cut.se; }
+
+MonthScores error_cuts(const SiteProblem& site, const Eigen::ArrayXXd& with_kW,
+                       const Eigen::ArrayXXd& without_kW) {
+  MonthScores cuts;
+  for (Eigen::Index g = 0; g < with_kW.cols(); ++g) {
+    std::map<int, SquareSums> months;
+    SquareSums all;
+    for (Eigen::Index i = 0; i < with_kW.rows(); ++i) {
+      const auto part = static_cast<std::size_t>(i);
+      const double measured_kW = site.measured_parts_kW(i, g);
+      if (site.roles[part] != Role::show || !std::isfinite(measured_kW)) continue;
+      const double with = square(with_kW(i, g) - measured_kW);
+      const double without = square(without_kW(i, g) - measured_kW);
+      months[site.day_parts.parts[part].month].add(with, without);
+      all.add(with, without);
+    }
+    const double least = kLeastOfMean * std::min(all.with, all.without) / all.count;
+    std::map<int, double>& cut = cuts.emplace_back();
+    for (const auto& [month, sums] : months) {
+      const double without = sums.without / sums.count + least;
+      const double with = sums.with / sums.count + least;
+      cut[month] = with > 0.0 && without > 0.0 ? 0.5 * std::log(without / with) : 0.0;
+    }
+  }
+  return cuts;
+}
 
 Eigen::ArrayXd held_errors_kW(const SiteProblem& site, const Eigen::ArrayXXd& parts_kW) {
   Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(parts_kW.cols());
@@ -94,31 +151,33 @@ Eigen::ArrayXd held_errors_kW(const SiteProblem& site, const Eigen::ArrayXXd& pa
   return (squares / count).sqrt();
 }
 
-bool is_confirmed(const MonthScores& change, const Eigen::ArrayXd& error_change_kW) {
-  constexpr double kThreeToOne = 1.1;  // Nats.
+bool is_confirmed(const MonthScores& error_cuts, const Eigen::ArrayXd& error_change_kW) {
   double shrunk_kW = 0.0;
   double grown_kW = 0.0;
-  const std::vector<ScoreGain> gains = gain_by_meter(change);
-  for (std::size_t g = 0; g < gains.size(); ++g) {
+  const std::vector<ScoreGain> cuts = gain_by_meter(error_cuts);
+  std::size_t months = 0;
+  for (std::size_t g = 0; g < cuts.size(); ++g) {
+    months = std::max(months, error_cuts[g].size());
     const double change_kW = error_change_kW[static_cast<Eigen::Index>(g)];
     if (!std::isfinite(change_kW)) continue;
     shrunk_kW += std::max(-change_kW, 0.0);
-    if (is_worse(gains[g])) grown_kW += std::max(change_kW, 0.0);
+    if (grows_errors(cuts[g])) grown_kW += std::max(change_kW, 0.0);
   }
-  const ScoreGain all = gain_over(change);
-  return all.sum > std::max(2.0 * all.se, kThreeToOne) && grown_kW <= kMostHarm * shrunk_kW;
+  const ScoreGain all = gain_over(error_cuts);
+  return months >= 2 && all.sum > 2.0 * all.se && grown_kW <= kMostHarm * shrunk_kW;
 }
 
 GapChange change_of(std::vector<MeterGap> before, std::vector<MeterGap> after,
-                    std::span<const MonthScores> changes) {
-  const MonthScores sum = sum_of(changes);
+                    std::span<const HeldChange> changes) {
+  const MonthScores scores = sum_of(changes, &HeldChange::log_scores);
   GapChange change{.before = std::move(before),
                    .after = std::move(after),
-                   .log_score_change = gain_by_meter(sum)};
-  for (std::size_t g = 0; g < sum.size(); ++g) {
+                   .log_score_change = gain_by_meter(scores),
+                   .error_cut = gain_by_meter(sum_of(changes, &HeldChange::error_cuts))};
+  for (std::size_t g = 0; g < scores.size(); ++g) {
     const double gain = change.log_score_change[g].sum;
     change.after[g].log_score =
-        change.before[g].log_score + gain / static_cast<double>(sum[g].size());
+        change.before[g].log_score + gain / static_cast<double>(scores[g].size());
   }
   return change;
 }

@@ -88,17 +88,6 @@ MonthScores difference(const MonthScores& with, const MonthScores& without) {
   return change;
 }
 
-MonthScores sum_of(std::span<const MonthScores> changes) {
-  MonthScores sum;
-  for (const MonthScores& change : changes) {
-    sum.resize(change.size());
-    for (std::size_t g = 0; g < change.size(); ++g) {
-      for (const auto& [month, score] : change[g]) sum[g][month] += score;
-    }
-  }
-  return sum;
-}
-
 std::vector<ScoreGain> gain_by_meter(const MonthScores& change) {
   std::vector<ScoreGain> gains;
   for (const auto& months : change) {

@@ -14,7 +14,6 @@ namespace recald::diagnosis {
 /// the size of that month's noise is not known exactly and months that go wrong altogether must not
 /// decide by their square. A month does not use its neighbours' slow structure, which would leak
 /// across the split.
-/// slow structure, or the answer would leak across the split.
 using MonthScores = std::vector<std::map<int, double>>;
 
 /// An error that the model makes in every week and all weather is no evidence in a held-out month.
@@ -39,8 +38,6 @@ struct ScoreGain {
 
 /// `with` minus `without`, month by month.
 [[nodiscard]] MonthScores difference(const MonthScores& with, const MonthScores& without);
-/// Sum of several differences for the same months.
-[[nodiscard]] MonthScores sum_of(std::span<const MonthScores> changes);
 
 /// Of each meter (m). @param change  A difference.
 [[nodiscard]] std::vector<ScoreGain> gain_by_meter(const MonthScores& change);

@@ -146,15 +146,21 @@ Json gaps_json(const SiteProblem& site, const std::vector<diagnosis::MeterGap>& 
   return json;
 }
 
-Json hourly_gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
-  Json change = Json::object();
-  for (std::size_t g = 0; g < gap.log_score_change.size(); ++g) {
-    change[site.meters[g].id] = {{"sum", results::number(gap.log_score_change[g].sum)},
-                                 {"se", results::number(gap.log_score_change[g].se)}};
+/// By meter.
+Json gains_json(const SiteProblem& site, const std::vector<diagnosis::ScoreGain>& gains) {
+  Json json = Json::object();
+  for (std::size_t g = 0; g < gains.size(); ++g) {
+    json[site.meters[g].id] = {{"sum", results::number(gains[g].sum)},
+                               {"se", results::number(gains[g].se)}};
   }
+  return json;
+}
+
+Json hourly_gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
   return {{"before", gaps_json(site, gap.before)},
           {"after", gaps_json(site, gap.after)},
-          {"log_score_change", change},
+          {"log_score_change", gains_json(site, gap.log_score_change)},
+          {"log_error_cut", gains_json(site, gap.error_cut)},
           {"confirmed", gap.confirmed}};
 }
 

@@ -95,36 +95,59 @@ TEST(Gap, AModelIsNotConfirmedAgainstItself) {
   const Ground ground = ground_of(site);
   const HeldJudge judge = judge_of(site, ground, ground.show);
   const MonthScores scores = judge.scores(ground.none, *ground.usual);
-  const MonthScores change = difference(scores, scores);
-  EXPECT_FALSE(is_confirmed(change, Eigen::ArrayXd::Zero(3)));
+  const HeldChange change{difference(scores, scores),
+                          error_cuts(site, ground.none.parts_kW, ground.none.parts_kW)};
+  EXPECT_FALSE(is_confirmed(change.error_cuts, Eigen::ArrayXd::Zero(3)));
   const auto gaps = gaps_of(site, ground, judge);
   const GapChange gap = change_of(gaps, gaps, std::span{&change, 1});
   for (const ScoreGain& meter : gap.log_score_change) EXPECT_EQ(meter.sum, 0.0);
+  for (const ScoreGain& meter : gap.error_cut) EXPECT_EQ(meter.sum, 0.0);
   EXPECT_EQ(gap.after[0].log_score, gap.before[0].log_score);
 }
 
 // Two effects, one month each way: the second one's month counts against the sum.
 TEST(Gap, ScoresOfSeveralAdditionsAddUpMonthByMonth) {
   const std::vector<MeterGap> gaps(1, MeterGap{.log_score = -10.0});
-  const std::vector<MonthScores> changes{{{{3, 8.0}, {7, 6.0}}}, {{{3, 1.0}, {7, -2.0}}}};
+  const std::vector<HeldChange> changes{{{{{3, 8.0}, {7, 6.0}}}, {{{3, 0.5}, {7, 0.2}}}},
+                                        {{{{3, 1.0}, {7, -2.0}}}, {{{3, 0.1}, {7, -0.2}}}}};
   const GapChange gap = change_of(gaps, gaps, changes);
   EXPECT_DOUBLE_EQ(gap.log_score_change[0].sum, 13.0);
   EXPECT_DOUBLE_EQ(gap.log_score_change[0].se, 5.0);  // 9 and 4
   EXPECT_DOUBLE_EQ(gap.after[0].log_score, -3.5);
+  EXPECT_DOUBLE_EQ(gap.error_cut[0].sum, 0.6);
+  EXPECT_NEAR(gap.error_cut[0].se, 0.6, 1e-9);  // 0.6 and 0
 }
 
 TEST(Gap, IsConfirmedByWhatAllMonthsSayAndByNoMetersHarm) {
-  const MonthScores better{{{3, 8.0}, {7, 6.0}}, {{3, 0.0}, {7, -1.0}}};
+  const MonthScores better{{{3, 0.8}, {7, 0.6}}, {{3, 0.0}, {7, -0.1}}};
   const Eigen::ArrayXd shrunk = Eigen::Array2d(-10.0, 0.0);
-  EXPECT_TRUE(is_confirmed(better, shrunk));                             // 13 nats, give or take 3
-  EXPECT_FALSE(is_confirmed({{{3, 20.0}, {7, -6.0}}}, shrunk.head(1)));  // 14, give or take 26
-  EXPECT_FALSE(is_confirmed({{{3, 0.6}, {7, 0.4}}}, shrunk.head(1)));    // less than three to one
-  // Surely 4 nats worse on the second meter: it counts by how much its error grows.
-  const MonthScores harmful{{{3, 8.0}, {7, 6.0}}, {{3, -2.0}, {7, -2.0}}};
+  EXPECT_TRUE(is_confirmed(better, shrunk));                            // 1.3, give or take 0.3
+  EXPECT_FALSE(is_confirmed({{{3, 2.0}, {7, -0.6}}}, shrunk.head(1)));  // 1.4, give or take 2.6
+  EXPECT_FALSE(is_confirmed({{{3, 2.0}}}, shrunk.head(1)));             // a single month
+  // The second meter's errors surely grow: it counts by how much.
+  const MonthScores harmful{{{3, 0.8}, {7, 0.6}}, {{3, -0.2}, {7, -0.2}}};
   EXPECT_FALSE(is_confirmed(harmful, Eigen::Array2d(-10.0, 3.0)));
   EXPECT_TRUE(is_confirmed(harmful, Eigen::Array2d(-10.0, 2.0)));
-  EXPECT_TRUE(is_confirmed(better, Eigen::Array2d(-10.0, 3.0)));  // its score is not worse
+  EXPECT_TRUE(is_confirmed(better, Eigen::Array2d(-10.0, 3.0)));  // not surely
   EXPECT_FALSE(is_confirmed(harmful, Eigen::Array2d(kAbsent, 3.0)));
+}
+
+TEST(Gap, ErrorsAreCutByTheLogOfTheirRatioInHeldMonthsAlone) {
+  SiteProblem site = noisy_site();
+  Eigen::ArrayXXd without = site.measured_parts_kW;
+  site.measured_parts_kW.col(2).setConstant(kAbsent);
+  Eigen::ArrayXXd with = without;
+  for (Eigen::Index i = 0; i < with.rows(); ++i) {
+    const bool is_held = site.roles[static_cast<std::size_t>(i)] == Role::show;
+    without(i, 0) += is_held ? 4.0 : 0.0;
+    with(i, 0) += is_held ? -2.0 : 50.0;
+  }
+  const MonthScores cuts = error_cuts(site, with, without);
+  EXPECT_GE(cuts[0].size(), 2u);
+  // The floor is a tenth of the smaller mean square.
+  for (const auto& [month, cut] : cuts[0]) EXPECT_NEAR(cut, 0.5 * std::log(16.4 / 4.4), 1e-9);
+  for (const auto& [month, cut] : cuts[1]) EXPECT_EQ(cut, 0.0);  // both are right
+  EXPECT_TRUE(cuts[2].empty());                                  // no readings
 }
 
 TEST(Gap, HeldErrorsAreThoseOfHeldMonthsAlone) {
