@@ -219,6 +219,25 @@ struct RowGroups {
   std::vector<int> warmth;  ///< Bin of outdoor temperature.
 };
 
+/// Weights of the signatures of a regime, put one below the other in the order of their names.
+class Rows {
+ public:
+  explicit Rows(Eigen::Index columns) : weights_(kOfRegime, columns) {}
+
+  void put(const Eigen::MatrixXd& block) {
+    weights_.middleRows(next_, block.rows()) = block;
+    next_ += block.rows();
+  }
+  [[nodiscard]] Eigen::MatrixXd complete() && {
+    assert(next_ == weights_.rows());
+    return std::move(weights_);
+  }
+
+ private:
+  Eigen::MatrixXd weights_;
+  Eigen::Index next_ = 0;
+};
+
 /// (groups x rows) that averages each group; NaN for those of fewer than four rows.
 Eigen::MatrixXd averaging(const std::vector<int>& group_of, int groups) {
   constexpr int kFewest = 4;
@@ -242,12 +261,7 @@ Eigen::MatrixXd averaging(const std::vector<int>& group_of, int groups) {
 /// trend and season too, which are what they are asked for.
 Eigen::MatrixXd signatures_of_rows(const Eigen::MatrixXd& design, const Eigen::MatrixXd& solve,
                                    const RowGroups& rows) {
-  Eigen::MatrixXd of_rows(kOfRegime, design.rows());
-  Eigen::Index next = 0;
-  const auto put = [&](const Eigen::MatrixXd& block) {
-    of_rows.middleRows(next, block.rows()) = block;
-    next += block.rows();
-  };
+  Rows of_rows(design.rows());
   const auto unexplained = [&](const Eigen::MatrixXd& average, Eigen::Index coefficients) {
     return (average - (average * design.leftCols(coefficients)) * solve.topRows(coefficients))
         .eval();
@@ -256,29 +270,32 @@ Eigen::MatrixXd signatures_of_rows(const Eigen::MatrixXd& design, const Eigen::M
   const Eigen::RowVectorXd mean = of_slopes.colwise().mean();
   const Eigen::VectorXd deviation =
       (of_slopes.rowwise() - mean).array().square().colwise().mean().sqrt();
-  put(deviation.asDiagonal() * solve.bottomRows(kCoefficients - kFirstSlope));
-  put(averaging(rows.warmth, kWarmths));
-  put(unexplained(averaging(rows.block, kBlocks), kCoefficients - kOfTime));
-  put(unexplained(averaging(rows.month, 12), kCoefficients));
-  put(unexplained(averaging(rows.weekday, 5), kCoefficients));
-  put(unexplained(averaging(rows.free_day, 1), kCoefficients));
-  for (const auto& days : rows.public_day) put(unexplained(averaging(days, 1), kCoefficients));
-  assert(next == of_rows.rows());
-  return of_rows;
+  of_rows.put(deviation.asDiagonal() * solve.bottomRows(kCoefficients - kFirstSlope));
+  of_rows.put(averaging(rows.warmth, kWarmths));
+  of_rows.put(unexplained(averaging(rows.block, kBlocks), kCoefficients - kOfTime));
+  of_rows.put(unexplained(averaging(rows.month, 12), kCoefficients));
+  of_rows.put(unexplained(averaging(rows.weekday, 5), kCoefficients));
+  of_rows.put(unexplained(averaging(rows.free_day, 1), kCoefficients));
+  for (const auto& days : rows.public_day) {
+    of_rows.put(unexplained(averaging(days, 1), kCoefficients));
+  }
+  return std::move(of_rows).complete();
 }
 
 /// (signatures x rows) weights whose products with rows of power are the level at which each
 /// signature of a regime is: of slopes, where there is something of what they are of.
 Eigen::MatrixXd levels_of_rows(const Eigen::MatrixXd& design, const RowGroups& rows) {
-  Eigen::MatrixXd of_rows(kOfRegime, design.rows());
-  constexpr Eigen::Index kSlopes = kCoefficients - kFirstSlope;
-  const Eigen::ArrayXXd there = design.rightCols(kSlopes).cwiseAbs().array() + 1e-9;
-  of_rows.topRows(kSlopes) = (there.rowwise() / there.colwise().sum()).matrix().transpose();
-  of_rows.bottomRows(kOfRegime - kSlopes) << averaging(rows.warmth, kWarmths),
-      averaging(rows.block, kBlocks), averaging(rows.month, 12), averaging(rows.weekday, 5),
-      averaging(rows.free_day, 1), averaging(rows.public_day[0], 1),
-      averaging(rows.public_day[1], 1), averaging(rows.public_day[2], 1);
-  return of_rows;
+  Rows of_rows(design.rows());
+  const Eigen::ArrayXXd there =
+      design.rightCols(kCoefficients - kFirstSlope).cwiseAbs().array() + 1e-9;
+  of_rows.put((there.rowwise() / there.colwise().sum()).matrix().transpose());
+  of_rows.put(averaging(rows.warmth, kWarmths));
+  of_rows.put(averaging(rows.block, kBlocks));
+  of_rows.put(averaging(rows.month, 12));
+  of_rows.put(averaging(rows.weekday, 5));
+  of_rows.put(averaging(rows.free_day, 1));
+  for (const auto& days : rows.public_day) of_rows.put(averaging(days, 1));
+  return std::move(of_rows).complete();
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace recald::report {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -44,6 +45,18 @@ TEST(DiagnosisPage, SaysWhatIsMissingSinceWhenAndHowMuch) {
   EXPECT_THAT(page, HasSubstr("6.1\u00a0% less than the model"));
   EXPECT_THAT(page, HasSubstr("The months kept back confirm it"));
   EXPECT_THAT(page, Not(HasSubstr("Not confirmed")));
+}
+
+TEST(DiagnosisPage, ShowsByWhichFiguresOfTheMetersAnEffectIsSeen) {
+  DiagnosisData data = sample_diagnosis();
+  const std::string_view heading = "What speaks for them";
+  EXPECT_THAT(markup_of(data), Not(HasSubstr(heading)));
+  data.signs = {{"Night set-back missing", "Heat", "Nights, January", 0.141, -0.01}};
+  EXPECT_THAT(markup_of(data),
+              AllOf(HasSubstr(heading),
+                    HasSubstr("<th scope=\"row\">Night set-back missing</th><td>Heat</td>"
+                              "<td>Nights, January</td><td class=\"number\">+14.1\u00a0%</td>"
+                              "<td class=\"number\">−1.0\u00a0%</td>")));
 }
 
 TEST(DiagnosisPage, HoldsEveryFiguresNumbersAsATableWithoutJavaScript) {

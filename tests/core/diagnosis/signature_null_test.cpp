@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "core/absent.hpp"
 
@@ -31,6 +32,22 @@ TEST(SignatureMetric, LeavesOutWhatTheSiteOrTheNullDoesNotKnow) {
   ASSERT_EQ(metric.count(), 2);
   const Eigen::MatrixXd white = metric.whiten(Eigen::Vector4d(20.0, 5.0, 5.0, kAbsent), 15.0);
   EXPECT_EQ(white, Eigen::Vector2d(15.0, 0.0));  // clipped; no number
+}
+
+// A meter that the model gets wrong must not dilute what the others say.
+TEST(SignatureMetric, WidensOnlyTheMetersThatTheModelGetsWrong) {
+  const SignatureNull null{.spread = Eigen::VectorXd::Constant(6, 2.0),  // two of each meter
+                           .patterns = Eigen::MatrixXd(6, 0),
+                           .own = Eigen::VectorXd::Ones(6)};
+  SignatureMetric metric(null, Eigen::VectorXd::Zero(6));
+  Eigen::VectorXd left(6);
+  left << 0.5, 0.5, 3.0, 5.0, 1.0, 1.0;
+  metric.widen(left);
+  const Eigen::VectorXd spreads = metric.in_spreads(Eigen::VectorXd::Constant(6, 2.0), 1e9);
+  const double wrong = 1.0 / std::sqrt(0.5 * (9.0 + 25.0));
+  Eigen::VectorXd expected(6);
+  expected << 1.0, 1.0, wrong, wrong, 1.0, 1.0;  // never narrower
+  EXPECT_TRUE(spreads.isApprox(expected, 1e-12)) << spreads.transpose();
 }
 
 TEST(SignatureNull, AParameterThatNobodyKnowsHasItsPrior) {

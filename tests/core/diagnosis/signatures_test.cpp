@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/diagnosis/public_holidays.hpp"
 #include "tests/support/sample_building.hpp"
 
 namespace recald::diagnosis::signatures_test {
@@ -166,6 +167,24 @@ TEST_F(Signatures, LampsAreSeenByTheDark) {
   // Of the measured evenings some hours are at 10 kW, some at 50.
   EXPECT_LT(read, 4.0 / (10.0 + quarter_kW));
   EXPECT_GT(read, 4.0 / (50.0 + quarter_kW));
+}
+
+// A building that is closed on days that its calendar has as workdays: each calendar is asked.
+TEST_F(Signatures, PublicHolidaysAreTheirOwnCalendars) {
+  constexpr std::size_t kNorthAmerica = 0;
+  const DateTable& closed = public_holidays(kNorthAmerica);
+  const Eigen::ArrayXXd kW = hourly([&](const DriverHour& hour, Eigen::Index meter) {
+    if (meter == 1) return 10.0;
+    const bool is_day =
+        hour.day == model::DayType::workday && hour.local_hour >= 7 && hour.local_hour < 19;
+    return is_day && !closed.contains(hour.date) ? 50.0 : 10.0;
+  });
+  const auto change = [&](const std::string& calendar) {
+    const std::string name = "occupied hours, workdays that are public holidays in " + calendar;
+    return value(kCooling, name, kW) - measured(kCooling, name);
+  };
+  EXPECT_LT(change("North America"), -0.3);
+  EXPECT_GT(change("Britain"), 0.7 * change("North America"));  // some days are of both
 }
 
 // Only hours that were measured count, in the modelled ones too: else a gap would look like an
