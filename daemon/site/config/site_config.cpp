@@ -543,6 +543,20 @@ EnergyPlusConfig read_energyplus(TomlReader& table, const SiteConfig& site,
   return config;
 }
 
+/// Those of the seed. What the drawings say is not there (a house without ventilation) stays so: a
+/// range around nothing is none.
+std::vector<ParameterConfig> usual_parameters(const SiteConfig& site) {
+  std::vector<ParameterConfig> usual;
+  for (const std::string_view name : model::kSeedParameters) {
+    const auto definition = model::find_parameter(name);
+    const bool is_there = !site.building || !definition ||
+                          (*definition)->range != model::RangeKind::relative ||
+                          (*definition)->get(*site.building) > 0.0;
+    if (is_there) usual.push_back({std::string{name}, {}});
+  }
+  return usual;
+}
+
 ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
   ModelConfig config;
   std::vector<std::string_view> kinds = model_kind_names(/*of_building_alone=*/true);
@@ -585,11 +599,7 @@ ModelConfig read_model(TomlReader& table, const SiteConfig& site) {
     config.parameters.push_back(is_energyplus ? read_targeted_parameter(parameter)
                                               : read_parameter(parameter));
   }
-  if (config.parameters.empty() && !is_energyplus) {
-    for (const std::string_view name : model::kSeedParameters) {
-      config.parameters.push_back({std::string{name}, {}});
-    }
-  }
+  if (config.parameters.empty() && !is_energyplus) config.parameters = usual_parameters(site);
   table.finish();
   return config;
 }

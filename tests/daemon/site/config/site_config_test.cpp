@@ -113,8 +113,8 @@ TEST(SiteConfig, ZerosOfElectricityAreDoubtedUnlessTheFileSaysOtherwise) {
   EXPECT_EQ(plain.config().meters[1].meter.zero_run_max, std::nullopt);
 }
 
-TEST(SiteConfig, ModelWithoutParametersTakesThoseOfTheSeed) {
-  std::string text = sample_site();
+/// Of a model that names none.
+std::vector<std::string> usual_parameters(std::string text) {
   const std::size_t begin = text.find("[[model.parameter]]");
   text.erase(begin, text.find("[building]") - begin);
   const SiteFile file{text};
@@ -122,7 +122,18 @@ TEST(SiteConfig, ModelWithoutParametersTakesThoseOfTheSeed) {
   for (const ParameterConfig& parameter : file.config().model->parameters) {
     names.push_back(parameter.name);
   }
-  EXPECT_THAT(names, ::testing::ElementsAreArray(model::kSeedParameters));
+  return names;
+}
+
+TEST(SiteConfig, ModelWithoutParametersTakesThoseOfTheSeed) {
+  EXPECT_THAT(usual_parameters(sample_site()), ::testing::ElementsAreArray(model::kSeedParameters));
+}
+
+TEST(SiteConfig, WhatTheDrawingsDoNotHaveIsNoUsualParameter) {
+  const auto names =
+      usual_parameters(edited(sample_site(), "outdoor_air_m3_s = 2.0\n", "outdoor_air_m3_s = 0\n"));
+  EXPECT_THAT(names, ::testing::Not(::testing::Contains("outdoor_airflow")));
+  EXPECT_EQ(names.size(), std::size(model::kSeedParameters) - 1);
 }
 
 TEST(SiteConfig, CounterIsInItsOwnUnit) {
