@@ -75,6 +75,18 @@ std::string broken_promise(const Answer& answer) {
   return "";
 }
 
+/// What a building has none of, and whose drawings say so, is nothing to find: a house without
+/// ventilation has no outdoor airflow.
+void leave_out_what_is_not_there(Answer& answer) {
+  std::erase_if(answer.prior_sd, [&](const auto& parameter) {
+    const auto truth = answer.true_parameters.find(parameter.first);
+    const bool is_absent =
+        parameter.second == 0.0 && truth != answer.true_parameters.end() && truth->second == 0.0;
+    if (is_absent) answer.true_parameters.erase(truth);
+    return is_absent;
+  });
+}
+
 void check_parameters(const Answer& answer, JsonFields& fields) {
   for (const auto& [name, value] : answer.true_parameters) {
     const auto sd = answer.prior_sd.find(name);
@@ -114,6 +126,7 @@ Result<Answer> parse_answer(std::string_view text, const std::string& expected_c
   answer.gaps = fields.boolean("gaps");
   answer.true_parameters = fields.numbers("true_parameters");
   answer.prior_sd = fields.numbers("prior_sd");
+  leave_out_what_is_not_there(answer);
   check_parameters(answer, fields);
   if (std::string broken = broken_promise(answer); !broken.empty()) fields.fail(std::move(broken));
   if (fields.error()) return tl::unexpected(*fields.error());

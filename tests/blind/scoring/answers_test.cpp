@@ -39,6 +39,17 @@ TEST(Answers, MayBeOfAnotherWorld) {
   EXPECT_EQ(answer->world, "energyplus");
 }
 
+// A house without ventilation, of which the drawings say so.
+TEST(Answers, WhatABuildingHasNoneOfIsNothingToFind) {
+  json text = made_up::answer_json("a");
+  text["true_parameters"]["outdoor_airflow"] = 0.0;
+  text["prior_sd"]["outdoor_airflow"] = 0.0;
+  const auto answer = parse_answer(text.dump(), "a");
+  ASSERT_TRUE(answer.has_value()) << answer.error().message;
+  EXPECT_EQ(answer->true_parameters.size(), 1u);
+  EXPECT_EQ(answer->prior_sd.size(), 1u);
+}
+
 // The two effects of a pair may pull one meter apart; what counts is how much each moves it.
 TEST(Answers, MostAffectedMeterGoesBySize) {
   HiddenEffect one = made_up::effect("a");
