@@ -9,12 +9,6 @@
 namespace recald::diagnosis {
 namespace {
 
-/// A scanned parameter is not an amount, even if it has a neutral value: a clock two hours off is
-/// not twice a clock one hour off.
-bool is_amount(const EffectParameter& parameter) {
-  return std::isfinite(parameter.neutral) && parameter.scan.empty();
-}
-
 /// Without the first and last days.
 std::span<const EffectParameter> own_parameters(const Candidate& candidate) {
   const std::size_t days = (candidate.begins ? 1 : 0) + (candidate.ends ? 1 : 0);
@@ -63,6 +57,10 @@ std::vector<std::vector<double>> shapes_with(std::span<const EffectParameter> pa
 }
 
 }  // namespace
+
+bool is_amount(const EffectParameter& parameter) {
+  return std::isfinite(parameter.neutral) && parameter.scan.empty();
+}
 
 double typical_value(const EffectParameter& parameter) {
   const double mean = parameter.prior.mean();

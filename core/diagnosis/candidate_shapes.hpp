@@ -7,6 +7,10 @@
 
 namespace recald::diagnosis {
 
+/// A scanned parameter is not an amount, even if it has a neutral value: a clock two hours off is
+/// not twice a clock one hour off.
+[[nodiscard]] bool is_amount(const EffectParameter& parameter);
+
 /// The amount used to draw footprints: the prior's mean, or one standard deviation from neutral if
 /// the mean is neutral.
 [[nodiscard]] double typical_value(const EffectParameter& parameter);

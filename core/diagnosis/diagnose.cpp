@@ -219,7 +219,7 @@ class Search {
     const bool named = pass->naming.outcome == Outcome::named && may_add(count);
     if (named) {
       result_.added.push_back(addition_of(predictor, site_, question_.open, pass->naming, rng));
-      if (first_.show.count() > 0) shown_.push_back(show(pass->naming));
+      if (first_.show.count() > 0) shown_.push_back(show(pass->naming, predictor));
     }
     if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
     result_.passes.push_back(std::move(*pass));
@@ -325,16 +325,17 @@ class Search {
   }
 
   /// What the effect just named does to held-out months, on the ground where it was found.
-  [[nodiscard]] Shown show(const Naming& naming) const {
+  /// @param predictor  Of the model without it.
+  [[nodiscard]] Shown show(const Naming& naming, Predictor& predictor) const {
     const Explanation& e = naming.explanations[*naming.named];
     const HeldJudge judge = judge_of(site_, now(), now().show);
     const JointFit& base = now().none;
     HeldChange change{difference(judge.scores(e.fit, *now().usual),  //
                                  judge.scores(base, *now().usual)),
                       error_cuts(site_, e.fit.parts_kW, base.parts_kW)};
-    const bool confirmed =
-        is_confirmed(change.error_cuts,
-                     held_errors_kW(site_, e.fit.parts_kW) - held_errors_kW(site_, base.parts_kW));
+    const bool confirmed = is_confirmed(
+        change.error_cuts, months_moved(site_, e.fit.parts_kW, predictor.parts_kW(e.fit.theta)),
+        held_errors_kW(site_, e.fit.parts_kW) - held_errors_kW(site_, base.parts_kW));
     return {std::move(change), confirmed};
   }
 

@@ -136,6 +136,23 @@ MonthScores error_cuts(const SiteProblem& site, const Eigen::ArrayXXd& with_kW,
   return cuts;
 }
 
+std::set<int> months_moved(const SiteProblem& site, const Eigen::ArrayXXd& with_kW,
+                           const Eigen::ArrayXXd& without_kW) {
+  constexpr double kLeastShare = 0.01;
+  std::map<int, double> moved_kW;
+  double most_kW = 0.0;
+  for (Eigen::Index i = 0; i < with_kW.rows(); ++i) {
+    double& month_kW = moved_kW[site.day_parts.parts[static_cast<std::size_t>(i)].month];
+    month_kW += (with_kW.row(i) - without_kW.row(i)).abs().sum();
+    most_kW = std::max(most_kW, month_kW);
+  }
+  std::set<int> months;
+  for (const auto& [month, kW] : moved_kW) {
+    if (kW > kLeastShare * most_kW) months.insert(month);
+  }
+  return months;
+}
+
 Eigen::ArrayXd held_errors_kW(const SiteProblem& site, const Eigen::ArrayXXd& parts_kW) {
   Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(parts_kW.cols());
   Eigen::ArrayXd count = squares;
@@ -151,7 +168,8 @@ Eigen::ArrayXd held_errors_kW(const SiteProblem& site, const Eigen::ArrayXXd& pa
   return (squares / count).sqrt();
 }
 
-bool is_confirmed(const MonthScores& error_cuts, const Eigen::ArrayXd& error_change_kW) {
+bool is_confirmed(const MonthScores& error_cuts, const std::set<int>& moved,
+                  const Eigen::ArrayXd& error_change_kW) {
   double shrunk_kW = 0.0;
   double grown_kW = 0.0;
   const std::vector<ScoreGain> cuts = gain_by_meter(error_cuts);
@@ -163,7 +181,7 @@ bool is_confirmed(const MonthScores& error_cuts, const Eigen::ArrayXd& error_cha
     shrunk_kW += std::max(-change_kW, 0.0);
     if (grows_errors(cuts[g])) grown_kW += std::max(change_kW, 0.0);
   }
-  const ScoreGain all = gain_over(error_cuts);
+  const ScoreGain all = gain_over(error_cuts, moved);
   return months >= 2 && all.sum > 2.0 * all.se && grown_kW <= kMostHarm * shrunk_kW;
 }
 

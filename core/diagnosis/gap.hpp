@@ -1,6 +1,7 @@
 /// The gap between model and meters on held-out months, and whether it shrank.
 #pragma once
 
+#include <set>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,11 @@ struct GapChange {
 [[nodiscard]] MonthScores error_cuts(const SiteProblem& site, const Eigen::ArrayXXd& with_kW,
                                      const Eigen::ArrayXXd& without_kW);
 
+/// Months in which an effect does at least a hundredth of what it does in its strongest one.
+/// @param with_kW, without_kW  (parts x m) with the same base parameters.
+[[nodiscard]] std::set<int> months_moved(const SiteProblem& site, const Eigen::ArrayXXd& with_kW,
+                                         const Eigen::ArrayXXd& without_kW);
+
 /// By more than two standard errors.
 [[nodiscard]] bool grows_errors(const ScoreGain& error_cut);
 
@@ -64,13 +70,15 @@ struct GapChange {
 [[nodiscard]] Eigen::ArrayXd held_errors_kW(const SiteProblem& site,
                                             const Eigen::ArrayXXd& parts_kW);
 
-/// Errors of at least two months shrink by more than two standard errors; and those of meters whose
+/// Errors of at least two months shrink by more than two standard errors, months before an effect
+/// begins and after it taken apart; and those of meters whose
 /// errors surely grow do so by no more than a quarter of what errors of others shrink by: an effect
 /// that is certainly present may have a side effect on another meter that the model gets wrong.
 /// Harm counts in kW, because as a ratio a precise meter outweighs all others.
 /// @param error_cuts  Of months that chose nothing.
+/// @param moved       As `months_moved`.
 /// @param error_change_kW  (m) held-out errors with the effect minus without.
-[[nodiscard]] bool is_confirmed(const MonthScores& error_cuts,
+[[nodiscard]] bool is_confirmed(const MonthScores& error_cuts, const std::set<int>& moved,
                                 const Eigen::ArrayXd& error_change_kW);
 
 /// @param changes  One per addition.

@@ -1,6 +1,7 @@
 #include "core/diagnosis/held_scores.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace recald::diagnosis {
@@ -98,14 +99,21 @@ std::vector<ScoreGain> gain_by_meter(const MonthScores& change) {
   return gains;
 }
 
-ScoreGain gain_over(const MonthScores& change) {
+ScoreGain gain_over(const MonthScores& change) { return gain_over(change, {}); }
+
+ScoreGain gain_over(const MonthScores& change, const std::set<int>& apart) {
   std::map<int, double> months;
   for (const auto& meter : change) {
     for (const auto& [month, score] : meter) months[month] += score;
   }
-  std::vector<double> differences;
-  for (const auto& [month, score] : months) differences.push_back(score);
-  return gain_of(differences);
+  std::vector<double> all;
+  std::array<std::vector<double>, 2> kinds;
+  for (const auto& [month, score] : months) {
+    all.push_back(score);
+    kinds[apart.contains(month) ? 1 : 0].push_back(score);
+  }
+  if (kinds[0].size() == 1 || kinds[1].size() == 1) return gain_of(all);
+  return {gain_of(all).sum, std::hypot(gain_of(kinds[0]).se, gain_of(kinds[1]).se)};
 }
 
 }  // namespace recald::diagnosis

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -43,5 +44,8 @@ struct ScoreGain {
 [[nodiscard]] std::vector<ScoreGain> gain_by_meter(const MonthScores& change);
 /// Of all meters together, month by month.
 [[nodiscard]] ScoreGain gain_over(const MonthScores& change);
+/// The same if months of `apart` are expected to differ from the others, which then is no scatter:
+/// each kind varies around its own mean. With a single month of a kind, as above.
+[[nodiscard]] ScoreGain gain_over(const MonthScores& change, const std::set<int>& apart);
 
 }  // namespace recald::diagnosis

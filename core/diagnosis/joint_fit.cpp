@@ -13,7 +13,6 @@ constexpr double kScoreStep = 0.03;
 constexpr double kEffectStep = 0.1;
 // A tenth of a score could move a day by a month; two days are still many parts.
 constexpr double kDayStep_d = 2.0;
-constexpr double kScoreLimit = 5.0;
 constexpr int kTrialsMax = 6;
 // Precision of the damped steps, in units of the priors': the minimum, and factors after a failed
 // step and after one that helped at once.

@@ -25,6 +25,9 @@ struct FitOptions {
   double small_gain = 1.0;  ///< Stop when an iteration gains less log posterior density than this.
 };
 
+/// No score is farther from 0: so many standard deviations of its prior.
+inline constexpr double kScoreLimit = 5.0;
+
 /// A model linearised at its mode, with the likeliest usual errors there.
 struct JointFit {
   Eigen::VectorXd scores;        ///< (q + k + r) at the mode: theta, usual errors, eta.

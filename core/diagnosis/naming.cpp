@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/diagnosis/candidate_shapes.hpp"
+#include "core/diagnosis/effect_posterior.hpp"
 #include "core/diagnosis/gap.hpp"
 
 namespace recald::diagnosis {
@@ -21,6 +23,7 @@ double largest_move(const Eigen::ArrayXXd& with_kW, const Eigen::ArrayXXd& witho
 }
 
 bool is_at_truncation(const Candidate& candidate, const JointFit& fit) {
+  const auto first = static_cast<Eigen::Index>(fit.scores.size() - std::ssize(fit.eta));
   for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
     const Prior& prior = candidate.parameters[j].prior;
     const double value = fit.eta[j];
@@ -30,8 +33,27 @@ bool is_at_truncation(const Candidate& candidate, const JointFit& fit) {
     if (!natural && std::isfinite(prior.max()) && std::isfinite(prior.min()) &&
         value > prior.max() - kNearEnd * (prior.max() - prior.min()))
       return true;
+    const double score = fit.scores[first + static_cast<Eigen::Index>(j)];
+    if (is_amount(candidate.parameters[j]) && std::abs(score) > (1.0 - kNearEnd) * kScoreLimit) {
+      return true;
+    }
   }
   return false;
+}
+
+/// Whether no amount of the effect is surely different from none. Effects that have only shapes,
+/// such as a clock, are certain.
+bool may_be_nothing(const Candidate& candidate, const JointFit& fit) {
+  constexpr double kSure = 2.0;  // Standard deviations.
+  const std::vector<ParameterPosterior> posterior = posterior_of(candidate, fit);
+  bool has_amount = false;
+  for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+    if (!is_amount(candidate.parameters[j])) continue;
+    has_amount = true;
+    const double amount = posterior[j].mode - candidate.parameters[j].neutral;
+    if (std::abs(amount) >= kSure * posterior[j].sd) return false;
+  }
+  return has_amount;
 }
 
 int months_read(const SiteProblem& site) {
@@ -145,6 +167,7 @@ class Rivals {
     if (is_worse(e.selected)) return "the months set aside for choosing contradict it";
     if (e.move < rules.least_move) return "it would hardly show at any meter";
     if (e.at_truncation) return "its size is at the limit of what is thought possible";
+    if (may_be_nothing(candidates_[e.candidate], e.fit)) return "its size may as well be nothing";
     return {};
   }
 

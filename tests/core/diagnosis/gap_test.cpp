@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "core/absent.hpp"
 #include "tests/support/sample_problem.hpp"
@@ -97,7 +98,7 @@ TEST(Gap, AModelIsNotConfirmedAgainstItself) {
   const MonthScores scores = judge.scores(ground.none, *ground.usual);
   const HeldChange change{difference(scores, scores),
                           error_cuts(site, ground.none.parts_kW, ground.none.parts_kW)};
-  EXPECT_FALSE(is_confirmed(change.error_cuts, Eigen::ArrayXd::Zero(3)));
+  EXPECT_FALSE(is_confirmed(change.error_cuts, {}, Eigen::ArrayXd::Zero(3)));
   const auto gaps = gaps_of(site, ground, judge);
   const GapChange gap = change_of(gaps, gaps, std::span{&change, 1});
   for (const ScoreGain& meter : gap.log_score_change) EXPECT_EQ(meter.sum, 0.0);
@@ -121,15 +122,37 @@ TEST(Gap, ScoresOfSeveralAdditionsAddUpMonthByMonth) {
 TEST(Gap, IsConfirmedByWhatAllMonthsSayAndByNoMetersHarm) {
   const MonthScores better{{{3, 0.8}, {7, 0.6}}, {{3, 0.0}, {7, -0.1}}};
   const Eigen::ArrayXd shrunk = Eigen::Array2d(-10.0, 0.0);
-  EXPECT_TRUE(is_confirmed(better, shrunk));                            // 1.3, give or take 0.3
-  EXPECT_FALSE(is_confirmed({{{3, 2.0}, {7, -0.6}}}, shrunk.head(1)));  // 1.4, give or take 2.6
-  EXPECT_FALSE(is_confirmed({{{3, 2.0}}}, shrunk.head(1)));             // a single month
+  EXPECT_TRUE(is_confirmed(better, {}, shrunk));                            // 1.3, give or take 0.3
+  EXPECT_FALSE(is_confirmed({{{3, 2.0}, {7, -0.6}}}, {}, shrunk.head(1)));  // 1.4, give or take 2.6
+  EXPECT_FALSE(is_confirmed({{{3, 2.0}}}, {}, shrunk.head(1)));             // a single month
   // The second meter's errors surely grow: it counts by how much.
   const MonthScores harmful{{{3, 0.8}, {7, 0.6}}, {{3, -0.2}, {7, -0.2}}};
-  EXPECT_FALSE(is_confirmed(harmful, Eigen::Array2d(-10.0, 3.0)));
-  EXPECT_TRUE(is_confirmed(harmful, Eigen::Array2d(-10.0, 2.0)));
-  EXPECT_TRUE(is_confirmed(better, Eigen::Array2d(-10.0, 3.0)));  // not surely
-  EXPECT_FALSE(is_confirmed(harmful, Eigen::Array2d(kAbsent, 3.0)));
+  EXPECT_FALSE(is_confirmed(harmful, {}, Eigen::Array2d(-10.0, 3.0)));
+  EXPECT_TRUE(is_confirmed(harmful, {}, Eigen::Array2d(-10.0, 2.0)));
+  EXPECT_TRUE(is_confirmed(better, {}, Eigen::Array2d(-10.0, 3.0)));  // not surely
+  EXPECT_FALSE(is_confirmed(harmful, {}, Eigen::Array2d(kAbsent, 3.0)));
+}
+
+// An effect that begins late cannot cut errors before: those months are no scatter of the others.
+TEST(Gap, MonthsBeforeAnEffectAreTakenApart) {
+  const MonthScores late{{{1, 0.0}, {2, 0.01}, {3, -0.01}, {4, 0.0}, {5, 0.6}, {6, 0.7}}};
+  const Eigen::ArrayXd shrunk = Eigen::ArrayXd::Constant(1, -10.0);
+  EXPECT_FALSE(is_confirmed(late, {}, shrunk));
+  EXPECT_TRUE(is_confirmed(late, {5, 6}, shrunk));
+  EXPECT_FALSE(is_confirmed({{{1, 0.0}, {2, 0.01}, {5, 0.6}}}, {5}, shrunk));  // one month alone
+  // What gets worse before counts against it.
+  EXPECT_FALSE(is_confirmed({{{1, -0.5}, {2, -0.4}, {5, 0.4}, {6, 0.5}}}, {5, 6}, shrunk));
+}
+
+TEST(Gap, MonthsMovedAreThoseInWhichTheEffectDoesSomething) {
+  const SiteProblem site = noisy_site();
+  const Eigen::ArrayXXd without = site.measured_parts_kW;
+  Eigen::ArrayXXd with = without;
+  for (Eigen::Index i = 0; i < with.rows(); ++i) {
+    const int month = site.day_parts.parts[static_cast<std::size_t>(i)].month;
+    with(i, 1) += month >= 20 ? 5.0 : month >= 18 ? 0.04 : 0.0;
+  }
+  EXPECT_EQ(months_moved(site, with, without), (std::set<int>{20, 21, 22, 23}));
 }
 
 TEST(Gap, ErrorsAreCutByTheLogOfTheirRatioInHeldMonthsAlone) {
