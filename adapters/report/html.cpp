@@ -46,6 +46,10 @@ Html& Html::text(std::string_view untrusted) {
   return *this;
 }
 
+Html& Html::link(std::string_view address, std::string_view untrusted) {
+  return markup("<a href=\"" + escape(address) + "\">").text(untrusted).markup("</a>");
+}
+
 Html& Html::element(std::string_view tag, std::string_view text, std::string_view css_class) {
   const std::string attribute =
       css_class.empty() ? "" : fmt::format(" class=\"{}\"", escape(css_class));
@@ -139,9 +143,14 @@ void Table::write_body(Html& html) const {
     html.markup("<tr>");
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const std::string_view tag = i == 0 ? "th" : "td";
-      html.markup(fmt::format("<{}{}>", tag, attributes_of(row, i)))
-          .text(row.cells[i].text)
-          .markup(fmt::format("</{}>", tag));
+      const Cell& cell = row.cells[i];
+      html.markup(fmt::format("<{}{}>", tag, attributes_of(row, i)));
+      if (cell.address.empty()) {
+        html.text(cell.text);
+      } else {
+        html.link(cell.address, cell.text);
+      }
+      html.markup(fmt::format("</{}>", tag));
     }
     html.markup("</tr>\n");
   }

@@ -23,6 +23,9 @@ class Html {
   /// <tag class="css_class">text</tag>, with the text escaped. No class attribute if it is empty.
   Html& element(std::string_view tag, std::string_view text, std::string_view css_class = "");
 
+  /// <a href="address">text</a>, both escaped. @pre the address has our own scheme and path.
+  Html& link(std::string_view address, std::string_view untrusted);
+
   [[nodiscard]] const std::string& str() const { return out_; }
 
  private:
@@ -33,6 +36,7 @@ class Html {
 struct Cell {
   std::string text;
   std::string_view css_class = "";  ///< One of ours: "number", "good", "bad", "muted".
+  std::string address = {};         ///< Of a link on the text; empty: none.
 };
 
 /// A table with a caption, a head and rows whose first cell names the row.
