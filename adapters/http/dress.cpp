@@ -12,7 +12,7 @@ constexpr std::size_t kTagDigits = 32;
 
 constexpr std::pair<const char*, const char*> kSafety[] = {
     {"Content-Security-Policy",
-     "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"},
+     "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'self'"},
     {"X-Content-Type-Options", "nosniff"},
     {"X-Frame-Options", "DENY"},
     {"Referrer-Policy", "no-referrer"},
@@ -41,7 +41,9 @@ bool matches_etag(std::string_view if_none_match, std::string_view etag) {
 }
 
 Response dressed(const Request& request, Response response) {
-  for (const auto& [name, value] : kSafety) response.headers.emplace_back(name, value);
+  for (const auto& [name, value] : kSafety) {
+    if (response.header(name).empty()) response.headers.emplace_back(name, value);
+  }
   if (response.header("Cache-Control").empty()) {
     response.headers.emplace_back("Cache-Control", "private, no-cache");
   }

@@ -69,6 +69,29 @@ Result<Request> request_head(const beast_http::request<beast_http::string_body>&
   return request;
 }
 
+std::optional<Response> preflight_answer(const Request& request, const SessionRules& rules) {
+  const bool is_question =
+      request.method == Method::other && !request.header("access-control-request-method").empty();
+  if (!is_question || !rules.origins.contains(std::string{request.header("origin")})) return {};
+  return readable_by_origin(
+      request, rules,
+      {.status = 204,
+       .headers = {{"Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE"},
+                   {"Access-Control-Allow-Headers", "authorization, content-type"},
+                   {"Access-Control-Max-Age", "600"}}});
+}
+
+Response readable_by_origin(const Request& request, const SessionRules& rules, Response response) {
+  if (rules.origins.empty()) return response;
+  response.headers.emplace_back("Vary", "Origin");
+  const std::string origin{request.header("origin")};
+  if (rules.origins.contains(origin)) {
+    response.headers.emplace_back("Access-Control-Allow-Origin", origin);
+    response.headers.emplace_back("Access-Control-Expose-Headers", "link, location, etag");
+  }
+  return response;
+}
+
 std::optional<Response> refusal_of_head(const Request& request, const SessionRules& rules) {
   if (!rules.token.empty() && !rules.open_paths.contains(request.path) &&
       !carries_token(request.header("authorization"), rules.token)) {

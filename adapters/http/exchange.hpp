@@ -25,6 +25,8 @@ namespace recald::http {
 struct SessionRules {
   std::string token;                 ///< Empty: no token is required.
   std::set<std::string> open_paths;  ///< Answered without the token.
+  std::set<std::string>
+      origins;  ///< Whose pages may ask from a browser: "https://bms.example.org".
   std::size_t body_max = 1024 * 1024;
   std::size_t header_max = 16 * 1024;
   std::chrono::milliseconds slow_client{10'000};
@@ -34,6 +36,16 @@ struct SessionRules {
 /// Method, target and headers. @return or malformed, see parse_target.
 [[nodiscard]] Result<Request> request_head(
     const boost::beast::http::request<boost::beast::http::string_body>& message);
+
+/// The answer to a browser that asks first whether a page of another origin may send a request
+/// (Fetch standard, CORS preflight). Nothing if this is no such question, or of an origin that may
+/// not: then it is answered like anything else, and the browser does not send the request.
+[[nodiscard]] std::optional<Response> preflight_answer(const Request& request,
+                                                       const SessionRules& rules);
+
+/// Lets pages of an allowed origin read the response.
+[[nodiscard]] Response readable_by_origin(const Request& request, const SessionRules& rules,
+                                          Response response);
 
 /// What is refused before the body is read: a missing token, or a POST that any web page could make
 /// a browser send (its body is not declared as JSON).

@@ -224,6 +224,7 @@ Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& context,
   shared->connections_max = options.connections_max;
   shared->rules = {.token = options.token,
                    .open_paths = options.open_paths,
+                   .origins = options.origins,
                    .body_max = options.body_max,
                    .header_max = options.header_max,
                    .slow_client = options.slow_client};

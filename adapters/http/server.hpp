@@ -37,6 +37,7 @@ struct ServerOptions {
   std::uint16_t port = 8080;          ///< 0: any free port.
   std::string token;                  ///< Empty: no token is required.
   std::set<std::string> open_paths;   ///< Answered without the token.
+  std::set<std::string> origins;      ///< Whose pages may ask from a browser; empty: none but ours.
   std::optional<TlsFiles> tls;
   std::size_t body_max = 1024 * 1024;
   std::size_t header_max = 16 * 1024;  ///< Includes the request line.

@@ -80,7 +80,8 @@ class Session {
     } else if (request = request_head(parser.get()); !request) {
       refusal = bad_request(request.error());
     } else {
-      refusal = refusal_of_head(*request, rules_);
+      refusal = preflight_answer(*request, rules_);
+      if (!refusal) refusal = refusal_of_head(*request, rules_);
     }
     const Method method = request ? request->method : Method::get;
     if (!error && !refusal) {
@@ -92,7 +93,8 @@ class Session {
 
     request->body = std::move(parser.get().body());
     const bool keep_alive = parser.get().keep_alive();
-    const Response response = dressed(*request, called(handler_, *request));
+    const Response response =
+        readable_by_origin(*request, rules_, dressed(*request, called(handler_, *request)));
     set_deadline(stream_, rules_.slow_client);
     const bool sent = co_await send(method, response, keep_alive);
     if (sent && !keep_alive) co_await part(true);

@@ -8,8 +8,10 @@ namespace recald::daemon {
 
 Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
                                                  const HttpConfig& config, Served served) {
-  http::ServerOptions options{
-      .address = config.address, .port = config.port, .open_paths = {"/healthz", "/readyz"}};
+  http::ServerOptions options{.address = config.address,
+                              .port = config.port,
+                              .open_paths = {"/healthz", "/readyz"},
+                              .origins = {config.origins.begin(), config.origins.end()}};
   if (!config.token_file.empty()) {
     auto token = http::read_token_file(config.token_file);
     if (!token) return tl::unexpected(token.error());

@@ -57,6 +57,20 @@ HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) 
   config.token_file = path("token_file");
   config.certificate_file = path("certificate_file");
   config.key_file = path("key_file");
+  for (std::string& origin :
+       table.one_or_more("allow_origin").value_or(std::vector<std::string>{})) {
+    const std::size_t host = origin.find("://");
+    const bool is_origin = (origin.starts_with("https://") || origin.starts_with("http://")) &&
+                           origin.size() > host + 3 &&
+                           origin.find('/', host + 3) == std::string::npos;
+    if (!is_origin) {
+      table.problem_at("allow_origin",
+                       fmt::format("'allow_origin' has \"{}\"; write a scheme and a host without a "
+                                   "path, such as \"https://bms.example.org\"",
+                                   origin));
+    }
+    config.origins.push_back(std::move(origin));
+  }
   if (table.has("certificate_file") != table.has("key_file")) {
     table.problem("TLS needs both 'certificate_file' and 'key_file'");
   }

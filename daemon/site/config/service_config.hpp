@@ -17,6 +17,7 @@ struct HttpConfig {
   std::filesystem::path token_file;        ///< Empty: no token is asked for.
   std::filesystem::path certificate_file;  ///< Empty: no TLS.
   std::filesystem::path key_file;
+  std::vector<std::string> origins;  ///< Whose pages may ask from a browser.
 };
 
 struct RecalibrationConfig {

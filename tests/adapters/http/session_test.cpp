@@ -121,5 +121,36 @@ TEST_F(SessionTest, WhatFollowsARefusalIsNotARequest) {
   EXPECT_THAT(std::string{client.str()}, HasSubstr("HTTP/1.1 400 "));
 }
 
+std::string asked_from(const std::string& origin) {
+  return "OPTIONS /first HTTP/1.1\r\nHost: a\r\nOrigin: " + origin +
+         "\r\nAccess-Control-Request-Method: GET\r\n\r\n";
+}
+
+// A browser asks before it sends what a page of another origin wants to send.
+TEST_F(SessionTest, PagesOfOtherOriginsMayAskOnlyIfTheyAreAllowed) {
+  rules_.token = "0123456789abcdef";
+  rules_.origins = {"https://bms.example.org"};
+  const auto answer_to = [&](const std::string& request) {
+    stream server{context_};
+    stream client = connect(server);
+    server.append(request);
+    serve(server, client);
+    return std::string{client.str()};
+  };
+  const std::string allowed = answer_to(asked_from("https://bms.example.org"));
+  EXPECT_THAT(allowed, HasSubstr("HTTP/1.1 204"));
+  EXPECT_THAT(allowed, HasSubstr("Access-Control-Allow-Origin: https://bms.example.org"));
+  EXPECT_THAT(answer_to(asked_from("https://evil.example.org")),
+              ::testing::AllOf(HasSubstr("HTTP/1.1 401"),
+                               ::testing::Not(HasSubstr("Access-Control-Allow-Origin"))));
+  const std::string get =
+      "GET /last HTTP/1.1\r\nHost: a\r\nOrigin: https://bms.example.org\r\n"
+      "Authorization: Bearer 0123456789abcdef\r\n\r\n";
+  EXPECT_THAT(answer_to(get), HasSubstr("Access-Control-Allow-Origin: https://bms.example.org"));
+  rules_.origins.clear();
+  EXPECT_THAT(answer_to(get),
+              ::testing::AllOf(HasSubstr("200 OK"), ::testing::Not(HasSubstr("Access-Control"))));
+}
+
 }  // namespace
 }  // namespace recald::http
