@@ -112,8 +112,13 @@ ScoreGain gain_over(const MonthScores& change, const std::set<int>& apart) {
     all.push_back(score);
     kinds[apart.contains(month) ? 1 : 0].push_back(score);
   }
-  if (kinds[0].size() == 1 || kinds[1].size() == 1) return gain_of(all);
-  return {gain_of(all).sum, std::hypot(gain_of(kinds[0]).se, gain_of(kinds[1]).se)};
+  const double of_apart = gain_of(kinds[1]).se;
+  if (kinds[1].size() < 2) return gain_of(all);
+  // A single other month is taken to vary as those apart do.
+  const double of_others = kinds[0].size() == 1
+                               ? of_apart / std::sqrt(static_cast<double>(kinds[1].size()))
+                               : gain_of(kinds[0]).se;
+  return {gain_of(all).sum, std::hypot(of_others, of_apart)};
 }
 
 }  // namespace recald::diagnosis

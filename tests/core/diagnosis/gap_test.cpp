@@ -140,6 +140,7 @@ TEST(Gap, MonthsBeforeAnEffectAreTakenApart) {
   EXPECT_FALSE(is_confirmed(late, {}, shrunk));
   EXPECT_TRUE(is_confirmed(late, {5, 6}, shrunk));
   EXPECT_FALSE(is_confirmed({{{1, 0.0}, {2, 0.01}, {5, 0.6}}}, {5}, shrunk));  // one month alone
+  EXPECT_TRUE(is_confirmed({{{1, 0.0}, {5, 0.6}, {6, 0.7}}}, {5, 6}, shrunk));
   // What gets worse before counts against it.
   EXPECT_FALSE(is_confirmed({{{1, -0.5}, {2, -0.4}, {5, 0.4}, {6, 0.5}}}, {5, 6}, shrunk));
 }
