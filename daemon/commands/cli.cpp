@@ -501,7 +501,7 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
                    }});
 
   CLI::App* model =
-      app.add_subcommand("model", "List the versions of the site's model, or go back to one")
+      app.add_subcommand("model", "List the versions of the site's model, or change to one")
           ->group(kFind);
   model->require_subcommand(1);
   const auto add = [&](const char* name, const char* help, auto run) {
@@ -514,6 +514,9 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   add("list", "List all versions and mark the one in use", run_model_list);
   add("show", "Show one version and why it was accepted", run_model_show)
       ->add_option("version", given.model.version, "Version; the one in use by default");
+  add("apply", "Put a version in force that a diagnosis proposed", run_model_apply)
+      ->add_option("version", given.model.version, "Version, or its first digits")
+      ->required();
   add("revert", "Go back to an earlier version", run_model_revert)
       ->add_option("version", given.model.version, "Version; the one before by default");
 }

@@ -219,6 +219,7 @@ int run_model_list(const ModelArguments& arguments, const Console& console);
 /// One version in full: its effects, what they were accepted on, what they change.
 int run_model_show(const ModelArguments& arguments, const Console& console);
 /// Puts the parent of the version in force, or the given version, in force again.
+int run_model_apply(const ModelArguments& arguments, const Console& console);
 int run_model_revert(const ModelArguments& arguments, const Console& console);
 
 }  // namespace recald::daemon

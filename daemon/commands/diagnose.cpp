@@ -7,7 +7,6 @@
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
-#include "core/diagnosis/next_version.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/engine_runs.hpp"
@@ -15,6 +14,7 @@
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/diagnose/energyplus_gap.hpp"
+#include "daemon/site/diagnose/proposed_version.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/model/energyplus_effects.hpp"
 #include "daemon/site/results/diagnosis_files.hpp"
@@ -23,20 +23,6 @@
 
 namespace recald::daemon {
 namespace {
-
-/// Stores the additions as a version that is not in force yet.
-Result<diagnosis::ModelVersion> store_version(const models::ModelStore& store,
-                                              const ModelledSite& modelled,
-                                              const diagnosis::Diagnosis& diagnosis,
-                                              const diagnosis::SiteProblem& site,
-                                              const std::string& at) {
-  const auto parent = store.active();
-  if (!parent) return tl::unexpected(parent.error());
-  return store.save(diagnosis::next_version(diagnosis, site, *parent,
-                                            {.data_revision = modelled.facts.data_revision,
-                                             .catalogue_version = modelled.facts.recald_version,
-                                             .created_at = at}));
-}
 
 bool has_energyplus(const SiteConfig& site) {
   return std::ranges::any_of(site.other_models,
@@ -135,7 +121,7 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   };
   std::string applied;
   if (is_kept()) {
-    const auto version = store_version(store, *modelled, diagnosis, *problem, at);
+    const auto version = propose_version(store, *modelled, diagnosis, *problem, at);
     if (!version) return fail(version.error());
     if (has_energyplus(modelled->site.config)) {
       auto vote =

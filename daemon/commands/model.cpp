@@ -10,6 +10,7 @@
 #include "core/display/id_words.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/site/config/site_config.hpp"
+#include "daemon/site/model/version_list.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -29,33 +30,9 @@ tl::expected<models::ModelStore, int> open_store(const ModelArguments& arguments
   return models::ModelStore{site->file, site->id};
 }
 
-std::vector<std::string> effect_ids(const ModelVersion& version) {
-  std::vector<std::string> ids;
-  for (const AddedEffect& added : version.effects) {
-    ids.push_back(added.meter.empty() ? added.effect
-                                      : fmt::format("{} ({})", added.effect, added.meter));
-  }
-  return ids;
-}
-
 std::string effects_words(const ModelVersion& version) {
   return version.effects.empty() ? "no effects"
                                  : fmt::format("{}", fmt::join(effect_ids(version), ", "));
-}
-
-std::string list_json(const models::VersionList& list) {
-  Json versions = Json::array();
-  for (const ModelVersion& version : list.versions) {
-    versions.push_back({{"version", version.version},
-                        {"parent", version.parent},
-                        {"active", version.version == list.active},
-                        {"status", to_string(version.status)},
-                        {"author", to_string(version.author)},
-                        {"created_at", version.created_at},
-                        {"effects", effect_ids(version)}});
-  }
-  const Json json = {{"active", list.active}, {"versions", versions}, {"damaged", list.damaged}};
-  return json.dump(2) + "\n";
 }
 
 std::string list_words(const models::VersionList& list) {
@@ -121,6 +98,19 @@ std::string now_text() {
       std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
 }
 
+/// @param how  "back"
+int tell_change(const ModelArguments& arguments, const Console& console,
+                const ModelVersion& version, std::string_view how) {
+  if (arguments.json) {
+    const Json json = {{"active", version.version}, {"effects", effect_ids(version)}};
+    console.out << json.dump(2) + "\n";
+  } else {
+    console.out << fmt::format("The model is {} at version {}, with {}.\n", how,
+                               short_version(version.version), effects_words(version));
+  }
+  return kSuccess;
+}
+
 }  // namespace
 
 int run_model_list(const ModelArguments& arguments, const Console& console) {
@@ -129,7 +119,7 @@ int run_model_list(const ModelArguments& arguments, const Console& console) {
   const auto list = store->list();
   if (!list) return console.fail(list.error());
   for (const std::string& sentence : list->damaged) console.err << "! " << sentence << "\n";
-  console.out << (arguments.json ? list_json(*list) : list_words(*list));
+  console.out << (arguments.json ? versions_json(*list).dump(2) + "\n" : list_words(*list));
   return kSuccess;
 }
 
@@ -142,19 +132,20 @@ int run_model_show(const ModelArguments& arguments, const Console& console) {
   return kSuccess;
 }
 
+int run_model_apply(const ModelArguments& arguments, const Console& console) {
+  const auto store = open_store(arguments, console);
+  if (!store) return store.error();
+  const auto version = store->activate(arguments.version, now_text());
+  if (!version) return console.fail(version.error());
+  return tell_change(arguments, console, *version, "now");
+}
+
 int run_model_revert(const ModelArguments& arguments, const Console& console) {
   const auto store = open_store(arguments, console);
   if (!store) return store.error();
   const auto version = store->revert(arguments.version, now_text());
   if (!version) return console.fail(version.error());
-  if (arguments.json) {
-    const Json json = {{"active", version->version}, {"effects", effect_ids(*version)}};
-    console.out << json.dump(2) + "\n";
-  } else {
-    console.out << fmt::format("The model is back at version {}, with {}.\n",
-                               short_version(version->version), effects_words(*version));
-  }
-  return kSuccess;
+  return tell_change(arguments, console, *version, "back");
 }
 
 }  // namespace recald::daemon

@@ -27,6 +27,11 @@ using recald::testing::write_text;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+JobWatch& nobody_stops_it() {
+  static JobWatch watch;
+  return watch;
+}
+
 void replace(std::string& text, const std::string& from, const std::string& to) {
   for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
     text.replace(at, from.size(), to);
@@ -286,7 +291,7 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
   job.number = 7;
   const metering::Instant now = std::chrono::sys_days{std::chrono::year{2021} / 12 / 20};
 
-  const auto outcome = work(job, now, [] { return true; });
+  const auto outcome = work(job, now, nobody_stops_it());
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
   json result = json::parse(outcome->result.document);
   EXPECT_THAT(result["drift_not_followed"].get<std::string>(),
@@ -318,7 +323,7 @@ TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   const DoJob work =
       make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
   const auto outcome =
-      work({}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
+      work({}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, nobody_stops_it());
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
   const json result = json::parse(outcome->result.document);
   EXPECT_EQ(result["model"], "metamodel");
@@ -342,7 +347,7 @@ TEST_F(LiveSite, ADesignOfAnotherSiteIsRefused) {
   config.recalibration.design = folder_ / "doe";
   const auto calendar = metering::LocalCalendar::open(config.timezone).value();
   const auto outcome = make_site_work({config, calendar})(
-      {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
+      {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, nobody_stops_it());
   EXPECT_THAT(why_failed(outcome), HasSubstr("not for this site"));
 }
 
@@ -352,7 +357,7 @@ TEST_F(LiveSite, AJobSaysThatItsDesignIsMissing) {
   config.recalibration.design = folder_ / "nowhere";
   const auto calendar = metering::LocalCalendar::open(config.timezone).value();
   const auto outcome = make_site_work({config, calendar})(
-      {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, [] { return true; });
+      {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, nobody_stops_it());
   EXPECT_THAT(why_failed(outcome), HasSubstr("nowhere"));
 }
 
@@ -361,12 +366,12 @@ TEST_F(LiveSite, AJobThatIsToldToStopStops) {
   const auto config = load_site(folder_ / "live.toml").value();
   const DoJob work =
       make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
-  int asked = 0;
-  const auto outcome =
-      work({}, std::chrono::sys_days{std::chrono::year{2022} / 2 / 1}, [&] { return ++asked < 3; });
+  JobWatch watch;
+  watch.stop();
+  const auto outcome = work({}, std::chrono::sys_days{std::chrono::year{2022} / 2 / 1}, watch);
   ASSERT_FALSE(outcome.has_value());
   EXPECT_EQ(outcome.error().code, ErrorCode::cancelled);
-  EXPECT_LT(asked, 20);
+  EXPECT_LT(watch.said()->share, 0.1);  // it asked early on
 }
 
 // It stands before the main meter, is of electricity too, and has never been read.
@@ -415,7 +420,7 @@ class FollowedSite : public LiveSite {
     config.recalibration.months = 8;
     const DoJob work =
         make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
-    const auto outcome = work({}, std::chrono::sys_days{day}, [] { return true; });
+    const auto outcome = work({}, std::chrono::sys_days{day}, nobody_stops_it());
     EXPECT_TRUE(outcome.has_value()) << outcome.error().message;
     EXPECT_TRUE(store_.add_forecasts(outcome->forecasts).has_value());
     return store_.forecasts().value();
@@ -458,7 +463,7 @@ TEST_F(LiveSite, AJobBeforeAnyMonthHasClosedSaysSo) {
   const DoJob work =
       make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
   const auto outcome =
-      work({}, std::chrono::sys_days{std::chrono::year{2021} / 1 / 20}, [] { return true; });
+      work({}, std::chrono::sys_days{std::chrono::year{2021} / 1 / 20}, nobody_stops_it());
   EXPECT_THAT(why_failed(outcome), HasSubstr("has no usable closed month yet"));
 }
 

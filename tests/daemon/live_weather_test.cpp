@@ -91,7 +91,8 @@ class LiveWeather : public ::testing::Test {
 
   /// What a calibration gives on the latest closed months.
   json calibrated(Instant now = kNow) {
-    const auto outcome = make_site_work({site_, calendar_})({}, now, [] { return true; });
+    JobWatch watch;
+    const auto outcome = make_site_work({site_, calendar_})({}, now, watch);
     EXPECT_TRUE(outcome.has_value()) << outcome.error().message;
     EXPECT_FALSE(outcome->failed) << outcome->message;
     said_ = outcome->message;

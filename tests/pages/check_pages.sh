@@ -14,13 +14,12 @@ here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 [ "$#" -gt 0 ] ||
-  set -- full design readings-only meters young-meters diagnosis empty-handed drift savings saved status
+  set -- full design readings-only meters young-meters diagnosis empty-handed drift savings saved now meter months model events
 for name in "$@"; do
-  if [ "$name" = status ]; then
-    "$write_status" "$folder/$name.html"
-  else
-    "$write" "$name" "$folder/$name.html"
-  fi
+  case $name in
+    now | meter | months | model | events) "$write_status" "$name" "$folder/$name.html" ;;
+    *) "$write" "$name" "$folder/$name.html" ;;
+  esac
 done
 status=0
 node "$here/browser/check_pages.mjs" --modules "$modules" ${PICTURES:+--pictures "$PICTURES"} \

@@ -16,9 +16,9 @@ constexpr std::chrono::seconds kTryAgain{10};
 constexpr int kTriesMax = 3;
 
 /// An exception of the work is the reason for its failure.
-Result<JobOutcome> done_safely(const DoJob& work, const StoredJob& job, const GoesOn& goes_on) {
+Result<JobOutcome> done_safely(const DoJob& work, const StoredJob& job, JobWatch& watch) {
   try {
-    return work(job, *job.started, goes_on);
+    return work(job, *job.started, watch);
   } catch (const std::bad_alloc&) {
     return failure(ErrorCode::io_failed, "there is not enough memory for the job");
   } catch (const std::exception& thrown) {
@@ -31,8 +31,8 @@ Result<JobOutcome> done_safely(const DoJob& work, const StoredJob& job, const Go
 
 /// Returns the memory of a calibration to the system. Otherwise glibc keeps it in fragments between
 /// the allocations that stay, and every calibration adds some.
-Result<JobOutcome> done_and_tidied(const DoJob& work, const StoredJob& job, const GoesOn& goes_on) {
-  auto outcome = done_safely(work, job, goes_on);
+Result<JobOutcome> done_and_tidied(const DoJob& work, const StoredJob& job, JobWatch& watch) {
+  auto outcome = done_safely(work, job, watch);
   ::malloc_trim(0);
   return outcome;
 }
@@ -43,13 +43,13 @@ JobRunner::JobRunner(Ports ports, DoJob work, OnJob on_job)
     : ports_(ports),
       work_(std::move(work)),
       on_job_(std::move(on_job)),
-      running_goes_on_(std::make_shared<std::atomic<bool>>(true)),
+      watch_(std::make_shared<JobWatch>()),
       self_(std::make_shared<JobRunner*>(this)) {}
 
-JobRunner::~JobRunner() { running_goes_on_->store(false); }
+JobRunner::~JobRunner() { watch_->stop(); }
 
 void JobRunner::interrupt() {
-  running_goes_on_->store(false);
+  watch_->stop();
   if (stage_ != Stage::running) return;
   StoredJob job = current_;
   job.state = JobState::waiting;
@@ -114,7 +114,7 @@ Result<std::int64_t> JobRunner::ask(JobKind kind, const std::string& asked_by) {
 Result<void> JobRunner::cancel(std::int64_t number) {
   if (stage_ == Stage::running && current_.number == number) {
     cancelled_ = true;
-    running_goes_on_->store(false);
+    watch_->stop();
     return {};
   }
   auto found = ports_.store.job(number);
@@ -123,6 +123,13 @@ Result<void> JobRunner::cancel(std::int64_t number) {
     return failure(ErrorCode::not_found, fmt::format("no job {} is waiting or running", number));
   }
   return end(std::move(**found), JobState::cancelled);
+}
+
+std::optional<JobProgress> JobRunner::progress() const {
+  if (stage_ != Stage::running) return std::nullopt;
+  const auto said = watch_->said();
+  if (!said) return std::nullopt;
+  return JobProgress{current_.number, said->share, said->what};
 }
 
 void JobRunner::begin_next() {
@@ -138,17 +145,15 @@ void JobRunner::begin_next() {
   if (on_job_) on_job_(current_);
   stage_ = Stage::running;
   cancelled_ = false;
-  running_goes_on_ = std::make_shared<std::atomic<bool>>(true);
+  watch_ = std::make_shared<JobWatch>();
 
   // The work may outlive this object, so it has copies of everything it uses.
   const auto outcome = std::make_shared<Result<JobOutcome>>();
-  ports_.worker.run(
-      [work = work_, job = current_, outcome, goes_on = running_goes_on_] {
-        *outcome = done_and_tidied(work, job, [goes_on] { return goes_on->load(); });
-      },
-      [weak = std::weak_ptr{self_}, outcome] {
-        if (const auto self = weak.lock()) (*self)->finish(std::move(*outcome));
-      });
+  ports_.worker.run([work = work_, job = current_, outcome,
+                     watch = watch_] { *outcome = done_and_tidied(work, job, *watch); },
+                    [weak = std::weak_ptr{self_}, outcome] {
+                      if (const auto self = weak.lock()) (*self)->finish(std::move(*outcome));
+                    });
 }
 
 void JobRunner::finish(Result<JobOutcome> outcome) {
@@ -161,6 +166,7 @@ void JobRunner::finish(Result<JobOutcome> outcome) {
     current_.result = std::move(outcome->result);
     forecasts_ = std::move(outcome->forecasts);
     next_ = outcome->next;
+    next_asked_by_ = std::move(outcome->next_asked_by);
   } else {
     current_.state = cancelled_ ? JobState::cancelled : JobState::failed;
     current_.message = cancelled_ ? "" : outcome.error().message;
@@ -173,8 +179,8 @@ void JobRunner::finish(Result<JobOutcome> outcome) {
 void JobRunner::keep() {
   // The job comes last: if the process ends in between, the job runs again and the rest
   // is already stored.
-  const bool is_kept = ports_.store.add_forecasts(forecasts_) && (!next_ || ask(*next_, "drift")) &&
-                       ports_.store.put_job(current_);
+  const bool is_kept = ports_.store.add_forecasts(forecasts_) &&
+                       (!next_ || ask(*next_, next_asked_by_)) && ports_.store.put_job(current_);
   if (is_kept) {
     forecasts_.clear();
     next_.reset();

@@ -2,7 +2,6 @@
 /// time, stores results.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,6 +13,8 @@
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
+#include "daemon/gateway/run/job_watch.hpp"
+#include "daemon/gateway/serve/served.hpp"
 
 namespace recald::daemon {
 
@@ -24,16 +25,14 @@ struct JobOutcome {
   std::string folder;     ///< Contains its files.
   JobResult result;
   std::vector<StoredForecast> forecasts;  ///< To be stored.
-  std::optional<JobKind> next;            ///< A job that this one calls for, requested by "drift".
+  std::optional<JobKind> next;            ///< A job that this one calls for …
+  std::string next_asked_by = "drift";    ///< … and as whose request.
 };
-
-/// Returns false once the job should stop early. Safe from any thread.
-using GoesOn = std::function<bool()>;
 
 /// Runs a job on the worker. @param now  When it began.
 /// @return the outcome; cancelled when it was told to stop; or why it failed.
-using DoJob = std::function<Result<JobOutcome>(const StoredJob& job, metering::Instant now,
-                                               const GoesOn& goes_on)>;
+using DoJob =
+    std::function<Result<JobOutcome>(const StoredJob& job, metering::Instant now, JobWatch& watch)>;
 
 /// Called after every stored change of a job's state.
 using OnJob = std::function<void(const StoredJob&)>;
@@ -69,6 +68,9 @@ class JobRunner {
   /// @return not_found when no such job waits or runs.
   [[nodiscard]] Result<void> cancel(std::int64_t number);
 
+  /// How far the running job is; nothing if none runs, or it has not said yet.
+  [[nodiscard]] std::optional<JobProgress> progress() const;
+
   /// Call when the process ends: a running job is interrupted, and runs again in the next process.
   void interrupt();
 
@@ -89,8 +91,9 @@ class JobRunner {
   StoredJob current_;                      ///< Valid unless idle.
   std::vector<StoredForecast> forecasts_;  ///< Of `current_`, to be stored.
   std::optional<JobKind> next_;            ///< To be requested before `current_` is stored.
-  bool cancelled_ = false;                 ///< `current_` was cancelled.
-  std::shared_ptr<std::atomic<bool>> running_goes_on_;
+  std::string next_asked_by_;
+  bool cancelled_ = false;  ///< `current_` was cancelled.
+  std::shared_ptr<JobWatch> watch_;
   std::shared_ptr<JobRunner*> self_;
 };
 

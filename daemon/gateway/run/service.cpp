@@ -216,6 +216,7 @@ class Service {
                   .no_store = running_.missing,
                   .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
                   .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
+                  .progress = [this] { return jobs_.progress(); },
                   .take_readings =
                       [this](const std::string& meter, auto readings, const auto& correction) {
                         return gateway_->take_pushed(meter, std::move(readings), correction);

@@ -7,11 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "adapters/models/model_store.hpp"
 #include "adapters/results/job_result_json.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/calibrate/site_on_design.hpp"
+#include "daemon/site/diagnose/proposed_version.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/drift/site_drift.hpp"
 #include "daemon/site/model/active_effects.hpp"
@@ -29,6 +31,24 @@ namespace {
 
 constexpr int kDriftParticles = 256;
 constexpr std::uint64_t kSeed = 1;  // a result must not depend on the number of earlier runs
+
+constexpr double kCalibrating = 0.5;  // Of a calibration job; following its months is the rest.
+
+/// How far a calibration is; chains run one after the other.
+double share_of(const calibration::Progress& progress) {
+  constexpr double kSampling = 0.8;
+  const double part =
+      progress.total > 0 ? static_cast<double>(progress.done) / progress.total : 0.0;
+  switch (progress.stage) {
+    case calibration::Progress::Stage::design:
+      return 0.1 * part;
+    case calibration::Progress::Stage::sampling:
+      return 0.1 + kSampling * (progress.chain + part) / calibration::SamplingOptions{}.chains;
+    case calibration::Progress::Stage::predicting:
+      break;
+  }
+  return 0.1 + kSampling + 0.1 * part;
+}
 
 /// "weather is incomplete in 2024-03 (12 %), 2024-05 to 2024-07 (0 %)"; empty: it is complete.
 std::string lacking_words(const std::vector<MonthWeather>& months, const SiteConfig& site) {
@@ -154,13 +174,15 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
 }
 
 Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
-                             const GoesOn& goes_on) {
+                             JobWatch& watch) {
   const auto folder = job_folder(site.config.store, job.kind, job.number);
   const OpenSite whole = site;
   auto modelled = load_modelled_site(std::move(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
   const calibration::RunContext context{
-      .seed = kSeed, .observer = [&](const calibration::Progress&) { return goes_on(); }};
+      .seed = kSeed, .observer = [&](const calibration::Progress& progress) {
+        return watch.say("calibrating the model", kCalibrating * share_of(progress));
+      }};
   if (const auto& design = modelled->site.config.recalibration.design; !design.empty()) {
     return calibrate_metamodel(*modelled, design, folder, now, context);
   }
@@ -171,7 +193,12 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
   const auto written =
       write_calibration(*done, outcome.result.document, metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
-  auto followed = follow(whole, now, context, folder, outcome);
+  const calibration::RunContext following{
+      .seed = kSeed, .observer = [&](const calibration::Progress& progress) {
+        const double part = static_cast<double>(progress.done) / std::max(progress.total, 1);
+        return watch.say("following the months", kCalibrating + (1.0 - kCalibrating) * part);
+      }};
+  auto followed = follow(whole, now, following, folder, outcome);
   if (!followed && followed.error().code == ErrorCode::cancelled) {
     return tl::unexpected(followed.error());
   }
@@ -206,8 +233,36 @@ Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
                     .next = {}};
 }
 
+/// Stores what was named as a version of the model, and puts it in force where the site says so.
+Result<void> propose(const ModelledSite& modelled, const diagnosis::Diagnosis& diagnosis,
+                     const diagnosis::SiteProblem& problem, metering::Instant now,
+                     JobOutcome& outcome) {
+  const SiteConfig& site = modelled.site.config;
+  const std::string at = metering::to_string(now);
+  const models::ModelStore store{site.file, site.id};
+  const auto version = propose_version(store, modelled, diagnosis, problem, at);
+  if (!version) return tl::unexpected(version.error());
+  std::vector<std::string> names;
+  for (const diagnosis::AddedEffect& added : version->effects) {
+    names.push_back(fmt::format("{} ({:.0f} %)", added.title, 100.0 * added.probability));
+  }
+  const std::string what = fmt::format("named {}; version {} of the model", fmt::join(names, ", "),
+                                       diagnosis::short_version(version->version));
+  if (!site.applies_itself || !may_apply_itself(*version)) {
+    outcome.message = what + " has it and is not in force yet";
+    return {};
+  }
+  if (auto active = store.activate(version->version, at); !active) {
+    return tl::unexpected(active.error());
+  }
+  outcome.message = what + " has it and is in force, because the site says so";
+  outcome.next = JobKind::calibration;
+  outcome.next_asked_by = "diagnosis";
+  return {};
+}
+
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
-                            const GoesOn& goes_on) {
+                            JobWatch& watch) {
   const auto folder = job_folder(site.config.store, job.kind, job.number);
   if (auto chosen = choose_model(site.config, ModelKind::hourly); !chosen) {
     return tl::unexpected(chosen.error());
@@ -219,7 +274,7 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
   const auto done =
       diagnose_site(*modelled, *problem,
                     {.rules = {}, .prior_none = modelled->site.config.prior_none, .seed = kSeed},
-                    [&](const char*, double) { return goes_on(); });
+                    [&](const char* what, double share) { return watch.say(what, share); });
   if (!done) return tl::unexpected(done.error());
   modelled->facts.seed = kSeed;
   JobOutcome outcome{.accepted = true,
@@ -230,6 +285,13 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
   const auto written = write_diagnosis(*done, *modelled, *problem, outcome.result.document,
                                        metering::to_string(now), folder);
   if (!written) return tl::unexpected(written.error());
+  if (done->diagnosis.added.empty() || done->diagnosis.not_confirmed) {
+    outcome.message = "nothing was named";
+    return outcome;
+  }
+  if (auto proposed = propose(*modelled, done->diagnosis, *problem, now, outcome); !proposed) {
+    return tl::unexpected(proposed.error());
+  }
   return outcome;
 }
 
@@ -237,14 +299,14 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
 
 DoJob make_site_work(OpenSite site) {
   return [site = std::move(site)](const StoredJob& job, metering::Instant now,
-                                  const GoesOn& goes_on) -> Result<JobOutcome> {
+                                  JobWatch& watch) -> Result<JobOutcome> {
     if (auto modelled = require_model(site.config); !modelled) {
       return tl::unexpected(modelled.error());
     }
     OpenSite latest = site;
     latest.config.period.reset();
-    if (job.kind == JobKind::diagnosis) return diagnose(std::move(latest), job, now, goes_on);
-    auto outcome = calibrate(std::move(latest), job, now, goes_on);
+    if (job.kind == JobKind::diagnosis) return diagnose(std::move(latest), job, now, watch);
+    auto outcome = calibrate(std::move(latest), job, now, watch);
     return outcome ? outcome : with_known_weather(outcome.error(), site, now);
   };
 }

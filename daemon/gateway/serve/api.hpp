@@ -17,6 +17,9 @@ namespace recald::daemon {
 /// ?meter (required) &from &to &limit &cursor, in order of time.
 [[nodiscard]] http::Response get_intervals(const Served& served, const http::Request& request);
 
+/// ?meter (required) &from &to &points, summed up to at most so many points.
+[[nodiscard]] http::Response get_history(const Served& served, const http::Request& request);
+
 /// ?meter &from &to (months, half open) &limit &cursor, by meter and month.
 [[nodiscard]] http::Response get_months(const Served& served, const http::Request& request);
 
@@ -56,6 +59,12 @@ template <JobKind kind>
 http::Response post_job(const Served& served, const http::Request& request) {
   return post_job_of(kind, served, request);
 }
+
+/// The versions of the model.
+[[nodiscard]] http::Response get_model(const Served& served, const http::Request& request);
+/// {"activate": VERSION} or {"revert": VERSION or null}; then a calibration is requested, which
+/// uses what is in force now. @return the versions
+[[nodiscard]] http::Response post_model(const Served& served, const http::Request& request);
 
 /// Pushed readings of a meter with source = "http"; see daemon/gateway/serve/README.md. Sent twice,
 /// they are stored once.

@@ -43,7 +43,7 @@ http::Response get_events(const Served& served, const http::Request& request) {
   if (const auto checked = has_only(request, {"from", "to", "limit", "cursor"}); !checked) {
     return checked.error();
   }
-  const auto span = span_of(request);
+  const auto span = span_of(request, served.calendar);
   if (!span) return span.error();
   const auto limit = limit_of(request);
   if (!limit) return limit.error();

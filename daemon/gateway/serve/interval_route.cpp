@@ -4,6 +4,7 @@
 
 #include "adapters/csv/fields.hpp"
 #include "daemon/gateway/serve/api.hpp"
+#include "daemon/gateway/serve/history.hpp"
 #include "daemon/gateway/serve/parameters.hpp"
 #include "daemon/gateway/serve/shapes.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
@@ -14,6 +15,8 @@ namespace {
 using metering::Instant;
 using metering::TimeSpan;
 
+constexpr int kPointsUsual = 500;
+constexpr int kPointsMax = 5'000;
 /// A query of the store cannot be stopped within a span, so the span is read in pieces.
 constexpr int kPieceMin = 1'000;  // intervals; a gap of years takes few steps
 
@@ -24,8 +27,8 @@ struct Page {
 };
 
 /// The span from the cursor on, if there is one: the start of the first interval not yet sent.
-Checked<TimeSpan> span_from_cursor(const http::Request& request) {
-  auto span = span_of(request);
+Checked<TimeSpan> span_from_cursor(const Served& served, const http::Request& request) {
+  auto span = span_of(request, served.calendar);
   const auto cursor = text_of(request, "cursor");
   if (!span || !cursor) return span;
   const auto at = csv::parse_timestamp(*cursor);
@@ -101,7 +104,7 @@ http::Response get_intervals(const Served& served, const http::Request& request)
   }
   const auto asked = queried(served.site, request);
   if (!asked) return asked.error();
-  const auto span = span_from_cursor(request);
+  const auto span = span_from_cursor(served, request);
   if (!span) return span.error();
   const auto limit = limit_of(request);
   if (!limit) return limit.error();
@@ -124,6 +127,44 @@ http::Response get_intervals(const Served& served, const http::Request& request)
                   "\n",
                   described.id, described.interval.count(), unit, page.intervals,
                   page.next ? "\"" + metering::to_string(*page.next) + "\"" : "null"));
+}
+
+http::Response get_history(const Served& served, const http::Request& request) {
+  if (const auto checked = has_only(request, {"meter", "from", "to", "points"}); !checked) {
+    return checked.error();
+  }
+  const auto asked = queried(served.site, request);
+  if (!asked) return asked.error();
+  const auto span = span_of(request, served.calendar);
+  if (!span) return span.error();
+  constexpr std::string_view kWhat = "a whole number from 1 to 5000";
+  const auto points = whole_number_of(request, "points", kWhat);
+  if (!points) return points.error();
+  const std::int64_t points_max = points->value_or(kPointsUsual);
+  if (points_max < 1 || points_max > kPointsMax) {
+    return refusal(400, "invalid_value", fmt::format("'points' is {}; write {}", points_max, kWhat),
+                   "points")
+        .value();
+  }
+  History history{asked->meter.interval, {}};
+  if (asked->is_stored) {
+    const auto number = served.store.meter_number(asked->meter.id, asked->meter.interval);
+    if (!number) return refusal(number.error()).value();
+    auto read = read_history(served.store, *number, asked->meter.interval, *span,
+                             static_cast<int>(points_max));
+    if (!read) return refusal(read.error()).value();
+    history = std::move(*read);
+  }
+  const std::string unit = asked->quantity == nullptr ? "kW" : std::string{asked->quantity->unit};
+  std::string list;
+  for (const HistoryPoint& point : history.points) {
+    if (!list.empty()) list += ',';
+    list += history_point_json(point);
+  }
+  return http::json_response(
+      fmt::format(R"({{"meter":"{}","step_s":{},"unit":"{}","points":[{}],"next":null}})"
+                  "\n",
+                  asked->meter.id, history.step.count(), unit, list));
 }
 
 }  // namespace recald::daemon

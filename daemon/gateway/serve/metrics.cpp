@@ -69,6 +69,33 @@ void write_meters(PrometheusText& text, const GatewayStatus& status) {
   }
 }
 
+/// The figures themselves, for dashboards.
+void write_loads(PrometheusText& text, const Served& served, const GatewayStatus& status) {
+  const auto sample = [&](const MeterStatus& meter, double value) {
+    const auto index = served.site.meter_index(meter.id);
+    if (!index || !std::isfinite(value)) return;  // a weather sensor
+    const metering::Utility utility = served.site.meters[*index].meter.utility;
+    text.sample(value, {{"meter", meter.id}, {"utility", metering::to_string(utility)}});
+  };
+  text.begin("recald_power_kilowatts", "gauge", "Power at a polled meter's last answer.");
+  for (const MeterStatus& meter : status.meters) {
+    sample(meter, meter.live.power_kW.value_or(kAbsent));
+  }
+  text.begin(
+      "recald_register_kilowatthours", "gauge",
+      "Energy register at a polled meter's last answer; it starts again when a device does.");
+  for (const MeterStatus& meter : status.meters) {
+    sample(meter, meter.live.register_kWh.value_or(kAbsent));
+  }
+  text.begin("recald_interval_mean_kilowatts", "gauge",
+             "Mean power of a meter's last stored interval, if it is valid.");
+  for (const MeterStatus& meter : status.meters) {
+    const auto& last = meter.last_interval;
+    const bool is_valid = last && last->validity == metering::Validity::ok;
+    sample(meter, is_valid ? last->mean_kW : kAbsent);
+  }
+}
+
 void write_weather(PrometheusText& text, const GatewayStatus& status) {
   text.begin(
       "recald_weather_known_until_timestamp_seconds", "gauge",
@@ -187,6 +214,7 @@ http::Response metrics(const Served& served) {
   write_process(text, served, status);
   write_buses(text, status);
   write_meters(text, status);
+  write_loads(text, served, status);
   write_weather(text, status);
   write_intervals(text, status);
   write_store(text, served, status);

@@ -13,14 +13,18 @@ namespace {
 
 using metering::Instant;
 
-Checked<std::optional<Instant>> instant_of(const http::Request& request, const std::string& name) {
+Checked<std::optional<Instant>> instant_of(const http::Request& request, const std::string& name,
+                                           const metering::LocalCalendar& calendar) {
   const auto text = text_of(request, name);
   if (!text) return std::optional<Instant>{};
+  if (const auto day = metering::parse_day(*text)) {
+    return std::optional{calendar.day_span(*day).begin};
+  }
   const auto instant = csv::parse_timestamp(*text);
   if (!instant) {
     return refusal(400, "invalid_value",
-                   fmt::format("'{}' is {}; write a time such as 2026-03-01T00:00:00Z (write a + "
-                               "in an offset as %2B in a URL)",
+                   fmt::format("'{}' is {}; write a date such as 2026-03-01, or a time such as "
+                               "2026-03-01T00:00:00Z (write a + in an offset as %2B in a URL)",
                                name, csv::in_quotes(*text)),
                    name);
   }
@@ -56,10 +60,11 @@ Checked<void> has_only(const http::Request& request,
   return {};
 }
 
-Checked<metering::TimeSpan> span_of(const http::Request& request) {
-  const auto from = instant_of(request, "from");
+Checked<metering::TimeSpan> span_of(const http::Request& request,
+                                    const metering::LocalCalendar& calendar) {
+  const auto from = instant_of(request, "from", calendar);
   if (!from) return tl::unexpected(from.error());
-  const auto to = instant_of(request, "to");
+  const auto to = instant_of(request, "to", calendar);
   if (!to) return tl::unexpected(to.error());
   const metering::TimeSpan span{from->value_or(Instant{}), to->value_or(metering::kLatestInstant)};
   if (span.end < span.begin) {

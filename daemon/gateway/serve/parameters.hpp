@@ -32,8 +32,10 @@ inline constexpr int kLimitUsual = 1'000;
 [[nodiscard]] Checked<void> has_only(const http::Request& request,
                                      std::initializer_list<std::string_view> names);
 
-/// `from` and `to`, half open; absent ends mean the earliest and latest times.
-[[nodiscard]] Checked<metering::TimeSpan> span_of(const http::Request& request);
+/// `from` and `to`, half open; absent ends mean the earliest and latest times. Each is a time, or a
+/// date, which means where that day begins at the site.
+[[nodiscard]] Checked<metering::TimeSpan> span_of(const http::Request& request,
+                                                  const metering::LocalCalendar& calendar);
 
 /// `name` as a month; nothing if absent.
 [[nodiscard]] Checked<std::optional<metering::Month>> month_of(const http::Request& request,

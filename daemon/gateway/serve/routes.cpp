@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "daemon/gateway/serve/api.hpp"
+#include "daemon/gateway/serve/csv_answer.hpp"
 #include "daemon/gateway/serve/metrics.hpp"
+#include "daemon/gateway/serve/openapi.hpp"
+#include "daemon/gateway/serve/pages/pages.hpp"
 #include "daemon/gateway/serve/readiness.hpp"
 #include "daemon/gateway/serve/served.hpp"
-#include "daemon/gateway/serve/status_page.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -27,6 +30,7 @@ struct Route {
   Response (*get)(const Served&, const Request&, const std::string& id);
   Response (*post)(const Served&, const Request&);
   Response (*remove)(const Served&, const std::string& id) = nullptr;
+  std::span<const CsvColumn> columns = {};  ///< Of a list that may be asked for as CSV.
 };
 
 template <Response (*list)(const Served&, const Request&)>
@@ -44,14 +48,18 @@ Response plain(const Served& served, const Request&, const std::string&) {
   return page(served);
 }
 
+Response get_openapi(const Served&) { return http::json_response(std::string{kOpenApi}); }
+
 constexpr std::array kApiRoutes{
+    Route{"openapi.json", false, plain<get_openapi>, nullptr},
     Route{"sites", false, without_id<get_sites>, nullptr},
     Route{"meters", false, without_id<get_meters>, nullptr},
     Route{"meters", true, with_id<get_meter>, nullptr},
-    Route{"intervals", false, without_id<get_intervals>, nullptr},
-    Route{"months", false, without_id<get_months>, nullptr},
-    Route{"events", false, without_id<get_events>, nullptr},
-    Route{"forecasts", false, without_id<get_forecasts>, nullptr},
+    Route{"intervals", false, without_id<get_intervals>, nullptr, nullptr, kIntervalColumns},
+    Route{"history", false, without_id<get_history>, nullptr, nullptr, kHistoryColumns},
+    Route{"months", false, without_id<get_months>, nullptr, nullptr, kMonthColumns},
+    Route{"events", false, without_id<get_events>, nullptr, nullptr, kEventColumns},
+    Route{"forecasts", false, without_id<get_forecasts>, nullptr, nullptr, kForecastColumns},
     Route{"drift", false, without_id<get_drift>, nullptr},
     Route{"calibrations", false, without_id<get_jobs<JobKind::calibration>>,
           post_job<JobKind::calibration>},
@@ -61,17 +69,28 @@ constexpr std::array kApiRoutes{
           post_job<JobKind::diagnosis>},
     Route{"diagnoses", true, with_id<get_job<JobKind::diagnosis>>, nullptr,
           cancel_job<JobKind::diagnosis>},
+    Route{"model", false, without_id<get_model>, post_model},
     Route{"readings", false, nullptr, post_readings},
 };
 
 Response get_health(const Served&) { return health(); }
 
-constexpr std::array kOtherRoutes{
-    Route{"/", false, plain<status_page>, nullptr},
-    Route{"/style.css", false, plain<status_style>, nullptr},
-    Route{"/healthz", false, plain<get_health>, nullptr},
-    Route{"/readyz", false, plain<readiness>, nullptr},
-    Route{"/metrics", false, plain<metrics>, nullptr},
+Response show_meter(const Served& served, const Request& request, const std::string& id) {
+  return meter_page(served, request, id);
+}
+
+constexpr std::array kPages{
+    Route{"", false, plain<now_page>, nullptr},
+    Route{"meters", true, show_meter, nullptr},
+    Route{"months", false, plain<months_page>, nullptr},
+    Route{"model", false, plain<model_page>, nullptr},
+    Route{"jobs", true, with_id<job_file>, nullptr},
+    Route{"events", false, without_id<events_page>, nullptr},
+    Route{"style.css", false, plain<page_style>, nullptr},
+    Route{"page.js", false, plain<page_script>, nullptr},
+    Route{"healthz", false, plain<get_health>, nullptr},
+    Route{"readyz", false, plain<readiness>, nullptr},
+    Route{"metrics", false, plain<metrics>, nullptr},
 };
 
 Response not_allowed(const Route& route) {
@@ -85,9 +104,22 @@ Response not_allowed(const Route& route) {
   return response;
 }
 
+/// A list that may be asked for as CSV.
+Response list_of(const Route& route, const Served& served, const Request& request) {
+  const auto is_csv = wants_csv(request);
+  if (!is_csv) return is_csv.error();
+  Request plain = request;
+  plain.query.erase("format");
+  Response response = route.get(served, plain, "");
+  if (*is_csv && response.status == 200) response = as_csv(request, response, route.columns);
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
 Response take(const Route& route, const Served& served, const Request& request,
               const std::string& id) {
   const bool reads = request.method == Method::get || request.method == Method::head;
+  if (reads && !route.columns.empty()) return list_of(route, served, request);
   if (reads && route.get != nullptr) return route.get(served, request, id);
   if (request.method == Method::post && route.post != nullptr) return route.post(served, request);
   if (request.method == Method::remove && route.remove != nullptr) return route.remove(served, id);
@@ -106,18 +138,16 @@ Response nothing_here(const Request& request) {
 
 Response answer(const Served& served, const Request& request) {
   std::string_view rest = request.path;
-  if (!rest.starts_with(kApi)) {
-    const auto route = std::ranges::find(kOtherRoutes, rest, &Route::path);
-    return route == kOtherRoutes.end() ? nothing_here(request) : take(*route, served, request, "");
-  }
-  rest.remove_prefix(kApi.size());
+  const bool is_api = rest.starts_with(kApi);
+  rest.remove_prefix(is_api ? kApi.size() : std::min<std::size_t>(rest.size(), 1));
   const std::size_t slash = rest.find('/');
   const bool has_id = slash != std::string_view::npos;
   const std::string id{has_id ? rest.substr(slash + 1) : std::string_view{}};
-  const auto route = std::ranges::find_if(kApiRoutes, [&](const Route& one) {
+  const std::span<const Route> routes = is_api ? std::span<const Route>{kApiRoutes} : kPages;
+  const auto route = std::ranges::find_if(routes, [&](const Route& one) {
     return one.has_id == has_id && one.path == rest.substr(0, slash);
   });
-  if (route == kApiRoutes.end() || (has_id && id.empty())) return nothing_here(request);
+  if (route == routes.end() || (has_id && id.empty())) return nothing_here(request);
   return take(*route, served, request, id);
 }
 

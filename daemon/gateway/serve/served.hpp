@@ -13,6 +13,13 @@
 
 namespace recald::daemon {
 
+/// How far the running job is.
+struct JobProgress {
+  std::int64_t job;
+  double share;      ///< 0…1
+  std::string what;  ///< "calibrating the hourly model"
+};
+
 /// Outlives the server. Used only on the loop's thread.
 struct Served {
   const SiteConfig& site;
@@ -31,6 +38,8 @@ struct Served {
   std::function<Result<std::int64_t>(JobKind kind)> ask_job = {};
   /// Calls JobRunner::cancel. Absent: there are no jobs here.
   std::function<Result<void>(std::int64_t number)> cancel_job = {};
+  /// Nothing while no job runs or none has said anything. Absent: there are no jobs here.
+  std::function<std::optional<JobProgress>()> progress = {};
   /// Calls Gateway::take_pushed. Absent: readings are not accepted here.
   std::function<Result<CommitCounts>(const std::string& meter,
                                      std::vector<metering::Reading> readings,
@@ -38,7 +47,7 @@ struct Served {
       take_readings = {};
 };
 
-/// The response to any request: an API route, /healthz, /readyz, /metrics, the status page.
+/// The response to any request: an API route, /healthz, /readyz, /metrics, a page.
 [[nodiscard]] http::Response answer(const Served& served, const http::Request& request);
 
 }  // namespace recald::daemon

@@ -156,6 +156,13 @@ std::string interval_json(const StoredInterval& interval, std::chrono::seconds l
       reasons_list(reading.reasons), interval.revision);
 }
 
+std::string history_point_json(const HistoryPoint& point) {
+  return fmt::format(R"({{"start":"{}","least":{},"mean":{},"most":{},"valid_share":{:.4g}}})",
+                     to_string(point.start), number_or_null(point.least_kW),
+                     number_or_null(point.mean_kW), number_or_null(point.most_kW),
+                     point.valid_share);
+}
+
 Json month_json(const std::string& meter, const metering::MonthlyFigure& figure) {
   Json slots;
   for (std::size_t i = 0; i < figure.slots_by_validity.size(); ++i) {

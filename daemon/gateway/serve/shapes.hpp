@@ -7,6 +7,7 @@
 
 #include "adapters/ports/store.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
+#include "daemon/gateway/serve/history.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
@@ -23,6 +24,9 @@ namespace recald::daemon {
                                         std::chrono::seconds length);
 /// As above for a quantity of a weather sensor, which has a mean in its own unit and no energy.
 [[nodiscard]] std::string weather_interval_json(const StoredInterval& interval);
+
+/// One object as text, as above. Values are in kW, or in the unit of a weather sensor's quantity.
+[[nodiscard]] std::string history_point_json(const HistoryPoint& point);
 
 [[nodiscard]] nlohmann::ordered_json month_json(const std::string& meter,
                                                 const metering::MonthlyFigure& figure);

@@ -703,6 +703,7 @@ void read_root(TomlReader root, SiteConfig& config) {
   if (auto diagnosis = root.table("diagnosis")) {
     constexpr NumberRange kPriorOfNone{.min = 0.01, .max = 0.99};
     config.prior_none = diagnosis->number("prior_none", kPriorOfNone).value_or(config.prior_none);
+    config.applies_itself = diagnosis->word("apply", {"never", "auto"}) == "auto";
     diagnosis->finish();
   }
   if (auto buses = root.table("bus")) {

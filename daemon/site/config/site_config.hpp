@@ -161,6 +161,8 @@ struct SiteConfig {
   RecalibrationConfig recalibration;
   /// [diagnosis] Probability that the model lacks nothing, before a reading is seen.
   double prior_none = 0.5;
+  /// [diagnosis] The daemon puts in force by itself what `may_apply_itself`.
+  bool applies_itself = false;
   tariff::Tariff tariff;
   std::vector<BusConfig> buses;
   std::vector<MeterConfig> meters;

@@ -133,6 +133,17 @@ TEST_F(ModelCommand, RevertGoesBackStepByStepOrToAVersion) {
   EXPECT_THAT(run({"model", "list", site()}).out, HasSubstr(short_version(first_) + "  reverted"));
 }
 
+TEST_F(ModelCommand, ApplyPutsAVersionInForce) {
+  add_two();
+  ASSERT_EQ(run({"model", "revert", site(), "drawings"}).exit_code, kSuccess);
+  const Outcome outcome = run({"model", "apply", site(), short_version(first_)});
+  EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_EQ(outcome.out, "The model is now at version " + short_version(first_) +
+                             ", with night_setback_missing.\n");
+  EXPECT_EQ(run({"model", "apply", site(), short_version(first_)}).exit_code, kFailure);
+  EXPECT_EQ(run({"model", "apply", site()}).exit_code, kUsage);
+}
+
 TEST_F(ModelCommand, UnknownVersionIsOneSentence) {
   add_two();
   for (const char* verb : {"show", "revert"}) {

@@ -40,8 +40,8 @@ class JobRunnerTest : public ::testing::Test {
     failing_ = std::make_unique<FailingStore>(*store_);
     runner_ = std::make_unique<JobRunner>(
         JobRunner::Ports{*loop_, *failing_, *worker_},
-        [this](const StoredJob& job, metering::Instant, const GoesOn& goes_on) {
-          return work(job, goes_on);
+        [this](const StoredJob& job, metering::Instant, JobWatch& watch) {
+          return work(job, watch);
         },
         [this](const StoredJob& job) {
           told_.push_back(std::to_string(job.number) + " " + std::string{name_of(job.state)});
@@ -49,10 +49,14 @@ class JobRunnerTest : public ::testing::Test {
   }
   void kill_process() { begin_process(); }
 
-  Result<JobOutcome> work(const StoredJob& job, const GoesOn& goes_on) {
+  Result<JobOutcome> work(const StoredJob& job, JobWatch& watch) {
     ++runs_;
+    if (says_ > 0.0) {
+      watch.say("calibrating", says_);
+      seen_ = runner_->progress();
+    }
     if (!throws_.empty()) throw std::runtime_error(throws_);
-    if (!goes_on()) return failure(ErrorCode::cancelled, "told to stop");
+    if (!watch.goes_on()) return failure(ErrorCode::cancelled, "told to stop");
     if (fails_) return failure(ErrorCode::not_enough_data, "no month has closed yet");
     return JobOutcome{.accepted = accepts_,
                       .message = accepts_ ? "" : "not converged",
@@ -75,6 +79,8 @@ class JobRunnerTest : public ::testing::Test {
   TemporaryFolder folder_;
   int processes_ = 0;
   int runs_ = 0;
+  double says_ = 0.0;
+  std::optional<JobProgress> seen_;  ///< While it ran.
   bool fails_ = false;
   std::string throws_;
   bool accepts_ = true;
@@ -115,6 +121,26 @@ TEST_F(JobRunnerTest, ForecastsAreKeptAndWhatTheResultGivesReasonForIsAskedFor) 
   EXPECT_EQ(stored(2).state, JobState::done);
   EXPECT_EQ(store_->forecasts().value().size(), 1U);
   EXPECT_EQ(runs_, 2);  // a diagnosis gives no reason for another
+}
+
+TEST_F(JobRunnerTest, ARunningJobSaysHowFarItIs) {
+  JobWatch watch;
+  EXPECT_FALSE(watch.said().has_value());
+  EXPECT_TRUE(watch.say("calibrating", 0.4));
+  watch.say("calibrating again", 0.2);  // no nearer to its end
+  EXPECT_EQ(watch.said()->share, 0.4);
+  EXPECT_EQ(watch.said()->what, "calibrating again");
+  watch.stop();
+  EXPECT_FALSE(watch.say("following", 0.6));
+
+  EXPECT_FALSE(runner_->progress().has_value());
+  says_ = 0.3;
+  const std::int64_t job = ask();
+  loop_->run_for(minutes{2});
+  ASSERT_TRUE(seen_.has_value());
+  EXPECT_EQ(seen_->job, job);
+  EXPECT_EQ(seen_->share, 0.3);
+  EXPECT_FALSE(runner_->progress().has_value());
 }
 
 TEST_F(JobRunnerTest, OneAtATimeInTheOrderOfAsking) {

@@ -71,8 +71,8 @@ class Life {
     jobs_ = std::make_unique<JobRunner>(
         JobRunner::Ports{loop_, *store_, *worker_},
         [store = site_.store, on_work = witness_.on_work](const StoredJob& job, metering::Instant,
-                                                          const GoesOn& goes_on) {
-          return work(job_folder(store, job.kind, job.number), job.number, on_work, goes_on);
+                                                          JobWatch& watch) {
+          return work(job_folder(store, job.kind, job.number), job.number, on_work, watch);
         },
         OnJob{});
     rig_ = std::make_unique<Rig>(*store_, loop_);
@@ -144,8 +144,8 @@ class Life {
   /// After its process has ended it does nothing more.
   static Result<JobOutcome> work(const std::filesystem::path& folder, std::int64_t job,
                                  const std::function<void(std::int64_t)>& on_work,
-                                 const GoesOn& goes_on) {
-    if (!goes_on()) return failure(ErrorCode::cancelled, "the process ends");
+                                 JobWatch& watch) {
+    if (!watch.goes_on()) return failure(ErrorCode::cancelled, "the process ends");
     if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
     for (const char* name : {"posterior.csv", kResultFile}) {
       if (auto written = system::write_file(folder / name, result_of(job)); !written) {

@@ -3,8 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
+#include <sstream>
+#include <string>
+#include <vector>
 
+#include "adapters/csv/fields.hpp"
 #include "tests/daemon/gateway/serve/served_site.hpp"
 
 namespace recald::daemon {
@@ -16,6 +21,7 @@ using std::chrono::minutes;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 using Api = ServedSite;
 
@@ -157,6 +163,107 @@ TEST_F(Api, PagesOfEventsStandStillWhileNewOnesCome) {
   const Json minute = get_json("/api/v1/events",
                                {{"from", "2024-03-30T12:01:00Z"}, {"to", "2024-03-30T12:02:00Z"}});
   EXPECT_THAT(minute["events"], SizeIs(3));
+}
+
+TEST_F(Api, HistoryIsIntervalsSummedUp) {
+  loop_.run_for(days{3});
+  const auto history = [&](const std::string& points) {
+    return get_json(
+        "/api/v1/history",
+        {{"meter", "main"}, {"from", "2024-03-31"}, {"to", "2024-04-01"}, {"points", points}});
+  };
+  const Json fine = history("96");
+  EXPECT_EQ(fine["step_s"], 900);
+  EXPECT_THAT(fine["points"], SizeIs(96));
+  const Json coarse = history("24");
+  EXPECT_EQ(coarse["step_s"], 3600);
+  ASSERT_THAT(coarse["points"], SizeIs(24));
+  const Json first = coarse["points"][0];
+  EXPECT_EQ(first["start"], "2024-03-31T05:00:00Z");
+  double sum_kW = 0.0;
+  double most_kW = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const double kW = fine["points"][i]["mean"];
+    sum_kW += kW;
+    most_kW = std::max(most_kW, kW);
+  }
+  EXPECT_NEAR(first["mean"].get<double>(), sum_kW / 4.0, 1e-9);
+  EXPECT_NEAR(first["most"].get<double>(), most_kW, 1e-9);
+  EXPECT_EQ(first["valid_share"], 1.0);
+  EXPECT_EQ(refused("/api/v1/history", {{"meter", "main"}, {"points", "0"}}),
+            "400 invalid_value points");
+  EXPECT_THAT(get_json("/api/v1/history", {{"meter", "old"}})["points"], SizeIs(0));
+}
+
+TEST_F(Api, ADateIsWhereThatDayBeginsAtTheSite) {
+  loop_.run_for(days{3});
+  const auto starts = [&](const std::string& from, const std::string& to) {
+    const Json list =
+        get_json("/api/v1/intervals", {{"meter", "main"}, {"from", from}, {"to", to}})["intervals"];
+    EXPECT_THAT(list, SizeIs(96)) << from;
+    return list.front()["start"].get<std::string>() + " " + list.back()["start"].get<std::string>();
+  };
+  EXPECT_EQ(starts("2024-03-31", "2024-04-01"), "2024-03-31T05:00:00Z 2024-04-01T04:45:00Z");
+  EXPECT_EQ(starts("2024-03-31", "2024-04-01T05:00:00Z"),
+            "2024-03-31T05:00:00Z 2024-04-01T04:45:00Z");
+  EXPECT_EQ(refused("/api/v1/events", {{"from", "2024-02-30"}}), "400 invalid_value from");
+}
+
+/// The lines of a response in CSV, without their ends.
+std::vector<std::string> lines_of(const http::Response& response) {
+  EXPECT_EQ(response.content_type, "text/csv; charset=utf-8; header=present");
+  std::vector<std::string> lines;
+  std::istringstream text(response.body);
+  for (std::string line; std::getline(text, line);) {
+    EXPECT_TRUE(line.ends_with('\r')) << line;
+    lines.push_back(line.substr(0, line.size() - 1));
+  }
+  return lines;
+}
+
+TEST_F(Api, ListsAreCsvForThoseWhoAskForIt) {
+  loop_.run_for(days{35});
+  const auto months = lines_of(get("/api/v1/months", {{"format", "csv"}, {"limit", "2"}}));
+  ASSERT_THAT(months, SizeIs(3));
+  EXPECT_THAT(months[0], StartsWith("meter,month,daily_average_kWh,"));
+  EXPECT_THAT(months[1], StartsWith("main,2024-03,"));
+  EXPECT_THAT(months[2], HasSubstr(",900,"));  // the peak's window, one level down
+  csv::FieldSplitter fields;                   // quotes and all
+  const std::size_t columns = fields.split(months[0]);
+  for (const std::string& line : months) EXPECT_EQ(fields.split(line), columns) << line;
+
+  const http::Response first =
+      get("/api/v1/intervals",
+          {{"format", "csv"}, {"meter", "main"}, {"from", "2024-03-31"}, {"limit", "1"}});
+  EXPECT_THAT(lines_of(first),
+              ElementsAre("start,mean_kW,energy_kWh,mean,validity,late,reasons,revision",
+                          StartsWith("2024-03-31T05:00:00Z,60")));
+  EXPECT_EQ(first.header("link"),
+            "</api/v1/intervals?cursor=2024-03-31T05%3A15%3A00Z&format=csv&from=2024-03-31&"
+            "limit=1&meter=main>; rel=\"next\"");
+  EXPECT_EQ(first.header("vary"), "Accept");
+}
+
+TEST_F(Api, TextInCsvCannotBreakItsLine) {
+  ASSERT_TRUE(disk_.commit(
+      {.events = {{kStart, Severity::warning, "odd", "main", "It said \"1,5\".\nThen nothing."}}}));
+  const http::Response response = get("/api/v1/events", {{"format", "csv"}});
+  EXPECT_THAT(response.body,
+              HasSubstr("Z,warning,odd,main,\"It said \"\"1,5\"\".\nThen nothing.\",1,\r\n"));
+}
+
+TEST_F(Api, CsvIsChosenByTheAcceptHeader) {
+  const auto type_for = [&](const std::string& accept) {
+    http::Request request{.path = "/api/v1/events", .headers = {{"accept", accept}}};
+    return answer(served_, request).content_type.substr(0, 16);
+  };
+  EXPECT_EQ(type_for("text/csv"), "text/csv; charse");
+  EXPECT_EQ(type_for("text/csv, application/json;q=0.5"), "text/csv; charse");
+  EXPECT_EQ(type_for("application/json, text/csv"), "application/json");
+  EXPECT_EQ(type_for("*/*"), "application/json");
+  EXPECT_EQ(refused("/api/v1/events", {{"format", "xml"}}), "400 invalid_value format");
+  EXPECT_EQ(refused("/api/v1/sites", {{"format", "csv"}}), "400 unknown_parameter format");
+  EXPECT_EQ(refused("/api/v1/intervals", {{"format", "csv"}}), "400 missing_parameter meter");
 }
 
 TEST_F(Api, WhatIsWrongIsSaid) {

@@ -54,6 +54,18 @@ TEST_F(Metrics, CountWhatTheGatewayDid) {
             static_cast<double>(kStart.time_since_epoch().count()));
 }
 
+TEST_F(Metrics, HaveTheLoadsAndRegisters) {
+  EXPECT_EQ(scrape().sample("recald_power_kilowatts{meter=\"main\",utility=\"electricity\"}"),
+            std::nullopt);  // nothing was read yet
+  loop_.run_for(hours{2} + seconds{61});
+  const Exposition seen = scrape();
+  const auto of_main = [&](const std::string& name) {
+    return seen.sample(name + "{meter=\"main\",utility=\"electricity\"}").value_or(-1.0);
+  };
+  EXPECT_NEAR(of_main("recald_register_kilowatthours"), 121.4, 1e-9);
+  EXPECT_NEAR(of_main("recald_interval_mean_kilowatts"), 60.4, 1e-9);
+}
+
 // Eight hours of silence in a month that began at 05:00Z of the first.
 TEST_F(Metrics, CoverageIsOfTheOpenMonth) {
   devices_[1].is_silent = [](milliseconds t) { return t > days{3} && t < days{3} + hours{8}; };
@@ -98,7 +110,7 @@ TEST_F(Metrics, CounterEventsAreCounted) {
 
 TEST_F(Metrics, AMeterInOrderHasFewSeries) {
   loop_.run_for(days{3});
-  EXPECT_EQ(scrape().count_with("meter=\"main\""), 6);
+  EXPECT_EQ(scrape().count_with("meter=\"main\""), 9);
   EXPECT_EQ(scrape().count_with("meter=\"old\""), 0);
 }
 

@@ -1,8 +1,10 @@
-// Writes the status page of a site that has troubles to a file, for the browser test.
+// Writes a page of the daemon of a site that has troubles to a file, for the browser test.
 //
-//   write_sample_status FILE.html
+//   write_sample_status now|meter|months|model|events FILE.html
 #include <fstream>
 #include <iostream>
+#include <map>
+#include <string>
 
 #include "tests/daemon/gateway/serve/served_site.hpp"
 
@@ -11,9 +13,11 @@ namespace {
 
 struct TroubledSite final : ServedSite {
   TroubledSite() {
+    site_.file = std::filesystem::temp_directory_path() / "no such site.toml";
+    site_.model.emplace();
     devices_.erase(2);
     begin();
-    loop_.run_for(std::chrono::hours{2} + std::chrono::seconds{30});
+    loop_.run_for(std::chrono::hours{24 * 40});
     const bool is_written =
         disk_
             .commit({.events = {{kStart, Severity::warning, "counter_reset", "main",
@@ -24,15 +28,40 @@ struct TroubledSite final : ServedSite {
                       .asked_by = "api",
                       .asked = kStart,
                       .message = "The site has no model."})
-            .has_value();
+            .has_value() &&
+        disk_.add_forecasts(forecasts()).has_value();
     if (!is_written) std::abort();
   }
 
   void TestBody() override {}
 
+  /// A year, of which two months are not as expected.
+  static std::vector<StoredForecast> forecasts() {
+    std::vector<StoredForecast> all;
+    for (unsigned month = 1; month <= 12; ++month) {
+      const double mean = 1400.0 + 30.0 * (month > 6 ? 13.0 - month : month);
+      all.push_back({.output = "main_daily_kWh",
+                     .month = std::chrono::year{2023} / static_cast<int>(month),
+                     .made = kStart,
+                     .mean = mean,
+                     .sd = 30.0,
+                     .q05 = mean - 50.0,
+                     .q50 = mean,
+                     .q95 = mean + 50.0,
+                     .measured = mean + (month > 10 ? 120.0 : 10.0),
+                     .pit = 0.5,
+                     .standardised = 0.0,
+                     .log_score = -5.0,
+                     .crps = 10.0});
+    }
+    return all;
+  }
+
   /// With its style sheet inside: a browser lets no file read another.
-  std::string page() {
-    std::string text = get("/").body;
+  std::string page(const std::string& path) {
+    std::string text = get(path).body;
+    const std::string script = "<script src=\"/page.js\" defer></script>";
+    text.erase(text.find(script), script.size());
     const std::string link = "<link rel=\"stylesheet\" href=\"/style.css\">";
     return text.replace(text.find(link), link.size(),
                         "<style>" + get("/style.css").body + "</style>");
@@ -43,13 +72,19 @@ struct TroubledSite final : ServedSite {
 }  // namespace recald::daemon
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: write_sample_status FILE.html\n";
+  const std::map<std::string, std::string> paths{{"now", "/"},
+                                                 {"meter", "/meters/main"},
+                                                 {"months", "/months"},
+                                                 {"model", "/model"},
+                                                 {"events", "/events"}};
+  const auto path = argc == 3 ? paths.find(argv[1]) : paths.end();
+  if (path == paths.end()) {
+    std::cerr << "usage: write_sample_status now|meter|months|model|events FILE.html\n";
     return 2;
   }
   recald::daemon::TroubledSite site;
-  std::ofstream page{argv[1], std::ios::binary};
-  page << site.page();
+  std::ofstream page{argv[2], std::ios::binary};
+  page << site.page(path->second);
   page.close();
   return page ? 0 : 1;
 }

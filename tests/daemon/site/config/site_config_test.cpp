@@ -595,6 +595,16 @@ TEST(SiteConfig, APriorOfNoneIsAProbability) {
       ElementsAre(::testing::HasSubstr("'prior_none' is 1; it must be between 0.01 and 0.99")));
 }
 
+TEST(SiteConfig, NothingIsAppliedByItselfUnlessTheSiteSaysSo) {
+  const auto read = [](const std::string& table) {
+    return parse_site(std::string{kSampleMeters} + table, "site.toml");
+  };
+  EXPECT_FALSE(read("")->applies_itself);
+  EXPECT_FALSE(read("\n[diagnosis]\napply = \"never\"\n")->applies_itself);
+  EXPECT_TRUE(read("\n[diagnosis]\napply = \"auto\"\n")->applies_itself);
+  EXPECT_FALSE(read("\n[diagnosis]\napply = \"always\"\n").has_value());
+}
+
 // Each meter is compared with those of its address alone, and a map is read once.
 TEST(SiteConfig, ALargePortfolioIsReadOnceAndComparedLittle) {
   const auto allocations_for = [](int meters) {

@@ -1,4 +1,4 @@
-/// The status page's style sheet. Colours have a contrast of 4.5 to 1 and more, by day and by
+/// The pages' style sheet. Colours have a contrast of 4.5 to 1 and more, by day and by
 /// night.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace recald::daemon {
 
-inline constexpr std::string_view kStatusStyle = R"css(:root {
+inline constexpr std::string_view kPageStyle = R"css(:root {
   color-scheme: light dark;
   --ink: #1b1b1b; --paper: #ffffff; --line: #c4c4c4;
   --muted: #595959; --good: #0b6b2e; --warn: #7a4b00; --bad: #a3151c; --link: #0b4f9c;
@@ -19,7 +19,7 @@ inline constexpr std::string_view kStatusStyle = R"css(:root {
 }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 1rem/1.5 system-ui, sans-serif; }
-main, footer { max-width: 72rem; margin: 0 auto; padding: 0.5rem 1rem; }
+header, main, footer { max-width: 72rem; margin: 0 auto; padding: 0.5rem 1rem; }
 h1 { font-size: 1.6rem; margin: 0.5rem 0 0; }
 h2, p.caption { font-size: 1.15rem; font-weight: 600; text-align: left; }
 p.caption { margin: 1.4rem 0 0.2rem; }
@@ -38,6 +38,19 @@ th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; }
     overflow-wrap: anywhere; }
   .labelled td::before { content: attr(data-label) ": "; color: var(--muted); }
 }
+.site { font-weight: 600; margin: 0; }
+nav a[aria-current] { color: var(--ink); font-weight: 600; text-decoration: none; }
+.filter { display: flex; flex-wrap: wrap; gap: 0.5rem 1rem; align-items: baseline; margin: 0.6rem 0; }
+input, select, button { font: inherit; color: inherit; background: var(--paper);
+  border: 1px solid var(--muted); border-radius: 0.2rem; padding: 0.2rem 0.4rem; max-width: 100%; }
+.charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(22rem, 100%), 1fr));
+  gap: 0.5rem 1.5rem; }
+figure { margin: 0; }
+.chart { display: block; overflow: visible; font-size: 12px; fill: var(--muted); }
+.chart-grid { stroke: var(--line); stroke-width: 1; }
+.chart-line, .chart-mark { fill: none; stroke: var(--link); stroke-width: 1.5; vector-effect: non-scaling-stroke; }
+.chart-mark { stroke: var(--ink); stroke-width: 4; }
+.chart-band { fill: var(--link); fill-opacity: 0.25; stroke: none; }
 .muted { color: var(--muted); }
 .good { color: var(--good); }
 .warn { color: var(--warn); }

@@ -1,32 +1,29 @@
-#include "daemon/gateway/serve/status_page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "adapters/report/format.hpp"
 #include "adapters/report/html.hpp"
 #include "core/absent.hpp"
-#include "core/display/id_words.hpp"
 #include "core/display/unit.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/gateway/serve/pages/frame.hpp"
+#include "daemon/gateway/serve/pages/meter_chart.hpp"
+#include "daemon/gateway/serve/pages/pages.hpp"
 #include "daemon/gateway/serve/readiness.hpp"
 #include "daemon/gateway/serve/shapes.hpp"
-#include "daemon/gateway/serve/status_style.hpp"
-#include "daemon/version.hpp"
 
 namespace recald::daemon {
 namespace {
 
-using metering::Instant;
 using report::Cell;
 using report::Html;
 using report::Table;
 
 constexpr int kEventsShown = 20;
-constexpr int kJobsShown = 5;
+constexpr int kJobsShown = 3;
+constexpr int kChartsMax = 8;  // More meters are looked at one by one.
 constexpr double kCoverageGood = 0.9;
 constexpr int kWeatherDigits = 3;
 
@@ -99,7 +96,7 @@ void write_meters(Html& html, const Served& served, const GatewayStatus& status)
       const auto found = std::ranges::find(status.meters, config.meter.id, &MeterStatus::id);
       const MeterStatus* const meter = found == status.meters.end() ? nullptr : &*found;
       const bool has_answered = meter != nullptr && meter->live.read_at;
-      table.row({{config.meter.id},
+      table.row({{config.meter.id, "", "/meters/" + config.meter.id},
                  state_cell(meter),
                  {value_text(meter, config.meter.utility, served.site.units), "number"},
                  {has_answered ? age_text(served.now() - *meter->live.read_at) + " ago" : "never"},
@@ -139,54 +136,48 @@ void write_verdict(Html& html, const Served& served, const GatewayStatus& status
   html.markup("</ul></section>");
 }
 
-Cell job_state_cell(const StoredJob& job) {
-  if (job.state == JobState::done)
-    return job.accepted ? Cell{"✔ in use", "good"} : Cell{"▲ not accepted", "warn"};
-  if (job.state == JobState::failed) return {"✖ failed", "bad"};
-  return {std::string{recald::name_of(job.state)}};
+/// The job that runs or waits.
+void write_job_now(Html& html, const Served& served) {
+  const auto unfinished = served.store.unfinished_jobs();
+  if (!unfinished) return;
+  for (const StoredJob& job : *unfinished) {
+    if (job.state != JobState::running || !job.started) {
+      html.element("p", fmt::format("A {} is waiting.", recald::name_of(job.kind)), "muted");
+      continue;
+    }
+    const auto since = served.now() - *job.started;
+    std::string text =
+        fmt::format("A {} has been running for {}", recald::name_of(job.kind), age_text(since));
+    const auto progress = served.progress ? served.progress() : std::nullopt;
+    if (progress && progress->job == job.number) {
+      text += fmt::format(": {} ({})", report::percent_text(progress->share, 0), progress->what);
+      constexpr double kEnoughToTell = 0.05;
+      if (progress->share >= kEnoughToTell) {
+        const double left_s =
+            static_cast<double>(since.count()) * (1.0 - progress->share) / progress->share;
+        text +=
+            fmt::format("; about {} left", age_text(std::chrono::seconds{std::llround(left_s)}));
+      }
+    }
+    html.element("p", text + ".");
+  }
 }
 
-void write_jobs(Html& html, const Served& served, JobKind kind, std::string caption) {
-  const auto jobs = served.store.jobs(kind, kJobsShown);
-  if (!jobs || jobs->empty()) return;
-  Table table{std::move(caption)};
-  table.with_labels().columns({"Number", "State", "Requested", "By", "Message"});
-  for (const StoredJob& job : *jobs) {
-    table.row({{std::to_string(job.number)},
-               job_state_cell(job),
-               {site_time_text(served.calendar, job.asked)},
-               {job.asked_by},
-               {job.message}});
+/// The last seven days of each meter, or nothing if there are too many.
+void write_week(Html& html, const Served& served) {
+  const auto stored = std::ranges::count_if(served.site.meters, &MeterConfig::is_stored);
+  if (stored == 0 || stored > kChartsMax) return;
+  html.markup("<section aria-labelledby=\"week\">").markup("<h2 id=\"week\">Last seven days</h2>");
+  html.markup("<div class=\"charts\">");
+  const metering::TimeSpan week{served.now() - std::chrono::days{7}, served.now()};
+  for (const MeterConfig& meter : served.site.meters) {
+    if (!meter.is_stored()) continue;
+    html.markup("<figure>").markup("<figcaption>");
+    html.link("/meters/" + meter.meter.id, meter.meter.id).markup("</figcaption>");
+    write_meter_chart(html, served, meter.meter, nullptr, week);
+    html.markup("</figure>");
   }
-  table.write(html);
-}
-
-/// Alarms from the months after the calibration.
-void write_alarms(Html& html, const Served& served) {
-  const auto job = served.store.last_accepted(JobKind::calibration);
-  if (!job || !*job) return;
-  const auto& drift = (*job)->result.drift;
-  if (!drift || drift->alarms.empty()) return;
-  Table table{"What has changed"};
-  table.with_labels().columns({"Since", "What", "Details"});
-  for (const DriftAlarm& alarm : drift->alarms) {
-    table.row({{alarm.since},
-               {display::capitalised(display::output_words(alarm.output))},
-               {alarm.sentence}});
-  }
-  table.write(html);
-}
-
-Cell severity_cell(Severity severity) {
-  switch (severity) {
-    case Severity::info:
-      break;
-    case Severity::warning:
-      return {"▲ warning", "warn"};
-    case Severity::error:
-      return {"✖ error", "bad"};
-  }
-  return {"info"};
+  html.markup("</div></section>");
 }
 
 void write_events(Html& html, const Served& served) {
@@ -211,62 +202,19 @@ void write_events(Html& html, const Served& served) {
 
 }  // namespace
 
-std::string site_time_text(const metering::LocalCalendar& calendar, Instant t) {
-  if (t < std::chrono::sys_days{std::chrono::year{1971} / 1 / 1} || t >= metering::kLatestInstant) {
-    return metering::to_string(t);  // before the clock was set
-  }
-  const metering::LocalTime local = calendar.local_time(t);
-  const auto offset_minutes =
-      std::chrono::duration_cast<std::chrono::minutes>(calendar.utc_offset(t)).count();
-  const auto size = std::abs(offset_minutes);
-  return fmt::format("{} {:02}:{:02} {}{:02}:{:02}", metering::to_string(local.date),
-                     local.minute_of_day / 60, local.minute_of_day % 60,
-                     offset_minutes < 0 ? "−" : "+", size / 60, size % 60);
-}
-
-std::string age_text(std::chrono::seconds age) {
-  const auto s = age.count();
-  if (s < 0) return "in the future";
-  if (s < 120) return fmt::format("{} s", s);
-  if (s < 2 * 3600) return fmt::format("{} min", s / 60);
-  if (s < 2 * 86'400) return fmt::format("{} h", s / 3600);
-  return fmt::format("{} days", s / 86'400);
-}
-
-http::Response status_page(const Served& served) {
+http::Response now_page(const Served& served) {
   const GatewayStatus status = served.status();
-  const std::string title = served.site.name.empty() ? served.site.id : served.site.name;
   Html html;
-  html.markup(
-      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-      "<link rel=\"stylesheet\" href=\"/style.css\">");
-  html.element("title", title + " – recald").markup("</head><body><main>");
-  html.element("h1", title);
-  html.element("p",
-               fmt::format("As of {}; times are in {}.",
-                           site_time_text(served.calendar, served.now()), served.site.timezone),
-               "muted");
+  html.element("h1", "Now");
   write_verdict(html, served, status);
-  write_meters(html, served, status);
+  write_job_now(html, served);
   write_alarms(html, served);
-  write_jobs(html, served, JobKind::calibration, "Last calibrations");
-  write_jobs(html, served, JobKind::diagnosis, "Last diagnoses");
+  write_meters(html, served, status);
+  write_week(html, served);
+  write_jobs(html, served, JobKind::calibration, "Last calibrations", kJobsShown);
+  write_jobs(html, served, JobKind::diagnosis, "Last diagnoses", kJobsShown);
   write_events(html, served);
-  html.markup(
-      "</main><footer><nav aria-label=\"For programs\"><a href=\"/api/v1/meters\">meters</a> "
-      "<a href=\"/api/v1/months\">months</a> <a href=\"/api/v1/events\">events</a> "
-      "<a href=\"/metrics\">metrics</a> <a href=\"/readyz\">readiness</a></nav>");
-  html.element("p", fmt::format("recald {}", kVersion), "muted");
-  html.markup("</footer></body></html>\n");
-  return {.content_type = "text/html; charset=utf-8", .body = html.str()};
-}
-
-http::Response status_style(const Served&) {
-  http::Response response{.content_type = "text/css; charset=utf-8",
-                          .body = std::string{kStatusStyle}};
-  response.headers.emplace_back("Cache-Control", "private, max-age=3600");
-  return response;
+  return page_of(served, PageKind::now, "", html);
 }
 
 }  // namespace recald::daemon

@@ -1,0 +1,74 @@
+#include "daemon/gateway/serve/history.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/absent.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using std::chrono::days;
+using std::chrono::hours;
+using std::chrono::seconds;
+
+constexpr std::array<seconds, 6> kSteps{hours{1}, hours{6}, days{1}, days{7}, days{28}, days{364}};
+
+struct Sum {
+  double least_kW = kAbsent;
+  double most_kW = kAbsent;
+  double sum_kW = 0.0;
+  int valid = 0;
+
+  void add(double kW) {
+    least_kW = valid > 0 ? std::min(least_kW, kW) : kW;
+    most_kW = valid > 0 ? std::max(most_kW, kW) : kW;
+    sum_kW += kW;
+    ++valid;
+  }
+};
+
+}  // namespace
+
+seconds history_step(const metering::TimeSpan& span, seconds interval, int points_max) {
+  const auto fits = [&](seconds step) { return (span.end - span.begin) <= step * points_max; };
+  if (fits(interval)) return interval;
+  const auto step =
+      std::ranges::find_if(kSteps, [&](seconds one) { return one >= interval && fits(one); });
+  return step == kSteps.end() ? std::max(kSteps.back(), interval) : *step;
+}
+
+Result<History> read_history(Store& store, std::uint32_t meter, seconds interval,
+                             const metering::TimeSpan& span, int points_max) {
+  const auto extent = store.interval_extent(meter);
+  if (!extent) return tl::unexpected(extent.error());
+  if (!*extent) return History{interval, {}};
+  const metering::TimeSpan there{(*extent)->begin, (*extent)->end + interval};
+  metering::TimeSpan asked{std::max(span.begin, there.begin), std::min(span.end, there.end)};
+  History history{history_step(asked, interval, points_max), {}};
+  if (asked.end <= asked.begin) return history;
+  const seconds step = history.step;
+  // In whole steps from where the span begins, so that a day of a chart is a day.
+  asked.begin = span.begin + (asked.begin - span.begin) / step * step;
+  std::vector<Sum> sums(
+      static_cast<std::size_t>((asked.end - asked.begin + step - seconds{1}) / step));
+  const auto read = store.for_each_interval(meter, asked, [&](const StoredInterval& one) {
+    if (one.reading.validity != metering::Validity::ok || !std::isfinite(one.reading.mean_kW)) {
+      return;
+    }
+    sums[static_cast<std::size_t>((one.reading.start - asked.begin) / step)].add(
+        one.reading.mean_kW);
+  });
+  if (!read) return tl::unexpected(read.error());
+  const double expected = static_cast<double>(step.count()) / static_cast<double>(interval.count());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const Sum& sum = sums[i];
+    history.points.push_back({asked.begin + step * static_cast<std::int64_t>(i), sum.least_kW,
+                              sum.valid > 0 ? sum.sum_kW / sum.valid : kAbsent, sum.most_kW,
+                              std::min(sum.valid / expected, 1.0)});
+  }
+  return history;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,169 @@
+#include "daemon/gateway/serve/pages/frame.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "adapters/report/format.hpp"
+#include "core/display/id_words.hpp"
+#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/pages/script.hpp"
+#include "daemon/gateway/serve/pages/style.hpp"
+#include "daemon/version.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using report::Cell;
+using report::Html;
+using report::Table;
+
+struct Link {
+  PageKind kind;
+  const char* address;
+  const char* text;
+};
+constexpr std::array kLinks{
+    Link{PageKind::now, "/", "Now"}, Link{PageKind::months, "/months", "Months"},
+    Link{PageKind::model, "/model", "Model"}, Link{PageKind::events, "/events", "Events"}};
+
+void write_links(Html& html, PageKind here) {
+  html.markup("<nav aria-label=\"Pages\">");
+  for (const Link& link : kLinks) {
+    html.markup(fmt::format("<a href=\"{}\"{}>{}</a> ", link.address,
+                            link.kind == here ? " aria-current=\"page\"" : "", link.text));
+  }
+  html.markup("</nav>");
+}
+
+/// For an hour, by the browser.
+http::Response kept(http::Response response) {
+  response.headers.emplace_back("Cache-Control", "private, max-age=3600");
+  return response;
+}
+
+Cell job_state_cell(const StoredJob& job) {
+  if (job.state == JobState::done)
+    return job.accepted ? Cell{"✔ in use", "good"} : Cell{"▲ not accepted", "warn"};
+  if (job.state == JobState::failed) return {"✖ failed", "bad"};
+  return {std::string{recald::name_of(job.state)}};
+}
+
+}  // namespace
+
+http::Response page_of(const Served& served, PageKind kind, const std::string& title,
+                       const Html& main) {
+  const std::string site = served.site.name.empty() ? served.site.id : served.site.name;
+  Html html;
+  html.markup(
+      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+      "<link rel=\"stylesheet\" href=\"/style.css\">"
+      "<script src=\"/page.js\" defer></script>");
+  html.element("title", (title.empty() ? "" : title + " – ") + site + " – recald")
+      .markup(kind == PageKind::now ? "</head><body data-live><header>" : "</head><body><header>");
+  html.element("p", site, "site");
+  write_links(html, kind);
+  html.markup("</header><main>").markup(main.str()).markup("</main><footer>");
+  html.element(
+      "p",
+      fmt::format("As of {}; times are in {}. recald {}.",
+                  site_time_text(served.calendar, served.now()), served.site.timezone, kVersion),
+      "muted");
+  html.markup(
+      "<nav aria-label=\"For programs\"><a href=\"/api/v1/openapi.json\">interface</a> "
+      "<a href=\"/api/v1/meters\">meters</a> "
+      "<a href=\"/api/v1/months\">months</a> <a href=\"/api/v1/events\">events</a> "
+      "<a href=\"/metrics\">metrics</a> <a href=\"/readyz\">readiness</a></nav>"
+      "</footer></body></html>\n");
+  return {.content_type = "text/html; charset=utf-8", .body = html.str()};
+}
+
+http::Response page_style(const Served&) {
+  return kept({.content_type = "text/css; charset=utf-8", .body = std::string{kPageStyle}});
+}
+
+http::Response page_script(const Served&) {
+  return kept({.content_type = "text/javascript; charset=utf-8", .body = std::string{kPageScript}});
+}
+
+std::string site_time_text(const metering::LocalCalendar& calendar, Instant t) {
+  if (t < std::chrono::sys_days{std::chrono::year{1971} / 1 / 1} || t >= metering::kLatestInstant) {
+    return metering::to_string(t);  // before the clock was set
+  }
+  const metering::LocalTime local = calendar.local_time(t);
+  const auto offset_minutes =
+      std::chrono::duration_cast<std::chrono::minutes>(calendar.utc_offset(t)).count();
+  const auto size = std::abs(offset_minutes);
+  return fmt::format("{} {:02}:{:02} {}{:02}:{:02}", metering::to_string(local.date),
+                     local.minute_of_day / 60, local.minute_of_day % 60,
+                     offset_minutes < 0 ? "−" : "+", size / 60, size % 60);
+}
+
+std::string age_text(std::chrono::seconds age) {
+  const auto s = age.count();
+  if (s < 0) return "in the future";
+  if (s < 120) return fmt::format("{} s", s);
+  if (s < 2 * 3600) return fmt::format("{} min", s / 60);
+  if (s < 2 * 86'400) return fmt::format("{} h", s / 3600);
+  return fmt::format("{} days", s / 86'400);
+}
+
+Cell severity_cell(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      break;
+    case Severity::warning:
+      return {"▲ warning", "warn"};
+    case Severity::error:
+      return {"✖ error", "bad"};
+  }
+  return {"info"};
+}
+
+std::string file_address(const StoredJob& job, std::string_view file) {
+  return fmt::format("/jobs/{}/{}", job.number, file);
+}
+
+void write_jobs(Html& html, const Served& served, JobKind kind, std::string caption, int limit) {
+  const auto jobs = served.store.jobs(kind, limit);
+  if (!jobs || jobs->empty()) return;
+  Table table{std::move(caption)};
+  table.with_labels().columns({"Number", "State", "Requested", "By", "Message", "Report"});
+  for (const StoredJob& job : *jobs) {
+    const bool has_report = !job.folder.empty();
+    const char* file = kind == JobKind::calibration ? "report.html" : "diagnosis.html";
+    table.row({{std::to_string(job.number)},
+               job_state_cell(job),
+               {site_time_text(served.calendar, job.asked)},
+               {job.asked_by},
+               {job.message.empty() ? "–" : job.message},
+               {has_report ? "report" : "–", "", has_report ? file_address(job, file) : ""}});
+  }
+  table.write(html);
+}
+
+void write_alarms(Html& html, const Served& served) {
+  const auto job = served.store.last_accepted(JobKind::calibration);
+  if (!job || !*job) return;
+  const auto& drift = (*job)->result.drift;
+  if (!drift || drift->alarms.empty()) return;
+  Table table{"What has changed"};
+  table.with_labels().columns({"Since", "What", "Details", "Likeliest causes"});
+  for (const DriftAlarm& alarm : drift->alarms) {
+    std::string causes;
+    for (const AlarmCause& cause : alarm.causes) {
+      if (!causes.empty()) causes += "; ";
+      causes += fmt::format("{} {}", report::probability_text(cause.probability), cause.words);
+    }
+    table.row({{alarm.since},
+               {display::capitalised(display::output_words(alarm.output))},
+               {alarm.sentence},
+               {causes.empty() ? "–" : causes}});
+  }
+  table.write(html);
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,39 @@
+/// What the pages share: the head, the links between them, words for times.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "adapters/report/html.hpp"
+#include "daemon/gateway/serve/served.hpp"
+
+namespace recald::daemon {
+
+enum class PageKind : std::uint8_t { now, months, model, events, other };
+
+/// A page with the site's name above and `main` in the middle.
+/// @param title  Of the window: "Months"; empty: the site's name alone.
+[[nodiscard]] http::Response page_of(const Served& served, PageKind kind, const std::string& title,
+                                     const report::Html& main);
+
+/// "2026-03-29 03:15 +02:00", in the site's local time.
+[[nodiscard]] std::string site_time_text(const metering::LocalCalendar& calendar,
+                                         metering::Instant t);
+
+/// "40 s", "3 min", "5 h", "2 days"; "in the future" if negative.
+[[nodiscard]] std::string age_text(std::chrono::seconds age);
+
+/// A sign beside each word, so that the meaning never depends on colour alone.
+[[nodiscard]] report::Cell severity_cell(Severity severity);
+
+/// Where a file of a job is served.
+[[nodiscard]] std::string file_address(const StoredJob& job, std::string_view file);
+
+/// The calibrations or diagnoses, newest first; nothing if there are none.
+void write_jobs(report::Html& html, const Served& served, JobKind kind, std::string caption,
+                int limit);
+
+/// Alarms from the months after the calibration in use; nothing if there are none.
+void write_alarms(report::Html& html, const Served& served);
+
+}  // namespace recald::daemon

@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "adapters/report/format.hpp"
+#include "adapters/report/time_chart.hpp"
+#include "core/display/id_words.hpp"
+#include "daemon/gateway/serve/pages/frame.hpp"
+#include "daemon/gateway/serve/pages/pages.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using report::Html;
+using report::Table;
+
+/// The first forecast of each month: the one from before its figure was known.
+std::map<std::string, std::vector<StoredForecast>> first_forecasts(
+    const std::vector<StoredForecast>& all) {
+  std::map<std::string, std::vector<StoredForecast>> by_output;
+  for (const StoredForecast& one : all) {
+    std::vector<StoredForecast>& months = by_output[one.output];
+    if (months.empty() || months.back().month != one.month) months.push_back(one);
+  }
+  return by_output;
+}
+
+void write_chart_of(Html& html, const Served& served, const std::string& output,
+                    const std::vector<StoredForecast>& months) {
+  const bool is_peak = output.ends_with("_kW");
+  report::TimeChart chart{.title = display::output_words(output) + ", forecast and measured",
+                          .unit = is_peak ? "kW" : "kWh/day",
+                          .span = {served.calendar.month_span(months.front().month).begin,
+                                   served.calendar.month_span(months.back().month).end},
+                          .points = {},
+                          .marks = {}};
+  for (const StoredForecast& one : months) {
+    const metering::TimeSpan span = served.calendar.month_span(one.month);
+    chart.points.push_back({span.begin, one.q05, one.mean, one.q95, span.end});
+    chart.marks.push_back({span, one.measured});
+  }
+  report::write_chart(html, chart, served.calendar);
+}
+
+void write_table_of(Html& html, const std::vector<StoredForecast>& months) {
+  Table table{"The same in numbers, the newest first"};
+  table.with_labels().columns(
+      {"Month", "Measured", "Forecast", "90 % interval", "Measured is in it", "Made"});
+  for (auto one = months.rbegin(); one != months.rend(); ++one) {
+    const bool is_inside = one->q05 <= one->measured && one->measured <= one->q95;
+    table.row({{report::month_text(one->month)},
+               {report::number_text(one->measured), "number"},
+               {report::number_text(one->mean), "number"},
+               {report::number_text(one->q05) + " to " + report::number_text(one->q95), "number"},
+               {is_inside ? "✔ yes" : "▲ no", is_inside ? "good" : "warn"},
+               {metering::to_string(one->made)}});
+  }
+  table.write(html);
+}
+
+}  // namespace
+
+http::Response months_page(const Served& served) {
+  Html html;
+  html.element("h1", "Months");
+  const auto stored = served.store.forecasts();
+  if (!stored) {
+    html.element("p", "✖ The forecasts cannot be read: " + stored.error().message, "bad");
+    return page_of(served, PageKind::months, "Months", html);
+  }
+  const auto by_output = first_forecasts(*stored);
+  if (by_output.empty()) {
+    html.element("p",
+                 "There are no forecasts yet. They begin with the first calibration that has more "
+                 "than a year of months. A meter's own months are on its page.",
+                 "muted");
+  } else {
+    html.element(
+        "p",
+        "The band has 90 % of what was expected of a month before it was measured, the line "
+        "is its mean, and the short thick lines are what was measured.",
+        "muted");
+  }
+  for (const auto& [output, months] : by_output) {
+    html.element("h2", display::capitalised(display::output_words(output)));
+    write_chart_of(html, served, output, months);
+    write_table_of(html, months);
+  }
+  return page_of(served, PageKind::months, "Months", html);
+}
+
+}  // namespace recald::daemon
