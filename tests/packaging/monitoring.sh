@@ -1,0 +1,17 @@
+#!/bin/sh
+# The alert rules and the dashboard, with a real Prometheus that scrapes a real daemon.
+#
+#   monitoring.sh RECALD FOLDER   Debian's prometheus is unpacked in FOLDER, not installed
+#
+# Exit 0 passed, 1 failed, 77 skipped (no Prometheus to be had).
+set -eu
+recald=$1
+folder=$2
+here=$(cd "$(dirname "$0")" && pwd)
+if [ ! -x "$folder/usr/bin/promtool" ]; then
+  mkdir -p "$folder"
+  (cd "$folder" && apt-get download prometheus >/dev/null 2>&1 && dpkg -x prometheus_*.deb .) ||
+    { echo "prometheus cannot be downloaded"; exit 77; }
+fi
+exec python3 "$here/monitoring.py" "$recald" "$folder/usr/bin" \
+  "$here/../../daemon/packaging/monitoring" "$here/alerts_test.yml"
