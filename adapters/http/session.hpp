@@ -88,6 +88,7 @@ class Session {
       co_await read_body(*request, parser, error);
       if (error) refusal = refusal_of(error);
     }
+    if (refusal && request) refusal = readable_by_origin(*request, rules_, std::move(*refusal));
     if (refusal) co_await refuse(method, *refusal);
     if (error || refusal || rules_.is_stopping) co_return false;  // the handler's owner may be gone
 

@@ -112,8 +112,9 @@ ScoreGain gain_over(const MonthScores& change, const std::set<int>& apart) {
     all.push_back(score);
     kinds[apart.contains(month) ? 1 : 0].push_back(score);
   }
+  constexpr std::size_t kFewest = 3;  // Two that happen to agree would have no scatter.
+  if (kinds[1].size() < kFewest) return gain_of(all);
   const double of_apart = gain_of(kinds[1]).se;
-  if (kinds[1].size() < 2) return gain_of(all);
   // A single other month is taken to vary as those apart do.
   const double of_others = kinds[0].size() == 1
                                ? of_apart / std::sqrt(static_cast<double>(kinds[1].size()))

@@ -45,7 +45,7 @@ struct ScoreGain {
 /// Of all meters together, month by month.
 [[nodiscard]] ScoreGain gain_over(const MonthScores& change);
 /// The same if months of `apart` are expected to differ from the others, which then is no scatter:
-/// each kind varies around its own mean. With fewer than two months apart, as above.
+/// each kind varies around its own mean. With fewer than three months apart, as above.
 [[nodiscard]] ScoreGain gain_over(const MonthScores& change, const std::set<int>& apart);
 
 }  // namespace recald::diagnosis

@@ -49,7 +49,7 @@ ModelVersion next_version(const Diagnosis& d, const SiteProblem& site, const Mod
   next.parent = parent.version;
   next.version.clear();
   next.created_at = origin.created_at;
-  next.author = VersionAuthor::human;
+  next.author = origin.author;
   next.status = VersionStatus::proposed;
   next.data_revision = origin.data_revision;
   next.catalogue_version = origin.catalogue_version;

@@ -13,6 +13,7 @@ struct VersionOrigin {
   std::string data_revision;      ///< Of the diagnosed readings.
   std::string catalogue_version;  ///< Of the program whose effects were tried.
   std::string created_at;
+  VersionAuthor author = VersionAuthor::human;
 };
 
 /// The parent plus the additions of the diagnosis.

@@ -121,7 +121,8 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   };
   std::string applied;
   if (is_kept()) {
-    const auto version = propose_version(store, *modelled, diagnosis, *problem, at);
+    const auto version =
+        propose_version(store, *modelled, diagnosis, *problem, at, diagnosis::VersionAuthor::human);
     if (!version) return fail(version.error());
     if (has_energyplus(modelled->site.config)) {
       auto vote =

@@ -66,6 +66,7 @@ port, prometheus_port = free_port(), free_port()
 (folder / "site.toml").write_text(SITE.format(port=port))
 (folder / "prometheus.yml").write_text(json.dumps({
     "rule_files": [rules.name],
+    "global": {"evaluation_interval": "1s"},
     "scrape_configs": [{"job_name": "recald", "scrape_interval": "1s",
                         "static_configs": [{"targets": [f"127.0.0.1:{port}"]}]}]}))
 daemon = subprocess.Popen([recald, "run", folder / "site.toml"])
@@ -98,8 +99,14 @@ try:
     for name in sorted(set(re.findall(r"recald_\w+", " ".join(queries) + rules.read_text()))):
         base = re.sub(r"_(bucket|count|sum)$", "", name)
         assert base in documented, f"{name} is not among the metrics of daemon/gateway/serve/README.md"
-    loaded = asked(f"http://127.0.0.1:{prometheus_port}/api/v1/rules")["data"]["groups"]
-    assert [rule["health"] for group in loaded for rule in group["rules"]], loaded
+
+    def healths():
+        groups = asked(f"http://127.0.0.1:{prometheus_port}/api/v1/rules")["data"]["groups"]
+        found = [rule["health"] for group in groups for rule in group["rules"]]
+        return found if found and "unknown" not in found else None
+
+    found = eventually("all rules are evaluated", healths)
+    assert set(found) == {"ok"}, found
 finally:
     end(prometheus)
     end(daemon)

@@ -169,7 +169,11 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
   outcome.forecasts = forecasts_of(*drift, modelled->facts, now);
   SiteConfig hourly = modelled->site.config;
   const bool can_be_diagnosed = choose_model(hourly, ModelKind::hourly).has_value();
-  if (asks_for_a_name(*drift) && can_be_diagnosed) outcome.next = JobKind::diagnosis;
+  // A diagnosis starts from the drawings.
+  const bool is_of_drawings = version->effects.empty();
+  if (asks_for_a_name(*drift) && can_be_diagnosed && is_of_drawings) {
+    outcome.next = JobKind::diagnosis;
+  }
   return summary_of(*drift);
 }
 
@@ -234,31 +238,39 @@ Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
 }
 
 /// Stores what was named as a version of the model, and puts it in force where the site says so.
-Result<void> propose(const ModelledSite& modelled, const diagnosis::Diagnosis& diagnosis,
-                     const diagnosis::SiteProblem& problem, metering::Instant now,
-                     JobOutcome& outcome) {
+/// @return what it did, for people, or why the version cannot be written.
+Result<std::string> propose(const ModelledSite& modelled, const diagnosis::Diagnosis& diagnosis,
+                            const diagnosis::SiteProblem& problem, metering::Instant now,
+                            JobOutcome& outcome) {
   const SiteConfig& site = modelled.site.config;
   const std::string at = metering::to_string(now);
   const models::ModelStore store{site.file, site.id};
-  const auto version = propose_version(store, modelled, diagnosis, problem, at);
+  const auto version =
+      propose_version(store, modelled, diagnosis, problem, at, diagnosis::VersionAuthor::automatic);
   if (!version) return tl::unexpected(version.error());
-  std::vector<std::string> names;
-  for (const diagnosis::AddedEffect& added : version->effects) {
-    names.push_back(fmt::format("{} ({:.0f} %)", added.title, 100.0 * added.probability));
-  }
-  const std::string what = fmt::format("named {}; version {} of the model", fmt::join(names, ", "),
-                                       diagnosis::short_version(version->version));
-  if (!site.applies_itself || !may_apply_itself(*version)) {
-    outcome.message = what + " has it and is not in force yet";
-    return {};
+  const auto known = store.list();
+  if (!known) return tl::unexpected(known.error());
+  const std::string what =
+      fmt::format("version {} of the model has it", diagnosis::short_version(version->version));
+  if (!site.applies_itself || !may_apply_itself(*version, *known)) {
+    return what + " and is not in force yet";
   }
   if (auto active = store.activate(version->version, at); !active) {
     return tl::unexpected(active.error());
   }
-  outcome.message = what + " has it and is in force, because the site says so";
   outcome.next = JobKind::calibration;
   outcome.next_asked_by = "diagnosis";
-  return {};
+  return what + " and is in force, because the site says so";
+}
+
+/// "named Runs on weekends (97 %)"
+std::string named_words(const diagnosis::Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const diagnosis::Addition& added : diagnosis.added) {
+    names.push_back(
+        fmt::format("{} ({:.0f} %)", added.candidate.effect->title, 100.0 * added.probability));
+  }
+  return fmt::format("named {}", fmt::join(names, ", "));
 }
 
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
@@ -289,9 +301,11 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
     outcome.message = "nothing was named";
     return outcome;
   }
-  if (auto proposed = propose(*modelled, done->diagnosis, *problem, now, outcome); !proposed) {
-    return tl::unexpected(proposed.error());
-  }
+  const auto proposed = propose(*modelled, done->diagnosis, *problem, now, outcome);
+  outcome.message =
+      named_words(done->diagnosis) + "; " +
+      (proposed ? *proposed
+                : "no version of the model could be stored: " + proposed.error().message);
   return outcome;
 }
 

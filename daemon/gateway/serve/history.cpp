@@ -13,7 +13,8 @@ using std::chrono::days;
 using std::chrono::hours;
 using std::chrono::seconds;
 
-constexpr std::array<seconds, 6> kSteps{hours{1}, hours{6}, days{1}, days{7}, days{28}, days{364}};
+constexpr std::array<seconds, 5> kSteps{hours{1}, hours{6}, days{1}, days{7}, days{28}};
+constexpr seconds kLongStep = days{364};  // And whole numbers of it.
 
 struct Sum {
   double least_kW = kAbsent;
@@ -31,12 +32,19 @@ struct Sum {
 
 }  // namespace
 
-seconds history_step(const metering::TimeSpan& span, seconds interval, int points_max) {
-  const auto fits = [&](seconds step) { return (span.end - span.begin) <= step * points_max; };
+seconds history_step(const metering::TimeSpan& span, metering::Instant origin, seconds interval,
+                     int points_max) {
+  const auto fits = [&](seconds step) {
+    const metering::Instant begin = origin + (span.begin - origin) / step * step;
+    return (span.end - begin + step - seconds{1}) / step <= points_max;
+  };
   if (fits(interval)) return interval;
-  const auto step =
-      std::ranges::find_if(kSteps, [&](seconds one) { return one >= interval && fits(one); });
-  return step == kSteps.end() ? std::max(kSteps.back(), interval) : *step;
+  const auto step = std::ranges::find_if(
+      kSteps, [&](seconds one) { return one % interval == seconds{0} && fits(one); });
+  if (step != kSteps.end()) return *step;
+  seconds longest = kLongStep;
+  while (!fits(longest)) longest += kLongStep;
+  return longest;
 }
 
 Result<History> read_history(Store& store, std::uint32_t meter, seconds interval,
@@ -46,7 +54,7 @@ Result<History> read_history(Store& store, std::uint32_t meter, seconds interval
   if (!*extent) return History{interval, {}};
   const metering::TimeSpan there{(*extent)->begin, (*extent)->end + interval};
   metering::TimeSpan asked{std::max(span.begin, there.begin), std::min(span.end, there.end)};
-  History history{history_step(asked, interval, points_max), {}};
+  History history{history_step(asked, span.begin, interval, points_max), {}};
   if (asked.end <= asked.begin) return history;
   const seconds step = history.step;
   // In whole steps from where the span begins, so that a day of a chart is a day.

@@ -22,9 +22,12 @@ struct History {
                                      ///< meter was never read in it.
 };
 
-/// The shortest of the usual steps (the interval, then an hour, six, a day, a week, four weeks)
-/// that makes at most `points_max` points.
+/// The shortest of the usual steps (the interval, then an hour, six, a day, a week, four weeks,
+/// years of 52 weeks) that makes at most `points_max` points.
+/// @param origin  Not after the span begins; points begin whole steps after it.
+/// @pre points_max > 0
 [[nodiscard]] std::chrono::seconds history_step(const metering::TimeSpan& span,
+                                                metering::Instant origin,
                                                 std::chrono::seconds interval, int points_max);
 
 /// @param meter  Its number in the store.

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <optional>
+#include <regex>
 
 #include "daemon/site/config/site_path.hpp"
 
@@ -59,15 +60,18 @@ HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) 
   config.key_file = path("key_file");
   for (std::string& origin :
        table.one_or_more("allow_origin").value_or(std::vector<std::string>{})) {
-    const std::size_t host = origin.find("://");
-    const bool is_origin = (origin.starts_with("https://") || origin.starts_with("http://")) &&
-                           origin.size() > host + 3 &&
-                           origin.find('/', host + 3) == std::string::npos;
+    // As browsers send it: lower case, and no port where it is the usual one.
+    static const std::regex kOrigin{R"(https?://[a-z0-9.-]+(:[0-9]{1,5})?)"};
+    const bool has_usual_port = (origin.starts_with("https:") && origin.ends_with(":443")) ||
+                                (origin.starts_with("http:") && origin.ends_with(":80"));
+    const bool is_origin = std::regex_match(origin, kOrigin) && !has_usual_port;
     if (!is_origin) {
-      table.problem_at("allow_origin",
-                       fmt::format("'allow_origin' has \"{}\"; write a scheme and a host without a "
-                                   "path, such as \"https://bms.example.org\"",
-                                   origin));
+      table.problem_at(
+          "allow_origin",
+          fmt::format(
+              "'allow_origin' has \"{}\"; write a scheme and a host in lower case, "
+              "and a port only if it is not the usual one, such as \"https://bms.example.org\"",
+              origin));
     }
     config.origins.push_back(std::move(origin));
   }

@@ -4,6 +4,7 @@
 
 #include "core/diagnosis/effect.hpp"
 #include "core/diagnosis/next_version.hpp"
+#include "daemon/site/model/version_list.hpp"
 
 namespace recald::daemon {
 
@@ -11,18 +12,25 @@ Result<diagnosis::ModelVersion> propose_version(const models::ModelStore& store,
                                                 const ModelledSite& modelled,
                                                 const diagnosis::Diagnosis& diagnosis,
                                                 const diagnosis::SiteProblem& problem,
-                                                const std::string& at) {
-  const auto parent = store.active();
+                                                const std::string& at,
+                                                diagnosis::VersionAuthor author) {
+  const auto parent = store.load(diagnosis::kBaseVersion);
   if (!parent) return tl::unexpected(parent.error());
   return store.save(diagnosis::next_version(diagnosis, problem, *parent,
                                             {.data_revision = modelled.facts.data_revision,
                                              .catalogue_version = modelled.facts.recald_version,
-                                             .created_at = at}));
+                                             .created_at = at,
+                                             .author = author}));
 }
 
-bool may_apply_itself(const diagnosis::ModelVersion& version) {
+bool may_apply_itself(const diagnosis::ModelVersion& version, const models::VersionList& known) {
   constexpr double kSure = 0.95;
-  return !version.effects.empty() &&
+  const bool was_taken_back =
+      std::ranges::any_of(known.versions, [&](const diagnosis::ModelVersion& other) {
+        return other.status == diagnosis::VersionStatus::reverted &&
+               effect_ids(other) == effect_ids(version);
+      });
+  return !version.effects.empty() && !was_taken_back && known.active == diagnosis::kBaseVersion &&
          std::ranges::all_of(version.effects, [&](const diagnosis::AddedEffect& added) {
            const diagnosis::Effect* const effect = diagnosis::find_effect(added.effect);
            return added.probability >= kSure && effect != nullptr &&

@@ -147,6 +147,10 @@ TEST_F(SessionTest, PagesOfOtherOriginsMayAskOnlyIfTheyAreAllowed) {
       "GET /last HTTP/1.1\r\nHost: a\r\nOrigin: https://bms.example.org\r\n"
       "Authorization: Bearer 0123456789abcdef\r\n\r\n";
   EXPECT_THAT(answer_to(get), HasSubstr("Access-Control-Allow-Origin: https://bms.example.org"));
+  // And why it was refused.
+  EXPECT_THAT(answer_to("GET /last HTTP/1.1\r\nHost: a\r\nOrigin: https://bms.example.org\r\n\r\n"),
+              ::testing::AllOf(HasSubstr("HTTP/1.1 401"),
+                               HasSubstr("Access-Control-Allow-Origin: https://bms.example.org")));
   rules_.origins.clear();
   EXPECT_THAT(answer_to(get),
               ::testing::AllOf(HasSubstr("200 OK"), ::testing::Not(HasSubstr("Access-Control"))));

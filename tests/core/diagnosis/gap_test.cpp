@@ -135,14 +135,16 @@ TEST(Gap, IsConfirmedByWhatAllMonthsSayAndByNoMetersHarm) {
 
 // An effect that begins late cannot cut errors before: those months are no scatter of the others.
 TEST(Gap, MonthsBeforeAnEffectAreTakenApart) {
-  const MonthScores late{{{1, 0.0}, {2, 0.01}, {3, -0.01}, {4, 0.0}, {5, 0.6}, {6, 0.7}}};
+  const MonthScores late{{{1, 0.0}, {2, 0.01}, {3, -0.01}, {4, 0.0}, {5, 0.6}, {6, 0.3}, {7, 0.9}}};
   const Eigen::ArrayXd shrunk = Eigen::ArrayXd::Constant(1, -10.0);
   EXPECT_FALSE(is_confirmed(late, {}, shrunk));
-  EXPECT_TRUE(is_confirmed(late, {5, 6}, shrunk));
+  EXPECT_TRUE(is_confirmed(late, {5, 6, 7}, shrunk));
   EXPECT_FALSE(is_confirmed({{{1, 0.0}, {2, 0.01}, {5, 0.6}}}, {5}, shrunk));  // one month alone
-  EXPECT_TRUE(is_confirmed({{{1, 0.0}, {5, 0.6}, {6, 0.7}}}, {5, 6}, shrunk));
+  EXPECT_FALSE(is_confirmed({{{1, 0.0}, {2, 0.0}, {3, 0.0}, {5, 0.6}, {6, 0.6}}}, {5, 6}, shrunk));
+  EXPECT_TRUE(is_confirmed({{{1, 0.0}, {5, 0.6}, {6, 0.7}, {7, 0.8}}}, {5, 6, 7}, shrunk));
   // What gets worse before counts against it.
-  EXPECT_FALSE(is_confirmed({{{1, -0.5}, {2, -0.4}, {5, 0.4}, {6, 0.5}}}, {5, 6}, shrunk));
+  EXPECT_FALSE(
+      is_confirmed({{{1, -0.5}, {2, -0.4}, {5, 0.4}, {6, 0.3}, {7, 0.2}}}, {5, 6, 7}, shrunk));
 }
 
 TEST(Gap, MonthsMovedAreThoseInWhichTheEffectDoesSomething) {

@@ -44,9 +44,13 @@ http::Response kept(http::Response response) {
   return response;
 }
 
-Cell job_state_cell(const StoredJob& job) {
-  if (job.state == JobState::done)
-    return job.accepted ? Cell{"✔ in use", "good"} : Cell{"▲ not accepted", "warn"};
+/// @param in_use  Number of the calibration in use; 0: none.
+Cell job_state_cell(const StoredJob& job, std::int64_t in_use) {
+  if (job.state == JobState::done) {
+    if (!job.accepted) return {"▲ not accepted", "warn"};
+    if (job.kind != JobKind::calibration) return {"✔ done", "good"};
+    return job.number == in_use ? Cell{"✔ in use", "good"} : Cell{"✔ accepted", "good"};
+  }
   if (job.state == JobState::failed) return {"✖ failed", "bad"};
   return {std::string{recald::name_of(job.state)}};
 }
@@ -130,13 +134,15 @@ std::string file_address(const StoredJob& job, std::string_view file) {
 void write_jobs(Html& html, const Served& served, JobKind kind, std::string caption, int limit) {
   const auto jobs = served.store.jobs(kind, limit);
   if (!jobs || jobs->empty()) return;
+  const auto last = served.store.last_accepted(JobKind::calibration);
+  const std::int64_t in_use = last && *last ? (*last)->number : 0;
   Table table{std::move(caption)};
   table.with_labels().columns({"Number", "State", "Requested", "By", "Message", "Report"});
   for (const StoredJob& job : *jobs) {
     const bool has_report = !job.folder.empty();
     const char* file = kind == JobKind::calibration ? "report.html" : "diagnosis.html";
     table.row({{std::to_string(job.number)},
-               job_state_cell(job),
+               job_state_cell(job, in_use),
                {site_time_text(served.calendar, job.asked)},
                {job.asked_by},
                {job.message.empty() ? "–" : job.message},

@@ -19,8 +19,8 @@ constexpr std::array kKinds{FileKind{".html", "text/html; charset=utf-8"},
                             FileKind{".json", "application/json; charset=utf-8"},
                             FileKind{".csv", "text/csv; charset=utf-8"}};
 
-/// A report brings its script and style along and allows just these by their hashes; nothing from
-/// outside, and nothing of this site either.
+/// A report brings its script and style along; its own policy, in the page, allows just these by
+/// their hashes. Nothing comes from outside, and nothing of this site either.
 constexpr const char* kReportPolicy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'; sandbox allow-scripts "

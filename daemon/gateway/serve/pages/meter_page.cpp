@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "adapters/report/format.hpp"
 #include "core/display/unit.hpp"
@@ -46,7 +47,7 @@ void write_choice(Html& html, const Served& served, const metering::TimeSpan& sh
           "<form method=\"get\" class=\"filter\"><label>From <input type=\"date\" name=\"from\" "
           "value=\"")
       .text(metering::to_string(day_of(served, shown.begin)))
-      .markup("\"></label> <label>to <input type=\"date\" name=\"to\" value=\"")
+      .markup("\"></label> <label>to, not included <input type=\"date\" name=\"to\" value=\"")
       .text(metering::to_string(day_after(served, shown.end)))
       .markup("\"></label> <button>Show</button> <span>");
   const metering::Day today = day_of(served, served.now());
@@ -61,11 +62,13 @@ void write_choice(Html& html, const Served& served, const metering::TimeSpan& sh
   html.markup("</span></form>");
 }
 
-void write_csv_link(Html& html, const std::string& meter, const metering::TimeSpan& span) {
+void write_csv_link(Html& html, const std::string& meter, std::chrono::seconds interval,
+                    const metering::TimeSpan& span) {
   html.markup("<p>").link(
-      fmt::format("/api/v1/intervals?meter={}&from={}&to={}&limit=10000&format=csv", meter,
-                  metering::to_string(span.begin), metering::to_string(span.end)),
-      "These intervals as CSV");
+      fmt::format("/api/v1/intervals?meter={}&from={}&to={}&limit={}&format=csv", meter,
+                  metering::to_string(span.begin), metering::to_string(span.end), kLimitMax),
+      (span.end - span.begin) / interval > kLimitMax ? "The first 10,000 of these intervals as CSV"
+                                                     : "These intervals as CSV");
   html.markup("</p>");
 }
 
@@ -92,14 +95,29 @@ void write_months_of(Html& html, const Served& served, const MeterConfig& config
   table.write(html);
 }
 
-/// As a page for a person, not JSON.
-http::Response refused_page(const Served& served, const http::Response& refused,
-                            const std::string& what) {
+/// A refusal of the API as a page for a person.
+http::Response refused_page(const Served& served, const http::Response& refused) {
+  const auto json = nlohmann::json::parse(refused.body, nullptr, false);
   Html html;
-  html.element("h1", what).element("p", "✖ " + what, "bad");
-  http::Response page = page_of(served, PageKind::other, what, html);
+  html.element("h1", "This cannot be shown");
+  html.element("p", "✖ " + json.at("error").at("message").get<std::string>(), "bad");
+  http::Response page = page_of(served, PageKind::other, "This cannot be shown", html);
   page.status = refused.status;
   return page;
+}
+
+/// What the request asks for, or the last week. A date field that was emptied asks for nothing.
+Checked<metering::TimeSpan> shown_span(const Served& served, http::Request request) {
+  std::erase_if(request.query, [](const auto& one) { return one.second.empty(); });
+  auto span = span_of(request, served.calendar);
+  if (!span) return span;
+  const metering::Instant now =
+      std::clamp(served.now(), metering::Instant{}, metering::kLatestInstant);
+  if (!text_of(request, "to")) span->end = std::max(now, span->begin);
+  if (!text_of(request, "from")) {
+    span->begin = std::max(std::min(now, span->end) - kShownAtFirst, metering::Instant{});
+  }
+  return span;
 }
 
 }  // namespace
@@ -107,12 +125,10 @@ http::Response refused_page(const Served& served, const http::Response& refused,
 http::Response meter_page(const Served& served, const http::Request& request,
                           const std::string& id) {
   const auto config = meter_of(served.site, id);
-  if (!config) return refused_page(served, config.error(), "There is no such meter");
+  if (!config) return refused_page(served, config.error());
   if (const auto checked = has_only(request, {"from", "to"}); !checked) return checked.error();
-  auto span = span_of(request, served.calendar);
-  if (!span) return refused_page(served, span.error(), "These are no two dates, the first first");
-  if (!text_of(request, "to")) span->end = served.now();
-  if (!text_of(request, "from")) span->begin = std::min(served.now(), span->end) - kShownAtFirst;
+  const auto span = shown_span(served, request);
+  if (!span) return refused_page(served, span.error());
 
   Html html;
   html.element("h1", id);
@@ -129,11 +145,11 @@ http::Response meter_page(const Served& served, const http::Request& request,
     for (const WeatherChannel& channel : channels_of(**config)) {
       html.element("h2", std::string{channel.quantity->name});
       write_meter_chart(html, served, stored_meter(**config, channel), channel.quantity, *span);
-      write_csv_link(html, channel.id(), *span);
+      write_csv_link(html, channel.id(), (*config)->meter.interval, *span);
     }
   } else {
     write_meter_chart(html, served, (*config)->meter, nullptr, *span);
-    write_csv_link(html, id, *span);
+    write_csv_link(html, id, (*config)->meter.interval, *span);
     write_months_of(html, served, **config);
   }
   return page_of(served, PageKind::other, id, html);

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "adapters/csv/fields.hpp"
 #include "adapters/models/model_store.hpp"
 #include "adapters/report/format.hpp"
 #include "daemon/gateway/serve/pages/frame.hpp"
@@ -17,6 +18,13 @@ using report::Table;
 Cell version_state_cell(const diagnosis::ModelVersion& version, const std::string& active) {
   if (version.version == active) return {"✔ in force", "good"};
   return {std::string{to_string(version.status)}};
+}
+
+/// A time of a version's file.
+std::string made_text(const Served& served, const std::string& created_at) {
+  if (created_at.empty()) return "–";
+  const auto at = csv::parse_timestamp(created_at);
+  return at ? site_time_text(served.calendar, *at) : created_at;
 }
 
 void write_button(Html& html, const nlohmann::json& change, std::string_view text) {
@@ -61,7 +69,7 @@ void write_versions(Html& html, const Served& served) {
     table.row({{diagnosis::short_version(version.version)},
                version_state_cell(version, list->active),
                {added.empty() ? "nothing" : added},
-               {version.created_at.empty() ? "–" : version.created_at}});
+               {made_text(served, version.created_at)}});
   }
   table.write(html);
   write_changes(html, *list);

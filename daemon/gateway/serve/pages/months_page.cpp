@@ -7,6 +7,7 @@
 #include "adapters/report/format.hpp"
 #include "adapters/report/time_chart.hpp"
 #include "core/display/id_words.hpp"
+#include "core/display/unit.hpp"
 #include "daemon/gateway/serve/pages/frame.hpp"
 #include "daemon/gateway/serve/pages/pages.hpp"
 
@@ -27,35 +28,51 @@ std::map<std::string, std::vector<StoredForecast>> first_forecasts(
   return by_output;
 }
 
+/// Of "main_daily_kWh" or "main_peak_kW".
+display::Unit unit_of_output(const Served& served, const std::string& output) {
+  const bool is_peak = output.ends_with("_kW");
+  const std::size_t end = output.rfind(is_peak ? "_peak_kW" : "_daily_kWh");
+  const auto meter = served.site.meter_index(output.substr(0, end));
+  const metering::Utility utility =
+      meter ? served.site.meters[*meter].meter.utility : metering::Utility::electricity;
+  const display::MeterUnits units = display::meter_units(served.site.units, utility);
+  return is_peak ? units.power : units.daily;
+}
+
 void write_chart_of(Html& html, const Served& served, const std::string& output,
                     const std::vector<StoredForecast>& months) {
-  const bool is_peak = output.ends_with("_kW");
+  const display::Unit unit = unit_of_output(served, output);
   report::TimeChart chart{.title = display::output_words(output) + ", forecast and measured",
-                          .unit = is_peak ? "kW" : "kWh/day",
+                          .unit = unit.name,
                           .span = {served.calendar.month_span(months.front().month).begin,
                                    served.calendar.month_span(months.back().month).end},
                           .points = {},
                           .marks = {}};
   for (const StoredForecast& one : months) {
     const metering::TimeSpan span = served.calendar.month_span(one.month);
-    chart.points.push_back({span.begin, one.q05, one.mean, one.q95, span.end});
-    chart.marks.push_back({span, one.measured});
+    chart.points.push_back(
+        {span.begin, unit.shown(one.q05), unit.shown(one.mean), unit.shown(one.q95), span.end});
+    chart.marks.push_back({span, unit.shown(one.measured)});
   }
   report::write_chart(html, chart, served.calendar);
 }
 
-void write_table_of(Html& html, const std::vector<StoredForecast>& months) {
+void write_table_of(Html& html, const Served& served, const std::string& output,
+                    const std::vector<StoredForecast>& months) {
+  const display::Unit unit = unit_of_output(served, output);
   Table table{"The same in numbers, the newest first"};
   table.with_labels().columns(
       {"Month", "Measured", "Forecast", "90 % interval", "Measured is in it", "Made"});
   for (auto one = months.rbegin(); one != months.rend(); ++one) {
     const bool is_inside = one->q05 <= one->measured && one->measured <= one->q95;
-    table.row({{report::month_text(one->month)},
-               {report::number_text(one->measured), "number"},
-               {report::number_text(one->mean), "number"},
-               {report::number_text(one->q05) + " to " + report::number_text(one->q95), "number"},
-               {is_inside ? "✔ yes" : "▲ no", is_inside ? "good" : "warn"},
-               {metering::to_string(one->made)}});
+    table.row(
+        {{report::month_text(one->month)},
+         {report::amount_text(one->measured, unit), "number"},
+         {report::amount_text(one->mean, unit), "number"},
+         {report::number_text(unit.shown(one->q05)) + " to " + report::amount_text(one->q95, unit),
+          "number"},
+         {is_inside ? "✔ yes" : "▲ no", is_inside ? "good" : "warn"},
+         {site_time_text(served.calendar, one->made)}});
   }
   table.write(html);
 }
@@ -86,7 +103,7 @@ http::Response months_page(const Served& served) {
   for (const auto& [output, months] : by_output) {
     html.element("h2", display::capitalised(display::output_words(output)));
     write_chart_of(html, served, output, months);
-    write_table_of(html, months);
+    write_table_of(html, served, output, months);
   }
   return page_of(served, PageKind::months, "Months", html);
 }

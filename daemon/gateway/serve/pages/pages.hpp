@@ -26,7 +26,7 @@ namespace recald::daemon {
 /// /jobs/NUMBER/FILE: a report, or another file that a job wrote.
 [[nodiscard]] http::Response job_file(const Served& served, const std::string& number_and_file);
 
-/// /events ?severity &subject &text &from &to &cursor: the log, filtered.
+/// /events ?severity &subject &text: the log, filtered.
 [[nodiscard]] http::Response events_page(const Served& served, const http::Request& request);
 
 [[nodiscard]] http::Response page_style(const Served& served);   ///< /style.css

@@ -190,6 +190,8 @@ TEST_F(Api, HistoryIsIntervalsSummedUp) {
   EXPECT_NEAR(first["mean"].get<double>(), sum_kW / 4.0, 1e-9);
   EXPECT_NEAR(first["most"].get<double>(), most_kW, 1e-9);
   EXPECT_EQ(first["valid_share"], 1.0);
+  EXPECT_THAT(get_json("/api/v1/history", {{"meter", "main"}, {"points", "1"}})["points"],
+              SizeIs(1));
   EXPECT_EQ(refused("/api/v1/history", {{"meter", "main"}, {"points", "0"}}),
             "400 invalid_value points");
   EXPECT_THAT(get_json("/api/v1/history", {{"meter", "old"}})["points"], SizeIs(0));

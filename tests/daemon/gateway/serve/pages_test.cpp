@@ -43,7 +43,8 @@ TEST_F(Page, WhatTheSiteIsCalledIsText) {
 
 // The policy in the header forbids what these pages must therefore not contain.
 TEST_F(Page, HasNoScriptOrStyleInlineAndNothingFromElsewhere) {
-  for (const char* path : {"/", "/meters/main", "/months", "/model", "/events"}) {
+  loop_.run_for(hours{30});
+  for (const char* path : {"/", "/meters/main", "/months", "/events"}) {
     EXPECT_THAT(
         get(path).body,
         AllOf(Not(HasSubstr("<script>")), Not(HasSubstr("<style")), Not(HasSubstr("style=\"")),
@@ -101,6 +102,11 @@ TEST_F(Page, OfAMeterHasItsHistoryAndItsMonths) {
   EXPECT_THAT(get("/meters/old").body, HasSubstr("Its readings are in files"));
   EXPECT_EQ(get("/meters/none").status, 404);
   EXPECT_EQ(get("/meters/main", {{"from", "soon"}}).status, 400);
+  EXPECT_EQ(get("/meters/main", {{"from", ""}, {"to", ""}}).body, week);  // emptied fields
+  EXPECT_THAT(get("/meters/main", {{"from", "2030-01-01"}}).body,
+              HasSubstr("No valid readings in this time."));
+  EXPECT_THAT(get("/meters/main", {{"from", "2014-05-01"}, {"to", "2024-05-01"}}).body,
+              HasSubstr("The first 10,000 of these intervals as CSV"));
 }
 
 TEST_F(Page, OfMonthsHasWhatWasForecastAndWhatCame) {
@@ -119,8 +125,9 @@ TEST_F(Page, OfMonthsHasWhatWasForecastAndWhatCame) {
   const std::array both{forecast(1, 104.0), forecast(2, 120.0)};
   ASSERT_TRUE(disk_.add_forecasts(both));
   const std::string page = get("/months").body;
-  EXPECT_THAT(page, AllOf(HasSubstr("<h2>Main, daily mean</h2>"), HasSubstr("chart-mark"),
-                          HasSubstr("92.00 to 108.0"), HasSubstr("✔ yes"), HasSubstr("▲ no")));
+  EXPECT_THAT(
+      page, AllOf(HasSubstr("<h2>Main, daily mean</h2>"), HasSubstr("chart-mark"),
+                  HasSubstr("92.00 to 108.0\u00a0kWh/day"), HasSubstr("✔ yes"), HasSubstr("▲ no")));
 }
 
 TEST_F(Page, OfEventsShowsWhatIsAskedFor) {
@@ -138,7 +145,7 @@ TEST_F(Page, OfEventsShowsWhatIsAskedFor) {
               AllOf(Not(HasSubstr("Reset")), HasSubstr("All is well.")));
   EXPECT_THAT(page({{"text", "\"><script>"}}),
               AllOf(HasSubstr("No event is like that."), HasSubstr("&quot;&gt;&lt;script&gt;"),
-                    Not(HasSubstr("\"><script"))));
+                    Not(HasSubstr("\"><script>"))));
   EXPECT_EQ(refused("/events", {{"sevrity", "warning"}}), "400 unknown_parameter sevrity");
 }
 
@@ -152,7 +159,10 @@ TEST_F(Page, OfTheModelLinksReportsAndOnlyFilesOfJobs) {
                                      .folder = folder.path().string()});
   ASSERT_TRUE(number);
   const std::string address = "/jobs/" + std::to_string(*number) + "/";
-  EXPECT_THAT(get("/").body, HasSubstr("<a href=\"" + address + "report.html\">report</a>"));
+  EXPECT_THAT(get("/").body, AllOf(HasSubstr("<a href=\"" + address + "report.html\">report</a>"),
+                                   HasSubstr("✔ in use")));
+  ASSERT_TRUE(disk_.add_job({.state = JobState::done, .asked = kStart, .accepted = true}));
+  EXPECT_THAT(get("/").body, HasSubstr("✔ accepted"));  // the one before
   const http::Response report = get(address + "report.html");
   EXPECT_EQ(report.body, "<p>It said so.");
   EXPECT_EQ(report.content_type, "text/html; charset=utf-8");
@@ -202,6 +212,8 @@ class ModelVersions : public ServedSite {
 TEST_F(ModelVersions, AreAppliedAndTakenBack) {
   EXPECT_EQ(get_json("/api/v1/model")["active"], "drawings");
   const std::string version = propose(site_);
+  EXPECT_THAT(get("/model").body, AllOf(Not(HasSubstr("<script>")), Not(HasSubstr("style=\"")),
+                                        Not(HasSubstr(" onclick"))));
   const std::string button = "data-change=\"{&quot;activate&quot;:&quot;" + version;
   EXPECT_THAT(get("/model").body, AllOf(HasSubstr("Runs on &lt;weekends&gt; (97.0\u00a0%)"),
                                         HasSubstr("proposed"), HasSubstr(button)));
@@ -273,12 +285,14 @@ TEST_F(Readiness, AliveIsNotReady) {
 }
 
 TEST_F(Readiness, AClockThatIsNotSet) {
-  loop_.set_wall_clock(-hours{24 * 365 * 54});
+  loop_.set_wall_clock(-hours{24 * (365 * 54 + 13 + 89)});
   begin();
   const Json json = Json::parse(get("/readyz").body);
   EXPECT_EQ(json["status"], "not ready");
   EXPECT_THAT(json["reasons"].at(0).get<std::string>(), HasSubstr("the system clock is not set"));
-  EXPECT_EQ(get("/").status, 200);  // and people can read why
+  for (const char* path : {"/", "/meters/main", "/months", "/model", "/events"}) {
+    EXPECT_EQ(get(path).status, 200) << path;  // and people can read why
+  }
   EXPECT_EQ(get("/metrics").status, 200);
 }
 

@@ -67,6 +67,20 @@ TEST(HttpConfig, OtherMachinesNeedATokenAndTls) {
   }
 }
 
+TEST(HttpConfig, OriginsAreAsBrowsersSendThem) {
+  const auto [config, problems] =
+      http("allow_origin = [\"https://bms.example.org\", \"http://10.0.0.7:8081\"]");
+  EXPECT_THAT(problems, IsEmpty());
+  EXPECT_THAT(config.origins, ElementsAre("https://bms.example.org", "http://10.0.0.7:8081"));
+  for (const char* wrong :
+       {"bms.example.org", "https://bms.example.org/", "https://BMS.example.org",
+        "https://bms.example.org:443", "http://a:80", "https://u@a", "*"}) {
+    EXPECT_THAT(http((std::string{"allow_origin = \""} + wrong + "\"").c_str()).problems,
+                ElementsAre(HasSubstr("'allow_origin' has")))
+        << wrong;
+  }
+}
+
 TEST(HttpConfig, MistakesAreNamedWithTheirKey) {
   for (const char* text :
        {"listen = \"8080\"", "listen = \":8080\"", "listen = \"127.0.0.1:\"",
