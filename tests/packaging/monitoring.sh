@@ -8,9 +8,15 @@ set -eu
 recald=$1
 folder=$2
 here=$(cd "$(dirname "$0")" && pwd)
+fetch() {
+  (cd "$folder" && apt-get download prometheus && dpkg -x prometheus_*.deb .) >/dev/null 2>&1
+}
 if [ ! -x "$folder/usr/bin/promtool" ]; then
   mkdir -p "$folder"
-  (cd "$folder" && apt-get download prometheus >/dev/null 2>&1 && dpkg -x prometheus_*.deb .) ||
+  as_root=
+  [ "$(id -u)" -eq 0 ] || as_root="sudo -n"
+  # The lists of packages may be missing: nothing else had to be installed.
+  fetch || { $as_root apt-get update -q >/dev/null 2>&1 && fetch; } ||
     { echo "prometheus cannot be downloaded"; exit 77; }
 fi
 exec python3 "$here/monitoring.py" "$recald" "$folder/usr/bin" \
