@@ -10,7 +10,7 @@
 #include "daemon/gateway/serve/csv_answer.hpp"
 #include "daemon/gateway/serve/metrics.hpp"
 #include "daemon/gateway/serve/openapi.hpp"
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 #include "daemon/gateway/serve/readiness.hpp"
 #include "daemon/gateway/serve/served.hpp"
 

@@ -1,4 +1,4 @@
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
-#include "daemon/gateway/serve/pages/frame.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
 #include "daemon/gateway/serve/readiness.hpp"
 #include "tests/daemon/gateway/serve/served_site.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -4,8 +4,8 @@
 #include <array>
 #include <cctype>
 
-#include "daemon/gateway/serve/pages/frame.hpp"
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 #include "daemon/gateway/serve/parameters.hpp"
 #include "daemon/gateway/serve/shapes.hpp"
 

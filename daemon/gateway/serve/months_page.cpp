@@ -8,8 +8,8 @@
 #include "adapters/report/time_chart.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/unit.hpp"
-#include "daemon/gateway/serve/pages/frame.hpp"
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 
 namespace recald::daemon {
 namespace {

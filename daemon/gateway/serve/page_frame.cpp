@@ -1,4 +1,4 @@
-#include "daemon/gateway/serve/pages/frame.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 
 #include "adapters/report/format.hpp"
 #include "core/display/id_words.hpp"
-#include "daemon/gateway/serve/pages/pages.hpp"
-#include "daemon/gateway/serve/pages/script.hpp"
-#include "daemon/gateway/serve/pages/style.hpp"
+#include "daemon/gateway/serve/page_script.hpp"
+#include "daemon/gateway/serve/page_style.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {

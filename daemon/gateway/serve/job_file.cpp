@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 
 namespace recald::daemon {
 namespace {

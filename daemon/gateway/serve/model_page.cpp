@@ -5,8 +5,8 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/models/model_store.hpp"
 #include "adapters/report/format.hpp"
-#include "daemon/gateway/serve/pages/frame.hpp"
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 
 namespace recald::daemon {
 namespace {

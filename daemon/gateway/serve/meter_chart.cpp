@@ -1,4 +1,4 @@
-#include "daemon/gateway/serve/pages/meter_chart.hpp"
+#include "daemon/gateway/serve/meter_chart.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include "adapters/report/time_chart.hpp"
 #include "core/display/unit.hpp"
 #include "daemon/gateway/serve/history.hpp"
-#include "daemon/gateway/serve/pages/frame.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
 
 namespace recald::daemon {
 namespace {

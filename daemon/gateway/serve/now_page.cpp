@@ -8,9 +8,9 @@
 #include "core/absent.hpp"
 #include "core/display/unit.hpp"
 #include "core/text/number_text.hpp"
-#include "daemon/gateway/serve/pages/frame.hpp"
-#include "daemon/gateway/serve/pages/meter_chart.hpp"
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/meter_chart.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 #include "daemon/gateway/serve/readiness.hpp"
 #include "daemon/gateway/serve/shapes.hpp"
 

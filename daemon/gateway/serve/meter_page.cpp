@@ -7,9 +7,9 @@
 
 #include "adapters/report/format.hpp"
 #include "core/display/unit.hpp"
-#include "daemon/gateway/serve/pages/frame.hpp"
-#include "daemon/gateway/serve/pages/meter_chart.hpp"
-#include "daemon/gateway/serve/pages/pages.hpp"
+#include "daemon/gateway/serve/meter_chart.hpp"
+#include "daemon/gateway/serve/page_frame.hpp"
+#include "daemon/gateway/serve/pages.hpp"
 #include "daemon/gateway/serve/parameters.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
 
