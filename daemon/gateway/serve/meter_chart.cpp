@@ -12,7 +12,7 @@
 namespace recald::daemon {
 namespace {
 
-constexpr int kPointsMax = 400;  // A chart is some 700 pixels wide.
+constexpr int kChartPoints = 400;  // A chart is some 700 pixels wide.
 
 std::string step_words(std::chrono::seconds step) {
   const auto s = step.count();
@@ -31,7 +31,7 @@ void write_meter_chart(report::Html& html, const Served& served, const metering:
     return;
   }
   const auto history = *number
-                           ? read_history(served.store, **number, meter.interval, span, kPointsMax)
+                           ? read_history(served.store, **number, meter.interval, span, kChartPoints)
                            : Result<History>{History{meter.interval, {}}};
   if (!history) {
     html.element("p", "✖ The readings cannot be read: " + history.error().message, "bad");
