@@ -30,9 +30,9 @@ void write_meter_chart(report::Html& html, const Served& served, const metering:
     html.element("p", "✖ The readings cannot be read: " + number.error().message, "bad");
     return;
   }
-  const auto history = *number
-                           ? read_history(served.store, **number, meter.interval, span, kChartPoints)
-                           : Result<History>{History{meter.interval, {}}};
+  const auto history =
+      *number ? read_history(served.store, **number, meter.interval, span, kChartPoints)
+              : Result<History>{History{meter.interval, {}}};
   if (!history) {
     html.element("p", "✖ The readings cannot be read: " + history.error().message, "bad");
     return;
