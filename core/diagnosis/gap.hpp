@@ -71,10 +71,10 @@ struct GapChange {
                                             const Eigen::ArrayXXd& parts_kW);
 
 /// Errors of at least two months shrink by more than two standard errors, months before an effect
-/// begins and after it taken apart; and those of meters whose
-/// errors surely grow do so by no more than a quarter of what errors of others shrink by: an effect
-/// that is certainly present may have a side effect on another meter that the model gets wrong.
-/// Harm counts in kW, because as a ratio a precise meter outweighs all others.
+/// begins and after it taken apart. Errors of meters that surely grow do so by no more than a
+/// quarter of what errors of others shrink by: an effect that is certainly present may have a side
+/// effect on another meter that the model gets wrong. Harm counts in kW, because as a ratio a
+/// precise meter outweighs all others.
 /// @param error_cuts  Of months that chose nothing.
 /// @param moved       As `months_moved`.
 /// @param error_change_kW  (m) held-out errors with the effect minus without.

@@ -31,6 +31,13 @@ constexpr std::array kChoices{Choice{"1 day", days{1}}, Choice{"7 days", days{7}
                               Choice{"30 days", days{30}}, Choice{"1 year", days{365}},
                               Choice{"10 years", days{3652}}};
 
+/// Now, or the nearest time that the calendar has: a device without a clock starts in 1970, which
+/// at the site may still be 1969.
+metering::Instant calendar_now(const Served& served) {
+  constexpr metering::Instant kEarliest = sys_days{std::chrono::year{1971} / 1 / 2};
+  return std::clamp(served.now(), kEarliest, metering::kLatestInstant - days{2});
+}
+
 metering::Day day_of(const Served& served, metering::Instant t) {
   return served.calendar.local_time(t).date;
 }
@@ -50,7 +57,7 @@ void write_choice(Html& html, const Served& served, const metering::TimeSpan& sh
       .markup("\"></label> <label>to, not included <input type=\"date\" name=\"to\" value=\"")
       .text(metering::to_string(day_after(served, shown.end)))
       .markup("\"></label> <button>Show</button> <span>");
-  const metering::Day today = day_of(served, served.now());
+  const metering::Day today = day_of(served, calendar_now(served));
   const metering::Day tomorrow{sys_days{today} + days{1}};
   for (const Choice& choice : kChoices) {
     const metering::Day from{sys_days{tomorrow} - choice.length};
@@ -111,11 +118,10 @@ Checked<metering::TimeSpan> shown_span(const Served& served, http::Request reque
   std::erase_if(request.query, [](const auto& one) { return one.second.empty(); });
   auto span = span_of(request, served.calendar);
   if (!span) return span;
-  const metering::Instant now =
-      std::clamp(served.now(), metering::Instant{}, metering::kLatestInstant);
+  const metering::Instant now = calendar_now(served);
   if (!text_of(request, "to")) span->end = std::max(now, span->begin);
   if (!text_of(request, "from")) {
-    span->begin = std::max(std::min(now, span->end) - kShownAtFirst, metering::Instant{});
+    span->begin = std::min(now, span->end) - kShownAtFirst;
   }
   return span;
 }
