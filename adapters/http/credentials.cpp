@@ -16,7 +16,7 @@ namespace recald::http {
 namespace {
 
 constexpr std::size_t kTokenMin = 16;
-constexpr std::streamsize kTokenFileMax = 4096;
+constexpr std::streamsize kSecretFileMax = 4096;
 constexpr std::string_view kWhiteSpace = " \t\r\n";
 
 std::string digest(std::string_view text) {
@@ -55,24 +55,43 @@ bool may_stand_in_token(char c) {
          std::string_view{"-._~+/="}.find(c) != std::string_view::npos;
 }
 
-Result<void> check_permissions(const std::filesystem::path& file) {
+/// @param what     "token file", for messages.
+/// @param how_to   How to make one.
+Result<void> check_permissions(const std::filesystem::path& file, const std::string& what,
+                               const char* how_to) {
   using std::filesystem::perms;
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (error || status.type() == std::filesystem::file_type::not_found) {
-    return failure(
-        ErrorCode::not_found,
-        "token file '" + file.string() +
-            "' cannot be found; make one with: (umask 077; openssl rand -hex 32 > FILE)");
+    return failure(ErrorCode::not_found,
+                   what + " '" + file.string() + "' cannot be found; make one with: " + how_to);
   }
-  if (auto is_file = system::require_file(file, "token file"); !is_file) return is_file;
+  if (auto is_file = system::require_file(file, what); !is_file) return is_file;
   const perms others = perms::group_all | perms::others_all;
   if ((status.permissions() & others) != perms::none) {
-    return failure(ErrorCode::invalid_value, "token file '" + file.string() +
+    return failure(ErrorCode::invalid_value, what + " '" + file.string() +
                                                  "' can be read by others than its owner; "
                                                  "set its mode with: chmod 600 FILE");
   }
   return {};
+}
+
+/// The file's text without surrounding white space. @param how_to  As in check_permissions.
+Result<std::string> read_secret(const std::filesystem::path& file, const std::string& what,
+                                const char* how_to) {
+  if (auto checked = check_permissions(file, what, how_to); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  std::ifstream in{file, std::ios::binary};
+  std::string secret(kSecretFileMax, '\0');
+  in.read(secret.data(), kSecretFileMax);
+  secret.resize(static_cast<std::size_t>(in.gcount()));
+  if (in.bad() || (!in && !in.eof())) {
+    return failure(ErrorCode::io_failed, what + " '" + file.string() + "' cannot be read");
+  }
+  secret.erase(secret.find_last_not_of(kWhiteSpace) + 1);
+  secret.erase(0, secret.find_first_not_of(kWhiteSpace));
+  return secret;
 }
 
 }  // namespace
@@ -89,29 +108,30 @@ bool carries_token(std::string_view authorization, std::string_view token) {
 }
 
 Result<std::string> read_token_file(const std::filesystem::path& file) {
-  if (auto checked = check_permissions(file); !checked) return tl::unexpected(checked.error());
-  std::ifstream in{file, std::ios::binary};
-  std::string token(kTokenFileMax, '\0');
-  in.read(token.data(), kTokenFileMax);
-  token.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad() || (!in && !in.eof())) {
-    return failure(ErrorCode::io_failed, "token file '" + file.string() + "' cannot be read");
-  }
-  token.erase(token.find_last_not_of(kWhiteSpace) + 1);
-  token.erase(0, token.find_first_not_of(kWhiteSpace));
-  if (token.size() < kTokenMin) {
+  auto token = read_secret(file, "token file", "(umask 077; openssl rand -hex 32 > FILE)");
+  if (!token) return token;
+  if (token->size() < kTokenMin) {
     return failure(ErrorCode::invalid_value,
                    "token file '" + file.string() + "' has a token of " +
-                       std::to_string(token.size()) +
+                       std::to_string(token->size()) +
                        " characters; at least 16 are needed, such as openssl rand -hex 32 gives");
   }
-  for (const char c : token) {
+  for (const char c : *token) {
     if (may_stand_in_token(c)) continue;
     return failure(ErrorCode::invalid_value,
                    "token file '" + file.string() +
                        "' has a character that cannot be sent; letters, digits and -._~+/= can");
   }
   return token;
+}
+
+Result<std::string> read_password_file(const std::filesystem::path& file) {
+  auto password = read_secret(file, "password file", "(umask 077; cat > FILE)");
+  if (!password || (!password->empty() && password->find('\n') == std::string::npos)) {
+    return password;
+  }
+  return failure(ErrorCode::invalid_value,
+                 "password file '" + file.string() + "' must have one line, which is the password");
 }
 
 }  // namespace recald::http

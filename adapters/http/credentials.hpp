@@ -21,4 +21,8 @@ namespace recald::http {
 ///         read the file.
 [[nodiscard]] Result<std::string> read_token_file(const std::filesystem::path& file);
 
+/// Reads a password that a server outside asks for: the one line of a file, of any characters.
+/// @return the password; or not_found, io_failed; invalid_value as above, or if it is not one line.
+[[nodiscard]] Result<std::string> read_password_file(const std::filesystem::path& file);
+
 }  // namespace recald::http

@@ -62,8 +62,9 @@ struct StoreEvent {
   /// Repeated events are stored as one: an event of the same kind and subject within a day is
   /// counted, and its sentence replaces the last.
   bool is_counted = false;
-  int count = 1;                          ///< Set by the store, as the next.
+  int count = 1;                          ///< Set by the store, as the next two.
   std::optional<metering::Instant> last;  ///< Time of the latest, if it happened several times.
+  std::int64_t number = 0;  ///< 1, 2, 3 …; one event that is counted keeps its first.
 };
 
 enum class JobKind : std::uint8_t { calibration, diagnosis };
@@ -265,6 +266,14 @@ class Store {
 
   /// Newest first.
   virtual Result<std::vector<StoreEvent>> events(int limit) = 0;
+
+  /// Those with a greater number, in order of their numbers.
+  virtual Result<std::vector<StoreEvent>> events_after(std::int64_t number, int limit) = 0;
+
+  /// How far a destination outside has been told; nothing for an unknown one.
+  virtual Result<std::optional<std::int64_t>> cursor(const std::string& destination) = 0;
+
+  virtual Result<void> put_cursor(const std::string& destination, std::int64_t position) = 0;
 
   /// Adds a job and ignores its number. @return the new number.
   virtual Result<std::int64_t> add_job(const StoredJob& job) = 0;

@@ -43,7 +43,9 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
   auto sample = database.prepare(insert_into("sample", 4, "INSERT OR IGNORE"));
   if (!sample) return tl::unexpected(sample.error());
   auto event = database.prepare(
-      "INSERT INTO event VALUES (NULL, ?1, ?2, ?3, ?4, ?5, 1, NULL, "
+      // Beyond what any destination was told: SQLite gives the number of a deleted row again.
+      "INSERT INTO event VALUES (1 + max((SELECT coalesce(max(number), 0) FROM event), "
+      "(SELECT coalesce(max(position), 0) FROM cursor)), ?1, ?2, ?3, ?4, ?5, 1, NULL, "
       "row_sum('event', ?1, ?2, ?3, ?4, ?5, 1, NULL))");
   if (!event) return tl::unexpected(event.error());
   auto count = database.prepare(

@@ -158,6 +158,13 @@ ALTER TABLE month ADD COLUMN sum INTEGER;
 ALTER TABLE event ADD COLUMN sum INTEGER;
 ALTER TABLE job ADD COLUMN sum INTEGER;
 ALTER TABLE forecast ADD COLUMN sum INTEGER;
+)sql",
+    R"sql(
+CREATE TABLE cursor (
+  destination TEXT    NOT NULL PRIMARY KEY,
+  position    INTEGER NOT NULL CHECK (position >= 0),
+  sum         INTEGER
+) STRICT, WITHOUT ROWID;
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {

@@ -22,6 +22,30 @@ namespace recald::sqlite {
 using metering::Instant;
 using metering::MonthlyFigure;
 
+namespace {
+
+constexpr std::string_view kEventColumns = "number, t, severity, kind, subject, text, count, last";
+
+Result<std::vector<StoreEvent>> read_events(Statement& query) {
+  std::vector<StoreEvent> events;
+  for (;;) {
+    const auto row = query.step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return events;
+    events.push_back(
+        {.time = instant_of(query.integer(1)),
+         .severity = static_cast<Severity>(query.integer(2)),
+         .kind = query.text(3),
+         .subject = query.text(4),
+         .text = query.text(5),
+         .count = static_cast<int>(query.integer(6)),
+         .last = query.is_null(7) ? std::nullopt : std::optional{instant_of(query.integer(7))},
+         .number = query.integer(0)});
+  }
+}
+
+}  // namespace
+
 SqliteStore::SqliteStore(Database database, std::optional<BatchWriter> writer)
     : database_(std::move(database)), writer_(std::move(writer)) {}
 
@@ -209,24 +233,34 @@ Result<void> SqliteStore::delete_job(std::int64_t number) { return remove_job(da
 
 Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
   auto query = database_.prepare(
-      "SELECT t, severity, kind, subject, text, count, last FROM event "
-      "ORDER BY t DESC, number DESC LIMIT ?");
+      fmt::format("SELECT {} FROM event ORDER BY t DESC, number DESC LIMIT ?", kEventColumns));
   if (!query) return tl::unexpected(query.error());
   query->bind(0, std::int64_t{limit});
-  std::vector<StoreEvent> events;
-  for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return events;
-    events.push_back(
-        {.time = instant_of(query->integer(0)),
-         .severity = static_cast<Severity>(query->integer(1)),
-         .kind = query->text(2),
-         .subject = query->text(3),
-         .text = query->text(4),
-         .count = static_cast<int>(query->integer(5)),
-         .last = query->is_null(6) ? std::nullopt : std::optional{instant_of(query->integer(6))}});
-  }
+  return read_events(*query);
+}
+
+Result<std::vector<StoreEvent>> SqliteStore::events_after(std::int64_t number, int limit) {
+  auto query = database_.prepare(
+      fmt::format("SELECT {} FROM event WHERE number > ? ORDER BY number LIMIT ?", kEventColumns));
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, number).bind(1, std::int64_t{limit});
+  return read_events(*query);
+}
+
+Result<std::optional<std::int64_t>> SqliteStore::cursor(const std::string& destination) {
+  auto query = database_.prepare("SELECT position FROM cursor WHERE destination = ?");
+  if (!query) return tl::unexpected(query.error());
+  const auto row = query->bind(0, std::string_view{destination}).step();
+  if (!row) return tl::unexpected(row.error());
+  return *row ? std::optional{query->integer(0)} : std::nullopt;
+}
+
+Result<void> SqliteStore::put_cursor(const std::string& destination, std::int64_t position) {
+  return write([&]() -> Result<void> {
+    auto put = database_.prepare(insert_into("cursor", 2, "INSERT OR REPLACE"));
+    if (!put) return tl::unexpected(put.error());
+    return put->bind(0, std::string_view{destination}).bind(1, position).run();
+  });
 }
 
 Result<std::int64_t> SqliteStore::add_job(const StoredJob& job) {

@@ -47,6 +47,9 @@ class SqliteStore final : public Store {
   Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) override;
   Result<int> delete_events(metering::Instant keep_from, int rows_max) override;
   Result<std::vector<StoreEvent>> events(int limit) override;
+  Result<std::vector<StoreEvent>> events_after(std::int64_t number, int limit) override;
+  Result<std::optional<std::int64_t>> cursor(const std::string& destination) override;
+  Result<void> put_cursor(const std::string& destination, std::int64_t position) override;
   Result<std::int64_t> add_job(const StoredJob& job) override;
   Result<void> put_job(const StoredJob& job) override;
   Result<std::optional<StoredJob>> job(std::int64_t number) override;

@@ -6,6 +6,7 @@
 
 #include "adapters/system/regular_file.hpp"
 #include "core/model/parameter_library.hpp"
+#include "daemon/commands/check_alerts.hpp"
 #include "daemon/commands/check_meters.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
@@ -306,6 +307,10 @@ int run_check(const CheckArguments& arguments, const Console& console) {
           fmt::format("{}: no [[meter]] has source = \"modbus\", so there is no meter to try",
                       site->file.filename().string()));
     }
+  }
+  if (site && arguments.alerts && problems.empty()) {
+    const auto more = try_alerts(*site, console, arguments.json);
+    problems.insert(problems.end(), more.begin(), more.end());
   }
   if (arguments.json) {
     nlohmann::ordered_json result{{"ok", problems.empty()}, {"problems", problems}};

@@ -309,6 +309,7 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
       app.add_subcommand("check", "Check a site file and say what is wrong with it")->group(kSetUp);
   add_site(*check, given.check);
   check->add_flag("--meters", given.check.meters, "Also read each live meter once");
+  check->add_flag("--alerts", given.check.alerts, "Also send a trial message to all of [alerts]");
   verbs.push_back({check, [&](const Console& console) { return run_check(given.check, console); }});
 
   CLI::App* run = app.add_subcommand("run", "Poll the meters until stopped")->group(kRun);

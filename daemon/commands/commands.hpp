@@ -129,6 +129,7 @@ struct InitArguments {
 
 struct CheckArguments : SiteArguments {
   bool meters = false;  ///< Try each live meter once.
+  bool alerts = false;  ///< Send a trial message to each destination.
 };
 
 struct ScanArguments : SiteArguments {

@@ -27,6 +27,7 @@ constexpr auto kOrder = std::to_array<std::string_view>({
     "daemon/gateway/poll",
     "daemon/gateway/ingest",
     "daemon/gateway/upkeep",
+    "daemon/gateway/alert",
     "daemon/gateway/serve",
     "daemon/gateway/run",
     "daemon/commands",

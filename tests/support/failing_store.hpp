@@ -99,6 +99,18 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.months(meter);
   }
+  Result<std::vector<StoreEvent>> events_after(std::int64_t number, int limit) override {
+    if (refuses) return refusal();
+    return behind_.events_after(number, limit);
+  }
+  Result<std::optional<std::int64_t>> cursor(const std::string& destination) override {
+    if (refuses) return refusal();
+    return behind_.cursor(destination);
+  }
+  Result<void> put_cursor(const std::string& destination, std::int64_t position) override {
+    if (refuses) return refusal();
+    return behind_.put_cursor(destination, position);
+  }
   Result<std::vector<StoreEvent>> events(int limit) override {
     if (refuses) return refusal();
     return behind_.events(limit);

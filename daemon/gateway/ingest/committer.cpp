@@ -24,11 +24,13 @@ std::size_t keep_newest(std::vector<T>& values, std::size_t max) {
 
 }  // namespace
 
-Committer::Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed)
+Committer::Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed,
+                     OnRefusal on_refusal)
     : loop_(loop),
       store_(store),
       rules_(rules),
       on_committed_(std::move(on_committed)),
+      on_refusal_(std::move(on_refusal)),
       self_(std::make_shared<Committer*>(this)) {}
 
 /// The newest state of a register explains all intervals before it.
@@ -91,17 +93,17 @@ Result<void> Committer::flush() {
   health_.durations.observe(health_.last_duration);
   if (!counts) {
     ++health_.failures;
-    health_.is_degraded = true;
     health_.why = counts.error().message;
     schedule(rules_.retry);
+    if (!std::exchange(health_.is_degraded, true) && on_refusal_) on_refusal_(health_.why);
     return tl::unexpected(counts.error());
   }
   ++health_.commits;
   health_.conflicts += counts->conflicts.size();
-  health_.is_degraded = false;
   health_.why.clear();
   const StoreBatch committed = std::exchange(waiting_, {});
   if (on_committed_) on_committed_(committed, *counts);
+  if (std::exchange(health_.is_degraded, false) && on_refusal_) on_refusal_("");
   return {};
 }
 

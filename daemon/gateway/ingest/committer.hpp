@@ -40,8 +40,11 @@ class Committer {
  public:
   /// Called with what was committed: from then on it is acknowledged.
   using OnCommitted = std::function<void(const StoreBatch&, const CommitCounts&)>;
+  /// Called when the store begins to refuse, with its words, and when it accepts again, with none.
+  using OnRefusal = std::function<void(const std::string& why)>;
 
-  Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed);
+  Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed,
+            OnRefusal on_refusal = {});
 
   void add(StoreBatch batch);
 
@@ -61,6 +64,7 @@ class Committer {
   Store& store_;
   CommitRules rules_;
   OnCommitted on_committed_;
+  OnRefusal on_refusal_;
   StoreBatch waiting_;
   CommitHealth health_;
   /// When the next flush is due by the monotonic clock; a scheduled call compares it

@@ -21,6 +21,8 @@ using std::chrono::seconds;
 constexpr milliseconds kClockSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
+constexpr hours kRefusalsEvery{1};
+constexpr std::chrono::minutes kMetersEvery{1};
 constexpr int kEventsTakenOver = 10'000;
 constexpr std::size_t kSamplesAtATime = 500;  // taken over between two checks of the store
 constexpr std::size_t kMonthsAtATime = 12;    // of one meter, in one step of the loop
@@ -49,10 +51,12 @@ Gateway::Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site
     : calendar_(calendar),
       ports_(ports),
       on_month_(std::move(on_month)),
-      committer_(ports_.loop, ports_.store, rules_for(site),
-                 [this](const StoreBatch& batch, const CommitCounts& counts) {
-                   note_committed(batch, counts);
-                 }),
+      committer_(
+          ports_.loop, ports_.store, rules_for(site),
+          [this](const StoreBatch& batch, const CommitCounts& counts) {
+            note_committed(batch, counts);
+          },
+          [this](const std::string& why) { tell_of_refusal(why); }),
       keeper_(ports_.store, calendar, site.closing, ports_.time_zone_release),
       self_(std::make_shared<Gateway*>(this)) {}
 
@@ -66,6 +70,7 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
   if (!buses) return tl::unexpected(buses.error());
   gateway->buses_ = std::move(*buses);
   if (auto opened = gateway->open_pushed(site); !opened) return tl::unexpected(opened.error());
+  gateway->watch_meters_of(site);
   gateway->watch_sensors_of(site);
   return gateway;
 }
@@ -118,6 +123,20 @@ Gateway::PushedMeter Gateway::again_pushed(MeterProgress progress) const {
     meter.heard_at = known->heard_at;
   }
   return meter;
+}
+
+void Gateway::watch_meters_of(const SiteConfig& site) {
+  std::map<std::string, MeterWatch> watches;
+  for (const MeterConfig& config : site.meters) {
+    if (!config.is_stored()) continue;
+    const std::string& id = config.meter.id;
+    const auto silence_max = meter_silence_max(config.meter.interval, config.live.has_value());
+    const auto known = meter_watches_.find(id);
+    const bool goes_on =
+        known != meter_watches_.end() && known->second.silence_max() == silence_max;
+    watches.emplace(id, goes_on ? known->second : MeterWatch{id, silence_max});
+  }
+  meter_watches_ = std::move(watches);
 }
 
 void Gateway::watch_sensors_of(const SiteConfig& site) {
@@ -191,6 +210,7 @@ void Gateway::start() {
   watch_clock(ports_.loop.now());
   for (const auto& bus : buses_) start(*bus);
   close_months_every_hour();
+  judge_meters_every_minute();
 }
 
 void Gateway::start(LiveBus& bus) {
@@ -238,6 +258,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
     start(*bus);
     buses_.push_back(std::move(bus));
   }
+  watch_meters_of(site);
   watch_sensors_of(site);
   keeper_.set_options(site.closing);
   // Changed rules close months again, but only after the reload has ended.
@@ -295,6 +316,7 @@ void Gateway::watch_clock(const Moment& now) {
   for (const auto& bus : buses_) {
     for (LiveMeter& meter : bus->meters()) meter.clock_was_set();
   }
+  for (auto& [meter, watch] : meter_watches_) watch.clock_was_set();
   note({now.instant(), Severity::warning, "clock_set", "",
         fmt::format(
             "the system clock was set {} by {} s; the skipped time is missing from all meters",
@@ -398,6 +420,23 @@ void Gateway::tell_of_pushed(const std::string& meter, const CommitCounts& count
   }
 }
 
+/// A disk that refuses every other commit is told of once an hour.
+void Gateway::tell_of_refusal(const std::string& why) {
+  const Moment now = ports_.loop.now();
+  if (!why.empty()) {
+    if (refusal_told_at_ && now.monotonic - *refusal_told_at_ < kRefusalsEvery) return;
+    refusal_told_at_ = now.monotonic;
+    is_refusal_told_ = true;
+    note({now.instant(), Severity::error, "store_refuses", "",
+          fmt::format("the store accepts no data ({}); recald keeps a day of readings in memory "
+                      "and tries again",
+                      why)});
+  } else if (std::exchange(is_refusal_told_, false)) {
+    note({now.instant(), Severity::info, "store_accepts", "",
+          "the store accepts data again; the readings kept in memory are stored"});
+  }
+}
+
 void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts) {
   for (std::size_t i = 0; i < batch.intervals.size(); ++i) {
     if (!counts.was_taken[i]) continue;
@@ -405,15 +444,17 @@ void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts
     MeterProgress* const progress = find_progress(reading.meter);
     if (progress != nullptr) progress->note(reading);
   }
-  for (const StoreEvent& event : batch.events) {
-    ++events_[static_cast<std::size_t>(event.severity)];
-    for (MeterProgress* const progress : all_progress()) {
-      const bool is_of_it = progress->channel ? progress->channel->sensor == event.subject
-                                              : progress->stored.meter.id == event.subject;
-      if (!is_of_it) continue;
-      ++progress->counters.events[event.kind];
-      break;  // one quantity stands for its sensor
-    }
+  for (const StoreEvent& event : batch.events) count_stored(event);
+}
+
+void Gateway::count_stored(const StoreEvent& event) {
+  ++events_[static_cast<std::size_t>(event.severity)];
+  for (MeterProgress* const progress : all_progress()) {
+    const bool is_of_it = progress->channel ? progress->channel->sensor == event.subject
+                                            : progress->stored.meter.id == event.subject;
+    if (!is_of_it) continue;
+    ++progress->counters.events[event.kind];
+    break;  // one quantity stands for its sensor
   }
 }
 
@@ -471,6 +512,33 @@ void Gateway::close_months_every_hour() {
     (*self)->judge_sensors();
     (*self)->close_months_every_hour();
   });
+}
+
+void Gateway::judge_meters_every_minute() {
+  judge_meters();
+  ports_.loop.after(kMetersEvery, [weak = std::weak_ptr{self_}] {
+    if (const auto self = weak.lock()) (*self)->judge_meters_every_minute();
+  });
+}
+
+void Gateway::judge_meters() {
+  watch_clock(ports_.loop.now());
+  if (!clock_ok_) return;
+  const Instant now = ports_.loop.now().instant();
+  const auto judge = [&](const std::string& meter, std::optional<Instant> heard_at) {
+    const auto watch = meter_watches_.find(meter);
+    if (watch == meter_watches_.end()) return;
+    if (auto event = watch->second.judge(heard_at, now)) note(std::move(*event));
+  };
+  for (const auto& bus : buses_) {
+    for (const LiveMeter& meter : bus->meters()) {
+      const auto* const track = std::get_if<MeterTrack>(&meter.track);
+      if (track != nullptr) judge(meter.id, track->live().read_at);
+    }
+  }
+  for (const PushedMeter& meter : pushed_) {
+    if (!meter.progress.channel) judge(meter.progress.stored.meter.id, meter.heard_at);
+  }
 }
 
 void Gateway::judge_sensors() {

@@ -22,6 +22,7 @@
 #include "daemon/gateway/ingest/committer.hpp"
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
+#include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 #include "daemon/gateway/run/live_bus.hpp"
 #include "daemon/site/config/site_config.hpp"
@@ -91,6 +92,9 @@ class Gateway {
   /// Adds an event for people to find.
   void note(StoreEvent event) { hand_in({.events = {std::move(event)}}); }
 
+  /// Counts an event that somebody else has stored.
+  void count_stored(const StoreEvent& event);
+
   /// Commits everything pending. Call it before the end.
   Result<void> flush() { return committer_.flush(); }
 
@@ -123,8 +127,11 @@ class Gateway {
   /// Opens the pushed meters and weather sensors of `site`; those already open keep their state.
   Result<void> open_pushed(const SiteConfig& site);
   [[nodiscard]] PushedMeter again_pushed(MeterProgress progress) const;
-  /// Weather sensors that stay are watched further.
+  /// Meters and weather sensors that stay are watched further.
+  void watch_meters_of(const SiteConfig& site);
   void watch_sensors_of(const SiteConfig& site);
+  void judge_meters_every_minute();
+  void judge_meters();
   void judge_sensors();
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
@@ -146,6 +153,8 @@ class Gateway {
                                                    metering::Instant now);
   void tell_of_pushed(const std::string& meter, const CommitCounts& counts,
                       const std::optional<Correction>& correction, metering::Instant now);
+  /// @param why  Of the store; empty: it accepts again.
+  void tell_of_refusal(const std::string& why);
   void note_committed(const StoreBatch& batch, const CommitCounts& counts);
   [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
                                       const BusRunner& runner) const;
@@ -168,9 +177,12 @@ class Gateway {
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
   std::vector<PushedMeter> pushed_;
-  std::map<std::string, SensorWatch> watches_;  ///< By id of the weather sensor.
+  std::map<std::string, MeterWatch> meter_watches_;  ///< By id.
+  std::map<std::string, SensorWatch> watches_;       ///< By id of the weather sensor.
   bool clock_ok_ = false;
-  std::array<std::uint64_t, 3> events_{};  ///< Committed, by Severity.
+  std::array<std::uint64_t, 3> events_{};                     ///< Committed, by Severity.
+  std::optional<std::chrono::milliseconds> refusal_told_at_;  ///< By the monotonic clock.
+  bool is_refusal_told_ = false;                              ///< It goes on.
   std::deque<HeldRead> held_;
   std::shared_ptr<Gateway*> self_;
 };

@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "daemon/gateway/run/job_events.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -39,10 +41,11 @@ Result<JobOutcome> done_and_tidied(const DoJob& work, const StoredJob& job, JobW
 
 }  // namespace
 
-JobRunner::JobRunner(Ports ports, DoJob work, OnJob on_job)
+JobRunner::JobRunner(Ports ports, DoJob work, OnJob on_job, OnJobEvent on_event)
     : ports_(ports),
       work_(std::move(work)),
       on_job_(std::move(on_job)),
+      on_event_(std::move(on_event)),
       watch_(std::make_shared<JobWatch>()),
       self_(std::make_shared<JobRunner*>(this)) {}
 
@@ -90,9 +93,24 @@ Result<void> JobRunner::take_up_unfinished() {
 Result<void> JobRunner::end(StoredJob job, JobState state) {
   job.state = state;
   job.ended = ports_.loop.now().instant();
-  if (auto put = ports_.store.put_job(job); !put) return put;
+  if (auto put = put_with_events(job, false); !put) return put;
   if (on_job_) on_job_(job);
   return {};
+}
+
+/// A job that is stored as ended says nothing more, so its events are stored in the same commit.
+Result<void> JobRunner::put_with_events(const StoredJob& job, bool has_named) {
+  const auto before = ports_.store.last_accepted(JobKind::calibration);
+  if (!before) return tl::unexpected(before.error());
+  const std::vector<StoreEvent> events = events_of(job, has_named, *before);
+  auto put = ports_.store.as_one([&]() -> Result<void> {
+    if (const StoreBatch batch{.events = events}; !batch.empty()) {
+      if (const auto told = ports_.store.commit(batch); !told) return tl::unexpected(told.error());
+    }
+    return ports_.store.put_job(job);
+  });
+  if (put && on_event_) std::ranges::for_each(events, on_event_);
+  return put;
 }
 
 Result<std::int64_t> JobRunner::ask(JobKind kind, const std::string& asked_by) {
@@ -165,11 +183,13 @@ void JobRunner::finish(Result<JobOutcome> outcome) {
     current_.folder = std::move(outcome->folder);
     current_.result = std::move(outcome->result);
     forecasts_ = std::move(outcome->forecasts);
+    has_named_ = outcome->named;
     next_ = outcome->next;
     next_asked_by_ = std::move(outcome->next_asked_by);
   } else {
     current_.state = cancelled_ ? JobState::cancelled : JobState::failed;
     current_.message = cancelled_ ? "" : outcome.error().message;
+    has_named_ = false;
   }
   stage_ = Stage::keeping;
   keep();
@@ -180,7 +200,8 @@ void JobRunner::keep() {
   // The job comes last: if the process ends in between, the job runs again and the rest
   // is already stored.
   const bool is_kept = ports_.store.add_forecasts(forecasts_) &&
-                       (!next_ || ask(*next_, next_asked_by_)) && ports_.store.put_job(current_);
+                       (!next_ || ask(*next_, next_asked_by_)) &&
+                       put_with_events(current_, has_named_);
   if (is_kept) {
     forecasts_.clear();
     next_.reset();

@@ -20,6 +20,7 @@ namespace recald::daemon {
 
 struct JobOutcome {
   bool accepted = false;  ///< Its checks pass: this result is in use from now on.
+  bool named = false;     ///< A diagnosis named something.
   bool failed = false;    ///< It failed: `message` says why, `result` what it lacked.
   std::string message;    ///< Which check failed, or what was missing; else empty.
   std::string folder;     ///< Contains its files.
@@ -37,6 +38,9 @@ using DoJob =
 /// Called after every stored change of a job's state.
 using OnJob = std::function<void(const StoredJob&)>;
 
+/// Called with each event that was stored together with a job.
+using OnJobEvent = std::function<void(const StoreEvent&)>;
+
 /// A job is stored before its number is reported, and its outcome before the next one begins, so a
 /// kill at any moment loses no request. The running job runs again in the next process, three
 /// times at most, because a job that gets the process killed, perhaps for its memory, would
@@ -48,7 +52,7 @@ class JobRunner {
     Store& store;
     Worker& worker;
   };
-  JobRunner(Ports ports, DoJob work, OnJob on_job);
+  JobRunner(Ports ports, DoJob work, OnJob on_job, OnJobEvent on_event = {});
   ~JobRunner();
   JobRunner(const JobRunner&) = delete;
   JobRunner& operator=(const JobRunner&) = delete;
@@ -79,6 +83,7 @@ class JobRunner {
 
   [[nodiscard]] Result<void> take_up_unfinished();
   [[nodiscard]] Result<void> end(StoredJob job, JobState state);
+  [[nodiscard]] Result<void> put_with_events(const StoredJob& job, bool has_named);
   void begin_next();
   void finish(Result<JobOutcome> outcome);
   void keep();
@@ -87,9 +92,11 @@ class JobRunner {
   Ports ports_;
   DoJob work_;
   OnJob on_job_;
+  OnJobEvent on_event_;
   Stage stage_ = Stage::idle;
   StoredJob current_;                      ///< Valid unless idle.
-  std::vector<StoredForecast> forecasts_;  ///< Of `current_`, to be stored.
+  bool has_named_ = false;                 ///< Of `current_`, as the next.
+  std::vector<StoredForecast> forecasts_;  ///< To be stored.
   std::optional<JobKind> next_;            ///< To be requested before `current_` is stored.
   std::string next_asked_by_;
   bool cancelled_ = false;  ///< `current_` was cancelled.

@@ -25,6 +25,8 @@
 #include "adapters/system/clock_setting.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/system/worker_thread.hpp"
+#include "daemon/gateway/alert/alerts.hpp"
+#include "daemon/gateway/alert/deliver.hpp"
 #include "daemon/gateway/run/gateway.hpp"
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/run/recalibration.hpp"
@@ -74,8 +76,9 @@ StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
 class Service {
  public:
   /// @param opener, signals  Belong to the process; they outlive this.
+  /// @param told             What an earlier service has told whom.
   Service(OpenSite site, const ServiceOptions& options, RunningStore store, StoreOpener& opener,
-          Signals& signals)
+          Signals& signals, Alerts::Told told)
       : site_(std::move(site)),
         running_(std::move(store)),
         store_(running_.store.get()),
@@ -85,14 +88,23 @@ class Service {
         worker_(loop_),
         checker_(loop_),
         looker_(loop_),
+        messenger_(loop_),
         options_(options),
-        jobs_({loop_, *store_, worker_}, make_site_work(site_),
-              [](const StoredJob& job) { log_job(job); }),
+        jobs_(
+            {loop_, *store_, worker_}, make_site_work(site_),
+            [](const StoredJob& job) { log_job(job); },
+            [this](const StoreEvent& event) {
+              gateway_->count_stored(event);
+              hear(event);
+            }),
         weather_wait_({loop_, *store_, looker_}, make_weather_look(site_),
                       [this] { calibrate_with_weather(); }),
         upkeep_(*store_, checker_, upkeep_of(site_.config.store, running_), site_.calendar,
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
-        watchdog_(loop_, [this] { return store_->events(1).has_value(); }) {}
+        watchdog_(loop_, [this] { return store_->events(1).has_value(); }),
+        alerts_(
+            {loop_, *store_, messenger_}, site_.config, site_.calendar, deliver,
+            [this](StoreEvent event) { gateway_->note(std::move(event)); }, std::move(told)) {}
 
   /// @param memory  What an earlier service kept in memory; may be null.
   Result<void> open(Store* memory) {
@@ -107,7 +119,7 @@ class Service {
                        .time_zone_release = system::time_zone_release(),
                        .seed = std::random_device{}(),  // only for jitter, not for results
                        .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling,
-                       .on_event = log_event},
+                       .on_event = [this](const StoreEvent& event) { hear(event); }},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
                         recalibration_->month_closed(meter.id);
@@ -140,6 +152,7 @@ class Service {
     catch_up();
     gateway_->start();
     weather_wait_.start();
+    alerts_.start();
     keep_up();
     if (!running_.missing.empty()) stand_in();
     loop_.post([this] { watchdog_.ready(); });
@@ -156,6 +169,7 @@ class Service {
   [[nodiscard]] std::optional<RunningStore> take_found() { return std::exchange(found_, {}); }
   /// The store with what was kept in memory.
   [[nodiscard]] std::unique_ptr<Store> take_store() { return std::move(running_.store); }
+  [[nodiscard]] Alerts::Told take_told() { return alerts_.take_told(); }
   [[nodiscard]] const OpenSite& site() const { return site_; }
   /// Whether the site's store is being opened on another thread; destroying this waits for it.
   [[nodiscard]] bool is_opening() const { return is_opening_; }
@@ -290,6 +304,7 @@ class Service {
     site_.config = std::move(*config);
     jobs_.set_work(make_site_work(site_));
     weather_wait_.set_look(make_weather_look(site_));
+    alerts_.set_site(site_.config);
     schedule();
     // A month that closed within the last minute would have been requested by the old schedule.
     catch_up();
@@ -332,6 +347,11 @@ class Service {
         figure.coverage);
   }
 
+  void hear(const StoreEvent& event) {
+    log_event(event);
+    alerts_.heard(event);
+  }
+
   static void log_event(const StoreEvent& event) {
     constexpr std::array kLevels{spdlog::level::info, spdlog::level::warn, spdlog::level::err};
     spdlog::log(kLevels.at(static_cast<std::size_t>(event.severity)),
@@ -356,14 +376,16 @@ class Service {
   boost::asio::posix::stream_descriptor signal_file_{context_, signals_.descriptor()};
   asio::AsioLoop loop_;
   system::WorkerThread worker_;
-  system::WorkerThread checker_;  ///< For backups.
-  system::WorkerThread looker_;   ///< For weather checks.
+  system::WorkerThread checker_;    ///< For backups.
+  system::WorkerThread looker_;     ///< For weather checks.
+  system::WorkerThread messenger_;  ///< For alerts.
   ServiceOptions options_;
   JobRunner jobs_;  ///< Tells its work to stop before the worker waits for it.
   WeatherWait weather_wait_;
   std::unique_ptr<Recalibration> recalibration_;
   Upkeep upkeep_;
   Watchdog watchdog_;
+  Alerts alerts_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<http::Server> server_;
 };
@@ -385,13 +407,16 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   auto store = open_running_store(opener, site.config.store, now, extend_start);
   if (!store) return tl::unexpected(store.error());
   signals->hold_ends();
+  Alerts::Told told;
   for (std::unique_ptr<Store> memory;;) {
-    auto service = std::make_unique<Service>(site, options, std::move(*store), opener, *signals);
+    auto service = std::make_unique<Service>(site, options, std::move(*store), opener, *signals,
+                                             std::exchange(told, {}));
     if (auto opened = service->open(memory.get()); !opened) {
       if (!memory) return opened;
       // The readings in memory exist nowhere else: continue with them, and try again later.
       spdlog::error("event=not_taken_over why=\"{}\"", opened.error().message);
       opener.back_off();
+      told = service->take_told();
       store = RunningStore{std::move(memory), opened.error().message};
       continue;
     }
@@ -402,6 +427,7 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
     if (service->is_opening()) leave_at_once(ended);
     if (!found) return ended;
     site = service->site();
+    told = service->take_told();
     memory = service->take_store();
     store = std::move(*found);
   }

@@ -301,6 +301,7 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
     outcome.message = "nothing was named";
     return outcome;
   }
+  outcome.named = true;
   const auto proposed = propose(*modelled, done->diagnosis, *problem, now, outcome);
   outcome.message =
       named_words(done->diagnosis) + "; " +

@@ -695,6 +695,7 @@ void read_root(TomlReader root, SiteConfig& config) {
   config.store = default_store(config.file);
   if (auto store = root.table("store")) config.store = read_store(*store, config.file);
   if (auto http = root.table("http")) config.http = read_http(*http, config.file);
+  if (auto alerts = root.table("alerts")) config.alerts = read_alerts(*alerts, config.file);
   if (auto table = root.table("tariff")) read_tariff(*table, config.tariff);
   if (auto table = root.table("emissions")) read_emissions(*table, config.tariff);
   if (auto table = root.table("recalibration")) {

@@ -25,6 +25,7 @@
 #include "core/tariff/tariff.hpp"
 #include "core/weather/recorded_values.hpp"
 #include "core/weather/sun.hpp"
+#include "daemon/site/config/alert_config.hpp"
 #include "daemon/site/config/bus_config.hpp"
 #include "daemon/site/config/service_config.hpp"
 #include "daemon/site/config/store_config.hpp"
@@ -158,6 +159,7 @@ struct SiteConfig {
   metering::CloserOptions closing;
   StoreConfig store;
   std::optional<HttpConfig> http;  ///< Absent: nothing is served.
+  AlertConfig alerts;
   RecalibrationConfig recalibration;
   /// [diagnosis] Probability that the model lacks nothing, before a reading is seen.
   double prior_none = 0.5;

@@ -2,26 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "daemon/site/config/site_path.hpp"
 
 namespace recald::daemon {
 namespace {
-
-/// "03:15"
-std::optional<std::chrono::minutes> parse_time_of_day(std::string_view text) {
-  if (text.size() != 5 || text[2] != ':') return {};
-  const auto number = [&](std::size_t at) {
-    int value = -1;
-    const auto read = std::from_chars(text.data() + at, text.data() + at + 2, value);
-    return read.ptr == text.data() + at + 2 ? value : -1;
-  };
-  const int hour = number(0);
-  const int minute = number(3);
-  if (hour < 0 || hour > 23 || minute < 0 || minute > 59) return {};
-  return std::chrono::hours{hour} + std::chrono::minutes{minute};
-}
 
 std::filesystem::path folder_beside(const std::filesystem::path& store) {
   return store.parent_path() / "backups";

@@ -104,4 +104,7 @@ class TomlReader {
 /// "15m" and the like; nothing for text that is no positive duration.
 [[nodiscard]] std::optional<std::chrono::seconds> parse_duration(std::string_view text);
 
+/// "03:15"
+[[nodiscard]] std::optional<std::chrono::minutes> parse_time_of_day(std::string_view text);
+
 }  // namespace recald::daemon

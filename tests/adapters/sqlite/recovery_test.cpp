@@ -279,8 +279,9 @@ TEST_F(RecoveryTest, ALogThatStaysIsReadToo) {
 TEST_F(RecoveryTest, RowsFromBeforeThereWereSumsAreTaken) {
   {
     auto database = Database::open(file(), {}).value();
+    ASSERT_TRUE(database.execute("DROP TABLE cursor").has_value());
     for (const TableShape& table : table_shapes()) {
-      if (!table.has_sum()) continue;
+      if (!table.has_sum() || std::string_view{table.name} == "cursor") continue;
       ASSERT_TRUE(
           database.execute(fmt::format("ALTER TABLE {} DROP COLUMN sum", table.name)).has_value());
     }
@@ -301,7 +302,7 @@ TEST_F(RecoveryTest, RowsFromBeforeThereWereSumsAreTaken) {
 
 // What a header says of the version is held against the tables.
 TEST_F(RecoveryTest, AFlippedVersionIsNoOtherVersion) {
-  for (const int named : {7, 4, 1, 0}) {
+  for (const int named : {8, 5, 1, 0}) {
     SCOPED_TRACE(named);
     const TemporaryFolder here;
     const auto flipped = here / "site.db";
@@ -316,7 +317,7 @@ TEST_F(RecoveryTest, AFlippedVersionIsNoOtherVersion) {
     ASSERT_TRUE(opened.recovery.has_value());
     EXPECT_EQ(
         opened.recovery->damage,
-        fmt::format("its header says schema version {}, but its tables are those of version 5",
+        fmt::format("its header says schema version {}, but its tables are those of version 6",
                     named));
     EXPECT_EQ(right_intervals(opened.store, 0) + right_intervals(opened.store, 1), 2 * kQuarters);
     EXPECT_EQ(opened.recovery->lost_intervals, 0);
@@ -374,7 +375,7 @@ TEST_F(RecoveryTest, ANewerStoreIsRefusedAndAsItWas) {
     const TemporaryFolder here;
     std::filesystem::copy(file(), here / "site.db");
     ASSERT_TRUE(Database::open(here / "site.db", {})
-                    ->execute(fmt::format("{}; PRAGMA user_version = 6", upgrade))
+                    ->execute(fmt::format("{}; PRAGMA user_version = 7", upgrade))
                     .has_value());
     const std::string before = recald::testing::read_text(here / "site.db");
     const auto opened = open_checked(here / "site.db", {}, kNow);
@@ -383,7 +384,7 @@ TEST_F(RecoveryTest, ANewerStoreIsRefusedAndAsItWas) {
     EXPECT_THAT(
         opened.error().message,
         HasSubstr(
-            "the store file has schema version 6, but this recald only knows 5; use the newer"));
+            "the store file has schema version 7, but this recald only knows 6; use the newer"));
     EXPECT_EQ(recald::testing::read_text(here / "site.db"), before);
     EXPECT_FALSE(std::filesystem::exists(here / "site.db.recovery"));
   }
@@ -420,7 +421,8 @@ TEST(SchemaVersions, TextsStayAsTheyWereWritten) {
     ASSERT_TRUE(query.step().value());
     sums.push_back(query.integer(0));
   }
-  EXPECT_THAT(sums, ElementsAre(1978806147, 845759539, 1936630115, 1590918335, 3679785145));
+  EXPECT_THAT(sums,
+              ElementsAre(1978806147, 845759539, 1936630115, 1590918335, 3679785145, 129490604));
 }
 
 // A second damage at the same second, as of a clock that always wakes up at the same time.

@@ -5,6 +5,7 @@
 
 #include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/sqlite/tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::sqlite::store_tables_test {
@@ -258,7 +259,37 @@ TEST_F(StoreTables, AReaderDoesNotUpgrade) {
       SqliteStore::open(folder_ / "older.db", {.access = Database::Access::read_only});
   ASSERT_FALSE(reader.has_value());
   EXPECT_EQ(reader.error().code, ErrorCode::unsupported);
-  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, but this recald reads 5"));
+  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, but this recald reads 6"));
+}
+
+TEST_F(StoreTables, EventsAreGivenOutFromACursorOn) {
+  EXPECT_FALSE(store_.cursor("mail").value().has_value());
+  for (const char* kind : {"first", "second", "third"}) {
+    ASSERT_TRUE(
+        store_.commit({.events = {{kStart, Severity::info, kind, "main", "."}}}).has_value());
+  }
+  const auto all = store_.events_after(0, 10).value();
+  ASSERT_EQ(all.size(), 3);
+  ASSERT_TRUE(store_.put_cursor("mail", all[0].number).has_value());
+  ASSERT_TRUE(store_.put_cursor("mail", all[1].number).has_value());
+  ASSERT_TRUE(store_.put_cursor("webhook", all[0].number).has_value());
+  EXPECT_EQ(store_.cursor("mail").value(), all[1].number);
+  const auto left = store_.events_after(all[1].number, 10).value();
+  ASSERT_EQ(left.size(), 1);
+  EXPECT_EQ(left[0].kind, "third");
+  EXPECT_EQ(left[0].number, store_.events(1)->front().number);
+  EXPECT_EQ(store_.events_after(0, 2)->size(), 2);
+  EXPECT_EQ(wrong_sums(store_.database()).value(), "");
+}
+
+// Otherwise a destination would take a new event for one that it was told.
+TEST_F(StoreTables, TheNumberOfADeletedEventIsNotGivenAgain) {
+  ASSERT_TRUE(store_.commit({.events = {{kStart, Severity::info, "old", "", "."}}}).has_value());
+  const std::int64_t told = store_.events(1)->front().number;
+  ASSERT_TRUE(store_.put_cursor("mail", told).has_value());
+  ASSERT_EQ(store_.delete_events(kStart + std::chrono::days{1}, 10).value(), 1);
+  ASSERT_TRUE(store_.commit({.events = {{kStart, Severity::info, "new", "", "."}}}).has_value());
+  EXPECT_THAT(*store_.events_after(told, 10), SizeIs(1));
 }
 
 }  // namespace

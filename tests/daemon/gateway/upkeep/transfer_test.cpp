@@ -196,10 +196,10 @@ TEST_F(Transfer, AnImportGoesOnWithARecovery) {
 }
 
 TEST_F(Transfer, AFileWhoseHeaderIsDamagedIsToldSo) {
-  ASSERT_TRUE(store().database().execute("PRAGMA user_version = 7").has_value());
+  ASSERT_TRUE(store().database().execute("PRAGMA user_version = 8").has_value());
   const Outcome verified = run({"verify", site()});
   EXPECT_EQ(verified.exit_code, 1);
-  EXPECT_THAT(verified.err, HasSubstr("the file is damaged: its header says schema version 7"));
+  EXPECT_THAT(verified.err, HasSubstr("the file is damaged: its header says schema version 8"));
   EXPECT_THAT(verified.err,
               HasSubstr("the daemon recovers the rows that can be read when it starts"));
 }

@@ -1,0 +1,141 @@
+#include "adapters/delivery/delivery.hpp"
+
+#include <curl/curl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+namespace recald::delivery {
+namespace {
+
+constexpr long kConnect_ms = 10'000;
+constexpr long kWhole_ms = 30'000;
+
+struct Close {
+  void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
+  void operator()(CURLU* url) const { curl_url_cleanup(url); }
+  void operator()(curl_slist* list) const { curl_slist_free_all(list); }
+};
+using Handle = std::unique_ptr<CURL, Close>;
+using List = std::unique_ptr<curl_slist, Close>;
+
+int ask_whether_to_stop(void* stop, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
+  return static_cast<const std::stop_token*>(stop)->stop_requested() ? 1 : 0;
+}
+
+std::size_t drop(char*, std::size_t, std::size_t count, void*) { return count; }
+
+std::size_t read_rest(char* to, std::size_t size, std::size_t count, void* rest) {
+  auto& text = *static_cast<std::string_view*>(rest);
+  const std::size_t taken = std::min(size * count, text.size());
+  std::memcpy(to, text.data(), taken);
+  text.remove_prefix(taken);
+  return taken;
+}
+
+void add(List& list, const std::string& line) {
+  if (curl_slist* longer = curl_slist_append(list.get(), line.c_str())) {
+    (void)list.release();
+    list.reset(longer);
+  }
+}
+
+/// What both kinds have in common.
+Handle begin(const std::string& url, const char* protocols,
+             const std::filesystem::path& trusted_certificate, const std::stop_token& stop) {
+  static const CURLcode initialised = curl_global_init(CURL_GLOBAL_DEFAULT);
+  Handle handle{initialised == CURLE_OK ? curl_easy_init() : nullptr};
+  if (!handle) return handle;
+  curl_easy_setopt(handle.get(), CURLOPT_URL, url.c_str());
+  curl_easy_setopt(handle.get(), CURLOPT_PROTOCOLS_STR, protocols);
+  curl_easy_setopt(handle.get(), CURLOPT_NOSIGNAL, 1L);
+  curl_easy_setopt(handle.get(), CURLOPT_QUICK_EXIT, 1L);  // does not wait for a name server
+  curl_easy_setopt(handle.get(), CURLOPT_CONNECTTIMEOUT_MS, kConnect_ms);
+  curl_easy_setopt(handle.get(), CURLOPT_TIMEOUT_MS, kWhole_ms);
+  curl_easy_setopt(handle.get(), CURLOPT_WRITEFUNCTION, drop);
+  curl_easy_setopt(handle.get(), CURLOPT_NOPROGRESS, 0L);
+  curl_easy_setopt(handle.get(), CURLOPT_XFERINFOFUNCTION, ask_whether_to_stop);
+  curl_easy_setopt(handle.get(), CURLOPT_XFERINFODATA, &stop);
+  if (!trusted_certificate.empty()) {
+    curl_easy_setopt(handle.get(), CURLOPT_CAINFO, trusted_certificate.c_str());
+    curl_easy_setopt(handle.get(), CURLOPT_CAPATH, nullptr);
+  }
+  return handle;
+}
+
+Result<void> perform(const Handle& handle, const std::string& url) {
+  std::string why(CURL_ERROR_SIZE, '\0');
+  curl_easy_setopt(handle.get(), CURLOPT_ERRORBUFFER, why.data());
+  const CURLcode code = curl_easy_perform(handle.get());
+  if (code == CURLE_OK) return {};
+  if (code == CURLE_ABORTED_BY_CALLBACK) {
+    return failure(ErrorCode::cancelled, "the delivery was stopped");
+  }
+  why.resize(std::strlen(why.c_str()));
+  return failure(ErrorCode::io_failed, fmt::format("{} did not take the message: {}", host_of(url),
+                                                   why.empty() ? curl_easy_strerror(code) : why));
+}
+
+tl::unexpected<Error> no_handle() {
+  return failure(ErrorCode::io_failed, "the message cannot be sent: there is not enough memory");
+}
+
+}  // namespace
+
+Result<void> post_json(const Webhook& webhook, const std::string& document,
+                       const std::stop_token& stop) {
+  const Handle handle = begin(webhook.url, "http,https", webhook.trusted_certificate, stop);
+  if (!handle) return no_handle();
+  List headers;
+  add(headers, "Content-Type: application/json");
+  add(headers, "Expect:");  // none: some servers never answer it
+  if (!webhook.token.empty()) add(headers, "Authorization: Bearer " + webhook.token);
+  curl_easy_setopt(handle.get(), CURLOPT_HTTPHEADER, headers.get());
+  curl_easy_setopt(handle.get(), CURLOPT_USERAGENT, "recald");
+  curl_easy_setopt(handle.get(), CURLOPT_POSTFIELDS, document.c_str());
+  curl_easy_setopt(handle.get(), CURLOPT_POSTFIELDSIZE_LARGE,
+                   static_cast<curl_off_t>(document.size()));
+  if (auto done = perform(handle, webhook.url); !done) return done;
+  long status = 0;
+  curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &status);
+  if (status >= 200 && status < 300) return {};
+  return failure(ErrorCode::io_failed,
+                 fmt::format("{} did not take the message: it answered with status {}",
+                             host_of(webhook.url), status));
+}
+
+Result<void> send_mail(const MailServer& server, const Mail& mail, const std::stop_token& stop) {
+  const Handle handle = begin(server.url, "smtp,smtps", server.trusted_certificate, stop);
+  if (!handle) return no_handle();
+  curl_easy_setopt(handle.get(), CURLOPT_USE_SSL,
+                   static_cast<long>(server.encrypts ? CURLUSESSL_ALL : CURLUSESSL_NONE));
+  if (!server.user.empty()) {
+    curl_easy_setopt(handle.get(), CURLOPT_USERNAME, server.user.c_str());
+    curl_easy_setopt(handle.get(), CURLOPT_PASSWORD, server.password.c_str());
+  }
+  List recipients;
+  for (const std::string& address : mail.to) add(recipients, address);
+  curl_easy_setopt(handle.get(), CURLOPT_MAIL_FROM, mail.from.c_str());
+  curl_easy_setopt(handle.get(), CURLOPT_MAIL_RCPT, recipients.get());
+  const std::string text = mail_text(mail);
+  std::string_view rest = text;
+  curl_easy_setopt(handle.get(), CURLOPT_UPLOAD, 1L);
+  curl_easy_setopt(handle.get(), CURLOPT_READFUNCTION, read_rest);
+  curl_easy_setopt(handle.get(), CURLOPT_READDATA, &rest);
+  return perform(handle, server.url);
+}
+
+std::string host_of(const std::string& url) {
+  constexpr const char* kUnknown = "the server";
+  const std::unique_ptr<CURLU, Close> parsed{curl_url()};
+  if (curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) return kUnknown;
+  char* text = nullptr;
+  if (curl_url_get(parsed.get(), CURLUPART_HOST, &text, 0) != CURLUE_OK) return kUnknown;
+  const std::unique_ptr<char, decltype(&curl_free)> owned{text, curl_free};
+  return text;
+}
+
+}  // namespace recald::delivery

@@ -1,0 +1,44 @@
+/// Sends a message to a web address or a mail server.
+///
+/// Wraps libcurl. Both calls block, for at most half a minute, and end soon after a stop is
+/// requested.
+#pragma once
+
+#include <filesystem>
+#include <stop_token>
+#include <string>
+
+#include "adapters/delivery/mail_text.hpp"
+#include "core/result.hpp"
+
+namespace recald::delivery {
+
+struct Webhook {
+  std::string url;    ///< http or https.
+  std::string token;  ///< Sent as a Bearer token; empty: none.
+  /// PEM; trusted instead of what the system trusts. Empty: as the system.
+  std::filesystem::path trusted_certificate;
+};
+
+struct MailServer {
+  std::string url;       ///< "smtps://mail.example.org", "smtp://mail.example.org:587".
+  std::string user;      ///< Empty: the server asks for none.
+  std::string password;  ///< Never sent without encryption.
+  bool encrypts = true;  ///< smtp:// goes on after STARTTLS, or fails; otherwise it stays plain.
+  std::filesystem::path trusted_certificate;  ///< As in Webhook.
+};
+
+/// Posts a JSON document; does not follow redirections.
+/// @return or io_failed: no server, no trust, a status other than 2xx; cancelled.
+[[nodiscard]] Result<void> post_json(const Webhook& webhook, const std::string& document,
+                                     const std::stop_token& stop);
+
+/// @return or io_failed: no server, no trust, or the server did not accept the mail; cancelled.
+[[nodiscard]] Result<void> send_mail(const MailServer& server, const Mail& mail,
+                                     const std::stop_token& stop);
+
+/// The host of an address, for messages: the rest of a web address is often a secret. "the server"
+/// for what is no address.
+[[nodiscard]] std::string host_of(const std::string& url);
+
+}  // namespace recald::delivery

@@ -1,0 +1,263 @@
+#include "daemon/gateway/alert/alerts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "adapters/http/url.hpp"
+#include "adapters/system/sha256.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using std::chrono::milliseconds;
+
+constexpr std::size_t kHeardMax = 1'000;
+constexpr std::size_t kToldMax = 1'000;
+/// What a new destination is told of the past. The recovery of a store at the start is in it.
+constexpr std::chrono::hours kToldAtFirst{1};
+constexpr int kEventsOfThePast = 1'000;
+constexpr std::chrono::days kCountedFor{1};  // as the store counts repeated events
+
+template <class T>
+void keep_newest(std::deque<T>& values, std::size_t max) {
+  while (values.size() > max) values.pop_front();
+}
+
+}  // namespace
+
+std::string cursor_name(const AlertDestination& destination) {
+  const auto hashed = [](std::string_view kind, const std::string& what) {
+    system::Sha256 digest;
+    digest.add(what);
+    return fmt::format("{} {}", kind, digest.hex().substr(0, 16));
+  };
+  if (const auto* const webhook = std::get_if<WebhookConfig>(&destination)) {
+    return hashed("webhook", webhook->url);
+  }
+  const auto& mail = std::get<MailConfig>(destination);
+  return hashed("mail", fmt::format("{} {}", mail.server, fmt::join(mail.to, " ")));
+}
+
+std::string destination_words(const AlertDestination& destination) {
+  if (const auto* const webhook = std::get_if<WebhookConfig>(&destination)) {
+    const auto url = http::parse_url(webhook->url);
+    return "webhook at " + (url ? url->host : "?");
+  }
+  return fmt::format("mail to {}", fmt::join(std::get<MailConfig>(destination).to, ", "));
+}
+
+Alerts::Alerts(Ports ports, const SiteConfig& site, metering::LocalCalendar calendar,
+               Deliver deliver, std::function<void(StoreEvent)> tell, Told told,
+               const AlertRules& rules)
+    : ports_(ports),
+      calendar_(std::move(calendar)),
+      deliver_(std::move(deliver)),
+      tell_(std::move(tell)),
+      rules_(rules),
+      told_(std::move(told)),
+      self_(std::make_shared<Alerts*>(this)) {
+  set_site(site);
+}
+
+Alerts::~Alerts() { stop_.request_stop(); }
+
+void Alerts::start() { schedule(rules_.gather); }
+
+void Alerts::set_site(const SiteConfig& site) {
+  site_ = site;
+  std::vector<Outgoing> outgoing;
+  for (const AlertDestination& destination : site.alerts.destinations) {
+    const std::string cursor = cursor_name(destination);
+    // Twice in the file is once: there is one cursor.
+    if (std::ranges::find(outgoing, cursor, &Outgoing::cursor) != outgoing.end()) continue;
+    const auto known = std::ranges::find(outgoing_, cursor, &Outgoing::cursor);
+    outgoing.push_back({.destination = destination,
+                        .cursor = cursor,
+                        .position = known == outgoing_.end() ? std::nullopt : known->position});
+  }
+  outgoing_ = std::move(outgoing);
+  schedule(rules_.gather);
+}
+
+void Alerts::heard(const StoreEvent& event) {
+  if (event.kind == "store_refuses") store_refuses_ = true;
+  if (event.kind == "store_accepts") store_refuses_ = false;
+  heard_.push_back({event, ports_.loop.now().monotonic});
+  keep_newest(heard_, kHeardMax);
+  schedule(rules_.gather);
+}
+
+void Alerts::schedule(milliseconds wait) {
+  if (outgoing_.empty()) return;
+  const milliseconds due = ports_.loop.now().monotonic + wait;
+  if (due_ && *due_ <= due) return;
+  due_ = due;
+  ports_.loop.after(wait, [weak = std::weak_ptr{self_}, due] {
+    const auto self = weak.lock();
+    if (!self || (*self)->due_ != due) return;
+    (*self)->due_.reset();
+    (*self)->look();
+  });
+}
+
+void Alerts::look() {
+  schedule(rules_.look_every);
+  if (is_sending_) return;  // its end looks again
+  const Moment now = ports_.loop.now();
+  for (Outgoing& outgoing : outgoing_) {
+    if (now.monotonic < outgoing.not_before) continue;
+    auto pending = pending_for(outgoing, now);
+    if (!pending) continue;  // the store cannot be read, which it says itself
+    if (pending->events.empty()) {
+      move(outgoing, pending->position);
+    } else if (!waits_for_morning(*pending, now.instant())) {
+      return send(outgoing, std::move(*pending), now.instant());
+    }
+  }
+  if (!store_refuses_) {
+    std::erase_if(heard_, [&](const Heard& one) { return now.monotonic - one.at > rules_.gather; });
+  }
+}
+
+Result<std::int64_t> Alerts::position_of(Outgoing& outgoing, Instant now) {
+  if (outgoing.position) return *outgoing.position;
+  const auto stored = ports_.store.cursor(outgoing.cursor);
+  if (!stored) return tl::unexpected(stored.error());
+  if (!*stored) {
+    const auto past = ports_.store.events(kEventsOfThePast);
+    if (!past) return tl::unexpected(past.error());
+    std::int64_t position = 0;
+    for (const StoreEvent& event : *past) {
+      if (event.time < now - kToldAtFirst) position = std::max(position, event.number);
+    }
+    outgoing.position = position;
+    return position;
+  }
+  outgoing.position = **stored;
+  return **stored;
+}
+
+Result<Alerts::Pending> Alerts::pending_for(Outgoing& outgoing, const Moment& now) {
+  Pending pending;
+  // A store that cannot even be read has nothing to add to what is in memory.
+  const auto added = add_stored(outgoing, now, pending);
+  if (!added && !store_refuses_) return tl::unexpected(added.error());
+  if (store_refuses_) add_unstored(outgoing, now, pending);
+  return pending;
+}
+
+Result<void> Alerts::add_stored(Outgoing& outgoing, const Moment& now, Pending& pending) {
+  const auto position = position_of(outgoing, now.instant());
+  if (!position) return tl::unexpected(position.error());
+  const auto events = ports_.store.events_after(*position, rules_.events);
+  if (!events) return tl::unexpected(events.error());
+  for (const StoreEvent& event : *events) {
+    pending.position = event.number;
+    const bool is_new = is_alert(event, now.instant()) && !was_told(outgoing, event);
+    if (is_new) pending.events.push_back(event);
+  }
+  return {};
+}
+
+void Alerts::add_unstored(const Outgoing& outgoing, const Moment& now, Pending& pending) const {
+  for (const Heard& heard : heard_) {
+    const StoreEvent& event = heard.event;
+    const bool is_stored = std::ranges::any_of(pending.events, [&](const StoreEvent& stored) {
+      return stored.kind == event.kind && stored.subject == event.subject &&
+             stored.time == event.time;
+    });
+    if (is_stored || !is_alert(event, now.instant()) || was_told(outgoing, event)) continue;
+    pending.events.push_back(event);
+  }
+}
+
+bool Alerts::is_alert(const StoreEvent& event, Instant now) const {
+  const bool is_chosen =
+      std::ranges::find(site_.alerts.about, event.kind) != site_.alerts.about.end();
+  return is_chosen && event.last.value_or(event.time) > now - rules_.forget;
+}
+
+bool Alerts::was_told(const Outgoing& outgoing, const StoreEvent& event) const {
+  const auto told = told_.find(outgoing.cursor);
+  if (told == told_.end()) return false;
+  return std::ranges::any_of(told->second, [&](const ToldEvent& one) {
+    const bool is_repeated =
+        event.is_counted && one.time <= event.time && event.time < one.time + kCountedFor;
+    return one.kind == event.kind && one.subject == event.subject &&
+           (one.time == event.time || is_repeated);
+  });
+}
+
+bool Alerts::waits_for_morning(const Pending& pending, Instant now) const {
+  if (!site_.alerts.quiet) return false;
+  const std::chrono::minutes time_of_day{calendar_.local_time(now).minute_of_day};
+  return site_.alerts.quiet->contain(time_of_day) &&
+         std::ranges::none_of(pending.events, [](const StoreEvent& event) {
+           return event.severity == Severity::error;
+         });
+}
+
+/// A cursor that cannot be stored moves in memory, and is stored with the next move.
+void Alerts::move(Outgoing& outgoing, std::optional<std::int64_t> position) {
+  if (!position || outgoing.position == position) return;
+  outgoing.position = position;
+  (void)ports_.store.put_cursor(outgoing.cursor, *position);
+}
+
+void Alerts::send(const Outgoing& outgoing, Pending pending, Instant now) {
+  is_sending_ = true;
+  const auto sent = std::make_shared<Result<void>>();
+  AlertMessage message = alert_message(site_, calendar_, pending.events, now);
+  ports_.worker.run(
+      [deliver = deliver_, destination = outgoing.destination, message = std::move(message),
+       stop = stop_.get_token(), sent] { *sent = deliver(destination, message, stop); },
+      [weak = std::weak_ptr{self_}, cursor = outgoing.cursor, pending = std::move(pending), sent] {
+        if (const auto self = weak.lock()) (*self)->finish(cursor, pending, *sent);
+      });
+}
+
+void Alerts::finish(const std::string& cursor, const Pending& pending, const Result<void>& sent) {
+  is_sending_ = false;
+  const auto outgoing = std::ranges::find(outgoing_, cursor, &Outgoing::cursor);
+  if (outgoing == outgoing_.end()) return schedule(milliseconds{0});  // removed by a reload
+  const Moment now = ports_.loop.now();
+  const std::string words = destination_words(outgoing->destination);
+  if (!sent) {
+    const bool is_first = outgoing->wait == milliseconds{0};
+    outgoing->wait = is_first ? rules_.retry_min : std::min(2 * outgoing->wait, rules_.retry_max);
+    outgoing->not_before = now.monotonic + outgoing->wait;
+    if (is_first) {
+      tell_({.time = now.instant(),
+             .severity = Severity::warning,
+             .kind = "alert_not_sent",
+             .subject = "",
+             .text = fmt::format("{}: {}; recald tries again for three days", words,
+                                 sent.error().message),
+             .is_counted = true});
+    }
+    return schedule(milliseconds{0});
+  }
+  outgoing->wait = outgoing->not_before = milliseconds{0};
+  auto& told = told_[cursor];
+  for (const StoreEvent& event : pending.events) {
+    told.push_back({event.time, event.kind, event.subject});
+  }
+  keep_newest(told, kToldMax);
+  move(*outgoing, pending.position);
+  tell_({.time = now.instant(),
+         .severity = Severity::info,
+         .kind = "alert_sent",
+         .subject = "",
+         .text = fmt::format("{}: {}", words,
+                             pending.events.size() == 1
+                                 ? "1 alert"
+                                 : fmt::format("{} alerts", pending.events.size())),
+         .is_counted = true});
+  schedule(milliseconds{0});
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,130 @@
+/// Tells people and programs outside what has happened: each destination everything once, in order.
+///
+/// The store is the outbox: a destination has a cursor over its events, which moves when a message
+/// was taken. What happens while the store accepts nothing is told from memory. Deliveries run on a
+/// worker of their own, so that no poll waits for a mail server.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "adapters/ports/worker.hpp"
+#include "daemon/gateway/alert/alert_message.hpp"
+
+namespace recald::daemon {
+
+struct AlertRules {
+  std::chrono::milliseconds gather{10'000};      ///< What happens together is one message.
+  std::chrono::milliseconds look_every{60'000};  ///< For the end of quiet hours.
+  std::chrono::milliseconds retry_min{60'000};   ///< After a failure; doubles.
+  std::chrono::milliseconds retry_max{3'600'000};
+  std::chrono::hours forget{72};  ///< Older events are not told any more.
+  int events = 500;               ///< In one message at most.
+};
+
+/// Sends a message; runs on the worker, and ends soon after a stop is requested.
+using Deliver = std::function<Result<void>(const AlertDestination&, const AlertMessage&,
+                                           const std::stop_token&)>;
+
+/// The name under which a destination's cursor is stored. An address may hold a secret, so it is
+/// not part of the name as it is.
+[[nodiscard]] std::string cursor_name(const AlertDestination& destination);
+
+/// "mail to operator@example.org", "webhook at hooks.example.org"
+[[nodiscard]] std::string destination_words(const AlertDestination& destination);
+
+class Alerts {
+ public:
+  struct Ports {
+    Loop& loop;
+    Store& store;
+    Worker& worker;  ///< For this object alone.
+  };
+
+  /// What a destination has been told, by the name of its cursor.
+  struct ToldEvent {
+    metering::Instant time;
+    std::string kind;
+    std::string subject;
+  };
+  using Told = std::map<std::string, std::deque<ToldEvent>>;
+
+  /// @param tell  Receives events about the deliveries themselves.
+  /// @param told  By an earlier object, whose store was another.
+  Alerts(Ports ports, const SiteConfig& site, metering::LocalCalendar calendar, Deliver deliver,
+         std::function<void(StoreEvent)> tell, Told told = {}, const AlertRules& rules = {});
+  /// Stops the worker's delivery early.
+  ~Alerts();
+  Alerts(const Alerts&) = delete;
+  Alerts& operator=(const Alerts&) = delete;
+
+  /// Tells what an earlier process could not.
+  void start();
+
+  /// Call with each event when it happens, whether or not the store accepts it.
+  void heard(const StoreEvent& event);
+
+  /// Continues with another site file. Destinations that stay are told what is new to them.
+  void set_site(const SiteConfig& site);
+
+  [[nodiscard]] Told take_told() { return std::move(told_); }
+
+ private:
+  struct Outgoing {
+    AlertDestination destination;
+    std::string cursor;                       ///< Its name.
+    std::optional<std::int64_t> position;     ///< Ahead of the store's if that refuses to be told.
+    std::chrono::milliseconds not_before{0};  ///< By the monotonic clock.
+    std::chrono::milliseconds wait{0};        ///< Before the next try; 0: the last one succeeded.
+  };
+  /// What a destination has to be told.
+  struct Pending {
+    std::vector<StoreEvent> events;
+    std::optional<std::int64_t> position = {};  ///< Of the cursor once they are told, if it moves.
+  };
+
+  void schedule(std::chrono::milliseconds wait);
+  void look();
+  [[nodiscard]] Result<Pending> pending_for(Outgoing& outgoing, const Moment& now);
+  [[nodiscard]] Result<std::int64_t> position_of(Outgoing& outgoing, metering::Instant now);
+  [[nodiscard]] Result<void> add_stored(Outgoing& outgoing, const Moment& now, Pending& pending);
+  void add_unstored(const Outgoing& outgoing, const Moment& now, Pending& pending) const;
+  [[nodiscard]] bool is_alert(const StoreEvent& event, metering::Instant now) const;
+  [[nodiscard]] bool was_told(const Outgoing& outgoing, const StoreEvent& event) const;
+  [[nodiscard]] bool waits_for_morning(const Pending& pending, metering::Instant now) const;
+  void move(Outgoing& outgoing, std::optional<std::int64_t> position);
+  void send(const Outgoing& outgoing, Pending pending, metering::Instant now);
+  void finish(const std::string& cursor, const Pending& pending, const Result<void>& sent);
+
+  Ports ports_;
+  SiteConfig site_;
+  metering::LocalCalendar calendar_;
+  Deliver deliver_;
+  std::function<void(StoreEvent)> tell_;
+  AlertRules rules_;
+  std::vector<Outgoing> outgoing_;
+  Told told_;
+  /// What may not be in the store yet, or not at all.
+  struct Heard {
+    StoreEvent event;
+    std::chrono::milliseconds at;  ///< By the monotonic clock.
+  };
+  std::deque<Heard> heard_;
+  bool store_refuses_ = false;
+  bool is_sending_ = false;
+  std::optional<std::chrono::milliseconds> due_;
+  std::stop_source stop_;
+  std::shared_ptr<Alerts*> self_;
+};
+
+}  // namespace recald::daemon

@@ -1,0 +1,64 @@
+#include "daemon/gateway/run/job_events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/display/id_words.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// Months shift the start of a change a little as they come in.
+bool is_same_change(const DriftAlarm& now, const DriftAlarm& then) {
+  return now.output == then.output && now.since >= then.since_earliest &&
+         now.since <= then.since_latest;
+}
+
+bool is_new(const DriftAlarm& alarm, const std::optional<StoredJob>& before) {
+  if (!before || !before->result.drift) return true;
+  return std::ranges::none_of(before->result.drift->alarms,
+                              [&](const DriftAlarm& then) { return is_same_change(alarm, then); });
+}
+
+std::string alarm_text(const DriftAlarm& alarm) {
+  std::string text = fmt::format("{}: {}", display::output_words(alarm.output), alarm.sentence);
+  for (std::size_t i = 0; i < alarm.causes.size(); ++i) {
+    text += fmt::format("{}{:.0f} % {}", i == 0 ? " Likeliest causes: " : "; ",
+                        100.0 * alarm.causes[i].probability, alarm.causes[i].words);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<StoreEvent> events_of(const StoredJob& job, bool has_named,
+                                  const std::optional<StoredJob>& before) {
+  std::vector<StoreEvent> events;
+  const auto tell = [&](Severity severity, std::string kind, std::string text) {
+    events.push_back({.time = job.ended.value_or(job.asked),
+                      .severity = severity,
+                      .kind = std::move(kind),
+                      .subject = "",
+                      .text = std::move(text)});
+  };
+  const std::string name = fmt::format("{} {}", name_of(job.kind), job.number);
+  if (job.state == JobState::failed) {
+    tell(Severity::warning, fmt::format("{}_failed", name_of(job.kind)),
+         fmt::format("{} failed: {}", name, job.message));
+  }
+  if (job.state != JobState::done) return events;
+  if (!job.accepted) {
+    tell(Severity::warning, "calibration_rejected",
+         fmt::format("{} was not accepted: {}", name, job.message));
+  }
+  if (has_named) tell(Severity::info, "cause_named", fmt::format("{} {}", name, job.message));
+  if (job.accepted && job.result.drift) {
+    for (const DriftAlarm& alarm : job.result.drift->alarms) {
+      if (is_new(alarm, before)) tell(Severity::warning, "drift_alarm", alarm_text(alarm));
+    }
+  }
+  return events;
+}
+
+}  // namespace recald::daemon

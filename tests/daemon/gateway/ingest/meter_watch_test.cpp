@@ -1,0 +1,64 @@
+#include "daemon/gateway/ingest/meter_watch.hpp"
+
+#include <gmock/gmock.h>
+
+namespace recald::daemon::meter_watch_test {
+namespace {
+
+using metering::Instant;
+using std::chrono::hours;
+using std::chrono::minutes;
+using ::testing::HasSubstr;
+
+const Instant kStart = std::chrono::sys_days{std::chrono::year{2026} / 2 / 3};
+
+class MeterWatchTest : public ::testing::Test {
+ protected:
+  /// Kind of the event at this time; empty: none.
+  std::string judge(std::optional<Instant> heard_at, Instant now) {
+    const auto event = watch_.judge(heard_at, now);
+    text_ = event ? event->text : "";
+    return event ? event->kind : "";
+  }
+  MeterWatch watch_{"main", minutes{30}};
+  std::string text_;
+};
+
+TEST_F(MeterWatchTest, SilenceIsToldOnceAndItsEndToo) {
+  EXPECT_EQ(judge({}, kStart), "");
+  EXPECT_EQ(judge(kStart + minutes{1}, kStart + minutes{31}), "");
+  EXPECT_EQ(judge(kStart + minutes{1}, kStart + minutes{32}), "meter_silent");
+  EXPECT_THAT(text_, HasSubstr("meter 'main' has given no reading since 2026-02-03T00:01:00Z"));
+  EXPECT_EQ(judge(kStart + minutes{1}, kStart + hours{50}), "");
+  EXPECT_EQ(judge(kStart + hours{50}, kStart + hours{50}), "meter_answers");
+  EXPECT_EQ(judge(kStart + hours{50}, kStart + hours{51}), "meter_silent");
+}
+
+TEST_F(MeterWatchTest, OneThatWasNeverHeardIsSilentToo) {
+  EXPECT_EQ(judge({}, kStart), "");
+  EXPECT_EQ(judge({}, kStart + minutes{31}), "meter_silent");
+}
+
+// A clock that is set two hours on is no silence of two hours.
+TEST_F(MeterWatchTest, ASkippedTimeIsNoSilence) {
+  EXPECT_EQ(judge(kStart, kStart), "");
+  watch_.clock_was_set();
+  EXPECT_EQ(judge(kStart, kStart + hours{2}), "");
+  EXPECT_EQ(judge(kStart, kStart + hours{2} + minutes{31}), "meter_silent");
+}
+
+// A reload opens a meter again, which then has not been heard.
+TEST_F(MeterWatchTest, WhatItHeardItRemembers) {
+  EXPECT_EQ(judge(kStart, kStart), "");
+  EXPECT_EQ(judge(kStart + hours{5}, kStart + hours{5}), "");
+  EXPECT_EQ(judge({}, kStart + hours{5} + minutes{5}), "");
+}
+
+TEST(MeterSilence, DependsOnTheInterval) {
+  EXPECT_EQ(meter_silence_max(minutes{15}, true), minutes{30});
+  EXPECT_EQ(meter_silence_max(minutes{60}, true), minutes{120});
+  EXPECT_EQ(meter_silence_max(minutes{15}, false), hours{36});
+}
+
+}  // namespace
+}  // namespace recald::daemon::meter_watch_test
