@@ -27,8 +27,11 @@ std::string made_text(const Served& served, const std::string& created_at) {
   return at ? site_time_text(served.calendar, *at) : created_at;
 }
 
-void write_button(Html& html, const nlohmann::json& change, std::string_view text) {
-  html.markup("<button type=\"button\" data-change=\"" + report::escape(change.dump()) + "\">")
+/// A button that posts to the API. @param path  "model"
+void write_button(Html& html, std::string_view path, const nlohmann::json& body,
+                  std::string_view text) {
+  html.markup(fmt::format("<button type=\"button\" data-post=\"/api/v1/{}\" data-body=\"{}\">", path,
+                          report::escape(body.dump())))
       .text(text)
       .markup("</button> ");
 }
@@ -38,15 +41,29 @@ void write_changes(Html& html, const models::VersionList& list) {
   html.markup("<p>");
   for (const diagnosis::ModelVersion& version : list.versions) {
     if (version.version == list.active || version.effects.empty()) continue;
-    write_button(html, {{"activate", version.version}},
+    write_button(html, "model", {{"activate", version.version}},
                  fmt::format("Put {} in force", diagnosis::short_version(version.version)));
   }
   if (list.active != diagnosis::kBaseVersion) {
-    write_button(html, {{"revert", nullptr}}, "Go back by one version");
+    write_button(html, "model", {{"revert", nullptr}}, "Go back by one version");
+  }
+  html.markup("</p>");
+}
+
+/// Jobs that may be requested now.
+void write_requests(Html& html, const Served& served) {
+  if (!served.ask_job) return;
+  html.markup("<p>");
+  write_button(html, "calibrations", nlohmann::json::object(), "Calibrate now");
+  const auto list = models::ModelStore{served.site.file, served.site.id}.list();
+  const bool is_of_drawings = list && list->active == diagnosis::kBaseVersion;
+  if (is_of_drawings) {
+    write_button(html, "diagnoses", nlohmann::json::object(), "Look for missing effects");
   }
   html.markup(
       "</p><p id=\"said\" role=\"status\"></p><noscript><p class=\"muted\">The buttons need "
-      "JavaScript; recald model apply and recald model revert do the same.</p></noscript>");
+      "JavaScript; recald model apply and recald model revert do the same as those of the "
+      "versions.</p></noscript>");
 }
 
 /// What diagnoses have added to the model, or would.
@@ -107,6 +124,8 @@ http::Response model_page(const Served& served) {
     }
     html.markup(".</p>");
   }
+  write_job_now(html, served);
+  write_requests(html, served);
   write_versions(html, served);
   write_alarms(html, served);
   write_jobs(html, served, JobKind::calibration, "Calibrations, the newest first", kShown);

@@ -136,33 +136,6 @@ void write_verdict(Html& html, const Served& served, const GatewayStatus& status
   html.markup("</ul></section>");
 }
 
-/// The job that runs or waits.
-void write_job_now(Html& html, const Served& served) {
-  const auto unfinished = served.store.unfinished_jobs();
-  if (!unfinished) return;
-  for (const StoredJob& job : *unfinished) {
-    if (job.state != JobState::running || !job.started) {
-      html.element("p", fmt::format("A {} is waiting.", recald::name_of(job.kind)), "muted");
-      continue;
-    }
-    const auto since = served.now() - *job.started;
-    std::string text =
-        fmt::format("A {} has been running for {}", recald::name_of(job.kind), age_text(since));
-    const auto progress = served.progress ? served.progress() : std::nullopt;
-    if (progress && progress->job == job.number) {
-      text += fmt::format(": {} ({})", report::percent_text(progress->share, 0), progress->what);
-      constexpr double kEnoughToTell = 0.05;
-      if (progress->share >= kEnoughToTell) {
-        const double left_s =
-            static_cast<double>(since.count()) * (1.0 - progress->share) / progress->share;
-        text +=
-            fmt::format("; about {} left", age_text(std::chrono::seconds{std::llround(left_s)}));
-      }
-    }
-    html.element("p", text + ".");
-  }
-}
-
 /// The last seven days of each meter, or nothing if there are too many.
 void write_week(Html& html, const Served& served) {
   const auto stored = std::ranges::count_if(served.site.meters, &MeterConfig::is_stored);

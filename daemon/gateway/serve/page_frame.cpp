@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 
 #include "adapters/report/format.hpp"
@@ -27,7 +28,7 @@ struct Link {
 };
 constexpr std::array kLinks{
     Link{PageKind::now, "/", "Now"}, Link{PageKind::months, "/months", "Months"},
-    Link{PageKind::model, "/model", "Model"}, Link{PageKind::events, "/events", "Events"}};
+    Link{PageKind::model, "/model", "Model"}, Link{PageKind::data, "/data", "Data"}, Link{PageKind::events, "/events", "Events"}};
 
 void write_links(Html& html, PageKind here) {
   html.markup("<nav aria-label=\"Pages\">");
@@ -37,6 +38,9 @@ void write_links(Html& html, PageKind here) {
   }
   html.markup("</nav>");
 }
+
+/// Pages that renew themselves.
+bool shows_progress(PageKind kind) { return kind == PageKind::now || kind == PageKind::model; }
 
 /// For an hour, by the browser.
 http::Response kept(http::Response response) {
@@ -67,7 +71,7 @@ http::Response page_of(const Served& served, PageKind kind, const std::string& t
       "<link rel=\"stylesheet\" href=\"/style.css\">"
       "<script src=\"/page.js\" defer></script>");
   html.element("title", (title.empty() ? "" : title + " – ") + site + " – recald")
-      .markup(kind == PageKind::now ? "</head><body data-live><header>" : "</head><body><header>");
+      .markup(shows_progress(kind) ? "</head><body data-live><header>" : "</head><body><header>");
   html.element("p", site, "site");
   write_links(html, kind);
   html.markup("</header><main>").markup(main.str()).markup("</main><footer>");
@@ -149,6 +153,32 @@ void write_jobs(Html& html, const Served& served, JobKind kind, std::string capt
                {has_report ? "report" : "–", "", has_report ? file_address(job, file) : ""}});
   }
   table.write(html);
+}
+
+void write_job_now(Html& html, const Served& served) {
+  const auto unfinished = served.store.unfinished_jobs();
+  if (!unfinished) return;
+  for (const StoredJob& job : *unfinished) {
+    if (job.state != JobState::running || !job.started) {
+      html.element("p", fmt::format("A {} is waiting.", recald::name_of(job.kind)), "muted");
+      continue;
+    }
+    const auto since = served.now() - *job.started;
+    std::string text =
+        fmt::format("A {} has been running for {}", recald::name_of(job.kind), age_text(since));
+    const auto progress = served.progress ? served.progress() : std::nullopt;
+    if (progress && progress->job == job.number) {
+      text += fmt::format(": {} ({})", report::percent_text(progress->share, 0), progress->what);
+      constexpr double kEnoughToTell = 0.05;
+      if (progress->share >= kEnoughToTell) {
+        const double left_s =
+            static_cast<double>(since.count()) * (1.0 - progress->share) / progress->share;
+        text +=
+            fmt::format("; about {} left", age_text(std::chrono::seconds{std::llround(left_s)}));
+      }
+    }
+    html.element("p", text + ".");
+  }
 }
 
 void write_alarms(Html& html, const Served& served) {

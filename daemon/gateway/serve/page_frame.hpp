@@ -9,7 +9,7 @@
 
 namespace recald::daemon {
 
-enum class PageKind : std::uint8_t { now, months, model, events, other };
+enum class PageKind : std::uint8_t { now, months, model, data, events, other };
 
 /// A page with the site's name above and `main` in the middle.
 /// @param title  Of the window: "Months"; empty: the site's name alone.
@@ -28,6 +28,9 @@ enum class PageKind : std::uint8_t { now, months, model, events, other };
 
 /// Where a file of a job is served.
 [[nodiscard]] std::string file_address(const StoredJob& job, std::string_view file);
+
+/// The job that runs or waits, and how far it is.
+void write_job_now(report::Html& html, const Served& served);
 
 /// The calibrations or diagnoses, newest first; nothing if there are none.
 void write_jobs(report::Html& html, const Served& served, JobKind kind, std::string caption,

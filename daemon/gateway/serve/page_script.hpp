@@ -24,15 +24,15 @@ async function renew() {
   }
 }
 
-async function change(button) {
+async function post(button) {
   const said = document.getElementById("said");
   button.disabled = true;
   said.textContent = "…";
   try {
-    const answer = await fetch("/api/v1/model", {
+    const answer = await fetch(button.dataset.post, {
       method: "POST",
       headers: { "Content-Type": "application/json" },
-      body: button.dataset.change,
+      body: button.dataset.body,
     });
     if (answer.ok) return location.reload();
     said.textContent = (await answer.json()).error.message;
@@ -43,8 +43,8 @@ async function change(button) {
 }
 
 document.addEventListener("click", (event) => {
-  const button = event.target.closest("button[data-change]");
-  if (button) change(button);
+  const button = event.target.closest("button[data-post]");
+  if (button) post(button);
 });
 if (document.body.dataset.live !== undefined) setInterval(renew, renewEvery_ms);
 )js";

@@ -26,6 +26,9 @@ namespace recald::daemon {
 /// /jobs/NUMBER/FILE: a report, or another file that a job wrote.
 [[nodiscard]] http::Response job_file(const Served& served, const std::string& number_and_file);
 
+/// /data: how much of each month was measured, and what was noticed about the readings.
+[[nodiscard]] http::Response data_page(const Served& served);
+
 /// /events ?severity &subject &text: the log, filtered.
 [[nodiscard]] http::Response events_page(const Served& served, const http::Request& request);
 

@@ -85,6 +85,7 @@ constexpr std::array kPages{
     Route{"months", false, plain<months_page>, nullptr},
     Route{"model", false, plain<model_page>, nullptr},
     Route{"jobs", true, with_id<job_file>, nullptr},
+    Route{"data", false, plain<data_page>, nullptr},
     Route{"events", false, without_id<events_page>, nullptr},
     Route{"style.css", false, plain<page_style>, nullptr},
     Route{"page.js", false, plain<page_script>, nullptr},

@@ -123,6 +123,22 @@ TEST_F(JobRunnerTest, ForecastsAreKeptAndWhatTheResultGivesReasonForIsAskedFor) 
   EXPECT_EQ(runs_, 2);  // a diagnosis gives no reason for another
 }
 
+// Whoever is told of a failed job by its event must not miss it for a full disk.
+TEST_F(JobRunnerTest, ItsEventIsStoredTogetherWithIt) {
+  fails_ = true;
+  ask();
+  failing_->refuses = true;
+  loop_->run_for(seconds{70});
+  EXPECT_TRUE(store_->events(10)->empty());
+  failing_->refuses = false;
+  loop_->run_for(minutes{1});
+  const auto events = store_->events(10).value();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind, "calibration_failed");
+  EXPECT_THAT(events[0].text, HasSubstr("no month has closed yet"));
+  EXPECT_EQ(stored(1).state, JobState::failed);
+}
+
 TEST_F(JobRunnerTest, ARunningJobSaysHowFarItIs) {
   JobWatch watch;
   EXPECT_FALSE(watch.said().has_value());

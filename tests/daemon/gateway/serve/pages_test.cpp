@@ -214,7 +214,7 @@ TEST_F(ModelVersions, AreAppliedAndTakenBack) {
   const std::string version = propose(site_);
   EXPECT_THAT(get("/model").body, AllOf(Not(HasSubstr("<script>")), Not(HasSubstr("style=\"")),
                                         Not(HasSubstr(" onclick"))));
-  const std::string button = "data-change=\"{&quot;activate&quot;:&quot;" + version;
+  const std::string button = "data-body=\"{&quot;activate&quot;:&quot;" + version;
   EXPECT_THAT(get("/model").body, AllOf(HasSubstr("Runs on &lt;weekends&gt; (97.0\u00a0%)"),
                                         HasSubstr("proposed"), HasSubstr(button)));
   const http::Response applied = post(R"({"activate":")" + version + "\"}");
@@ -227,6 +227,18 @@ TEST_F(ModelVersions, AreAppliedAndTakenBack) {
   EXPECT_EQ(asked_.size(), 2u);
 }
 
+// A diagnosis starts from the drawings, so it cannot be asked for beside a version of the model.
+TEST_F(ModelVersions, JobsAreRequestedByAClick) {
+  const std::string version = propose(site_);
+  const std::string calibrate = "data-post=\"/api/v1/calibrations\" data-body=\"{}\"";
+  const std::string diagnose = "data-post=\"/api/v1/diagnoses\" data-body=\"{}\"";
+  EXPECT_THAT(get("/model").body, AllOf(HasSubstr(calibrate), HasSubstr(diagnose)));
+  ASSERT_EQ(post(R"({"activate":")" + version + "\"}").status, 200);
+  EXPECT_THAT(get("/model").body, AllOf(HasSubstr(calibrate), Not(HasSubstr(diagnose))));
+  served_.ask_job = {};
+  EXPECT_THAT(get("/model").body, Not(HasSubstr(calibrate)));
+}
+
 TEST_F(ModelVersions, WhatIsWrongIsSaidAndChangesNothing) {
   propose(site_);
   EXPECT_EQ(in_short(post("{}")), "400 invalid_value body");
@@ -237,6 +249,21 @@ TEST_F(ModelVersions, WhatIsWrongIsSaidAndChangesNothing) {
   EXPECT_EQ(in_short(post(R"({"revert":null})")), "409 not_possible version");
   EXPECT_EQ(get_json("/api/v1/model")["active"], "drawings");
   EXPECT_TRUE(asked_.empty());
+}
+
+TEST_F(Page, SaysHowGoodTheDataAre) {
+  EXPECT_THAT(get("/data").body, HasSubstr("No month has closed yet."));
+  devices_[2].is_silent = [](std::chrono::milliseconds t) {
+    return t > hours{24 * 5} && t < hours{24 * 12};
+  };
+  begin();
+  loop_.run_for(hours{24 * 40});
+  const std::string page = get("/data").body;
+  // Of April: main has all of it, and cooling lacks a week, which was filled.
+  EXPECT_THAT(page, HasSubstr("Share of each month that was measured"));
+  EXPECT_THAT(page, HasSubstr("data-label=\"2024-04\">100.0"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number warn\" data-label=\"2024-04\">▲ 7"));
+  EXPECT_THAT(page, HasSubstr("meter answers 1, meter silent 1"));
 }
 
 TEST_F(Page, SaysHowFarTheRunningJobIs) {
