@@ -6,13 +6,12 @@
 // nothing makes the whole page scroll sideways and that no label in a figure is cut or lies over
 // another; at the widest that every table fits. Then the page is printed before its figures are
 // drawn, and has to have them all the same. Exit 0 passed, 1 failed, 77 no Chromium here.
-import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
 
-import { Chromium } from "./chromium.mjs";
+import { Chromium, findBrowser } from "./chromium.mjs";
 import { cutLabels, keepFirstRows, overlappingLabels, wideTables } from "./in_page.mjs";
 
 const widths = [390, 768, 1440];
@@ -22,17 +21,6 @@ const { values: options, positionals: pages } = parseArgs({
   options: { modules: { type: "string" }, pictures: { type: "string" } },
   allowPositionals: true,
 });
-
-function findBrowser() {
-  for (const name of ["chromium", "chromium-browser", "google-chrome"]) {
-    try {
-      return execFileSync("sh", ["-c", `command -v ${name}`], { encoding: "utf8" }).trim();
-    } catch {
-      // not this one
-    }
-  }
-  return null;
-}
 
 const program = findBrowser();
 if (!program) {
@@ -49,7 +37,7 @@ function complain(page, what) {
 
 const isReady = `new Promise((resume) => {
   const look = () =>
-    document.querySelector("[data-figure]") === null ||
+    document.querySelector("[data-figure], .zoomable") === null ||
     document.documentElement.dataset.ready === "true"
       ? resume(true)
       : setTimeout(look, 5);
