@@ -12,11 +12,11 @@
 
 namespace recald::testing {
 
-/// Runs the folder's site.toml, which listens on "127.0.0.1:0".
+/// Runs the folder's site.toml, which listens on "127.0.0.1:0". One at a time.
 class ServingDaemon {
  public:
   ServingDaemon(const std::string& program, const std::filesystem::path& folder)
-      : said_{folder / "said.txt"},
+      : said_{empty(folder / "said.txt")},
         process_{{program, "run", (folder / "site.toml").string()}, said_} {
     eventually([&] { return !port().empty(); });
   }
@@ -47,6 +47,11 @@ class ServingDaemon {
   int end(int signal) { return process_.end(signal); }
 
  private:
+  /// Without what an earlier one said, whose port is another.
+  static std::filesystem::path empty(const std::filesystem::path& file) {
+    std::filesystem::remove(file);
+    return file;
+  }
   [[nodiscard]] std::string ask(const std::string& request) const {
     boost::asio::ip::tcp::iostream server{"127.0.0.1", port()};
     server << request << std::flush;
