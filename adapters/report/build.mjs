@@ -14,7 +14,7 @@ import { parseArgs } from "node:util";
 import { gzipSync } from "node:zlib";
 
 const GZIP_BYTES_MAX = 500_000;
-const CHARTS_GZIP_BYTES_MAX = 350_000; // A page of the daemon has 500 kB, and 150 kB of it is the first view.
+const CHARTS_GZIP_BYTES_MAX = 350_000; // With the first view's 150 kB, the 500 kB of a page.
 
 const { values: options } = parseArgs({
   options: { modules: { type: "string" }, out: { type: "string" } },

@@ -69,7 +69,8 @@ export class SiteTime {
     for (let wall = Math.ceil(this.#wall(from) / step) * step; ; wall += step) {
       const at = this.#instant(wall);
       if (at > to) return ticks;
-      if (at >= from) ticks.push(at);
+      // An hour that the clocks skip begins where the next one does.
+      if (at >= from && at !== ticks.at(-1)) ticks.push(at);
     }
   }
 

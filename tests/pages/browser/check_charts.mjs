@@ -3,8 +3,8 @@
 //   node check_charts.mjs --modules NODE_MODULES http://127.0.0.1:PORT
 //
 // The daemon serves a site in Chicago with a meter "main", whose last week is summed up to hours,
-// and with forecasts. PICTURES=DIR keeps screenshots there. The browser is in Tokyo, so that its own time would show. Exit 0 passed, 1
-// failed, 77 no Chromium here.
+// and with forecasts. The browser is in Tokyo, so that its own time would show. PICTURES=DIR keeps
+// screenshots there. Exit 0 passed, 1 failed, 77 no Chromium here.
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { parseArgs } from "node:util";
@@ -147,7 +147,7 @@ async function checkMeter(tab, width) {
   // A point is a quarter of an hour now.
   const { x, y } = await middle(tab);
   await mouse(tab, "mouseMoved", x + 3, y);
-  const quarter = String.raw`/20\d\d-\d\d-\d\d \d\d:(00 to \d\d:15|15 to \d\d:30|30 to \d\d:45|45 to \d\d:00) −0[56]:00.* Mean [\d.]+ tons/`;
+  const quarter = String.raw`/20\d\d-\d\d-\d\d \d\d:(00 to ..:15|15 to ..:30|30 to ..:45|45 to ..:00) −0[56]:00.* Mean [\d.]+ tons/`;
   expect(await eventually(tab, `${quarter}.test(${tip})`), `${where}: tooltip`, await tab.value(tip));
   await checkLooks(tab, `${where}, zoomed`);
 }
@@ -177,17 +177,28 @@ async function checkMonths(tab, width) {
   await checkLooks(tab, where);
 }
 
+const stillStands = `document.querySelector("svg.chart").getBoundingClientRect().height > 100 &&
+  document.querySelector(".plot") === null`;
+
 /** What a reader has before the script comes, or when it never does. */
 async function checkWithoutScript(tab) {
   await tab.send("Network.enable");
   await tab.send("Network.setBlockedURLs", { urls: ["*/charts.js"] });
   await tab.open(`${daemon}/meters/main`);
-  const stays = await tab.value(
-    `document.querySelector("svg.chart").getBoundingClientRect().height > 100`,
-  );
-  expect(stays, "the chart is an SVG without the script");
+  expect(await tab.value(stillStands), "the chart is an SVG without the script");
   await tab.send("Network.setBlockedURLs", { urls: [] });
   tab.complaints.splice(0); // that it was blocked
+}
+
+/** A browser that lacks something: the drawing is begun and cannot be ended. */
+async function checkFailure(tab) {
+  await tab.send("Page.addScriptToEvaluateOnNewDocument", {
+    source: "delete window.ResizeObserver;",
+  });
+  await tab.open(`${daemon}/meters/main`);
+  expect(await eventually(tab, isReady), "a chart that fails ends");
+  expect(await tab.value("document.documentElement.dataset.errors === '1'"), "and is counted");
+  expect(await tab.value(stillStands), "a chart that fails leaves its SVG");
 }
 
 const browser = new Chromium(program);
@@ -206,6 +217,7 @@ try {
   expect(!first.some((one) => one.endsWith("charts.js")), "the first page has still charts", first);
   expect(tab.complaints.length === 0, "complaints in the console", tab.complaints.splice(0));
   await checkWithoutScript(tab);
+  await checkFailure(tab);
 } finally {
   await browser.close();
 }
