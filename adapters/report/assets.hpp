@@ -1,4 +1,4 @@
-/// The page's own script and style, bundled at build time by build.mjs and compiled in as bytes.
+/// The pages' own scripts and style, bundled at build time by build.mjs and compiled in as bytes.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@ namespace recald::report {
 struct Assets {
   std::string_view script;       ///< Embedded between <script> tags.
   std::string_view style;        ///< Embedded between <style> tags.
+  std::string_view charts;       ///< Of the daemon's pages: a file of its own, licences included.
   std::string_view licences;     ///< Of the libraries in the script; plain text.
   std::string_view script_hash;  ///< For the Content-Security-Policy, "sha256-…".
   std::string_view style_hash;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adapters/report/time_chart.hpp"
+#include "adapters/report/zoomable_chart.hpp"
 #include "core/display/unit.hpp"
 #include "daemon/gateway/serve/history.hpp"
 #include "daemon/gateway/serve/page_frame.hpp"
@@ -24,7 +24,8 @@ std::string step_words(std::chrono::seconds step) {
 }  // namespace
 
 void write_meter_chart(report::Html& html, const Served& served, const metering::Meter& meter,
-                       const weather::SensorQuantity* quantity, const metering::TimeSpan& span) {
+                       const weather::SensorQuantity* quantity, const metering::TimeSpan& span,
+                       ChartKind kind) {
   const auto number = served.store.find_meter(meter.id);
   if (!number) {
     html.element("p", "✖ The readings cannot be read: " + number.error().message, "bad");
@@ -55,7 +56,18 @@ void write_meter_chart(report::Html& html, const Served& served, const metering:
     chart.points.push_back({point.start, unit.shown(point.least_kW), unit.shown(point.mean_kW),
                             unit.shown(point.most_kW), point.start + history->step});
   }
-  report::write_chart(html, chart, served.calendar);
+  if (kind == ChartKind::zoomable) {
+    const report::FinerValues finer{.address = "/api/v1/history?meter=" + meter.id,
+                                    .interval = meter.interval,
+                                    .points = kChartPoints,
+                                    .factor = unit.factor,
+                                    .offset = unit.offset};
+    report::write_zoomable_chart(html, chart,
+                                 {.line = "Mean", .band = "Lowest and highest interval"}, finer,
+                                 served.calendar);
+  } else {
+    report::write_chart(html, chart, served.calendar);
+  }
   if (history->step > meter.interval) {
     html.element("p",
                  fmt::format("The line is the mean of {}; the band reaches from the lowest to the "

@@ -113,7 +113,8 @@ http::Response refused_page(const Served& served, const http::Response& refused)
   return page;
 }
 
-/// What the request asks for, or the last week. A date field that was emptied asks for nothing.
+/// What the request asks for, or the last week from its first midnight on. A date field that was
+/// emptied asks for nothing.
 Checked<metering::TimeSpan> shown_span(const Served& served, http::Request request) {
   std::erase_if(request.query, [](const auto& one) { return one.second.empty(); });
   auto span = span_of(request, served.calendar);
@@ -121,7 +122,8 @@ Checked<metering::TimeSpan> shown_span(const Served& served, http::Request reque
   const metering::Instant now = calendar_now(served);
   if (!text_of(request, "to")) span->end = std::max(now, span->begin);
   if (!text_of(request, "from")) {
-    span->begin = std::min(now, span->end) - kShownAtFirst;
+    const metering::Instant begin = std::min(now, span->end) - kShownAtFirst;
+    span->begin = served.calendar.day_span(day_of(served, begin)).begin;  // so that hours are whole
   }
   return span;
 }
@@ -150,11 +152,12 @@ http::Response meter_page(const Served& served, const http::Request& request,
   if ((*config)->role == MeterRole::weather) {
     for (const WeatherChannel& channel : channels_of(**config)) {
       html.element("h2", std::string{channel.quantity->name});
-      write_meter_chart(html, served, stored_meter(**config, channel), channel.quantity, *span);
+      write_meter_chart(html, served, stored_meter(**config, channel), channel.quantity, *span,
+                        ChartKind::zoomable);
       write_csv_link(html, channel.id(), (*config)->meter.interval, *span);
     }
   } else {
-    write_meter_chart(html, served, (*config)->meter, nullptr, *span);
+    write_meter_chart(html, served, (*config)->meter, nullptr, *span, ChartKind::zoomable);
     write_csv_link(html, id, (*config)->meter.interval, *span);
     write_months_of(html, served, **config);
   }

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "adapters/report/format.hpp"
-#include "adapters/report/time_chart.hpp"
+#include "adapters/report/zoomable_chart.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/unit.hpp"
 #include "daemon/gateway/serve/page_frame.hpp"
@@ -54,7 +54,9 @@ void write_chart_of(Html& html, const Served& served, const std::string& output,
         {span.begin, unit.shown(one.q05), unit.shown(one.mean), unit.shown(one.q95), span.end});
     chart.marks.push_back({span, unit.shown(one.measured)});
   }
-  report::write_chart(html, chart, served.calendar);
+  report::write_zoomable_chart(html, chart,
+                               {.line = "Forecast", .band = "90 % of it", .mark = "Measured"},
+                               std::nullopt, served.calendar);
 }
 
 void write_table_of(Html& html, const Served& served, const std::string& output,

@@ -147,7 +147,7 @@ void write_week(Html& html, const Served& served) {
     if (!meter.is_stored()) continue;
     html.markup("<figure>").markup("<figcaption>");
     html.link("/meters/" + meter.meter.id, meter.meter.id).markup("</figcaption>");
-    write_meter_chart(html, served, meter.meter, nullptr, week);
+    write_meter_chart(html, served, meter.meter, nullptr, week, ChartKind::still);
     html.markup("</figure>");
   }
   html.markup("</div></section>");

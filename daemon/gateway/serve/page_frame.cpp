@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "adapters/report/assets.hpp"
 #include "adapters/report/format.hpp"
+#include "adapters/report/zoomable_chart.hpp"
 #include "core/display/id_words.hpp"
 #include "daemon/gateway/serve/page_script.hpp"
 #include "daemon/gateway/serve/page_style.hpp"
@@ -74,7 +76,12 @@ http::Response page_of(const Served& served, PageKind kind, const std::string& t
       .markup(shows_progress(kind) ? "</head><body data-live><header>" : "</head><body><header>");
   html.element("p", site, "site");
   write_links(html, kind);
-  html.markup("</header><main>").markup(main.str()).markup("</main><footer>");
+  html.markup("</header><main>").markup(main.str()).markup("</main>");
+  // Text is escaped, so no other text can look like this.
+  if (main.str().find(report::kZoomableMarkup) != std::string::npos) {
+    html.markup("<script src=\"/charts.js\" defer></script>");
+  }
+  html.markup("<footer>");
   html.element(
       "p",
       fmt::format("As of {}; times are in {}. recald {}.",
@@ -95,6 +102,11 @@ http::Response page_style(const Served&) {
 
 http::Response page_script(const Served&) {
   return kept({.content_type = "text/javascript; charset=utf-8", .body = std::string{kPageScript}});
+}
+
+http::Response charts_script(const Served&) {
+  return kept({.content_type = "text/javascript; charset=utf-8",
+               .body = std::string{report::assets().charts}});
 }
 
 std::string site_time_text(const metering::LocalCalendar& calendar, Instant t) {

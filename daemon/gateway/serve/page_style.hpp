@@ -10,11 +10,15 @@ inline constexpr std::string_view kPageStyle = R"css(:root {
   color-scheme: light dark;
   --ink: #1b1b1b; --paper: #ffffff; --line: #c4c4c4;
   --muted: #595959; --good: #0b6b2e; --warn: #7a4b00; --bad: #a3151c; --link: #0b4f9c;
+  --model-fill: #c2d3e6; --zoomed: #0b4f9c26;
+  /* What the zoomable charts call them. */
+  --page: var(--paper); --axis: var(--line); --grid: var(--line); --model-line: var(--link);
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --ink: #ececec; --paper: #161616; --line: #4a4a4a;
     --muted: #b0b0b0; --good: #6fd392; --warn: #f0b95a; --bad: #ff9a94; --link: #8fc1ff;
+    --model-fill: #344152; --zoomed: #8fc1ff33;
   }
 }
 * { box-sizing: border-box; }
@@ -51,6 +55,14 @@ figure { margin: 0; }
 .chart-line, .chart-mark { fill: none; stroke: var(--link); stroke-width: 1.5; vector-effect: non-scaling-stroke; }
 .chart-mark { stroke: var(--ink); stroke-width: 4; }
 .chart-band { fill: var(--link); fill-opacity: 0.25; stroke: none; }
+.plot { height: 280px; }
+.plot text { user-select: none; }
+@media (scripting: enabled) { .zoomable { min-height: 320px; } } /* Nothing moves when it changes. */
+@media print {
+  .zoomable { min-height: 0; }
+  .plot, .plot > div, .plot svg { position: static !important; width: 100% !important;
+    height: auto !important; }
+}
 .muted { color: var(--muted); }
 .good { color: var(--good); }
 .warn { color: var(--warn); }

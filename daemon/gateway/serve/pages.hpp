@@ -34,5 +34,7 @@ namespace recald::daemon {
 
 [[nodiscard]] http::Response page_style(const Served& served);   ///< /style.css
 [[nodiscard]] http::Response page_script(const Served& served);  ///< /page.js
+/// /charts.js: what makes the charts of a meter and of the months zoomable.
+[[nodiscard]] http::Response charts_script(const Served& served);
 
 }  // namespace recald::daemon

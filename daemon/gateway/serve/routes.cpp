@@ -75,6 +75,11 @@ constexpr std::array kApiRoutes{
 
 Response get_health(const Served&) { return health(); }
 
+/// Browsers ask for it on their own, and would note a failure.
+Response no_icon(const Served&) {
+  return {.status = 204, .headers = {{"Cache-Control", "private, max-age=86400"}}};
+}
+
 Response show_meter(const Served& served, const Request& request, const std::string& id) {
   return meter_page(served, request, id);
 }
@@ -89,6 +94,8 @@ constexpr std::array kPages{
     Route{"events", false, without_id<events_page>, nullptr},
     Route{"style.css", false, plain<page_style>, nullptr},
     Route{"page.js", false, plain<page_script>, nullptr},
+    Route{"charts.js", false, plain<charts_script>, nullptr},
+    Route{"favicon.ico", false, plain<no_icon>, nullptr},
     Route{"healthz", false, plain<get_health>, nullptr},
     Route{"readyz", false, plain<readiness>, nullptr},
     Route{"metrics", false, plain<metrics>, nullptr},

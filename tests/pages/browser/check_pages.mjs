@@ -11,8 +11,7 @@ import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
 
-import { Chromium } from "./chromium.mjs";
-import { findBrowser } from "./find_browser.mjs";
+import { Chromium, findBrowser } from "./chromium.mjs";
 import { cutLabels, keepFirstRows, overlappingLabels, wideTables } from "./in_page.mjs";
 
 const widths = [390, 768, 1440];
@@ -38,7 +37,7 @@ function complain(page, what) {
 
 const isReady = `new Promise((resume) => {
   const look = () =>
-    document.querySelector("[data-figure]") === null ||
+    document.querySelector("[data-figure], .zoomable") === null ||
     document.documentElement.dataset.ready === "true"
       ? resume(true)
       : setTimeout(look, 5);

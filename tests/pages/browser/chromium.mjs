@@ -1,7 +1,7 @@
 // Headless Chromium over its debugging pipe: no port, no package.
 //
 // Messages are JSON, each ended by a zero byte; file descriptor 3 takes them, 4 gives them.
-import { spawn } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -19,6 +19,18 @@ const flags = [
   "--disable-sync",
   "--remote-debugging-pipe",
 ];
+
+/** The path of the program, or null. */
+export function findBrowser() {
+  for (const name of ["chromium", "chromium-browser", "google-chrome"]) {
+    try {
+      return execFileSync("sh", ["-c", `command -v ${name}`], { encoding: "utf8" }).trim();
+    } catch {
+      // not this one
+    }
+  }
+  return null;
+}
 
 export class Chromium {
   #waiting = new Map();
@@ -88,7 +100,8 @@ class Tab {
         this.complaints.push(exception?.description ?? text);
       }
       if (event.method === "Log.entryAdded" && event.params.entry.level === "error") {
-        this.complaints.push(event.params.entry.text);
+        const { text, url } = event.params.entry;
+        this.complaints.push(url ? `${text} ${url}` : text);
       }
     });
   }

@@ -6,7 +6,7 @@ export function cutLabels() {
   for (const svg of document.querySelectorAll(".plot svg")) {
     const frame = svg.getBoundingClientRect();
     if (frame.width === 0) continue;
-    const figure = svg.closest("[data-figure]").dataset;
+    const name = svg.closest("[aria-label]").getAttribute("aria-label");
     for (const text of svg.querySelectorAll("text")) {
       const box = text.getBoundingClientRect();
       const isCut =
@@ -15,7 +15,7 @@ export function cutLabels() {
         box.top < frame.top - 3 ||
         box.bottom > frame.bottom + 3;
       if (isCut) {
-        faults.push(`label "${text.textContent}" is cut in ${figure.figure} ${figure.index}`);
+        faults.push(`label "${text.textContent}" is cut in ${name}`);
       }
     }
   }
@@ -27,7 +27,7 @@ export function overlappingLabels() {
   const faults = [];
   for (const svg of document.querySelectorAll(".plot svg")) {
     if (svg.getBoundingClientRect().width === 0) continue;
-    const figure = svg.closest("[data-figure]").dataset;
+    const name = svg.closest("[aria-label]").getAttribute("aria-label");
     const texts = [...svg.querySelectorAll("text")]
       .filter((text) => text.textContent.trim() !== "")
       .map((text) => ({ words: text.textContent, box: text.getBoundingClientRect() }));
@@ -38,7 +38,7 @@ export function overlappingLabels() {
         const low = Math.min(a.box.height, b.box.height);
         if (across > 1 && down > 0.4 * low) {
           faults.push(
-            `"${a.words}" lies over "${b.words}" in ${figure.figure} ${figure.index}`,
+            `"${a.words}" lies over "${b.words}" in ${name}`,
           );
         }
       }

@@ -21,8 +21,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { parseArgs } from "node:util";
 
-import { Chromium } from "./chromium.mjs";
-import { findBrowser } from "./find_browser.mjs";
+import { Chromium, findBrowser } from "./chromium.mjs";
 
 const { values: options } = parseArgs({
   options: {
@@ -104,6 +103,8 @@ altitude_m = 45
 watermark = "6h"
 [weather]
 file = "weather.csv"
+[recalibration]
+months = 36
 [http]
 listen = "127.0.0.1:0"
 token_file = "token"
@@ -259,7 +260,7 @@ try {
     at("scenario.toml"),
     '[building]\nuse = "office"\n[[effect]]\nname = "weekend_operation"\n',
   );
-  run(options.sim, "building", "--scenario", "scenario.toml", "--out", ".", "--years", "2", "--start", "2023", "--seed", "1");
+  run(options.sim, "building", "--scenario", "scenario.toml", "--out", ".", "--years", "3", "--start", "2022", "--seed", "1");
   const clock = `${began}@${Math.floor(Date.now() / 1000)}x600`;
   writeMeters();
   begin("meters", options.sim, "meters", "meters.toml", "--clock", clock, "--faults", "meters.faults");

@@ -305,7 +305,7 @@ TEST_F(Api, AStoreThatRefusesIs503) {
 
 TEST_F(Api, WhatIsNotThere) {
   for (const char* path : {"/api/v1/", "/api/v1/nothing", "/api/v1/meters/", "/api/v2/meters",
-                           "/api/v1/sites/tower", "/favicon.ico", "/api/v1/calibrations/x"}) {
+                           "/api/v1/sites/tower", "/robots.txt", "/api/v1/calibrations/x"}) {
     EXPECT_EQ(get(path).status, 404) << path;
   }
 }

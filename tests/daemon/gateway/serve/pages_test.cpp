@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cmath>
 
+#include "adapters/http/dress.hpp"
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/gateway/serve/page_frame.hpp"
@@ -54,6 +56,7 @@ TEST_F(Page, HasNoScriptOrStyleInlineAndNothingFromElsewhere) {
   }
   EXPECT_EQ(get("/style.css").content_type, "text/css; charset=utf-8");
   EXPECT_EQ(get("/page.js").content_type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(get("/favicon.ico").status, 204);  // a browser asks in any case
 }
 
 TEST_F(Page, WhatIsWrongStandsAtTheTop) {
@@ -109,6 +112,75 @@ TEST_F(Page, OfAMeterHasItsHistoryAndItsMonths) {
               HasSubstr("The first 10,000 of these intervals as CSV"));
 }
 
+/// What the script gets beside the first zoomable chart of a page.
+Json chart_data(const std::string& page) {
+  const std::string begin = "<script type=\"application/json\">";
+  const std::size_t at = page.find(begin);
+  if (at == std::string::npos) return {};
+  const std::size_t from = at + begin.size();
+  return Json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+TEST_F(Page, OfAMeterHasItsNumbersForTheScriptThatZooms) {
+  loop_.run_for(hours{24 * 35});
+  const std::string page = get("/meters/main").body;
+  EXPECT_THAT(page, AllOf(HasSubstr("<div class=\"zoomable\"><svg class=\"chart\""),
+                          HasSubstr("<script src=\"/charts.js\" defer></script>")));
+  const Json data = chart_data(page);
+  EXPECT_EQ(data["title"], "main, mean of an hour");
+  EXPECT_EQ(data["unit"], "kW");
+  EXPECT_EQ(data["finer"]["address"], "/api/v1/history?meter=main");
+  EXPECT_EQ(data["finer"]["interval_s"], 900);
+  // From midnight at the site, five hours behind UTC.
+  const std::int64_t begin = data["span"][0];
+  EXPECT_EQ(begin % 86'400, 5 * 3600);
+  EXPECT_EQ(data["offsets"], Json::array({{begin, -5 * 3600}}));
+  const Json& point = data["points"][0];
+  EXPECT_EQ(point[0], begin);
+  EXPECT_EQ(point[1], begin + 3600);
+  EXPECT_NEAR(point[3].get<double>(), 60.2, 0.1);
+  EXPECT_LT(point[2], point[4]);
+}
+
+TEST_F(Page, OnlyWithAChartToZoomLoadsTheScriptForIt) {
+  loop_.run_for(hours{30});
+  for (const char* path : {"/", "/months", "/model", "/events", "/meters/old"}) {
+    EXPECT_THAT(get(path).body, Not(HasSubstr("charts.js"))) << path;
+  }
+  EXPECT_THAT(get("/meters/main", {{"from", "1999-01-01"}, {"to", "1999-01-02"}}).body,
+              Not(HasSubstr("charts.js")));
+  EXPECT_THAT(get("/").body, HasSubstr("<a href=\"/meters/main\">main</a></figcaption>"));
+  const http::Response script = get("/charts.js");
+  EXPECT_EQ(script.content_type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(script.header("cache-control"), "private, max-age=3600");
+  EXPECT_THAT(script.body, AllOf(StartsWith("/*\nApache ECharts"), HasSubstr("zoomable")));
+}
+
+// As it goes over the network: the first view is what is read before the script comes.
+TEST_F(Page, OfAMeterIsSmall) {
+  devices_[1].energy_kWh = [](std::chrono::milliseconds t) {
+    const double hour = testing::hours_of(t);
+    return 60.0 * hour + 20.0 * std::sin(0.9 * hour) + 2.0 * std::sin(17.3 * hour);
+  };
+  begin();
+  loop_.run_for(hours{24 * 35});
+  const auto sent = [&](const std::string& path, std::map<std::string, std::string> query = {}) {
+    http::Request request{.path = path, .query = std::move(query)};
+    request.headers.emplace("accept-encoding", "gzip");
+    return http::dressed(request, answer(served_, request)).body.size();
+  };
+  // Four days of quarter hours: as many points as a chart may have.
+  const std::size_t first_view =
+      sent("/meters/main", {{"from", "2024-04-02"}, {"to", "2024-04-06"}}) + sent("/style.css") +
+      sent("/page.js");
+  const std::size_t whole = first_view + sent("/charts.js");
+  RecordProperty("first_view_bytes", static_cast<int>(first_view));
+  RecordProperty("whole_bytes", static_cast<int>(whole));
+  EXPECT_LE(first_view, 150'000u);
+  EXPECT_LE(whole, 500'000u);
+  EXPECT_GT(whole, 100'000u);  // it is there
+}
+
 TEST_F(Page, OfMonthsHasWhatWasForecastAndWhatCame) {
   EXPECT_THAT(get("/months").body, HasSubstr("There are no forecasts yet."));
   const auto forecast = [](unsigned month, double measured) {
@@ -127,7 +199,13 @@ TEST_F(Page, OfMonthsHasWhatWasForecastAndWhatCame) {
   const std::string page = get("/months").body;
   EXPECT_THAT(
       page, AllOf(HasSubstr("<h2>Main, daily mean</h2>"), HasSubstr("chart-mark"),
+                  HasSubstr("<script src=\"/charts.js\" defer></script>"),
                   HasSubstr("92.00 to 108.0\u00a0kWh/day"), HasSubstr("✔ yes"), HasSubstr("▲ no")));
+  const Json data = chart_data(page);
+  EXPECT_EQ(data["points"].size(), 2u);
+  EXPECT_EQ(data["marks"][1][2], 120.0);
+  EXPECT_EQ(data["words"]["mark"], "Measured");
+  EXPECT_TRUE(data["finer"].is_null());
 }
 
 TEST_F(Page, OfEventsShowsWhatIsAskedFor) {

@@ -57,14 +57,20 @@ struct TroubledSite final : ServedSite {
     return all;
   }
 
-  /// With its style sheet inside: a browser lets no file read another.
+  /// With its style sheet and the charts' script inside: a browser lets no file read another.
   std::string page(const std::string& path) {
     std::string text = get(path).body;
-    const std::string script = "<script src=\"/page.js\" defer></script>";
-    text.erase(text.find(script), script.size());
-    const std::string link = "<link rel=\"stylesheet\" href=\"/style.css\">";
-    return text.replace(text.find(link), link.size(),
-                        "<style>" + get("/style.css").body + "</style>");
+    const auto replace = [&text](const std::string& from, const std::string& to) {
+      if (const std::size_t at = text.find(from); at != std::string::npos) {
+        text.replace(at, from.size(), to);
+      }
+    };
+    replace("<script src=\"/page.js\" defer></script>", "");
+    replace("<script src=\"/charts.js\" defer></script>",
+            "<script>" + get("/charts.js").body + "</script>");
+    replace("<link rel=\"stylesheet\" href=\"/style.css\">",
+            "<style>" + get("/style.css").body + "</style>");
+    return text;
   }
 };
 
