@@ -10,6 +10,7 @@
 
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
+#include "daemon/site/model/load_expectation.hpp"
 #include "daemon/site/model/site_parts.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/depot_versions.hpp"
@@ -115,6 +116,38 @@ TEST(ProfileMeter, IsTheModelledOneThatCountsLightsAndPlugs) {
   EXPECT_EQ(profile_meter(site), 1U);
   site.model->outputs = {"chillers", "main"};
   EXPECT_EQ(profile_meter(site), 2U);
+}
+
+TEST_F(LiveSite, ItsModelExpectsWhatTheMetersRead) {
+  import_history();
+  const auto config = load_site(path("live.toml"));
+  ASSERT_TRUE(config.has_value());
+  const OpenSite site{*config, metering::LocalCalendar::open(config->timezone).value()};
+  const metering::Instant end =
+      recald::testing::kDepotBegin + std::chrono::hours{recald::testing::kDepotYear_h};
+  const auto expectation = LoadExpectation::learn(site, end + std::chrono::days{5});
+  ASSERT_TRUE(expectation.has_value()) << expectation.error().message;
+  // The weather file ends with the year, in the middle of what is asked for.
+  const auto expected =
+      expectation->expect({end - std::chrono::days{8}, end + std::chrono::days{8}});
+  ASSERT_TRUE(expected.has_value()) << expected.error().message;
+  ASSERT_EQ(expected->size(), 2U);
+  auto store = sqlite::SqliteStore::open(path("live.db")).value();
+  for (const ExpectedMeter& meter : *expected) {
+    SCOPED_TRACE(meter.meter);
+    ASSERT_EQ(meter.hours.size(), 8 * 24);
+    EXPECT_EQ(meter.hours.front().start, end - std::chrono::days{8});
+    std::map<metering::Instant, double> read_kW;
+    const auto read = store.for_each_interval(
+        store.find_meter(meter.meter).value().value(), {end - std::chrono::days{8}, end},
+        [&](const StoredInterval& one) { read_kW[one.reading.start] = one.reading.mean_kW; });
+    ASSERT_TRUE(read.has_value());
+    const auto inside = std::ranges::count_if(meter.hours, [&](const ExpectedHour& hour) {
+      return hour.load.q05_kW <= read_kW.at(hour.start) &&
+             read_kW.at(hour.start) <= hour.load.q95_kW;
+    });
+    EXPECT_GT(inside, 7 * 24);
+  }
 }
 
 TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {

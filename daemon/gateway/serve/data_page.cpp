@@ -77,7 +77,7 @@ void write_measured(Html& html, const std::vector<MeterData>& meters) {
   }
   Table table{"Share of each month that was measured"};
   std::vector<std::string> columns{"Meter"};
-  for (const metering::Month month : months) columns.push_back(metering::to_string(month));
+  for (const metering::Month month : months) columns.push_back(report::month_text(month));
   table.with_labels().columns(std::move(columns));
   for (const MeterData& meter : meters) {
     std::vector<Cell> row{{meter.config->meter.id, "", "/meters/" + meter.config->meter.id}};
@@ -85,10 +85,11 @@ void write_measured(Html& html, const std::vector<MeterData>& meters) {
     table.row(std::move(row));
   }
   table.write(html);
-  html.element("p",
-               "▲ is less than 90 %; the rest was filled by what the meter read at the same time on "
-               "other days. ✖ is too little to be used.",
-               "muted");
+  html.element(
+      "p",
+      "▲ is less than 90 %; the rest was filled by what the meter read at the same time on "
+      "other days. ✖ is too little to be used.",
+      "muted");
 }
 
 /// What the intervals of the shown months are, over all of them.
@@ -108,14 +109,13 @@ void write_validity(Html& html, const std::vector<MeterData>& meters) {
     return Cell{slots > 0 ? report::percent_text(share) : "–", "number"};
   };
   Table table{"The intervals of these months"};
-  table.with_labels().columns({"Meter", "Measured", "Filled", "Scaled", "Doubtful", "Missing",
-                               "Corrected months"});
+  table.with_labels().columns(
+      {"Meter", "Measured", "Filled", "Scaled", "Doubtful", "Missing", "Corrected months"});
   for (const MeterData& meter : meters) {
-    const auto corrected = std::ranges::count_if(
-        months, [&](metering::Month month) {
-          const auto found = meter.figures.find(month);
-          return found != meter.figures.end() && found->second.revision > 0;
-        });
+    const auto corrected = std::ranges::count_if(months, [&](metering::Month month) {
+      const auto found = meter.figures.find(month);
+      return found != meter.figures.end() && found->second.revision > 0;
+    });
     table.row({{meter.config->meter.id, "", "/meters/" + meter.config->meter.id},
                share_of(meter, Validity::ok),
                share_of(meter, Validity::filled),
@@ -138,8 +138,7 @@ std::string doubts_of(const MeterStatus& status) {
   add("late readings", status.counters.late);
   if (status.poll) {
     for (const RefusedRegisters& one : status.poll->refused) {
-      words += fmt::format("{}registers from {} refused", words.empty() ? "" : ", ",
-                           one.address);
+      words += fmt::format("{}registers from {} refused", words.empty() ? "" : ", ", one.address);
     }
   }
   return words.empty() ? "–" : words;
@@ -148,8 +147,8 @@ std::string doubts_of(const MeterStatus& status) {
 void write_now(Html& html, const Served& served) {
   const GatewayStatus status = served.status();
   Table table{"Since recald was started"};
-  table.with_labels().columns({"Meter", "Measured this month", "Intervals", "Of them valid",
-                               "What was noticed"});
+  table.with_labels().columns(
+      {"Meter", "Measured this month", "Intervals", "Of them valid", "What was noticed"});
   for (const MeterStatus& meter : status.meters) {
     const auto& intervals = meter.counters.intervals;
     const std::uint64_t all = std::accumulate(intervals.begin(), intervals.end(), std::uint64_t{0});

@@ -18,4 +18,8 @@ void write_meter_chart(report::Html& html, const Served& served, const metering:
                        const weather::SensorQuantity* quantity, const metering::TimeSpan& span,
                        ChartKind kind);
 
+/// The same beside what the model expects of its hours.
+void write_expected_chart(report::Html& html, const Served& served, const metering::Meter& meter,
+                          const ExpectedMeter& expected, const metering::TimeSpan& span);
+
 }  // namespace recald::daemon

@@ -136,18 +136,32 @@ void write_verdict(Html& html, const Served& served, const GatewayStatus& status
   html.markup("</ul></section>");
 }
 
+/// Null: the model says nothing of this meter.
+const ExpectedMeter* expected_of(const Served& served, const std::string& meter) {
+  if (!served.expected) return nullptr;
+  const std::vector<ExpectedMeter>& all = served.expected();
+  const auto found = std::ranges::find(all, meter, &ExpectedMeter::meter);
+  return found == all.end() || found->hours.empty() ? nullptr : &*found;
+}
+
 /// The last seven days of each meter, or nothing if there are too many.
 void write_week(Html& html, const Served& served) {
   const auto stored = std::ranges::count_if(served.site.meters, &MeterConfig::is_stored);
   if (stored == 0 || stored > kChartsMax) return;
   html.markup("<section aria-labelledby=\"week\">").markup("<h2 id=\"week\">Last seven days</h2>");
   html.markup("<div class=\"charts\">");
-  const metering::TimeSpan week{served.now() - std::chrono::days{7}, served.now()};
+  // On the hour, like what the model expects.
+  const metering::TimeSpan week{
+      std::chrono::floor<std::chrono::hours>(served.now() - std::chrono::days{7}), served.now()};
   for (const MeterConfig& meter : served.site.meters) {
     if (!meter.is_stored()) continue;
     html.markup("<figure>").markup("<figcaption>");
     html.link("/meters/" + meter.meter.id, meter.meter.id).markup("</figcaption>");
-    write_meter_chart(html, served, meter.meter, nullptr, week, ChartKind::still);
+    if (const ExpectedMeter* const expected = expected_of(served, meter.meter.id)) {
+      write_expected_chart(html, served, meter.meter, *expected, week);
+    } else {
+      write_meter_chart(html, served, meter.meter, nullptr, week, ChartKind::still);
+    }
     html.markup("</figure>");
   }
   html.markup("</div></section>");

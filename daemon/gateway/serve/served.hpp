@@ -10,6 +10,7 @@
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
 #include "daemon/site/config/site_config.hpp"
+#include "daemon/site/model/expected_load.hpp"
 
 namespace recald::daemon {
 
@@ -38,6 +39,8 @@ struct Served {
   std::function<Result<std::int64_t>(JobKind kind)> ask_job = {};
   /// Calls JobRunner::cancel. Absent: there are no jobs here.
   std::function<Result<void>(std::int64_t number)> cancel_job = {};
+  /// What the model expects of the last days; empty where it has none. Absent: as empty.
+  std::function<const std::vector<ExpectedMeter>&()> expected = {};
   /// Nothing while no job runs or none has said anything. Absent: there are no jobs here.
   std::function<std::optional<JobProgress>()> progress = {};
   /// Calls Gateway::take_pushed. Absent: readings are not accepted here.

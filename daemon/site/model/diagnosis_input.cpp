@@ -216,6 +216,7 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   drivers->has_humidity = drivers->has_humidity && !is_assumed(weather, kHumidity);
   drivers->has_wind = drivers->has_wind && !is_assumed(weather, kWind);
   problem.has_sun = !is_assumed(weather, kSun);
+  problem.loads = profile->loads;
   problem.drivers = std::make_shared<const model::Drivers>(std::move(*drivers));
 
   const auto maps = meter_maps(site);

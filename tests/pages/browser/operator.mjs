@@ -65,7 +65,8 @@ const run = (command, ...words) =>
 async function wait(what, look, limit_s = 240) {
   const until = Date.now() + 1000 * limit_s;
   for (;;) {
-    const found = await look();
+    // A page that is just being replaced may never answer.
+    const found = await Promise.race([look(), new Promise((resume) => setTimeout(resume, 5000))]);
     if (found) return found;
     if (Date.now() > until) throw new Error(`waited ${limit_s} s in vain: ${what}`);
     await new Promise((resume) => setTimeout(resume, 100));
@@ -93,16 +94,9 @@ poll = "5m"
   const model = read("site.toml");
   writeFileSync(
     at("live.toml"),
-    `[site]
-id = "office"
-name = "The office"
-timezone = "America/New_York"
-latitude_deg = 39.17
-longitude_deg = -76.68
-altitude_m = 45
+    `${model.slice(model.indexOf("[site]"), model.indexOf("[weather]"))}
 watermark = "6h"
-[weather]
-file = "weather.csv"
+${model.slice(model.indexOf("[weather]"), model.indexOf("[[meter]]"))}
 [recalibration]
 months = 36
 [http]
@@ -176,11 +170,13 @@ async function picture(tab, name) {
   if (!options.pictures) return;
   mkdirSync(options.pictures, { recursive: true });
   pictures += 1;
-  const { data } = await tab.send("Page.captureScreenshot", { captureBeyondViewport: true });
+  const { data } = await wait("a picture", () =>
+    tab.send("Page.captureScreenshot", { captureBeyondViewport: true }),
+  );
   writeFileSync(join(options.pictures, `${pictures}-${name}.png`), Buffer.from(data, "base64"));
 }
 
-const text = (tab) => tab.value("document.body.innerText");
+const text = (tab) => tab.value("document.body?.innerText ?? \"\"");
 const shows = (tab, words) =>
   wait(`"${words}" on the page`, async () => (await text(tab)).includes(words));
 
@@ -208,7 +204,7 @@ async function operate(tab, address) {
   await picture(tab, "silent");
   const silent = await mailOf("'chilled_water' has given no reading");
   check("the mail leads to the meter", silent.text.includes("/meters/chilled_water"));
-  check("its subject says it", silent.subject.startsWith("The office: "));
+  check("its subject says it", silent.subject.startsWith("Office: "));
   await mailOf("'chilled_water' answers again");
   await tab.open(`${address}/meters/chilled_water`);
   await picture(tab, "meter");

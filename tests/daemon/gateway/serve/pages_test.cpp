@@ -329,6 +329,26 @@ TEST_F(ModelVersions, WhatIsWrongIsSaidAndChangesNothing) {
   EXPECT_TRUE(asked_.empty());
 }
 
+TEST_F(Page, TheWeekIsDrawnBesideWhatTheModelExpects) {
+  std::vector<ExpectedMeter> expected{{"main", {}}};
+  served_.expected = [&]() -> const auto& { return expected; };
+  loop_.run_for(hours{50} + minutes{20});
+  EXPECT_THAT(get("/").body, Not(HasSubstr("outside the band")));
+  // Of the last day the model expects six hours otherwise than main's 60 kW.
+  const metering::Instant now = kStart + hours{50};
+  for (int hour = 50; hour > 0; --hour) {
+    const double kW = hour <= 6 ? 90.0 : 60.0;
+    expected[0].hours.push_back({now - hours{hour}, {kW - 5.0, kW, kW + 5.0}});
+  }
+  EXPECT_THAT(get("/").body,
+              AllOf(HasSubstr("Of the last 24 hours 6 are outside the band, in which the model "
+                              "expects nine of ten."),
+                    HasSubstr("main, mean of an hour; the band is what the model expects"),
+                    Not(HasSubstr("▲ Of the last"))));
+  for (ExpectedHour& hour : expected[0].hours) hour.load = {85.0, 90.0, 95.0};
+  EXPECT_THAT(get("/").body, HasSubstr("▲ Of the last 24 hours 24 are outside the band"));
+}
+
 TEST_F(Page, SaysHowGoodTheDataAre) {
   EXPECT_THAT(get("/data").body, HasSubstr("No month has closed yet."));
   devices_[2].is_silent = [](std::chrono::milliseconds t) {
@@ -339,8 +359,8 @@ TEST_F(Page, SaysHowGoodTheDataAre) {
   const std::string page = get("/data").body;
   // Of April: main has all of it, and cooling lacks a week, which was filled.
   EXPECT_THAT(page, HasSubstr("Share of each month that was measured"));
-  EXPECT_THAT(page, HasSubstr("data-label=\"2024-04\">100.0"));
-  EXPECT_THAT(page, HasSubstr("<td class=\"number warn\" data-label=\"2024-04\">▲ 7"));
+  EXPECT_THAT(page, HasSubstr("data-label=\"Apr 2024\">100.0"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number warn\" data-label=\"Apr 2024\">▲ 7"));
   EXPECT_THAT(page, HasSubstr("meter answers 1, meter silent 1"));
 }
 

@@ -1,0 +1,85 @@
+#include "daemon/gateway/run/load_watch.hpp"
+
+#include <malloc.h>
+#include <spdlog/spdlog.h>
+
+#include <optional>
+#include <utility>
+
+#include "daemon/site/model/load_expectation.hpp"
+
+namespace recald::daemon {
+namespace {
+
+constexpr std::chrono::hours kAskEvery{1};
+constexpr std::chrono::days kShown{8};
+constexpr std::chrono::hours kLearnEvery{24};
+
+/// An exception is the reason why nothing is expected.
+Result<std::vector<ExpectedMeter>> expect_safely(const ExpectLoads& expect,
+                                                 const metering::TimeSpan& span) {
+  try {
+    auto expected = expect(span);
+    ::malloc_trim(0);  // as after a job
+    return expected;
+  } catch (const std::exception& thrown) {
+    return failure(ErrorCode::unsupported, thrown.what());
+  }
+}
+
+}  // namespace
+
+LoadWatch::LoadWatch(Loop& loop, Worker& worker, ExpectLoads expect)
+    : loop_(loop),
+      worker_(worker),
+      expect_(std::move(expect)),
+      self_(std::make_shared<LoadWatch*>(this)) {}
+
+void LoadWatch::start() { ask_every_hour(); }
+
+void LoadWatch::ask_every_hour() {
+  loop_.after(kAskEvery, [weak = std::weak_ptr{self_}] {
+    if (const auto self = weak.lock()) (*self)->ask_every_hour();
+  });
+  if (std::exchange(is_asking_, true)) return;
+  const metering::Instant now = loop_.now().instant();
+  const metering::TimeSpan span{std::chrono::floor<std::chrono::hours>(now - kShown), now};
+  // The work may outlive this object, so it has copies of everything it uses.
+  const auto found = std::make_shared<Result<std::vector<ExpectedMeter>>>();
+  worker_.run([expect = expect_, span, found] { *found = expect_safely(expect, span); },
+              [weak = std::weak_ptr{self_}, found] {
+                const auto self = weak.lock();
+                if (!self) return;
+                (*self)->is_asking_ = false;
+                (*self)->take(std::move(*found));
+              });
+}
+
+void LoadWatch::take(Result<std::vector<ExpectedMeter>> expected) {
+  latest_ = expected ? std::move(*expected) : std::vector<ExpectedMeter>{};
+  const std::string failure = expected ? "" : expected.error().message;
+  if (!failure.empty() && failure != failure_) {
+    spdlog::info("event=no_expected_loads why=\"{}\"", failure);
+  }
+  failure_ = failure;
+}
+
+ExpectLoads make_load_expectation(OpenSite site) {
+  struct Learned {
+    std::optional<LoadExpectation> expectation;
+    metering::Instant at{};
+  };
+  return [site = std::move(site), learned = std::make_shared<Learned>()](
+             const metering::TimeSpan& span) -> Result<std::vector<ExpectedMeter>> {
+    if (!site.config.model || !site.config.building) return std::vector<ExpectedMeter>{};
+    if (!learned->expectation || span.end - learned->at >= kLearnEvery) {
+      auto again = LoadExpectation::learn(site, span.end);
+      if (!again) return tl::unexpected(again.error());
+      learned->expectation = std::move(*again);
+      learned->at = span.end;
+    }
+    return learned->expectation->expect(span);
+  };
+}
+
+}  // namespace recald::daemon

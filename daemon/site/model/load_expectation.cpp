@@ -1,0 +1,111 @@
+#include "daemon/site/model/load_expectation.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/model/hourly/hourly.hpp"
+#include "daemon/site/model/diagnosis_input.hpp"
+#include "daemon/site/replay/stored_readings.hpp"
+
+namespace recald::daemon {
+namespace {
+
+/// (hours x outputs) kW of the building as drawn.
+Eigen::ArrayXXd modelled_kW(const model::Building& building,
+                            std::shared_ptr<const model::Drivers> drivers,
+                            std::span<const model::MeterMap> maps) {
+  model::hourly::Hourly hourly{std::move(drivers)};
+  Eigen::ArrayXXd power_kW(hourly.step_count(), static_cast<Eigen::Index>(maps.size()));
+  hourly.run(building, {}, maps, power_kW);
+  return power_kW;
+}
+
+std::vector<profile::LoadBand> bands_of(const diagnosis::SiteProblem& problem,
+                                        std::span<const model::MeterMap> maps) {
+  const Eigen::ArrayXXd expected_kW = modelled_kW(problem.nominal, problem.drivers, maps);
+  std::vector<profile::LoadBand> bands;
+  std::vector<profile::ModelledHour> compared(problem.drivers->hours.size());
+  for (Eigen::Index k = 0; k < expected_kW.cols(); ++k) {
+    for (std::size_t i = 0; i < compared.size(); ++i) {
+      const model::DriverHour& hour = problem.drivers->hours[i];
+      const auto row = static_cast<Eigen::Index>(i);
+      compared[i] = {hour.day, hour.local_hour, expected_kW(row, k), problem.measured_kW(row, k)};
+    }
+    bands.emplace_back(compared);
+  }
+  return bands;
+}
+
+/// The local months that the span touches, and the one before, whose end warms the building up.
+std::vector<metering::Month> months_of(const metering::LocalCalendar& calendar,
+                                       const metering::TimeSpan& span) {
+  std::vector<metering::Month> months;
+  const metering::Month last = calendar.month_of(span.end - std::chrono::seconds{1});
+  for (metering::Month month = metering::previous_month(calendar.month_of(span.begin));
+       month <= last; month = metering::next_month(month)) {
+    months.push_back(month);
+  }
+  return months;
+}
+
+/// A file may end today, and the model runs over whole months: the last day goes on. Hours from
+/// there on are not given out.
+weather::WeatherSeries continued(weather::WeatherSeries series, metering::Instant until) {
+  constexpr std::size_t kDay = 24;
+  if (series.hours.size() < kDay) return series;
+  while (series.end() < until) series.hours.push_back(series.hours[series.hours.size() - kDay]);
+  return series;
+}
+
+}  // namespace
+
+Result<LoadExpectation> LoadExpectation::learn(OpenSite site, metering::Instant now) {
+  site.config.period.reset();
+  if (auto chosen = choose_model(site.config, ModelKind::hourly); !chosen) {
+    return tl::unexpected(chosen.error());
+  }
+  auto modelled = load_modelled_site(std::move(site), now);
+  if (!modelled) return tl::unexpected(modelled.error());
+  const auto problem = make_site_problem(modelled->site.config, modelled->site.calendar,
+                                         modelled->recording, modelled->weather);
+  if (!problem) return tl::unexpected(problem.error());
+  std::vector<model::MeterMap> maps;
+  for (const diagnosis::MeterData& meter : problem->meters) maps.push_back(meter.end_uses);
+  auto bands = bands_of(*problem, maps);
+  return LoadExpectation{std::move(modelled->site), problem->loads, std::move(maps),
+                         std::move(bands)};
+}
+
+Result<std::vector<ExpectedMeter>> LoadExpectation::expect(const metering::TimeSpan& span) const {
+  const std::vector<metering::Month> months = months_of(site_.calendar, span);
+  const auto live = open_sensors(site_.config);
+  if (!live) return tl::unexpected(live.error());
+  const auto weather =
+      load_weather(site_.config, site_.calendar, {months.front(), months.back()}, live->get());
+  if (!weather) return tl::unexpected(weather.error());
+  const metering::Instant end = std::min(span.end, weather->filled.series.end());
+  auto drivers = model::make_drivers(
+      months, site_.calendar, site_.config.holidays, *site_.config.building, loads_,
+      *site_.config.location,
+      continued(weather->filled.series, site_.calendar.month_span(months.back()).end),
+      model::MissingWeather::assume);
+  if (!drivers) return tl::unexpected(drivers.error());
+  const auto shared = std::make_shared<const model::Drivers>(std::move(*drivers));
+  const Eigen::ArrayXXd expected_kW = modelled_kW(*site_.config.building, shared, maps_);
+  std::vector<ExpectedMeter> meters;
+  for (std::size_t k = 0; k < bands_.size(); ++k) {
+    ExpectedMeter meter{site_.config.model->outputs[k], {}};
+    for (std::size_t i = 0; i < shared->hours.size(); ++i) {
+      const model::DriverHour& hour = shared->hours[i];
+      if (hour.start < span.begin || hour.start >= end) continue;
+      const auto band =
+          bands_[k].at(hour.day, hour.local_hour,
+                       expected_kW(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+      if (band) meter.hours.push_back({hour.start, *band});
+    }
+    meters.push_back(std::move(meter));
+  }
+  return meters;
+}
+
+}  // namespace recald::daemon
