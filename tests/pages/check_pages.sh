@@ -14,10 +14,10 @@ here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 [ "$#" -gt 0 ] ||
-  set -- full design readings-only meters young-meters diagnosis empty-handed drift savings saved now meter months model events
+  set -- full design readings-only meters young-meters diagnosis empty-handed drift savings saved now meter months model data events
 for name in "$@"; do
   case $name in
-    now | meter | months | model | events) "$write_status" "$name" "$folder/$name.html" ;;
+    now | meter | months | model | data | events) "$write_status" "$name" "$folder/$name.html" ;;
     *) "$write" "$name" "$folder/$name.html" ;;
   esac
 done

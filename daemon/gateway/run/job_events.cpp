@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "core/display/id_words.hpp"
-
 namespace recald::daemon {
 namespace {
 
@@ -21,13 +19,11 @@ bool is_new(const DriftAlarm& alarm, const std::optional<StoredJob>& before) {
                               [&](const DriftAlarm& then) { return is_same_change(alarm, then); });
 }
 
-std::string alarm_text(const DriftAlarm& alarm) {
-  std::string text = fmt::format("{}: {}", display::output_words(alarm.output), alarm.sentence);
-  for (std::size_t i = 0; i < alarm.causes.size(); ++i) {
-    text += fmt::format("{}{:.0f} % {}", i == 0 ? " Likeliest causes: " : "; ",
-                        100.0 * alarm.causes[i].probability, alarm.causes[i].words);
-  }
-  return text;
+bool is_new(const ChangedMeter& changed, const std::optional<StoredJob>& before) {
+  if (!before || !before->result.drift) return true;
+  return std::ranges::none_of(before->result.drift->changed_meters, [&](const ChangedMeter& then) {
+    return then.meter == changed.meter && then.kind == changed.kind;
+  });
 }
 
 }  // namespace
@@ -55,7 +51,12 @@ std::vector<StoreEvent> events_of(const StoredJob& job, bool has_named,
   if (has_named) tell(Severity::info, "cause_named", fmt::format("{} {}", name, job.message));
   if (job.accepted && job.result.drift) {
     for (const DriftAlarm& alarm : job.result.drift->alarms) {
-      if (is_new(alarm, before)) tell(Severity::warning, "drift_alarm", alarm_text(alarm));
+      if (is_new(alarm, before)) tell(Severity::warning, "drift_alarm", alarm.sentence);
+    }
+    for (const ChangedMeter& changed : job.result.drift->changed_meters) {
+      if (!is_new(changed, before)) continue;
+      tell(Severity::warning, "drift_alarm", changed.sentence);
+      events.back().subject = changed.meter;
     }
   }
   return events;

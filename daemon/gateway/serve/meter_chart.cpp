@@ -69,7 +69,8 @@ struct Outside {
 /// Puts the model's band in the place of the lowest and highest interval.
 Outside put_band(report::TimeChart& chart, const ExpectedMeter& expected,
                  const display::Unit& unit) {
-  constexpr std::chrono::hours kRecent{24};
+  const metering::Instant last = std::chrono::floor<std::chrono::hours>(chart.span.end);
+  const metering::TimeSpan recent{last - std::chrono::hours{24}, last};  // whole hours
   Outside outside;
   for (report::ChartPoint& point : chart.points) {
     const auto hour =
@@ -78,7 +79,8 @@ Outside put_band(report::TimeChart& chart, const ExpectedMeter& expected,
     if (hour == expected.hours.end() || hour->start != point.start) continue;
     point.low = unit.shown(hour->load.q05_kW);
     point.high = unit.shown(hour->load.q95_kW);
-    const bool counts = std::isfinite(point.mean) && point.start >= chart.span.end - kRecent;
+    const bool counts =
+        std::isfinite(point.mean) && recent.begin <= point.start && point.start < recent.end;
     if (!counts) continue;
     ++outside.of;
     if (point.mean < point.low || point.mean > point.high) ++outside.hours;

@@ -25,9 +25,7 @@ StoredJob with_alarm(const std::string& output, const std::string& since) {
   alarm.since = since;
   alarm.since_earliest = "2025-08";
   alarm.since_latest = "2025-10";
-  alarm.sentence = "more than expected.";
-  alarm.causes = {{.kind = "parameter", .subject = "plugs", .probability = 0.62, .words = "plugs"},
-                  {.kind = "unknown", .subject = {}, .probability = 0.3, .words = "something else"}};
+  alarm.sentence = "Main has been more than forecast. Likeliest cause (62 %): plugs.";
   job.result.drift.emplace();
   job.result.drift->alarms.push_back(std::move(alarm));
   return job;
@@ -62,11 +60,22 @@ TEST(JobEvents, OfADiagnosisThatNamedSomething) {
 TEST(JobEvents, AnAlarmIsTheSameAMonthLater) {
   const StoredJob now = with_alarm("main_daily_kWh", "2025-09");
   EXPECT_THAT(told(events_of(now, false, {})),
-              ElementsAre("drift_alarm: main, daily mean: more than expected. Likeliest causes: "
-                          "62 % plugs; 30 % something else"));
+              ElementsAre("drift_alarm: Main has been more than forecast. Likeliest cause (62 %): "
+                          "plugs."));
   EXPECT_THAT(events_of(now, false, with_alarm("main_daily_kWh", "2025-08")), IsEmpty());
   EXPECT_EQ(events_of(now, false, with_alarm("steam_daily_kWh", "2025-09")).size(), 1);
   EXPECT_EQ(events_of(with_alarm("main_daily_kWh", "2026-01"), false, now).size(), 1);
+}
+
+TEST(JobEvents, AMeterThatHasChangedIsToldOnce) {
+  StoredJob now = ended(JobState::done, true, "");
+  now.result.drift.emplace();
+  now.result.drift->changed_meters.push_back(
+      {.meter = "main", .kind = "scale", .since = "2025-09", .sentence = "main counts half."});
+  const auto events = events_of(now, false, {});
+  EXPECT_THAT(told(events), ElementsAre("drift_alarm: main counts half."));
+  EXPECT_EQ(events.at(0).subject, "main");
+  EXPECT_THAT(events_of(now, false, now), IsEmpty());
 }
 
 }  // namespace

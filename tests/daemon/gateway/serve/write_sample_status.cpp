@@ -1,6 +1,6 @@
 // Writes a page of the daemon of a site that has troubles to a file, for the browser test.
 //
-//   write_sample_status now|meter|months|model|events FILE.html
+//   write_sample_status now|meter|months|model|data|events FILE.html
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -78,14 +78,12 @@ struct TroubledSite final : ServedSite {
 }  // namespace recald::daemon
 
 int main(int argc, char** argv) {
-  const std::map<std::string, std::string> paths{{"now", "/"},
-                                                 {"meter", "/meters/main"},
-                                                 {"months", "/months"},
-                                                 {"model", "/model"},
-                                                 {"events", "/events"}};
+  const std::map<std::string, std::string> paths{{"now", "/"},          {"meter", "/meters/main"},
+                                                 {"months", "/months"}, {"model", "/model"},
+                                                 {"data", "/data"},     {"events", "/events"}};
   const auto path = argc == 3 ? paths.find(argv[1]) : paths.end();
   if (path == paths.end()) {
-    std::cerr << "usage: write_sample_status now|meter|months|model|events FILE.html\n";
+    std::cerr << "usage: write_sample_status now|meter|months|model|data|events FILE.html\n";
     return 2;
   }
   recald::daemon::TroubledSite site;
