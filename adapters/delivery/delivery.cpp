@@ -120,6 +120,7 @@ Result<void> send_mail(const MailServer& server, const Mail& mail, const std::st
   for (const std::string& address : mail.to) add(recipients, address);
   curl_easy_setopt(handle.get(), CURLOPT_MAIL_FROM, mail.from.c_str());
   curl_easy_setopt(handle.get(), CURLOPT_MAIL_RCPT, recipients.get());
+  curl_easy_setopt(handle.get(), CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L);  // one left the company
   const std::string text = mail_text(mail);
   std::string_view rest = text;
   curl_easy_setopt(handle.get(), CURLOPT_UPLOAD, 1L);

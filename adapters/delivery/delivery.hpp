@@ -21,10 +21,10 @@ struct Webhook {
 };
 
 struct MailServer {
-  std::string url;       ///< "smtps://mail.example.org", "smtp://mail.example.org:587".
-  std::string user;      ///< Empty: the server asks for none.
-  std::string password;  ///< Never sent without encryption.
-  bool encrypts = true;  ///< smtp:// goes on after STARTTLS, or fails; otherwise it stays plain.
+  std::string url;   ///< "smtps://mail.example.org", "smtp://mail.example.org:587".
+  std::string user;  ///< Empty: the server asks for none.
+  std::string password;
+  bool encrypts = true;  ///< smtp:// goes on after STARTTLS, or fails; otherwise all stays plain.
   std::filesystem::path trusted_certificate;  ///< As in Webhook.
 };
 
@@ -33,7 +33,8 @@ struct MailServer {
 [[nodiscard]] Result<void> post_json(const Webhook& webhook, const std::string& document,
                                      const std::stop_token& stop);
 
-/// @return or io_failed: no server, no trust, or the server did not accept the mail; cancelled.
+/// @return or io_failed: no server, no trust, or the server accepted the mail for nobody;
+/// cancelled.
 [[nodiscard]] Result<void> send_mail(const MailServer& server, const Mail& mail,
                                      const std::stop_token& stop);
 

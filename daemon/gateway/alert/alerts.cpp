@@ -8,6 +8,7 @@
 
 #include "adapters/http/url.hpp"
 #include "adapters/system/sha256.hpp"
+#include "daemon/gateway/ingest/plausible_time.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -20,11 +21,22 @@ constexpr std::size_t kToldMax = 1'000;
 /// What a new destination is told of the past. The recovery of a store at the start is in it.
 constexpr std::chrono::hours kToldAtFirst{1};
 constexpr int kEventsOfThePast = 1'000;
+constexpr int kPagesMax = 20;                // of events at a look
 constexpr std::chrono::days kCountedFor{1};  // as the store counts repeated events
 
 template <class T>
 void keep_newest(std::deque<T>& values, std::size_t max) {
   while (values.size() > max) values.pop_front();
+}
+
+/// An exception is the reason why it was not delivered.
+Result<void> deliver_safely(const Deliver& deliver, const AlertDestination& destination,
+                            const AlertMessage& message, const std::stop_token& stop) {
+  try {
+    return deliver(destination, message, stop);
+  } catch (const std::exception& thrown) {
+    return failure(ErrorCode::unsupported, thrown.what());
+  }
 }
 
 }  // namespace
@@ -127,18 +139,23 @@ Result<std::int64_t> Alerts::position_of(Outgoing& outgoing, Instant now) {
   if (outgoing.position) return *outgoing.position;
   const auto stored = ports_.store.cursor(outgoing.cursor);
   if (!stored) return tl::unexpected(stored.error());
-  if (!*stored) {
-    const auto past = ports_.store.events(kEventsOfThePast);
-    if (!past) return tl::unexpected(past.error());
-    std::int64_t position = 0;
-    for (const StoreEvent& event : *past) {
-      if (event.time < now - kToldAtFirst) position = std::max(position, event.number);
-    }
-    outgoing.position = position;
-    return position;
+  if (*stored) {
+    outgoing.position = **stored;
+    return **stored;
   }
-  outgoing.position = **stored;
-  return **stored;
+  const auto past = ports_.store.events(kEventsOfThePast);
+  if (!past) return tl::unexpected(past.error());
+  std::int64_t position = 0;
+  for (const StoreEvent& event : *past) {
+    const bool is_old = is_plausible_time(event.time) && event.time < now - kToldAtFirst;
+    if (is_old) position = std::max(position, event.number);
+  }
+  // Now, so that what this destination misses is still new to it after a restart.
+  if (auto put = ports_.store.put_cursor(outgoing.cursor, position); !put) {
+    return tl::unexpected(put.error());
+  }
+  outgoing.position = position;
+  return position;
 }
 
 Result<Alerts::Pending> Alerts::pending_for(Outgoing& outgoing, const Moment& now) {
@@ -153,12 +170,17 @@ Result<Alerts::Pending> Alerts::pending_for(Outgoing& outgoing, const Moment& no
 Result<void> Alerts::add_stored(Outgoing& outgoing, const Moment& now, Pending& pending) {
   const auto position = position_of(outgoing, now.instant());
   if (!position) return tl::unexpected(position.error());
-  const auto events = ports_.store.events_after(*position, rules_.events);
-  if (!events) return tl::unexpected(events.error());
-  for (const StoreEvent& event : *events) {
-    pending.position = event.number;
-    const bool is_new = is_alert(event, now.instant()) && !was_told(outgoing, event);
-    if (is_new) pending.events.push_back(event);
+  // All of them: in quiet hours an error may stand behind a thousand meters that fell silent.
+  pending.position = *position;
+  for (int page = 0; page < kPagesMax; ++page) {
+    const auto events = ports_.store.events_after(*pending.position, rules_.events);
+    if (!events) return tl::unexpected(events.error());
+    for (const StoreEvent& event : *events) {
+      pending.position = event.number;
+      const bool is_new = is_alert(event, now.instant()) && !was_told(outgoing, event);
+      if (is_new) pending.events.push_back(event);
+    }
+    if (std::ssize(*events) < rules_.events) break;
   }
   return {};
 }
@@ -178,7 +200,9 @@ void Alerts::add_unstored(const Outgoing& outgoing, const Moment& now, Pending& 
 bool Alerts::is_alert(const StoreEvent& event, Instant now) const {
   const bool is_chosen =
       std::ranges::find(site_.alerts.about, event.kind) != site_.alerts.about.end();
-  return is_chosen && event.last.value_or(event.time) > now - rules_.forget;
+  // What happened before the clock was set has no age.
+  const Instant at = event.last.value_or(event.time);
+  return is_chosen && (!is_plausible_time(at) || at > now - rules_.forget);
 }
 
 bool Alerts::was_told(const Outgoing& outgoing, const StoreEvent& event) const {
@@ -209,12 +233,17 @@ void Alerts::move(Outgoing& outgoing, std::optional<std::int64_t> position) {
 }
 
 void Alerts::send(const Outgoing& outgoing, Pending pending, Instant now) {
-  is_sending_ = true;
+  if (std::ssize(pending.events) > rules_.events) {  // the others are the next message
+    pending.events.resize(static_cast<std::size_t>(rules_.events));
+    pending.position = pending.events.back().number;
+  }
   const auto sent = std::make_shared<Result<void>>();
   AlertMessage message = alert_message(site_, calendar_, pending.events, now);
+  is_sending_ = true;
   ports_.worker.run(
       [deliver = deliver_, destination = outgoing.destination, message = std::move(message),
-       stop = stop_.get_token(), sent] { *sent = deliver(destination, message, stop); },
+       stop = stop_.get_token(),
+       sent] { *sent = deliver_safely(deliver, destination, message, stop); },
       [weak = std::weak_ptr{self_}, cursor = outgoing.cursor, pending = std::move(pending), sent] {
         if (const auto self = weak.lock()) (*self)->finish(cursor, pending, *sent);
       });
@@ -234,9 +263,8 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
       tell_({.time = now.instant(),
              .severity = Severity::warning,
              .kind = "alert_not_sent",
-             .subject = "",
-             .text = fmt::format("{}: {}; recald tries again for three days", words,
-                                 sent.error().message),
+             .subject = words,
+             .text = fmt::format("{}; recald keeps trying for three days", sent.error().message),
              .is_counted = true});
     }
     return schedule(milliseconds{0});
@@ -251,11 +279,10 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
   tell_({.time = now.instant(),
          .severity = Severity::info,
          .kind = "alert_sent",
-         .subject = "",
-         .text = fmt::format("{}: {}", words,
-                             pending.events.size() == 1
-                                 ? "1 alert"
-                                 : fmt::format("{} alerts", pending.events.size())),
+         .subject = words,
+         .text = pending.events.size() == 1
+                     ? "1 alert was sent"
+                     : fmt::format("{} alerts were sent", pending.events.size()),
          .is_counted = true});
   schedule(milliseconds{0});
 }

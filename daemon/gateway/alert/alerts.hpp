@@ -29,7 +29,7 @@ struct AlertRules {
   std::chrono::milliseconds retry_min{60'000};   ///< After a failure; doubles.
   std::chrono::milliseconds retry_max{3'600'000};
   std::chrono::hours forget{72};  ///< Older events are not told any more.
-  int events = 500;               ///< In one message at most.
+  int events = 500;               ///< In one message at most; read at a time.
 };
 
 /// Sends a message; runs on the worker, and ends soon after a stop is requested.

@@ -208,6 +208,7 @@ void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
   state_.settings.resolution_kWh = std::max(meter_.counter.resolution_kWh, resolution_kWh);
   for (const std::string& name : meter_.map.energy) latest_.erase(name);
   live_.register_kWh = energy_kWh;
+  live_.measured_at = at;
   take_sample(batch, {at, energy_kWh});
 }
 
@@ -218,6 +219,7 @@ std::optional<double> MeterTrack::new_power_kW(const modbus::PlannedRead& read) 
 }
 
 void MeterTrack::take_power(StoreBatch& batch, double power_kW, Instant at) {
+  live_.measured_at = at;
   const bool went_back = state_.power.next && at < state_.power.until - kClockSlew;
   if (std::exchange(clock_was_set_, false) || went_back) {
     since_sample_ |= Reason::clock;

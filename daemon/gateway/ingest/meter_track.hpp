@@ -34,6 +34,8 @@ struct LiveValues {
   std::optional<double> power_kW;
   std::optional<double> register_kWh;
   std::optional<metering::Instant> read_at;  ///< Time of the last good read.
+  /// Of the last value that its intervals are made of: a meter may answer and say nothing.
+  std::optional<metering::Instant> measured_at = {};
 };
 
 class MeterTrack {

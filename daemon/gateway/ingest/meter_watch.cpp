@@ -14,9 +14,12 @@ std::chrono::seconds meter_silence_max(std::chrono::seconds interval, bool is_po
 }
 
 std::optional<StoreEvent> MeterWatch::judge(std::optional<Instant> heard_at, Instant now) {
-  // A meter that a reload has opened again has not been heard yet, but this watch has heard it.
-  since_ = std::max(since_.value_or(now), heard_at.value_or(since_.value_or(now)));
-  const bool was_silent = std::exchange(is_silent_, now - *since_ > silence_max_);
+  // Only a new value counts: whatever the clock does, it has another time than the last.
+  const bool is_heard = heard_at && heard_at != heard_at_;
+  if (is_heard) heard_at_ = heard_at;
+  since_ = is_heard ? std::min(*heard_at, now) : since_.value_or(now);
+  const bool stays_silent = is_silent_ && !is_heard;
+  const bool was_silent = std::exchange(is_silent_, stays_silent || now - *since_ > silence_max_);
   if (is_silent_ == was_silent) return std::nullopt;
   const auto event = [&](Severity severity, const char* kind, std::string text) {
     return StoreEvent{.time = now,

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "adapters/ports/store.hpp"
 
@@ -15,12 +16,18 @@ namespace recald::daemon {
 /// For one meter, polled or pushed.
 class MeterWatch {
  public:
-  MeterWatch(std::string meter, std::chrono::seconds silence_max)
-      : meter_(std::move(meter)), silence_max_(silence_max) {}
+  /// @param known_until  End of what the store has of a pushed meter: it may send rarely.
+  /// @param is_silent    An earlier process has told of its silence, and of no answer since.
+  MeterWatch(std::string meter, std::chrono::seconds silence_max,
+             std::optional<metering::Instant> known_until = {}, bool is_silent = false)
+      : meter_(std::move(meter)),
+        silence_max_(silence_max),
+        since_(known_until),
+        is_silent_(is_silent) {}
 
   [[nodiscard]] std::chrono::seconds silence_max() const { return silence_max_; }
 
-  /// @param heard_at  When it last gave a good value, in this process; nothing: it has not yet.
+  /// @param heard_at  When it last gave a value, in this process; nothing: it has not yet.
   /// @return what has changed since the last call.
   [[nodiscard]] std::optional<StoreEvent> judge(std::optional<metering::Instant> heard_at,
                                                 metering::Instant now);
@@ -31,9 +38,9 @@ class MeterWatch {
  private:
   std::string meter_;
   std::chrono::seconds silence_max_;
-  /// When it was last heard, or of the first check: silence counts from here.
-  std::optional<metering::Instant> since_;
-  bool is_silent_ = false;
+  std::optional<metering::Instant> since_;     ///< Silence counts from here; nothing: from now on.
+  std::optional<metering::Instant> heard_at_;  ///< As last told.
+  bool is_silent_;
 };
 
 }  // namespace recald::daemon

@@ -41,11 +41,12 @@ StoreEvent SensorWatch::event(Severity severity, std::string_view kind, std::str
           .kind = std::string{kind},
           .subject = sensor_,
           .text = std::move(text),
-          .is_counted = true};  // a restart reports it again
+          .is_counted = is_first_};  // a restart reports it again
 }
 
 std::vector<StoreEvent> SensorWatch::judge(std::span<const MeterProgress* const> channels,
                                            Instant now) {
+  is_first_ = !begun_;
   if (!begun_) begun_ = now;
   std::vector<std::string_view> silent;
   std::vector<std::string_view> back;

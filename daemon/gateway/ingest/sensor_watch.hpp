@@ -46,7 +46,8 @@ class SensorWatch {
   std::string sensor_;
   bool is_polled_;
   std::optional<metering::Instant>
-      begun_;  ///< Time of the first check; a quantity never known counts from here.
+      begun_;             ///< Time of the first check; a quantity never known counts from here.
+  bool is_first_ = true;  ///< The check that is being made.
   std::set<std::string_view> silent_;  ///< Quantities that were reported.
   std::set<std::string_view> frozen_;
 };

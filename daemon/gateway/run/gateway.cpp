@@ -24,6 +24,7 @@ constexpr hours kMonthsEvery{1};
 constexpr hours kRefusalsEvery{1};
 constexpr std::chrono::minutes kMetersEvery{1};
 constexpr int kEventsTakenOver = 10'000;
+constexpr int kEventsLookedAt = 10'000;
 constexpr std::size_t kSamplesAtATime = 500;  // taken over between two checks of the store
 constexpr std::size_t kMonthsAtATime = 12;    // of one meter, in one step of the loop
 
@@ -42,6 +43,15 @@ CommitRules rules_for(const SiteConfig& site) {
   }
   rules.intervals_max = std::max(rules.intervals_max, intervals_a_day);
   return rules;
+}
+
+/// @param events  Newest first.
+bool is_told_silent(const std::vector<StoreEvent>& events, const std::string& meter) {
+  const auto last = std::ranges::find_if(events, [&](const StoreEvent& event) {
+    return event.subject == meter &&
+           (event.kind == "meter_silent" || event.kind == "meter_answers");
+  });
+  return last != events.end() && last->kind == "meter_silent";
 }
 
 }  // namespace
@@ -121,20 +131,30 @@ Gateway::PushedMeter Gateway::again_pushed(MeterProgress progress) const {
   if (known != pushed_.end()) {
     meter.progress.counters = known->progress.counters;
     meter.heard_at = known->heard_at;
+    meter.taken_at = known->taken_at;
   }
   return meter;
 }
 
 void Gateway::watch_meters_of(const SiteConfig& site) {
+  // What an earlier process told of, newest first; a store that cannot be read says so itself.
+  const auto events = ports_.store.events(kEventsLookedAt);
   std::map<std::string, MeterWatch> watches;
   for (const MeterConfig& config : site.meters) {
     if (!config.is_stored()) continue;
     const std::string& id = config.meter.id;
     const auto silence_max = meter_silence_max(config.meter.interval, config.live.has_value());
     const auto known = meter_watches_.find(id);
-    const bool goes_on =
-        known != meter_watches_.end() && known->second.silence_max() == silence_max;
-    watches.emplace(id, goes_on ? known->second : MeterWatch{id, silence_max});
+    if (known != meter_watches_.end() && known->second.silence_max() == silence_max) {
+      watches.emplace(id, known->second);
+      continue;
+    }
+    const auto pushed = std::ranges::find(
+        pushed_, id, [](const PushedMeter& one) { return one.progress.stored.meter.id; });
+    const auto known_until =
+        pushed == pushed_.end() ? std::nullopt : pushed->progress.known_until();
+    watches.emplace(
+        id, MeterWatch{id, silence_max, known_until, events && is_told_silent(*events, id)});
   }
   meter_watches_ = std::move(watches);
 }
@@ -371,8 +391,13 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   watch_clock(ports_.loop.now());
   const Instant now = ports_.loop.now().instant();
   auto counts = commit_pushed(batch, correction, now);
-  if (!counts) return counts;
+  if (!counts) {
+    if (counts.error().code == ErrorCode::io_failed) tell_of_refusal(counts.error().message);
+    return counts;
+  }
+  if (!committer_.health().is_degraded) tell_of_refusal("");
   pushed->heard_at = now;
+  if (counts->taken > 0) pushed->taken_at = now;
   note_committed(batch, *counts);
   tell_of_pushed(meter, *counts, correction, now);
   return counts;
@@ -522,6 +547,8 @@ void Gateway::judge_meters_every_minute() {
 }
 
 void Gateway::judge_meters() {
+  const CommitHealth& store = committer_.health();
+  if (store.is_degraded && !is_refusal_told_) tell_of_refusal(store.why);
   watch_clock(ports_.loop.now());
   if (!clock_ok_) return;
   const Instant now = ports_.loop.now().instant();
@@ -533,11 +560,11 @@ void Gateway::judge_meters() {
   for (const auto& bus : buses_) {
     for (const LiveMeter& meter : bus->meters()) {
       const auto* const track = std::get_if<MeterTrack>(&meter.track);
-      if (track != nullptr) judge(meter.id, track->live().read_at);
+      if (track != nullptr) judge(meter.id, track->live().measured_at);
     }
   }
   for (const PushedMeter& meter : pushed_) {
-    if (!meter.progress.channel) judge(meter.progress.stored.meter.id, meter.heard_at);
+    if (!meter.progress.channel) judge(meter.progress.stored.meter.id, meter.taken_at);
   }
 }
 

@@ -107,7 +107,8 @@ class Gateway {
   /// A meter with source = "http", or a quantity of such a sensor, whose readings arrive by HTTP.
   struct PushedMeter {
     MeterProgress progress;
-    std::optional<metering::Instant> heard_at;  ///< Since the process started.
+    std::optional<metering::Instant> heard_at = {};  ///< Since the process started, as the next.
+    std::optional<metering::Instant> taken_at = {};  ///< It sent something new.
   };
 
   /// A read from before the clock was right.

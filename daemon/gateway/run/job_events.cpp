@@ -51,7 +51,9 @@ std::vector<StoreEvent> events_of(const StoredJob& job, bool has_named,
   if (has_named) tell(Severity::info, "cause_named", fmt::format("{} {}", name, job.message));
   if (job.accepted && job.result.drift) {
     for (const DriftAlarm& alarm : job.result.drift->alarms) {
-      if (is_new(alarm, before)) tell(Severity::warning, "drift_alarm", alarm.sentence);
+      if (!is_new(alarm, before)) continue;
+      tell(Severity::warning, "drift_alarm", alarm.sentence);
+      events.back().subject = alarm.output;
     }
     for (const ChangedMeter& changed : job.result.drift->changed_meters) {
       if (!is_new(changed, before)) continue;

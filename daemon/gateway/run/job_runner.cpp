@@ -39,6 +39,20 @@ Result<JobOutcome> done_and_tidied(const DoJob& work, const StoredJob& job, JobW
   return outcome;
 }
 
+/// The newest accepted calibration that says something of the months; an accepted one may lack it.
+Result<std::optional<StoredJob>> last_followed(Store& store) {
+  constexpr int kLookedAt = 24;
+  const auto jobs = store.jobs(JobKind::calibration, kLookedAt);
+  if (!jobs) return tl::unexpected(jobs.error());
+  for (const StoredJob& one : *jobs) {
+    if (one.state != JobState::done || !one.accepted) continue;
+    auto job = store.job(one.number);
+    if (!job) return job;
+    if (*job && (*job)->result.drift) return job;
+  }
+  return std::optional<StoredJob>{};
+}
+
 }  // namespace
 
 JobRunner::JobRunner(Ports ports, DoJob work, OnJob on_job, OnJobEvent on_event)
@@ -100,7 +114,7 @@ Result<void> JobRunner::end(StoredJob job, JobState state) {
 
 /// A job that is stored as ended says nothing more, so its events are stored in the same commit.
 Result<void> JobRunner::put_with_events(const StoredJob& job, bool has_named) {
-  const auto before = ports_.store.last_accepted(JobKind::calibration);
+  const auto before = last_followed(ports_.store);
   if (!before) return tl::unexpected(before.error());
   const std::vector<StoreEvent> events = events_of(job, has_named, *before);
   auto put = ports_.store.as_one([&]() -> Result<void> {

@@ -72,6 +72,8 @@ class JobRunner {
   /// @return not_found when no such job waits or runs.
   [[nodiscard]] Result<void> cancel(std::int64_t number);
 
+  [[nodiscard]] bool is_running() const { return stage_ == Stage::running; }
+
   /// How far the running job is; nothing if none runs, or it has not said yet.
   [[nodiscard]] std::optional<JobProgress> progress() const;
 

@@ -12,6 +12,7 @@ namespace recald::daemon {
 namespace {
 
 constexpr std::chrono::hours kAskEvery{1};
+constexpr std::chrono::minutes kAskAgain{1};  // while something else goes on
 constexpr std::chrono::days kShown{8};
 constexpr std::chrono::hours kLearnEvery{24};
 
@@ -29,29 +30,45 @@ Result<std::vector<ExpectedMeter>> expect_safely(const ExpectLoads& expect,
 
 }  // namespace
 
-LoadWatch::LoadWatch(Loop& loop, Worker& worker, ExpectLoads expect)
+LoadWatch::LoadWatch(Loop& loop, Worker& worker, ExpectLoads expect, std::function<bool()> is_busy)
     : loop_(loop),
       worker_(worker),
       expect_(std::move(expect)),
+      is_busy_(std::move(is_busy)),
       self_(std::make_shared<LoadWatch*>(this)) {}
 
-void LoadWatch::start() { ask_every_hour(); }
+void LoadWatch::start() { schedule(std::chrono::milliseconds{0}); }
 
-void LoadWatch::ask_every_hour() {
-  loop_.after(kAskEvery, [weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->ask_every_hour();
+void LoadWatch::set_expect(ExpectLoads expect) {
+  expect_ = std::move(expect);
+  latest_.clear();
+  ++site_files_;
+  schedule(std::chrono::milliseconds{0});
+}
+
+void LoadWatch::schedule(std::chrono::milliseconds wait) {
+  const std::chrono::milliseconds due = loop_.now().monotonic + wait;
+  due_ = due;
+  loop_.after(wait, [weak = std::weak_ptr{self_}, due] {
+    const auto self = weak.lock();
+    if (self && (*self)->due_ == due) (*self)->ask();
   });
-  if (std::exchange(is_asking_, true)) return;
+}
+
+void LoadWatch::ask() {
+  if (is_asking_ || is_busy_()) return schedule(kAskAgain);
+  schedule(kAskEvery);
+  is_asking_ = true;
   const metering::Instant now = loop_.now().instant();
   const metering::TimeSpan span{std::chrono::floor<std::chrono::hours>(now - kShown), now};
   // The work may outlive this object, so it has copies of everything it uses.
   const auto found = std::make_shared<Result<std::vector<ExpectedMeter>>>();
   worker_.run([expect = expect_, span, found] { *found = expect_safely(expect, span); },
-              [weak = std::weak_ptr{self_}, found] {
+              [weak = std::weak_ptr{self_}, found, asked_for = site_files_] {
                 const auto self = weak.lock();
                 if (!self) return;
                 (*self)->is_asking_ = false;
-                (*self)->take(std::move(*found));
+                if ((*self)->site_files_ == asked_for) (*self)->take(std::move(*found));
               });
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,28 +21,33 @@ using ExpectLoads = std::function<Result<std::vector<ExpectedMeter>>(const meter
 /// Asks once an hour for the last eight days.
 class LoadWatch {
  public:
-  LoadWatch(Loop& loop, Worker& worker, ExpectLoads expect);
+  /// @param is_busy  While it is true, nothing is asked: a job needs the memory.
+  LoadWatch(Loop& loop, Worker& worker, ExpectLoads expect, std::function<bool()> is_busy);
   ~LoadWatch() = default;
   LoadWatch(const LoadWatch&) = delete;
   LoadWatch& operator=(const LoadWatch&) = delete;
 
   void start();
   /// Replaces the model, for another site file.
-  void set_expect(ExpectLoads expect) { expect_ = std::move(expect); }
+  void set_expect(ExpectLoads expect);
 
   /// Empty until the first answer, and where the site has no hourly model.
   [[nodiscard]] const std::vector<ExpectedMeter>& latest() const { return latest_; }
 
  private:
-  void ask_every_hour();
+  void schedule(std::chrono::milliseconds wait);
+  void ask();
   void take(Result<std::vector<ExpectedMeter>> expected);
 
   Loop& loop_;
   Worker& worker_;
   ExpectLoads expect_;
+  std::function<bool()> is_busy_;
   std::vector<ExpectedMeter> latest_;
   std::string failure_;  ///< The last one logged.
   bool is_asking_ = false;
+  int site_files_ = 0;  ///< So far: an answer for an earlier one is dropped.
+  std::optional<std::chrono::milliseconds> due_;  ///< Monotonic.
   std::shared_ptr<LoadWatch*> self_;
 };
 

@@ -101,7 +101,8 @@ class Service {
             }),
         weather_wait_({loop_, *store_, looker_}, make_weather_look(site_),
                       [this] { calibrate_with_weather(); }),
-        load_watch_(loop_, expecter_, make_load_expectation(site_)),
+        load_watch_(loop_, expecter_, make_load_expectation(site_),
+                    [this] { return jobs_.is_running(); }),
         upkeep_(*store_, checker_, upkeep_of(site_.config.store, running_), site_.calendar,
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }),
@@ -234,170 +235,169 @@ class Service {
                   .no_store = running_.missing,
                   .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
                   .cancel_job = [this](std::int64_t number) { return jobs_.cancel(number); },
-                  .expected = [this]() -> const auto& {return load_watch_.latest();
+                  .expected = [this] { return std::cref(load_watch_.latest()); },
+                  .progress = [this] { return jobs_.progress(); },
+                  .take_readings =
+                      [this](const std::string& meter, auto readings, const auto& correction) {
+                        return gateway_->take_pushed(meter, std::move(readings), correction);
+                      }};
   }
-  , .progress = [this] { return jobs_.progress(); },
-    .take_readings = [this](const std::string& meter, auto readings, const auto& correction) {
-      return gateway_->take_pushed(meter, std::move(readings), correction);
+
+  boost::asio::awaitable<void> heed_signals() {
+    for (;;) {
+      co_await signal_file_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                                       boost::asio::use_awaitable);
+      const auto signal = signals_.next();
+      if (!signal) continue;
+      // Posted, so that the next signal is handled whatever happens here.
+      if (*signal == SIGHUP) {
+        loop_.post([this] { reload(); });
+      } else if (*signal == SIGUSR1) {
+        loop_.post([this] { calibrate("signal"); });
+      } else {
+        spdlog::info("event=ending signal={}", *signal);
+        break;
+      }
     }
+    signals_.let_ends_through();  // a second one ends the process at once
+    context_.stop();
+  }
+
+  void keep_up() {
+    loop_.after(upkeep_.maintain(loop_.now().instant()), [this] { keep_up(); });
+  }
+
+  void schedule() {
+    recalibration_ = std::make_unique<Recalibration>(
+        loop_, site_.config, site_.calendar,
+        [this](const std::string& asked_by) { calibrate(asked_by); });
+    recalibration_->start();
+  }
+
+  /// Reads the site file again. If it is wrong, nothing changes except that the buses restart.
+  void reload() {
+    const auto changed = reload_from(site_.config.file);
+    if (changed) {
+      spdlog::info("event=reloaded file={}", site_.config.file.string());
+      return;
+    }
+    gateway_->begin_buses_anew();
+    gateway_->note({loop_.now().instant(), Severity::error, "not_reloaded", "",
+                    "the site file was rejected, recald continues with the old one: " +
+                        changed.error().message});
+  }
+
+  Result<void> reload_from(const std::filesystem::path& file) {
+    auto config = load_site(file);
+    if (!config)
+      return failure(ErrorCode::malformed, fmt::format("{}", fmt::join(config.error(), "; ")));
+    if (auto possible = can_reload(site_.config, *config); !possible) return possible;
+    std::string token;
+    if (config->http && !config->http->token_file.empty()) {
+      auto read = http::read_token_file(config->http->token_file);
+      if (!read) return tl::unexpected(read.error());
+      token = std::move(*read);
+    }
+    Result<http::Tls> tls;
+    if (server_ && !config->http->certificate_file.empty()) {
+      tls = http::read_tls({config->http->certificate_file, config->http->key_file});
+      if (!tls) return tl::unexpected(tls.error());
+    }
+    if (auto reloaded = gateway_->reload(*config); !reloaded) return reloaded;
+    if (server_) server_->set_token(std::move(token));
+    if (*tls) server_->set_tls(std::move(*tls));
+    upkeep_.set_config(upkeep_of(config->store, running_));
+    site_.config = std::move(*config);
+    jobs_.set_work(make_site_work(site_));
+    weather_wait_.set_look(make_weather_look(site_));
+    load_watch_.set_expect(make_load_expectation(site_));
+    alerts_.set_site(site_.config);
+    schedule();
+    // A month that closed within the last minute would have been requested by the old schedule.
+    catch_up();
+    return {};
+  }
+
+  void catch_up() {
+    if (const auto asked = recalibration_->catch_up(*store_, site_.config); !asked) {
+      spdlog::warn("event=not_caught_up why=\"{}\"", asked.error().message);
+    }
+  }
+
+  Result<std::int64_t> ask(JobKind kind, const std::string& asked_by) {
+    if (!running_.missing.empty()) {
+      return failure(ErrorCode::io_failed, "the store cannot be opened: " + running_.missing);
+    }
+    if (auto modelled = require_model(site_.config); !modelled) {
+      return tl::unexpected(modelled.error());
+    }
+    return jobs_.ask(kind, asked_by);
+  }
+
+  void calibrate(const std::string& asked_by) {
+    if (const auto asked = ask(JobKind::calibration, asked_by); !asked) {
+      spdlog::warn("event=calibration_not_begun asked_by={} why=\"{}\"", asked_by,
+                   asked.error().message);
+    }
+  }
+
+  /// If the site is not calibrated automatically, nothing is calibrated again for
+  /// its weather either.
+  void calibrate_with_weather() {
+    if (!site_.config.recalibration.schedule.is_never()) calibrate("weather");
+  }
+
+  static void log_month(const metering::Meter& meter, const metering::MonthlyFigure& figure) {
+    spdlog::info(
+        "event=month_closed meter={} month={} revision={} kWh_per_day={:.1f} coverage={:.3f}",
+        meter.id, metering::to_string(figure.month), figure.revision, figure.daily_average_kWh,
+        figure.coverage);
+  }
+
+  void hear(const StoreEvent& event) {
+    log_event(event);
+    alerts_.heard(event);
+  }
+
+  static void log_event(const StoreEvent& event) {
+    constexpr std::array kLevels{spdlog::level::info, spdlog::level::warn, spdlog::level::err};
+    spdlog::log(kLevels.at(static_cast<std::size_t>(event.severity)),
+                "event={} subject={} what=\"{}\"", event.kind, event.subject, event.text);
+  }
+
+  static void log_job(const StoredJob& job) {
+    const auto level = job.state == JobState::failed ? spdlog::level::warn : spdlog::level::info;
+    spdlog::log(
+        level, "event=job number={} kind={} state={} asked_by={} accepted={} message=\"{}\"",
+        job.number, name_of(job.kind), name_of(job.state), job.asked_by, job.accepted, job.message);
+  }
+
+  OpenSite site_;
+  RunningStore running_;
+  Store* store_;  ///< From `running_`.
+  StoreOpener& opener_;
+  Signals& signals_;
+  bool is_opening_ = false;
+  std::optional<RunningStore> found_;
+  boost::asio::io_context context_{1};
+  boost::asio::posix::stream_descriptor signal_file_{context_, signals_.descriptor()};
+  asio::AsioLoop loop_;
+  system::WorkerThread worker_;
+  system::WorkerThread checker_;    ///< For backups.
+  system::WorkerThread looker_;     ///< For weather checks.
+  system::WorkerThread messenger_;  ///< For alerts.
+  system::WorkerThread expecter_;   ///< For what the model expects of the meters.
+  ServiceOptions options_;
+  JobRunner jobs_;  ///< Tells its work to stop before the worker waits for it.
+  WeatherWait weather_wait_;
+  LoadWatch load_watch_;
+  std::unique_ptr<Recalibration> recalibration_;
+  Upkeep upkeep_;
+  Watchdog watchdog_;
+  Alerts alerts_;
+  std::unique_ptr<Gateway> gateway_;
+  std::unique_ptr<http::Server> server_;
 };
-}  // namespace
-
-boost::asio::awaitable<void> heed_signals() {
-  for (;;) {
-    co_await signal_file_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
-                                     boost::asio::use_awaitable);
-    const auto signal = signals_.next();
-    if (!signal) continue;
-    // Posted, so that the next signal is handled whatever happens here.
-    if (*signal == SIGHUP) {
-      loop_.post([this] { reload(); });
-    } else if (*signal == SIGUSR1) {
-      loop_.post([this] { calibrate("signal"); });
-    } else {
-      spdlog::info("event=ending signal={}", *signal);
-      break;
-    }
-  }
-  signals_.let_ends_through();  // a second one ends the process at once
-  context_.stop();
-}
-
-void keep_up() {
-  loop_.after(upkeep_.maintain(loop_.now().instant()), [this] { keep_up(); });
-}
-
-void schedule() {
-  recalibration_ =
-      std::make_unique<Recalibration>(loop_, site_.config, site_.calendar,
-                                      [this](const std::string& asked_by) { calibrate(asked_by); });
-  recalibration_->start();
-}
-
-/// Reads the site file again. If it is wrong, nothing changes except that the buses restart.
-void reload() {
-  const auto changed = reload_from(site_.config.file);
-  if (changed) {
-    spdlog::info("event=reloaded file={}", site_.config.file.string());
-    return;
-  }
-  gateway_->begin_buses_anew();
-  gateway_->note({loop_.now().instant(), Severity::error, "not_reloaded", "",
-                  "the site file was rejected, recald continues with the old one: " +
-                      changed.error().message});
-}
-
-Result<void> reload_from(const std::filesystem::path& file) {
-  auto config = load_site(file);
-  if (!config)
-    return failure(ErrorCode::malformed, fmt::format("{}", fmt::join(config.error(), "; ")));
-  if (auto possible = can_reload(site_.config, *config); !possible) return possible;
-  std::string token;
-  if (config->http && !config->http->token_file.empty()) {
-    auto read = http::read_token_file(config->http->token_file);
-    if (!read) return tl::unexpected(read.error());
-    token = std::move(*read);
-  }
-  Result<http::Tls> tls;
-  if (server_ && !config->http->certificate_file.empty()) {
-    tls = http::read_tls({config->http->certificate_file, config->http->key_file});
-    if (!tls) return tl::unexpected(tls.error());
-  }
-  if (auto reloaded = gateway_->reload(*config); !reloaded) return reloaded;
-  if (server_) server_->set_token(std::move(token));
-  if (*tls) server_->set_tls(std::move(*tls));
-  upkeep_.set_config(upkeep_of(config->store, running_));
-  site_.config = std::move(*config);
-  jobs_.set_work(make_site_work(site_));
-  weather_wait_.set_look(make_weather_look(site_));
-  load_watch_.set_expect(make_load_expectation(site_));
-  alerts_.set_site(site_.config);
-  schedule();
-  // A month that closed within the last minute would have been requested by the old schedule.
-  catch_up();
-  return {};
-}
-
-void catch_up() {
-  if (const auto asked = recalibration_->catch_up(*store_, site_.config); !asked) {
-    spdlog::warn("event=not_caught_up why=\"{}\"", asked.error().message);
-  }
-}
-
-Result<std::int64_t> ask(JobKind kind, const std::string& asked_by) {
-  if (!running_.missing.empty()) {
-    return failure(ErrorCode::io_failed, "the store cannot be opened: " + running_.missing);
-  }
-  if (auto modelled = require_model(site_.config); !modelled) {
-    return tl::unexpected(modelled.error());
-  }
-  return jobs_.ask(kind, asked_by);
-}
-
-void calibrate(const std::string& asked_by) {
-  if (const auto asked = ask(JobKind::calibration, asked_by); !asked) {
-    spdlog::warn("event=calibration_not_begun asked_by={} why=\"{}\"", asked_by,
-                 asked.error().message);
-  }
-}
-
-/// If the site is not calibrated automatically, nothing is calibrated again for
-/// its weather either.
-void calibrate_with_weather() {
-  if (!site_.config.recalibration.schedule.is_never()) calibrate("weather");
-}
-
-static void log_month(const metering::Meter& meter, const metering::MonthlyFigure& figure) {
-  spdlog::info(
-      "event=month_closed meter={} month={} revision={} kWh_per_day={:.1f} coverage={:.3f}",
-      meter.id, metering::to_string(figure.month), figure.revision, figure.daily_average_kWh,
-      figure.coverage);
-}
-
-void hear(const StoreEvent& event) {
-  log_event(event);
-  alerts_.heard(event);
-}
-
-static void log_event(const StoreEvent& event) {
-  constexpr std::array kLevels{spdlog::level::info, spdlog::level::warn, spdlog::level::err};
-  spdlog::log(kLevels.at(static_cast<std::size_t>(event.severity)),
-              "event={} subject={} what=\"{}\"", event.kind, event.subject, event.text);
-}
-
-static void log_job(const StoredJob& job) {
-  const auto level = job.state == JobState::failed ? spdlog::level::warn : spdlog::level::info;
-  spdlog::log(level, "event=job number={} kind={} state={} asked_by={} accepted={} message=\"{}\"",
-              job.number, name_of(job.kind), name_of(job.state), job.asked_by, job.accepted,
-              job.message);
-}
-
-OpenSite site_;
-RunningStore running_;
-Store* store_;  ///< From `running_`.
-StoreOpener& opener_;
-Signals& signals_;
-bool is_opening_ = false;
-std::optional<RunningStore> found_;
-boost::asio::io_context context_{1};
-boost::asio::posix::stream_descriptor signal_file_{context_, signals_.descriptor()};
-asio::AsioLoop loop_;
-system::WorkerThread worker_;
-system::WorkerThread checker_;    ///< For backups.
-system::WorkerThread looker_;     ///< For weather checks.
-system::WorkerThread messenger_;  ///< For alerts.
-system::WorkerThread expecter_;   ///< For what the model expects of the meters.
-ServiceOptions options_;
-JobRunner jobs_;  ///< Tells its work to stop before the worker waits for it.
-WeatherWait weather_wait_;
-LoadWatch load_watch_;
-std::unique_ptr<Recalibration> recalibration_;
-Upkeep upkeep_;
-Watchdog watchdog_;
-Alerts alerts_;
-std::unique_ptr<Gateway> gateway_;
-std::unique_ptr<http::Server> server_;
-};  // namespace recald::daemon
 
 /// Opening may take minutes more. It can be killed at any step, so do not wait for it.
 [[noreturn]] void leave_at_once(const Result<void>& ended) {

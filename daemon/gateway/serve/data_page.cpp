@@ -110,7 +110,7 @@ void write_validity(Html& html, const std::vector<MeterData>& meters) {
   };
   Table table{"The intervals of these months"};
   table.with_labels().columns(
-      {"Meter", "Measured", "Filled", "Scaled", "Doubtful", "Missing", "Corrected months"});
+      {"Meter", "Measured", "Filled", "Scaled", "Doubtful", "Missing", "Recomputed"});
   for (const MeterData& meter : meters) {
     const auto corrected = std::ranges::count_if(months, [&](metering::Month month) {
       const auto found = meter.figures.find(month);

@@ -99,16 +99,18 @@ void write_expected_chart(report::Html& html, const Served& served, const meteri
   const display::Unit unit = display::unit_of(served.site.units, "kW", meter.utility);
   report::TimeChart chart = chart_of(meter, *history, span, unit);
   const Outside outside = put_band(chart, expected, unit);
-  chart.title += "; the band is what the model expects";
+  chart.title += "; the band is what the model of the drawings expects";
   report::write_chart(html, chart, served.calendar);
-  if (outside.of == 0) return;
+  constexpr int kFewestHours = 12;
+  if (outside.of < kFewestHours) return;
   constexpr int kUsually = 10;  // one hour in ten is outside a 90 % band
   const bool is_much = outside.hours * kUsually > 3 * outside.of;
-  html.element("p",
-               fmt::format("{}Of the last {} hours {} are outside the band, in which the model "
-                           "expects nine of ten.",
-                           is_much ? "▲ " : "", outside.of, outside.hours),
-               is_much ? "warn" : "muted");
+  html.element(
+      "p",
+      fmt::format("{}{} of the last {} hours were outside the band of what the model of the "
+                  "drawings expects; one in ten is usual.",
+                  is_much ? "▲ " : "", outside.hours, outside.of),
+      is_much ? "warn" : "muted");
 }
 
 void write_meter_chart(report::Html& html, const Served& served, const metering::Meter& meter,

@@ -30,8 +30,8 @@ std::string made_text(const Served& served, const std::string& created_at) {
 /// A button that posts to the API. @param path  "model"
 void write_button(Html& html, std::string_view path, const nlohmann::json& body,
                   std::string_view text) {
-  html.markup(fmt::format("<button type=\"button\" data-post=\"/api/v1/{}\" data-body=\"{}\">", path,
-                          report::escape(body.dump())))
+  html.markup(fmt::format("<button type=\"button\" data-post=\"/api/v1/{}\" data-body=\"{}\">",
+                          path, report::escape(body.dump())))
       .text(text)
       .markup("</button> ");
 }
@@ -56,14 +56,16 @@ void write_requests(Html& html, const Served& served) {
   html.markup("<p>");
   write_button(html, "calibrations", nlohmann::json::object(), "Calibrate now");
   const auto list = models::ModelStore{served.site.file, served.site.id}.list();
-  const bool is_of_drawings = list && list->active == diagnosis::kBaseVersion;
-  if (is_of_drawings) {
+  // A diagnosis simulates the building's hours, and starts from the drawings.
+  const bool can_be_diagnosed =
+      served.site.building.has_value() && list && list->active == diagnosis::kBaseVersion;
+  if (can_be_diagnosed) {
     write_button(html, "diagnoses", nlohmann::json::object(), "Look for missing effects");
   }
   html.markup(
       "</p><p id=\"said\" role=\"status\"></p><noscript><p class=\"muted\">The buttons need "
-      "JavaScript; recald model apply and recald model revert do the same as those of the "
-      "versions.</p></noscript>");
+      "JavaScript. Without it, recald model apply and recald model revert change the "
+      "version.</p></noscript>");
 }
 
 /// What diagnoses have added to the model, or would.

@@ -12,7 +12,8 @@ const renewEvery_ms = 10000;
 /** The same page as it is now, unless somebody is reading with the keyboard or the tab is hidden. */
 async function renew() {
   const main = document.querySelector("main");
-  if (document.hidden || main.contains(document.activeElement)) return;
+  const says = document.getElementById("said")?.textContent; // what a button has just done
+  if (document.hidden || says || main.contains(document.activeElement)) return;
   try {
     const answer = await fetch(location.href);
     if (!answer.ok) return;

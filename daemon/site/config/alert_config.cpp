@@ -53,9 +53,10 @@ WebhookConfig read_webhook(TomlReader table, const std::filesystem::path& site_f
                        .trusted_certificate = read_path(table, "trusted_certificate", site_file)};
   const auto url = http::parse_url(config.url);
   if (!url && !config.url.empty()) {
-    table.problem_at("url", fmt::format("'url' is \"{}\"; write an address such as "
-                                        "\"https://hooks.example.org/recald\"",
-                                        config.url));
+    // Not what it is: the addresses of chats are secrets, and this becomes an event.
+    table.problem_at("url",
+                     "'url' is no address of http or https; write one such as "
+                     "\"https://hooks.example.org/recald\"");
   }
   if (url && !url->is_tls && !is_this_machine(url->host) && !config.token_file.empty()) {
     table.problem_at("url", "'url' would send the token without encryption; use https");

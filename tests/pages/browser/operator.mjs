@@ -192,6 +192,16 @@ async function click(tab, words) {
   );
 }
 
+/** The row of the version says so, and no other does. */
+const isInForce = (tab, version) =>
+  wait(`${version} in force`, () =>
+    tab.value(`(() => {
+      const rows = [...document.querySelectorAll("tr")].map((row) => row.innerText);
+      const inForce = rows.filter((text) => text.includes("✔ in force"));
+      return inForce.length === 1 && inForce[0].startsWith(${JSON.stringify(version)});
+    })()`),
+  );
+
 async function operate(tab, address) {
   const get = async (path) =>
     (
@@ -217,7 +227,7 @@ async function operate(tab, address) {
   );
   await shows(tab, "A diagnosis has been running");
   await picture(tab, "running");
-  const named = await mailOf("A missing effect has a name");
+  const named = await mailOf("A likely cause was found");
   console.log(`  ${named.text.split("\n").find((line) => line.includes("named"))}`);
   await shows(tab, "proposed");
   await picture(tab, "proposed");
@@ -233,14 +243,16 @@ async function operate(tab, address) {
   const proposed = versions.find(({ status }) => status === "proposed").version;
   await tab.open(`${address}/model`);
   await click(tab, "Put ");
-  await shows(tab, "in force");
-  await wait("the version is in force", async () => (await get("/api/v1/model")).active === proposed);
+  await isInForce(tab, proposed.slice(0, 12));
+  check("the daemon says so too", (await get("/api/v1/model")).active === proposed);
   await picture(tab, "in-force");
   await click(tab, "Go back by one version");
-  await wait("the drawings are back", async () => (await get("/api/v1/model")).active === "drawings");
+  await isInForce(tab, "drawings");
+  check("the daemon says so too", (await get("/api/v1/model")).active === "drawings");
   await picture(tab, "reverted");
   await tab.open(`${address}/events`);
   await shows(tab, "mail to operator@example.org");
+  check("its mails are told of", (await text(tab)).includes("alert was sent"));
   await tab.open(`${address}/data`);
   await picture(tab, "data");
   check(`the browser complains of nothing: ${tab.complaints}`, tab.complaints.length === 0);

@@ -1,6 +1,7 @@
 /// Who is told what, and when, on a virtual clock with a scripted mail server.
 #include "daemon/gateway/alert/alerts.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -155,7 +156,8 @@ TEST_F(AlertsTest, AServerThatIsDownIsTriedAgainAndHoldsUpNobody) {
   for (const StoreEvent& event : events) {
     if (event.kind != "alert_not_sent") continue;
     ++said;
-    EXPECT_THAT(event.text, HasSubstr("mail to ada@example.org: connection refused"));
+    EXPECT_EQ(event.subject, "mail to ada@example.org");
+    EXPECT_THAT(event.text, HasSubstr("connection refused; recald keeps trying"));
   }
   EXPECT_EQ(said, 1);
   mail_fails_ = false;
@@ -190,6 +192,42 @@ TEST_F(AlertsTest, AtNightOnlyErrorsAreSent) {
   EXPECT_THAT(mails_, SizeIs(1));
   loop_.run_for(minutes{6});  // 07:01
   EXPECT_THAT(mails_, SizeIs(2));
+}
+
+// A bus that drops and returns makes as many events as it has meters, and more.
+TEST_F(AlertsTest, AtNightAnErrorIsFoundBehindAThousandOthers) {
+  begin("quiet = \"22:00-07:00\"\n" + std::string{kMail});
+  loop_.run_for(hours{10});
+  for (int i = 0; i < 1200; ++i) happens("meter_silent", Severity::warning, fmt::format("m{}", i));
+  loop_.run_for(minutes{5});
+  EXPECT_THAT(mails_, IsEmpty());
+  happens("store_damaged", Severity::error, "");
+  loop_.run_for(minutes{5});
+  EXPECT_THAT(subjects(mails_), ElementsAre("The depot: 500 alerts", "The depot: 500 alerts",
+                                            "The depot: 201 alerts"));
+}
+
+// Its mail server refuses the password from the first day on, and somebody mends it two days later.
+TEST_F(AlertsTest, WhatADestinationNeverGotIsNotForgottenByARestart) {
+  mail_fails_ = true;
+  begin(kMail);
+  happens("meter_silent");
+  loop_.run_for(hours{48});
+  mail_fails_ = false;
+  begin(kMail);
+  loop_.run_for(minutes{5});
+  EXPECT_THAT(mails_, SizeIs(1));
+}
+
+TEST_F(AlertsTest, WhatHappenedBeforeTheClockWasSetIsTold) {
+  begin(kMail);
+  note({.time = Instant{seconds{60}},
+        .severity = Severity::error,
+        .kind = "no_store",
+        .subject = "",
+        .text = "it is so"});
+  loop_.run_for(minutes{5});
+  EXPECT_THAT(mails_, SizeIs(1));
 }
 
 // A full disk takes no events either.
@@ -252,7 +290,7 @@ TEST_F(AlertsTest, OnlyWhatWasChosen) {
   happens("meter_silent");
   happens("counter_reset");
   loop_.run_for(minutes{5});
-  EXPECT_THAT(subjects(mails_), ElementsAre("The depot: a counter began anew (main)"));
+  EXPECT_THAT(subjects(mails_), ElementsAre("The depot: a counter was reset (main)"));
 }
 
 TEST(AlertNames, HoldNoSecret) {

@@ -47,6 +47,37 @@ TEST_F(MeterWatchTest, ASkippedTimeIsNoSilence) {
   EXPECT_EQ(judge(kStart, kStart + hours{2} + minutes{31}), "meter_silent");
 }
 
+TEST_F(MeterWatchTest, AClockThatIsSetIsNoAnswer) {
+  EXPECT_EQ(judge(kStart, kStart), "");
+  EXPECT_EQ(judge(kStart, kStart + hours{1}), "meter_silent");
+  watch_.clock_was_set();
+  EXPECT_EQ(judge(kStart, kStart + hours{5}), "");
+  EXPECT_EQ(judge(kStart, kStart + hours{6}), "");
+  EXPECT_EQ(judge(kStart + hours{6}, kStart + hours{6}), "meter_answers");
+}
+
+// Stamps from before lie in the future then.
+TEST_F(MeterWatchTest, AClockThatIsSetBackHidesNoSilence) {
+  EXPECT_EQ(judge(kStart + hours{10}, kStart + hours{10}), "");
+  watch_.clock_was_set();
+  EXPECT_EQ(judge(kStart + hours{10}, kStart), "");
+  EXPECT_EQ(judge(kStart + hours{10}, kStart + minutes{31}), "meter_silent");
+  EXPECT_EQ(judge(kStart + minutes{40}, kStart + minutes{40}), "meter_answers");
+}
+
+TEST_F(MeterWatchTest, WhatAnEarlierProcessToldIsNotToldAgain) {
+  MeterWatch again{"main", minutes{30}, {}, true};
+  EXPECT_FALSE(again.judge({}, kStart).has_value());
+  EXPECT_FALSE(again.judge({}, kStart + hours{1}).has_value());
+  EXPECT_EQ(again.judge(kStart + hours{1}, kStart + hours{1})->kind, "meter_answers");
+}
+
+// One that sends once a day would never be missed on a machine that restarts every day.
+TEST_F(MeterWatchTest, OfAPushedMeterTheStoreKnowsSinceWhen) {
+  MeterWatch pushed{"main", hours{36}, kStart - hours{40}};
+  EXPECT_EQ(pushed.judge({}, kStart)->kind, "meter_silent");
+}
+
 // A reload opens a meter again, which then has not been heard.
 TEST_F(MeterWatchTest, WhatItHeardItRemembers) {
   EXPECT_EQ(judge(kStart, kStart), "");

@@ -78,6 +78,8 @@ TEST(AlertConfigTest, WhatCannotWorkIsRefused) {
   expect_refused(mail("smtp://m", "user = \"u\"\n"), "'user' and 'password_file' belong together");
   expect_refused(mail("smtp://m", "encrypt = false\nuser = \"u\"\npassword_file = \"p\"\n"),
                  "the password would be sent without encryption");
+  expect_refused("[[alerts.webhook]]\nurl = \"htps://hooks.example.org/secret\"\n",
+                 "'url' is no address of http or https");
   expect_refused("[[alerts.webhook]]\nurl = \"http://h.example.org\"\ntoken_file = \"t\"\n",
                  "would send the token without encryption; use https");
   for (const char* bad : {"a", "@b", "a@", "a@b@c", "a b@c", "<a@b>", "a@b,c@d"}) {
