@@ -7,9 +7,11 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
+#include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "adapters/http/client.hpp"
 #include "adapters/sqlite/database.hpp"
@@ -17,6 +19,7 @@
 #include "tests/daemon/gateway/run/polled_site.hpp"
 #include "tests/support/background_process.hpp"
 #include "tests/support/damage.hpp"
+#include "tests/support/message_sink.hpp"
 
 namespace recald::daemon::run_command_test {
 namespace {
@@ -152,6 +155,43 @@ TEST_F(RunCommand, OnAFullDiskItStartsInMemoryAndHandsOverLater) {
   const auto store = stores::open_to_read(folder_ / "site.db").value();
   const auto events = store->events(10).value();
   EXPECT_THAT(events, ::testing::Contains(::testing::Field(&StoreEvent::kind, "no_store")));
+}
+
+// What it would tell cannot be stored either.
+TEST_F(RunCommand, ADiskThatFillsUpIsHeardOf) {
+  using recald::testing::MessageSink;
+  if (!MessageSink::can_run()) GTEST_SKIP() << "the Debian package python3-aiosmtpd is absent";
+  const MessageSink sink{RECALD_SOURCE_DIR "/tests/support/message_sink.py", {"--refuse", "1"}};
+  recald::testing::write_text(folder_ / "site.toml",
+                              recald::testing::read_text(folder_ / "site.toml") +
+                                  "[alerts]\nabout = [\"store_refuses\", \"store_accepts\"]\n"
+                                  "[[alerts.mail]]\nserver = \"" +
+                                  sink.mail_url() +
+                                  "\"\nfrom = \"recald@example.org\"\nto = \"ada@example.org\"\n"
+                                  "[[alerts.webhook]]\nurl = \"" +
+                                  sink.web_url("/hook") + "\"\n");
+  const auto told_by = [&](const std::string& by, const std::string& words) {
+    return std::ranges::count_if(sink.messages(), [&](const nlohmann::json& one) {
+      return one["by"] == by && one.dump().find(words) != std::string::npos;
+    });
+  };
+  SaidThroughPipe said{folder_ / "said"};
+  BackgroundProcess daemon{{"/bin/sh", "-c", "trap '' XFSZ; exec \"$@\"", "sh", RECALD_PROGRAM,
+                            "run", (folder_ / "site.toml").string()},
+                           said.path()};
+  ASSERT_TRUE(eventually([&] { return samples() >= 1; })) << said.text();
+  const rlimit full{0, RLIM_INFINITY};
+  ASSERT_EQ(::prlimit(daemon.id(), RLIMIT_FSIZE, &full, nullptr), 0);
+  ASSERT_TRUE(eventually([&] { return told_by("mail", "recald keeps a day of readings") == 1; }))
+      << said.text();
+  const rlimit unlimited{RLIM_INFINITY, RLIM_INFINITY};
+  ASSERT_EQ(::prlimit(daemon.id(), RLIMIT_FSIZE, &unlimited, nullptr), 0);
+  EXPECT_TRUE(eventually([&] { return said.has("event=store_accepts"); })) << said.text();
+  EXPECT_TRUE(eventually([&] { return told_by("mail", "store accepts data again") == 1; }))
+      << said.text();
+  EXPECT_TRUE(said.has("event=alert_not_sent subject=webhook at 127.0.0.1")) << said.text();
+  EXPECT_EQ(daemon.end(SIGTERM), 0) << said.text();
+  EXPECT_EQ(told_by("mail", "recald keeps a day of readings"), 1);  // and not again from the store
 }
 
 /// Begins without a store: where the lock would be made there is a folder. As long as `opening` is
