@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "adapters/models/version_file.hpp"
+#include "adapters/models/versions_folder.hpp"
 #include "adapters/system/write_file.hpp"
 
 namespace recald::models {
@@ -38,8 +39,8 @@ Result<void> check_revert(const ModelVersion& next, const std::string& from) {
   if (next.version == from) return tl::unexpected(in_force_already(from));
   if (next.status != VersionStatus::proposed) return {};
   return failure(ErrorCode::invalid_value,
-                 fmt::format("version {} was proposed and never in force; `recald diagnose "
-                             "--apply` accepts",
+                 fmt::format("version {} was proposed and never in force; `recald model apply` "
+                             "puts it in force",
                              short_version(next.version)));
 }
 
@@ -58,8 +59,7 @@ Result<std::string> text_of(const fs::path& file) {
 }  // namespace
 
 ModelStore::ModelStore(const fs::path& site_file, std::string site_id)
-    : folder_(site_file.parent_path() / (site_file.stem().string() + ".models")),
-      site_id_(std::move(site_id)) {}
+    : folder_(versions_folder(site_file)), site_id_(std::move(site_id)) {}
 
 fs::path ModelStore::file_of(std::string_view version) const {
   return folder_ / (std::string{version} + ".json");

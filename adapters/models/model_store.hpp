@@ -1,4 +1,4 @@
-/// The versions of a site's model on disk, beside the site file.
+/// The versions of a site's model on disk, beside the site file or the store.
 ///
 ///     SITE.models/<version>.json   see version_file.hpp; written whole, never removed
 ///     SITE.models/active           the version in force; absent: the drawings
@@ -27,6 +27,7 @@ struct VersionList {
 class ModelStore {
  public:
   /// Creates nothing: the folder appears with the first version.
+  /// @param site_file  Or another file, beside which the folder is (SiteConfig::versions_beside).
   ModelStore(const std::filesystem::path& site_file, std::string site_id);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

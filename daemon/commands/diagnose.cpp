@@ -115,7 +115,7 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
     return console.fail(error);
   };
   const std::string at = generated_at();
-  const models::ModelStore store{modelled->site.config.file, modelled->site.config.id};
+  const models::ModelStore store{modelled->site.config.versions_beside(), modelled->site.config.id};
   const auto is_kept = [&] {
     return arguments.apply && !diagnosis.added.empty() && !diagnosis.not_confirmed;
   };

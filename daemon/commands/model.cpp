@@ -27,7 +27,7 @@ tl::expected<models::ModelStore, int> open_store(const ModelArguments& arguments
                                                  const Console& console) {
   const auto site = load_site(arguments.site);
   if (!site) return tl::unexpected(console.fail(site.error()));
-  return models::ModelStore{site->file, site->id};
+  return models::ModelStore{site->versions_beside(), site->id};
 }
 
 std::string effects_words(const ModelVersion& version) {

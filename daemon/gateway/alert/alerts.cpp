@@ -260,12 +260,14 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
     outgoing->wait = is_first ? rules_.retry_min : std::min(2 * outgoing->wait, rules_.retry_max);
     outgoing->not_before = now.monotonic + outgoing->wait;
     if (is_first) {
-      tell_({.time = now.instant(),
-             .severity = Severity::warning,
-             .kind = "alert_not_sent",
-             .subject = words,
-             .text = fmt::format("{}; recald keeps trying for three days", sent.error().message),
-             .is_counted = true});
+      tell_(
+          {.time = now.instant(),
+           .severity = Severity::warning,
+           .kind = "alert_not_sent",
+           .subject = words,
+           .text = fmt::format("no alert can be sent as {}: {}; recald keeps trying for three days",
+                               words, sent.error().message),
+           .is_counted = true});
     }
     return schedule(milliseconds{0});
   }
@@ -280,9 +282,11 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
          .severity = Severity::info,
          .kind = "alert_sent",
          .subject = words,
-         .text = pending.events.size() == 1
-                     ? "1 alert was sent"
-                     : fmt::format("{} alerts were sent", pending.events.size()),
+         .text = fmt::format("{} sent as {}",
+                             pending.events.size() == 1
+                                 ? "1 alert was"
+                                 : fmt::format("{} alerts were", pending.events.size()),
+                             words),
          .is_counted = true});
   schedule(milliseconds{0});
 }

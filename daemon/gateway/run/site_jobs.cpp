@@ -244,7 +244,7 @@ Result<std::string> propose(const ModelledSite& modelled, const diagnosis::Diagn
                             JobOutcome& outcome) {
   const SiteConfig& site = modelled.site.config;
   const std::string at = metering::to_string(now);
-  const models::ModelStore store{site.file, site.id};
+  const models::ModelStore store{site.versions_beside(), site.id};
   const auto version =
       propose_version(store, modelled, diagnosis, problem, at, diagnosis::VersionAuthor::automatic);
   if (!version) return tl::unexpected(version.error());

@@ -55,7 +55,7 @@ void write_requests(Html& html, const Served& served) {
   if (!served.ask_job) return;
   html.markup("<p>");
   write_button(html, "calibrations", nlohmann::json::object(), "Calibrate now");
-  const auto list = models::ModelStore{served.site.file, served.site.id}.list();
+  const auto list = models::ModelStore{served.site.versions_beside(), served.site.id}.list();
   // A diagnosis simulates the building's hours, and starts from the drawings.
   const bool can_be_diagnosed =
       served.site.building.has_value() && list && list->active == diagnosis::kBaseVersion;
@@ -70,7 +70,7 @@ void write_requests(Html& html, const Served& served) {
 
 /// What diagnoses have added to the model, or would.
 void write_versions(Html& html, const Served& served) {
-  const auto list = models::ModelStore{served.site.file, served.site.id}.list();
+  const auto list = models::ModelStore{served.site.versions_beside(), served.site.id}.list();
   if (!list) {
     html.element("p", "✖ The versions of the model cannot be read: " + list.error().message, "bad");
     return;

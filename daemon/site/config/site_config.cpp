@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "adapters/models/versions_folder.hpp"
 #include "adapters/system/regular_file.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/site/config/building_config.hpp"
@@ -750,6 +751,13 @@ std::string files_words(std::span<const std::filesystem::path> files) {
 
 bool ModelConfig::has_output(const std::string& meter_id) const {
   return std::ranges::find(outputs, meter_id) != outputs.end();
+}
+
+std::filesystem::path SiteConfig::versions_beside() const {
+  std::error_code unreadable;
+  const bool has_some =
+      std::filesystem::exists(models::versions_folder(file), unreadable) && !unreadable;
+  return has_some ? file : store.file.parent_path() / file.filename();
 }
 
 bool SiteConfig::comes_from_store(const MeterConfig& meter) const {

@@ -12,7 +12,7 @@ using diagnosis::AddedEffect;
 using diagnosis::EffectParameterRecord;
 
 Result<diagnosis::ModelVersion> active_version(const SiteConfig& site) {
-  return models::ModelStore{site.file, site.id}.active();
+  return models::ModelStore{site.versions_beside(), site.id}.active();
 }
 
 std::string version_name(const diagnosis::ModelVersion& active, const std::string& drawings) {

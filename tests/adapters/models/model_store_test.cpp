@@ -178,7 +178,7 @@ TEST_F(Models, RevertToWhatIsInForceOrNeverWasIsOneSentence) {
   const auto proposed = store_.save(sample_version("drawings", {heat_meter_scale()}));
   EXPECT_EQ(sentence(store_.revert(proposed->version, kAt)),
             "version " + short_version(proposed->version) +
-                " was proposed and never in force; `recald diagnose --apply` accepts");
+                " was proposed and never in force; `recald model apply` puts it in force");
   EXPECT_EQ(store_.active()->version, second_.version);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "daemon/site/config/site_config.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace recald::daemon::store_config_test {
 namespace {
@@ -44,6 +45,19 @@ TEST(StoreConfig, SaysWhereAndWhen) {
           ->store;
   EXPECT_EQ(elsewhere.backup_folder, "/mnt/b");
   EXPECT_FALSE(elsewhere.backup_at.has_value());
+}
+
+// A daemon of a package writes beside its store alone; earlier versions stay where they are.
+TEST(StoreConfig, VersionsOfTheModelAreBesideTheStore) {
+  const recald::testing::TemporaryFolder folder;
+  const auto beside = [&](const std::string& more) {
+    return parse_site(kSite + more, folder / "tower.toml")->versions_beside();
+  };
+  const std::string elsewhere = "[store]\nfile = \"/var/lib/recald/tower/any.db\"\n";
+  EXPECT_EQ(beside(""), folder / "tower.toml");
+  EXPECT_EQ(beside(elsewhere), "/var/lib/recald/tower/tower.toml");
+  std::filesystem::create_directory(folder / "tower.models");
+  EXPECT_EQ(beside(elsewhere), folder / "tower.toml");
 }
 
 TEST(StoreConfig, EachMistakeHasItsSentence) {
