@@ -11,7 +11,9 @@
 namespace recald::daemon {
 namespace {
 
-models::ModelStore store_of(const Served& served) { return {served.site.versions_beside(), served.site.id}; }
+models::ModelStore store_of(const Served& served) {
+  return {served.site.versions_beside(), served.site.id};
+}
 
 http::Response refused_change(const Error& error) {
   switch (error.code) {

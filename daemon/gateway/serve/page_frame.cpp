@@ -30,7 +30,8 @@ struct Link {
 };
 constexpr std::array kLinks{
     Link{PageKind::now, "/", "Now"}, Link{PageKind::months, "/months", "Months"},
-    Link{PageKind::model, "/model", "Model"}, Link{PageKind::data, "/data", "Data"}, Link{PageKind::events, "/events", "Events"}};
+    Link{PageKind::model, "/model", "Model"}, Link{PageKind::data, "/data", "Data"},
+    Link{PageKind::events, "/events", "Events"}};
 
 void write_links(Html& html, PageKind here) {
   html.markup("<nav aria-label=\"Pages\">");

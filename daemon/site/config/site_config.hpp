@@ -182,8 +182,8 @@ struct SiteConfig {
   [[nodiscard]] const MeterConfig* find_sensor(std::string_view sensor_id) const;
 
   /// The file beside which the versions of the model are kept (models::ModelStore): the site file
-  /// itself if there are some, else one of its name beside the store. A daemon may write there where
-  /// it must not write among the settings.
+  /// itself if there are some, else one of its name beside the store. A daemon may write there
+  /// where it must not write among the settings.
   [[nodiscard]] std::filesystem::path versions_beside() const;
 
   /// Whether a meter's readings are in the store, or those of a sum's parts.
