@@ -22,7 +22,7 @@ struct AlertMessage {
                                          const metering::LocalCalendar& calendar,
                                          std::span<const StoreEvent> events, metering::Instant now);
 
-/// What `recald alerts` sends to try the destinations.
+/// What `recald check --alerts` sends to try the destinations.
 [[nodiscard]] AlertMessage trial_message(const SiteConfig& site, metering::Instant now);
 
 }  // namespace recald::daemon

@@ -235,7 +235,9 @@ void Alerts::move(Outgoing& outgoing, std::optional<std::int64_t> position) {
 void Alerts::send(const Outgoing& outgoing, Pending pending, Instant now) {
   if (std::ssize(pending.events) > rules_.events) {  // the others are the next message
     pending.events.resize(static_cast<std::size_t>(rules_.events));
-    pending.position = pending.events.back().number;
+    // One that the store does not have yet has no number, and comes after those that it has.
+    const auto last = std::ranges::max_element(pending.events, {}, &StoreEvent::number);
+    pending.position = last->number > 0 ? std::optional{last->number} : std::nullopt;
   }
   const auto sent = std::make_shared<Result<void>>();
   AlertMessage message = alert_message(site_, calendar_, pending.events, now);

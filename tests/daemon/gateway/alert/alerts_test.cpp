@@ -249,6 +249,25 @@ TEST_F(AlertsTest, AStoreThatRefusesIsToldFromMemoryAndOnce) {
   EXPECT_THAT(mails_, SizeIs(2));
 }
 
+// More than one message holds, and the store has none of it.
+TEST_F(AlertsTest, AThousandEventsOfAFullDiskAreToldOnce) {
+  begin(kMail);
+  happens("meter_silent", Severity::warning, "first");
+  loop_.run_for(minutes{1});
+  failing_.refuses = true;
+  happens("store_refuses", Severity::error, "");
+  for (int i = 0; i < 700; ++i) happens("meter_silent", Severity::warning, fmt::format("m{}", i));
+  loop_.run_for(minutes{5});
+  EXPECT_THAT(subjects(mails_), ElementsAre("The depot: a meter is silent (first)",
+                                            "The depot: 500 alerts", "The depot: 201 alerts"));
+  failing_.refuses = false;
+  happens("store_accepts", Severity::info, "");
+  loop_.run_for(minutes{5});
+  begin(kMail);
+  loop_.run_for(minutes{5});
+  EXPECT_THAT(mails_, SizeIs(4));
+}
+
 TEST_F(AlertsTest, WhatWasKeptInMemoryIsNotToldAgainFromTheStore) {
   begin(kMail);
   happens("meter_silent");
