@@ -59,6 +59,10 @@ Handle begin(const std::string& url, const char* protocols,
   curl_easy_setopt(handle.get(), CURLOPT_NOPROGRESS, 0L);
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFOFUNCTION, ask_whether_to_stop);
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFODATA, &stop);
+  // The proxy of the environment is for the world outside.
+  const std::string host = host_of(url);
+  const bool is_this_machine = host == "localhost" || host == "[::1]" || host.starts_with("127.");
+  if (is_this_machine) curl_easy_setopt(handle.get(), CURLOPT_NOPROXY, "*");
   if (!trusted_certificate.empty()) {
     curl_easy_setopt(handle.get(), CURLOPT_CAINFO, trusted_certificate.c_str());
     curl_easy_setopt(handle.get(), CURLOPT_CAPATH, nullptr);

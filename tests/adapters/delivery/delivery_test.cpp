@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <thread>
 
 #include "tests/adapters/http/self_signed.hpp"
@@ -65,6 +66,15 @@ TEST_F(Delivery, ARefusalIsAFailureWithoutTheAddress) {
   ASSERT_FALSE(moved.has_value());
   EXPECT_THAT(moved.error().message, HasSubstr("status 302"));
   EXPECT_THAT(sink_->messages(), SizeIs(1));
+}
+
+// A machine behind a proxy, and a program on it that passes messages on.
+TEST_F(Delivery, TheProxyIsNotForThisMachine) {
+  begin();
+  ASSERT_EQ(::setenv("http_proxy", "http://127.0.0.1:9", 1), 0);
+  const auto sent = post("/hook");
+  ASSERT_EQ(::unsetenv("http_proxy"), 0);
+  EXPECT_TRUE(sent.has_value()) << sent.error().message;
 }
 
 TEST_F(Delivery, WithoutAServerItSaysSo) {
