@@ -2,7 +2,6 @@
 /// the document, right and wrong ones, and holds the answers against it.
 #include <gmock/gmock.h>
 
-#include <cstdio>
 #include <filesystem>
 
 #include "core/metering/civil_time.hpp"
@@ -46,11 +45,8 @@ TEST_F(Interface, IsWhatTheDaemonAnswers) {
                               "--phases examples,coverage,fuzzing --checks all --exclude-checks "
                               "positive_data_acceptance,unsupported_method "
                               "2>&1";
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::string said;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) said += static_cast<char>(c);
-  EXPECT_EQ(::pclose(pipe), 0) << said;
+  const auto [status, said] = recald::testing::run_in_shell(command);
+  EXPECT_EQ(status, 0) << said;
   EXPECT_EQ(daemon.end(SIGTERM), 0) << daemon.said();
 }
 

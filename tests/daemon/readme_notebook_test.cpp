@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "command_line.hpp"
 #include "tests/daemon/depot_year.hpp"
@@ -88,11 +87,8 @@ TEST(ReadmeNotebook, ReadsMonthsIntervalsAndDraws) {
                                            "/tests/daemon/run_readme_notebook.py " RECALD_SOURCE_DIR
                                            "/README.md " +
                               daemon.address() + " " + results + " 2>&1";
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::string said;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) said += static_cast<char>(c);
-  EXPECT_EQ(::pclose(pipe), 0) << said;
+  const auto [status, said] = recald::testing::run_in_shell(command);
+  EXPECT_EQ(status, 0) << said;
   EXPECT_EQ(daemon.end(SIGTERM), 0) << daemon.said();
 }
 

@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace recald::testing {
@@ -63,6 +65,19 @@ class BackgroundProcess {
  private:
   pid_t pid_ = -1;
 };
+
+/// What a shell command ended with, and what it said.
+struct ShellEnd {
+  int status;
+  std::string said;
+};
+inline ShellEnd run_in_shell(const std::string& command) {
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("no shell");
+  std::string said;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) said += static_cast<char>(c);
+  return {::pclose(pipe), std::move(said)};
+}
 
 /// Looks every 20 ms until it holds, for half a minute at most: beside other work all is slower.
 template <class Condition>

@@ -51,26 +51,21 @@ void write_changes(Html& html, const models::VersionList& list) {
 }
 
 /// Jobs that may be requested now.
-void write_requests(Html& html, const Served& served) {
+void write_requests(Html& html, const Served& served, const Result<models::VersionList>& list) {
   if (!served.ask_job) return;
   html.markup("<p>");
   write_button(html, "calibrations", nlohmann::json::object(), "Calibrate now");
-  const auto list = models::ModelStore{served.site.versions_beside(), served.site.id}.list();
   // A diagnosis simulates the building's hours, and starts from the drawings.
   const bool can_be_diagnosed =
       served.site.building.has_value() && list && list->active == diagnosis::kBaseVersion;
   if (can_be_diagnosed) {
     write_button(html, "diagnoses", nlohmann::json::object(), "Look for missing effects");
   }
-  html.markup(
-      "</p><p id=\"said\" role=\"status\"></p><noscript><p class=\"muted\">The buttons need "
-      "JavaScript. Without it, recald model apply and recald model revert change the "
-      "version.</p></noscript>");
+  html.markup("</p>");
 }
 
 /// What diagnoses have added to the model, or would.
-void write_versions(Html& html, const Served& served) {
-  const auto list = models::ModelStore{served.site.versions_beside(), served.site.id}.list();
+void write_versions(Html& html, const Served& served, const Result<models::VersionList>& list) {
   if (!list) {
     html.element("p", "✖ The versions of the model cannot be read: " + list.error().message, "bad");
     return;
@@ -127,8 +122,13 @@ http::Response model_page(const Served& served) {
     html.markup(".</p>");
   }
   write_job_now(html, served);
-  write_requests(html, served);
-  write_versions(html, served);
+  const auto versions = models::ModelStore{served.site.versions_beside(), served.site.id}.list();
+  write_requests(html, served, versions);
+  html.markup(
+      "<p id=\"said\" role=\"status\"></p><noscript><p class=\"muted\">The buttons need "
+      "JavaScript. Without it, recald model apply and recald model revert change the "
+      "version.</p></noscript>");
+  write_versions(html, served, versions);
   write_alarms(html, served);
   write_jobs(html, served, JobKind::calibration, "Calibrations, the newest first", kShown);
   write_jobs(html, served, JobKind::diagnosis, "Diagnoses, the newest first", kShown);
