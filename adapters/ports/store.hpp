@@ -15,6 +15,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "adapters/ports/job_result.hpp"
@@ -112,6 +113,20 @@ struct StoredMonth {
   metering::MonthlyFigure figure;
   metering::Instant closed_at;
   std::string time_zone_release;  ///< Used when it was closed.
+};
+
+/// One change that destinations outside are told: an interval or a month as it was stored then.
+struct OutboxEntry {
+  std::int64_t number = 0;  ///< 1, 2, 3 …; none is given twice.
+  std::string meter;        ///< Its id.
+  /// Nothing for what damage took.
+  std::variant<std::monostate, StoredInterval, StoredMonth> stored;
+};
+
+/// How far a destination has been told.
+struct OutboxPosition {
+  std::int64_t told;  ///< Number of the last entry that it has had.
+  std::int64_t last;  ///< Number of the last entry of all.
 };
 
 /// Readings that a person entered.
@@ -274,6 +289,19 @@ class Store {
   virtual Result<std::optional<std::int64_t>> cursor(const std::string& destination) = 0;
 
   virtual Result<void> put_cursor(const std::string& destination, std::int64_t position) = 0;
+
+  /// Sets which destinations are told of each interval and month that is stored from now on; until
+  /// then, of none. Those that were set before keep their positions. What everyone has been told
+  /// is forgotten.
+  virtual Result<void> keep_outbox_for(const std::vector<std::string>& destinations) = 0;
+
+  /// Entries with a greater number, in order of their numbers.
+  virtual Result<std::vector<OutboxEntry>> outbox_after(std::int64_t number, int limit) = 0;
+
+  virtual Result<OutboxPosition> outbox_position(const std::string& destination) = 0;
+
+  /// The destination has had all entries up to this number.
+  virtual Result<void> put_outbox_position(const std::string& destination, std::int64_t number) = 0;
 
   /// Adds a job and ignores its number. @return the new number.
   virtual Result<std::int64_t> add_job(const StoredJob& job) = 0;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/outbox_table.hpp"
 #include "adapters/sqlite/register_json.hpp"
 #include "adapters/sqlite/tables.hpp"
 #include "core/metering/placement.hpp"
@@ -17,6 +18,7 @@ using metering::Reading;
 struct BatchWriter::Statements {
   Statement latest_interval;
   Statement insert_interval;
+  Statement insert_outbox_entry;
   Statement put_register;
   Statement insert_sample;
   Statement insert_event;
@@ -38,6 +40,8 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
   if (!latest) return tl::unexpected(latest.error());
   auto interval = database.prepare(insert_into("interval", 8));
   if (!interval) return tl::unexpected(interval.error());
+  auto outbox = database.prepare(insert_outbox_entry());
+  if (!outbox) return tl::unexpected(outbox.error());
   auto state = database.prepare(insert_into("register", 3, "INSERT OR REPLACE"));
   if (!state) return tl::unexpected(state.error());
   auto sample = database.prepare(insert_into("sample", 4, "INSERT OR IGNORE"));
@@ -45,7 +49,8 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
   auto event = database.prepare(
       // Beyond what any destination was told: SQLite gives the number of a deleted row again.
       "INSERT INTO event VALUES (1 + max((SELECT coalesce(max(number), 0) FROM event), "
-      "(SELECT coalesce(max(position), 0) FROM cursor)), ?1, ?2, ?3, ?4, ?5, 1, NULL, "
+      "(SELECT coalesce(max(position), 0) FROM cursor WHERE destination NOT GLOB 'outbox *')), ?1, "
+      "?2, ?3, ?4, ?5, 1, NULL, "
       "row_sum('event', ?1, ?2, ?3, ?4, ?5, 1, NULL))");
   if (!event) return tl::unexpected(event.error());
   auto count = database.prepare(
@@ -57,8 +62,8 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
   auto reopen = database.prepare("INSERT OR IGNORE INTO reopened VALUES (?, ?)");
   if (!reopen) return tl::unexpected(reopen.error());
   return BatchWriter{std::make_unique<Statements>(
-      Statements{std::move(*latest), std::move(*interval), std::move(*state), std::move(*sample),
-                 std::move(*event), std::move(*count), std::move(*reopen)})};
+      Statements{std::move(*latest), std::move(*interval), std::move(*outbox), std::move(*state),
+                 std::move(*sample), std::move(*event), std::move(*count), std::move(*reopen)})};
 }
 
 Result<CommitCounts> BatchWriter::write(const StoreBatch& batch) {
@@ -118,10 +123,11 @@ Result<void> BatchWriter::put_interval(const StoreBatch::Interval& interval,
       break;
   }
   ++counts.taken;
+  const std::int64_t revision = *known ? (*known)->revision + 1 : 0;
   Statement& insert = statements_->insert_interval;
   insert.bind(0, std::int64_t{reading.meter})
       .bind(1, seconds_of(reading.start))
-      .bind(2, std::int64_t{*known ? (*known)->revision + 1 : 0})
+      .bind(2, revision)
       .bind(3, reading.mean_kW)
       .bind(4, static_cast<std::int64_t>(reading.validity))
       .bind(5, std::int64_t{reading.late})
@@ -131,7 +137,12 @@ Result<void> BatchWriter::put_interval(const StoreBatch::Interval& interval,
   } else {
     insert.bind_null(7);
   }
-  return insert.run();
+  if (auto inserted = insert.run(); !inserted) return inserted;
+  return statements_->insert_outbox_entry.bind(0, std::int64_t{reading.meter})
+      .bind(1, seconds_of(reading.start))
+      .bind_null(2)
+      .bind(3, revision)
+      .run();
 }
 
 Result<void> BatchWriter::put_registers(const StoreBatch& batch) {

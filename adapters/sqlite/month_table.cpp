@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/outbox_table.hpp"
 #include "adapters/sqlite/tables.hpp"
 
 namespace recald::sqlite {
@@ -90,12 +91,32 @@ Result<int> insert_month(Database& database, std::uint32_t meter, const StoredMo
     if (!insert) return tl::unexpected(insert.error());
     bind_month(*insert, meter, month, revision);
     if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    auto told = database.prepare(insert_outbox_entry());
+    if (!told) return tl::unexpected(told.error());
+    told->bind(0, std::int64_t{meter}).bind_null(1).bind(2, std::string_view{name});
+    if (auto done = told->bind(3, std::int64_t{revision}).run(); !done) {
+      return tl::unexpected(done.error());
+    }
     auto settled = database.prepare("DELETE FROM reopened WHERE meter = ? AND month = ?");
     if (!settled) return tl::unexpected(settled.error());
     settled->bind(0, std::int64_t{meter}).bind(1, std::string_view{name});
     if (auto done = settled->run(); !done) return tl::unexpected(done.error());
     return revision;
   });
+}
+
+Result<std::optional<StoredMonth>> stored_month(Database& database, std::uint32_t meter,
+                                                const std::string& month, int revision) {
+  auto query = database.prepare(fmt::format(
+      "SELECT {} FROM month WHERE meter = ? AND month = ? AND revision = ?", kMonthColumns));
+  if (!query) return tl::unexpected(query.error());
+  query->bind(0, std::int64_t{meter}).bind(1, std::string_view{month});
+  const auto row = query->bind(2, std::int64_t{revision}).step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) return std::optional<StoredMonth>{};
+  auto read = read_month(*query);
+  if (!read) return tl::unexpected(read.error());
+  return std::optional{std::move(*read)};
 }
 
 Result<std::vector<StoredMonth>> stored_months(Database& database, std::uint32_t meter) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "adapters/ports/store.hpp"
@@ -12,6 +14,12 @@ namespace recald::sqlite {
 /// Inserts a month as revision 0 or the next, and removes it from `reopened`. @return the revision.
 [[nodiscard]] Result<int> insert_month(Database& database, std::uint32_t meter,
                                        const StoredMonth& month);
+
+/// One revision of a month; nothing if it is not there.
+[[nodiscard]] Result<std::optional<StoredMonth>> stored_month(Database& database,
+                                                              std::uint32_t meter,
+                                                              const std::string& month,
+                                                              int revision);
 
 /// The latest revision of each month, ascending. @return malformed when a month's name is invalid.
 [[nodiscard]] Result<std::vector<StoredMonth>> stored_months(Database& database,

@@ -165,6 +165,17 @@ CREATE TABLE cursor (
   position    INTEGER NOT NULL CHECK (position >= 0),
   sum         INTEGER
 ) STRICT, WITHOUT ROWID;
+)sql",
+    R"sql(
+CREATE TABLE outbox (
+  number   INTEGER PRIMARY KEY,
+  meter    INTEGER NOT NULL REFERENCES meter (number),
+  t_start  INTEGER,
+  month    TEXT,
+  revision INTEGER NOT NULL,
+  sum      INTEGER,
+  CHECK ((t_start IS NULL) <> (month IS NULL))
+) STRICT;
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {

@@ -5,7 +5,7 @@
 
 namespace recald::sqlite {
 
-inline constexpr int kSchemaVersion = 6;
+inline constexpr int kSchemaVersion = 7;
 
 /// The version of a file's tables; 0: it has none yet. The number in the header is compared with
 /// the tables themselves, so that a flipped bit in either cannot pass for another version.

@@ -11,6 +11,7 @@
 #include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/job_table.hpp"
 #include "adapters/sqlite/month_table.hpp"
+#include "adapters/sqlite/outbox_table.hpp"
 #include "adapters/sqlite/register_json.hpp"
 #include "adapters/sqlite/row_checks.hpp"
 #include "adapters/sqlite/sample_table.hpp"
@@ -261,6 +262,22 @@ Result<void> SqliteStore::put_cursor(const std::string& destination, std::int64_
     if (!put) return tl::unexpected(put.error());
     return put->bind(0, std::string_view{destination}).bind(1, position).run();
   });
+}
+
+Result<void> SqliteStore::keep_outbox_for(const std::vector<std::string>& destinations) {
+  return write([&] { return sqlite::keep_outbox_for(database_, destinations); });
+}
+
+Result<std::vector<OutboxEntry>> SqliteStore::outbox_after(std::int64_t number, int limit) {
+  return sqlite::outbox_after(database_, number, limit);
+}
+
+Result<OutboxPosition> SqliteStore::outbox_position(const std::string& destination) {
+  return sqlite::outbox_position(database_, destination);
+}
+
+Result<void> SqliteStore::put_outbox_position(const std::string& destination, std::int64_t number) {
+  return write([&] { return sqlite::put_outbox_position(database_, destination, number); });
 }
 
 Result<std::int64_t> SqliteStore::add_job(const StoredJob& job) {

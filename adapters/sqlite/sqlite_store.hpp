@@ -50,6 +50,10 @@ class SqliteStore final : public Store {
   Result<std::vector<StoreEvent>> events_after(std::int64_t number, int limit) override;
   Result<std::optional<std::int64_t>> cursor(const std::string& destination) override;
   Result<void> put_cursor(const std::string& destination, std::int64_t position) override;
+  Result<void> keep_outbox_for(const std::vector<std::string>& destinations) override;
+  Result<std::vector<OutboxEntry>> outbox_after(std::int64_t number, int limit) override;
+  Result<OutboxPosition> outbox_position(const std::string& destination) override;
+  Result<void> put_outbox_position(const std::string& destination, std::int64_t number) override;
   Result<std::int64_t> add_job(const StoredJob& job) override;
   Result<void> put_job(const StoredJob& job) override;
   Result<std::optional<StoredJob>> job(std::int64_t number) override;

@@ -22,7 +22,7 @@ constexpr auto kNewerRegister =
     "coalesce(json_extract(register.state, '$.power.until'), "
     "json_extract(register.state, '$.counter.baseline.time')))";
 
-constexpr std::array<TableShape, 12> kShapes{{
+constexpr std::array<TableShape, 13> kShapes{{
     {"meter", true, "iti", 3, 0, nullptr},
     {"edit", true, "iitttt", 6, 1, nullptr},
     {"interval", false, "iiiriiin", 7, 0, nullptr},
@@ -36,6 +36,7 @@ constexpr std::array<TableShape, 12> kShapes{{
      "excluded.state > job.state OR excluded.tries > job.tries"},
     {"forecast", true, "ittittirrrrrrrrrr", 17, 1, nullptr},
     {"cursor", false, "ti", 2, 0, "excluded.position > cursor.position"},
+    {"outbox", true, "iinui", 5, 1, nullptr},
 }};
 
 class Crc {

@@ -111,6 +111,22 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.put_cursor(destination, position);
   }
+  Result<void> keep_outbox_for(const std::vector<std::string>& destinations) override {
+    if (refuses) return refusal();
+    return behind_.keep_outbox_for(destinations);
+  }
+  Result<std::vector<OutboxEntry>> outbox_after(std::int64_t number, int limit) override {
+    if (refuses) return refusal();
+    return behind_.outbox_after(number, limit);
+  }
+  Result<OutboxPosition> outbox_position(const std::string& destination) override {
+    if (refuses) return refusal();
+    return behind_.outbox_position(destination);
+  }
+  Result<void> put_outbox_position(const std::string& destination, std::int64_t number) override {
+    if (refuses) return refusal();
+    return behind_.put_outbox_position(destination, number);
+  }
   Result<std::vector<StoreEvent>> events(int limit) override {
     if (refuses) return refusal();
     return behind_.events(limit);

@@ -140,7 +140,7 @@ TEST_F(JobTable, AStoreFromBeforeJobsIsUpgraded) {
   ASSERT_TRUE(number.has_value());
   const auto made_old = store_->database().execute(
       "ALTER TABLE interval DROP COLUMN edit; DROP TABLE edit; DROP TABLE job;"
-      "DROP TABLE forecast; DROP TABLE closing; DROP TABLE cursor;"
+      "DROP TABLE forecast; DROP TABLE closing; DROP TABLE cursor; DROP TABLE outbox;"
       "ALTER TABLE event DROP COLUMN count; ALTER TABLE event DROP COLUMN last;"
       "ALTER TABLE event DROP COLUMN sum; ALTER TABLE meter DROP COLUMN sum;"
       "ALTER TABLE interval DROP COLUMN sum; ALTER TABLE register DROP COLUMN sum;"

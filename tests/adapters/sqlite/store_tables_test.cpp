@@ -259,7 +259,7 @@ TEST_F(StoreTables, AReaderDoesNotUpgrade) {
       SqliteStore::open(folder_ / "older.db", {.access = Database::Access::read_only});
   ASSERT_FALSE(reader.has_value());
   EXPECT_EQ(reader.error().code, ErrorCode::unsupported);
-  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, but this recald reads 6"));
+  EXPECT_THAT(reader.error().message, HasSubstr("schema version 1, but this recald reads 7"));
 }
 
 TEST_F(StoreTables, EventsAreGivenOutFromACursorOn) {
