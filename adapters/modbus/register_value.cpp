@@ -130,6 +130,15 @@ int word_count(RegisterType type) {
   return 1;
 }
 
+std::vector<std::uint16_t> float64_words(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  std::vector<std::uint16_t> words;
+  for (const int shift : {48, 32, 16, 0}) {
+    words.push_back(static_cast<std::uint16_t>(bits >> shift));
+  }
+  return words;
+}
+
 std::uint64_t raw_bits(std::span<const std::uint16_t> words, WordOrder order) {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < words.size(); ++i) {

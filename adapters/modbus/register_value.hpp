@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -70,6 +71,9 @@ struct DecodedValue {
 /// @pre words.size() == word_count(format.type).
 [[nodiscard]] tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> words,
                                                             const ValueFormat& format);
+
+/// The registers of a 64-bit float, in order ABCD.
+[[nodiscard]] std::vector<std::uint16_t> float64_words(double value);
 
 /// The 16, 32 or 64 bits of a value, lowest word last, as compared with `absent` and `mask`.
 [[nodiscard]] std::uint64_t raw_bits(std::span<const std::uint16_t> words, WordOrder order);

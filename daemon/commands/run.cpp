@@ -19,12 +19,12 @@ int run_run(const RunArguments& arguments, const Console& console) {
   };
   if (!any(&MeterConfig::is_stored)) {
     return console.fail(
-        fmt::format("{}: no [[meter]] has source = \"modbus\" or \"http\", so there is nothing to "
-                    "poll or receive; use recald replay for recorded readings",
+        fmt::format("{}: no [[meter]] has source = \"modbus\", \"http\" or \"mqtt\", so there is "
+                    "nothing to poll or receive; use recald replay for recorded readings",
                     arguments.site.filename().string()));
   }
-  const bool polls = any([](const MeterConfig& meter) { return meter.live.has_value(); });
-  if (!polls && !config.http) {
+  const bool hears = any([](const MeterConfig& meter) { return meter.live || meter.mqtt; });
+  if (!hears && !config.http) {
     const auto pushed = std::ranges::find(config.meters, MeterSource::http, &MeterConfig::source);
     return console.fail(
         nowhere_to_push(config, pushed == config.meters.end() ? config.sensors.front() : *pushed));

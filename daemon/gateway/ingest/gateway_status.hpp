@@ -41,8 +41,8 @@ struct QuantityStatus {
 /// The status of one meter or weather sensor with stored readings.
 struct MeterStatus {
   std::string id;
-  std::optional<PollStatus> poll;  ///< Absent: its readings are pushed.
-  LiveValues live;  ///< For a meter that is not polled, only when it was last heard from.
+  std::optional<PollStatus> poll;  ///< Absent: its readings are pushed, or come from a broker.
+  LiveValues live;                 ///< For a pushed meter, only when it was last heard from.
   std::optional<metering::Reading> last_interval;  ///< Committed.
   MeterCounters counters;
   double open_month_coverage = 0.0;  ///< 0…1; NaN before the month's first interval has ended.

@@ -91,6 +91,14 @@ MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
   }
 }
 
+std::optional<Instant> MeterTrack::last_sample() const {
+  if (meter_.map.energy.empty()) {
+    return state_.power.next ? std::optional{state_.power.until} : std::nullopt;
+  }
+  if (state_.counter.phase == metering::CounterPhase::empty) return std::nullopt;
+  return state_.counter.pending ? state_.counter.pending->last.time : state_.counter.baseline.time;
+}
+
 void MeterTrack::clock_was_set() {
   clock_was_set_ = true;
   latest_.clear();
@@ -267,12 +275,10 @@ bool MeterTrack::is_relived(const metering::Reading& reading) const {
 
 void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
   using metering::CounterPhase;
-  const bool stands = state_.counter.phase != CounterPhase::empty;
-  const Instant last =
-      state_.counter.pending ? state_.counter.pending->last.time : state_.counter.baseline.time;
-  if (stands && sample.time <= last && !clock_was_set_) {
+  const auto last = last_sample();
+  if (last && sample.time <= *last && !clock_was_set_) {
     // Two samples in one second. If it is further back, the clock was set while the daemon was off.
-    if (last - sample.time <= kClockSlew) return;
+    if (*last - sample.time <= kClockSlew) return;
     clock_was_set_ = true;
   }
   if (std::exchange(clock_was_set_, false)) begin_anew(sample.time);

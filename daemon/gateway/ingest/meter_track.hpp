@@ -64,6 +64,8 @@ class MeterTrack {
   [[nodiscard]] const LiveValues& live() const { return live_; }
   [[nodiscard]] std::vector<RefusedRegisters> refused() const { return refusals_.refused(); }
   [[nodiscard]] const RegisterState& state() const { return state_; }
+  /// When the last value was measured that its intervals are made of; nothing: there was none yet.
+  [[nodiscard]] std::optional<metering::Instant> last_sample() const;
 
  private:
   struct FieldReading {

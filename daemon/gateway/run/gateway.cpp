@@ -79,6 +79,9 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
   auto buses = gateway->open_buses(site, {});
   if (!buses) return tl::unexpected(buses.error());
   gateway->buses_ = std::move(*buses);
+  auto told = gateway->open_told(site);
+  if (!told) return tl::unexpected(told.error());
+  gateway->told_ = std::move(*told);
   if (auto opened = gateway->open_pushed(site); !opened) return tl::unexpected(opened.error());
   gateway->watch_meters_of(site);
   gateway->watch_sensors_of(site);
@@ -95,6 +98,19 @@ Result<std::vector<std::unique_ptr<LiveBus>>> Gateway::open_buses(
     auto live = LiveBus::open(site, bus, calendar_, ports_.store);
     if (!live) return tl::unexpected(live.error());
     opened.push_back(std::move(*live));
+  }
+  return opened;
+}
+
+/// As registers: a counter in messages has the same faults as one that is polled.
+Result<std::vector<LiveMeter>> Gateway::open_told(const SiteConfig& site) {
+  std::vector<LiveMeter> opened;
+  for (const MeterConfig& config : site.meters) {
+    if (config.source != MeterSource::mqtt) continue;
+    const LiveMeterConfig live{.map = config.mqtt->map, .poll = config.mqtt->every};
+    auto meter = open_live_meter(config, live, calendar_, ports_.store);
+    if (!meter) return tl::unexpected(meter.error());
+    opened.push_back(std::move(*meter));
   }
   return opened;
 }
@@ -143,7 +159,8 @@ void Gateway::watch_meters_of(const SiteConfig& site) {
   for (const MeterConfig& config : site.meters) {
     if (!config.is_stored()) continue;
     const std::string& id = config.meter.id;
-    const auto silence_max = meter_silence_max(config.meter.interval, config.live.has_value());
+    const auto silence_max =
+        meter_silence_max(config.meter.interval, config.source != MeterSource::http);
     const auto known = meter_watches_.find(id);
     if (known != meter_watches_.end() && known->second.silence_max() == silence_max) {
       watches.emplace(id, known->second);
@@ -229,19 +246,22 @@ Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory
 void Gateway::start() {
   watch_clock(ports_.loop.now());
   for (const auto& bus : buses_) start(*bus);
+  for (LiveMeter& meter : told_) note_doubt(meter);
   close_months_every_hour();
   judge_meters_every_minute();
 }
 
 void Gateway::start(LiveBus& bus) {
   bus.start(ports_of(bus), [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
-  for (LiveMeter& meter : bus.meters()) {
-    if (meter.doubt.empty()) continue;
-    note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", meter.id,
-          fmt::format("meter '{}': {}; its counter starts again from here, and the energy since "
-                      "the last interval is unknown",
-                      meter.id, std::exchange(meter.doubt, {}))});
-  }
+  for (LiveMeter& meter : bus.meters()) note_doubt(meter);
+}
+
+void Gateway::note_doubt(LiveMeter& meter) {
+  if (meter.doubt.empty()) return;
+  note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", meter.id,
+        fmt::format("meter '{}': {}; its counter starts again from here, and the energy since "
+                    "the last interval is unknown",
+                    meter.id, std::exchange(meter.doubt, {}))});
 }
 
 LiveBus::Ports Gateway::ports_of(const LiveBus& bus) const {
@@ -269,7 +289,11 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   const std::span kept{buses_.begin(), changed};
   auto opened = open_buses(site, kept);
   if (!opened) return tl::unexpected(opened.error());
+  auto told = open_told(site);
+  if (!told) return tl::unexpected(told.error());
   if (auto pushed = open_pushed(site); !pushed) return pushed;
+  told_ = std::move(*told);
+  for (LiveMeter& meter : told_) note_doubt(meter);
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
   begin_buses_anew();                   // those that are kept
   // Held reads were planned with the old descriptions, which may have changed.
@@ -295,6 +319,9 @@ LiveMeter* Gateway::find_meter(std::uint32_t number) {
       if (std::ranges::any_of(meter.progress, is_it)) return &meter;
     }
   }
+  for (LiveMeter& meter : told_) {
+    if (std::ranges::any_of(meter.progress, is_it)) return &meter;
+  }
   return nullptr;
 }
 
@@ -305,6 +332,7 @@ std::vector<MeterProgress*> Gateway::all_progress() {
       for (MeterProgress& progress : meter.progress) all.push_back(&progress);
     }
   }
+  for (LiveMeter& meter : told_) all.push_back(&meter.progress.front());
   for (PushedMeter& meter : pushed_) all.push_back(&meter.progress);
   return all;
 }
@@ -336,6 +364,7 @@ void Gateway::watch_clock(const Moment& now) {
   for (const auto& bus : buses_) {
     for (LiveMeter& meter : bus->meters()) meter.clock_was_set();
   }
+  for (LiveMeter& meter : told_) meter.clock_was_set();
   for (auto& [meter, watch] : meter_watches_) watch.clock_was_set();
   note({now.instant(), Severity::warning, "clock_set", "",
         fmt::format(
@@ -371,6 +400,44 @@ void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
   StoreBatch batch = meter.take(read, at);
   meter.progress.front().mark_late(batch, calendar_);
   hand_in(std::move(batch));
+}
+
+Result<bool> Gateway::take_told(const ToldValue& value) {
+  const auto told = std::ranges::find(told_, value.meter, &LiveMeter::id);
+  const auto is_it = [&](const modbus::PlannedRead& read) {
+    const modbus::RegisterMap& map = told->config.map;
+    const std::string& field = metered_fields(map)[read.fields.front()].name;
+    return value.is_counter ? field == map.energy.front() : map.power == field;
+  };
+  const auto read = told == told_.end() ? std::vector<modbus::PlannedRead>::iterator{}
+                                        : std::ranges::find_if(told->reads, is_it);
+  if (told == told_.end() || read == told->reads.end()) {
+    return failure(ErrorCode::not_found,
+                   fmt::format("no such value of meter '{}' is told", value.meter));
+  }
+  const Moment now = ports_.loop.now();
+  watch_clock(now);
+  const Instant at = value.measured.value_or(now.instant());
+  const MeterTrack& track = std::get<MeterTrack>(told->track);
+  const bool makes_intervals = value.is_counter || told->config.map.energy.empty();
+  const bool is_late = makes_intervals && at <= track.last_sample().value_or(Instant::min());
+  if (value.measured && is_late) return false;
+  PolledRead polled{.order = {.unit = 0,
+                              .read = static_cast<std::size_t>(read - told->reads.begin()),
+                              .request = {},
+                              .timeout = {},
+                              .due = value.measured ? WallTime{at} : now.wall,
+                              .is_probe = false},
+                    .result = modbus::float64_words(value.value),
+                    .lateness = {},
+                    .duration = {},
+                    .at = now};
+  if (value.measured) {
+    take_at(*told, polled, at);
+  } else {
+    take(*told, polled);
+  }
+  return true;
 }
 
 Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
@@ -563,6 +630,9 @@ void Gateway::judge_meters() {
       if (track != nullptr) judge(meter.id, track->live().measured_at);
     }
   }
+  for (const LiveMeter& meter : told_) {
+    judge(meter.id, std::get<MeterTrack>(meter.track).live().measured_at);
+  }
   for (const PushedMeter& meter : pushed_) {
     if (!meter.progress.channel) judge(meter.progress.stored.meter.id, meter.taken_at);
   }
@@ -594,6 +664,7 @@ GatewayStatus Gateway::status() const {
       status.meters.push_back(status_of(*bus, unit, *runner));
     }
   }
+  for (const LiveMeter& meter : told_) status.meters.push_back(status_of(meter));
   for (const PushedMeter& meter : pushed_) {
     if (!meter.progress.channel) status.meters.push_back(status_of(meter));
   }
@@ -614,6 +685,9 @@ std::optional<MeterStatus> Gateway::meter_status(std::string_view id) const {
       return status_of(*bus, static_cast<std::size_t>(found - meters.begin()), *runner);
     }
   }
+  const auto told =
+      std::ranges::find(told_, id, [](const LiveMeter& one) { return std::string_view{one.id}; });
+  if (told != told_.end()) return status_of(*told);
   const auto watch = watches_.find(std::string{id});
   if (watch != watches_.end() && !watch->second.is_polled()) {
     return status_of_pushed_sensor(watch->first);
@@ -651,6 +725,21 @@ MeterStatus Gateway::status_of(const LiveBus& bus, std::size_t unit,
   status.counters = progress.counters;
   status.open_month_coverage = coverage_of(progress);
   return status;
+}
+
+MeterStatus Gateway::status_of(const LiveMeter& told) const {
+  LiveValues live = std::get<MeterTrack>(told.track).live();
+  // Nobody says that a power has gone out of date.
+  const bool is_current =
+      live.read_at && ports_.loop.now().instant() - *live.read_at <= 2 * told.config.poll;
+  if (!is_current) live.power_kW.reset();
+  const MeterProgress& progress = told.progress.front();
+  return {.id = told.id,
+          .poll = std::nullopt,
+          .live = live,
+          .last_interval = progress.last_interval,
+          .counters = progress.counters,
+          .open_month_coverage = coverage_of(progress)};
 }
 
 MeterStatus Gateway::status_of(const PushedMeter& meter) const {

@@ -24,6 +24,7 @@
 #include "daemon/gateway/ingest/gateway_status.hpp"
 #include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
+#include "daemon/gateway/ingest/told_message.hpp"
 #include "daemon/gateway/run/live_bus.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -89,6 +90,11 @@ class Gateway {
                                                  std::vector<metering::Reading> readings,
                                                  const std::optional<Correction>& correction = {});
 
+  /// Takes a value of a meter with source = "mqtt". One that is not later than the last is left
+  /// out: a broker may deliver twice, and out of order.
+  /// @return whether it was taken; not_found for a meter that lacks such a value.
+  [[nodiscard]] Result<bool> take_told(const ToldValue& value);
+
   /// Adds an event for people to find.
   void note(StoreEvent event) { hand_in({.events = {std::move(event)}}); }
 
@@ -125,6 +131,9 @@ class Gateway {
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
   [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
+  /// Opens the meters with source = "mqtt"; those that are described as before go on.
+  [[nodiscard]] Result<std::vector<LiveMeter>> open_told(const SiteConfig& site);
+  void note_doubt(LiveMeter& meter);
   /// Opens the pushed meters and weather sensors of `site`; those already open keep their state.
   Result<void> open_pushed(const SiteConfig& site);
   [[nodiscard]] PushedMeter again_pushed(MeterProgress progress) const;
@@ -159,6 +168,7 @@ class Gateway {
   void note_committed(const StoreBatch& batch, const CommitCounts& counts);
   [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
                                       const BusRunner& runner) const;
+  [[nodiscard]] MeterStatus status_of(const LiveMeter& told) const;
   [[nodiscard]] MeterStatus status_of(const PushedMeter& meter) const;
   [[nodiscard]] MeterStatus status_of_pushed_sensor(const std::string& sensor) const;
   void add_quantity(MeterStatus& status, const MeterProgress& progress,
@@ -177,6 +187,7 @@ class Gateway {
   MonthKeeper keeper_;
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
+  std::vector<LiveMeter> told_;  ///< With source = "mqtt".
   std::vector<PushedMeter> pushed_;
   std::map<std::string, MeterWatch> meter_watches_;  ///< By id.
   std::map<std::string, SensorWatch> watches_;       ///< By id of the weather sensor.

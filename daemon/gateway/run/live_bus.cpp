@@ -1,6 +1,5 @@
 #include "daemon/gateway/run/live_bus.hpp"
 
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -23,140 +22,20 @@ std::vector<const MeterConfig*> meters_on(const SiteConfig& site, const std::str
   return meters;
 }
 
-/// Why a meter without a state should have one; empty: it need not. Samples are stored together
-/// with the state they led to, so if there are samples, the state was lost.
-Result<std::string> lost_state(Store& store, std::uint32_t meter, const std::string& field) {
-  std::string lost;
-  const auto read = store.for_each_sample(meter, field, [&](const metering::RegisterSample&) {
-    lost = "the state of its counter is no longer in the store";
-  });
-  if (!read) return tl::unexpected(read.error());
-  return lost;
-}
-
-Result<std::vector<modbus::PlannedRead>> planned_reads(const MeterConfig& config) {
-  const modbus::RegisterMap& map = config.live->map;
-  auto reads = plan_reads(metered_fields(map), map.function, map.limits);
-  if (reads) return reads;
-  return failure(reads.error().code,
-                 fmt::format("meter '{}': {}", config.meter.id, reads.error().message));
-}
-
-/// Stored states of a meter's registers. Unreadable ones start anew, and `doubt` says why.
-Result<std::vector<RegisterState>> stored_states(Store& store, std::uint32_t number,
-                                                 std::string& doubt) {
-  auto states = store.registers(number);
-  if (states || states.error().code != ErrorCode::malformed) return states;
-  doubt = states.error().message;
-  return std::vector<RegisterState>{};
-}
-
 }  // namespace
-
-StoreBatch LiveMeter::take(const PolledRead& read, metering::Instant at) {
-  const modbus::PlannedRead& planned = reads[read.order.read];
-  if (auto* const sensor = std::get_if<WeatherTrack>(&track)) {
-    return sensor->take(planned, read.result, at);
-  }
-  return std::get<MeterTrack>(track).take(planned, read.result, read.order.due, at);
-}
-
-void LiveMeter::clock_was_set() {
-  std::visit([](auto& one) { one.clock_was_set(); }, track);
-}
-
-std::vector<RefusedRegisters> LiveMeter::refused() const {
-  return std::visit([](const auto& one) { return one.refused(); }, track);
-}
 
 Result<std::unique_ptr<LiveBus>> LiveBus::open(const SiteConfig& site, const BusConfig& bus,
                                                const metering::LocalCalendar& calendar,
                                                Store& store) {
   std::unique_ptr<LiveBus> live{new LiveBus{bus}};
   for (const MeterConfig* meter : meters_on(site, bus.name)) {
-    auto added = meter->role == MeterRole::weather ? live->add_sensor(*meter, calendar, store)
-                                                   : live->add_meter(*meter, calendar, store);
-    if (!added) return tl::unexpected(added.error());
+    auto opened = meter->role == MeterRole::weather
+                      ? open_live_sensor(*meter, calendar, store)
+                      : open_live_meter(*meter, *meter->live, calendar, store);
+    if (!opened) return tl::unexpected(opened.error());
+    live->meters_.push_back(std::move(*opened));
   }
   return live;
-}
-
-Result<void> LiveBus::add_meter(const MeterConfig& config, const metering::LocalCalendar& calendar,
-                                Store& store) {
-  const LiveMeterConfig& live = *config.live;
-  auto reads = planned_reads(config);
-  if (!reads) return tl::unexpected(reads.error());
-  std::vector<metering::Reading> recent;
-  auto progress = MeterProgress::open(config.meter, calendar, store,
-                                      [&](const metering::Reading& one) { recent.push_back(one); });
-  if (!progress) return tl::unexpected(progress.error());
-  const std::uint32_t number = progress->stored.number;
-  std::string doubt;
-  const auto states = stored_states(store, number, doubt);
-  if (!states) return tl::unexpected(states.error());
-
-  TrackedMeter tracked{
-      .number = number,
-      .id = config.meter.id,
-      .map = live.map,
-      .multiplier = config.multiplier,
-      .counter = config.counter.value_or(
-          metering::CounterSettings{.rated_kW = config.meter.rated_kW.value_or(0.0)}),
-      .booking = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll}};
-  // A map that lost its counter leaves the counter's state behind in the store.
-  const std::string field = live.map.energy.empty() ? "power" : "energy";
-  const auto found = std::ranges::find(*states, field, &RegisterState::field);
-  const std::optional<RegisterState> state =
-      found == states->end() ? std::nullopt : std::optional{*found};
-  if (!state && doubt.empty() && progress->last_interval) {
-    auto lost = lost_state(store, number, field);
-    if (!lost) return tl::unexpected(lost.error());
-    doubt = std::move(*lost);
-  }
-  MeterTrack track{std::move(tracked), calendar, state};
-  for (const metering::Reading& one : recent) track.remember(one);
-  std::vector<MeterProgress> own;
-  own.push_back(std::move(*progress));
-  meters_.push_back({.id = config.meter.id,
-                     .progress = std::move(own),
-                     .config = live,
-                     .text = config.text,
-                     .track = std::move(track),
-                     .reads = std::move(*reads),
-                     .doubt = std::move(doubt)});
-  return {};
-}
-
-Result<void> LiveBus::add_sensor(const MeterConfig& config, const metering::LocalCalendar& calendar,
-                                 Store& store) {
-  const LiveMeterConfig& live = *config.live;
-  auto reads = planned_reads(config);
-  if (!reads) return tl::unexpected(reads.error());
-  TrackedSensor tracked{
-      .id = config.meter.id,
-      .map = live.map,
-      .averaging = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll},
-      .quantities = {}};
-  std::vector<MeterProgress> all;
-  std::string doubt;
-  for (WeatherChannel& channel : channels_of(config)) {
-    auto progress = MeterProgress::open(stored_meter(config, channel), calendar, store);
-    if (!progress) return tl::unexpected(progress.error());
-    const std::uint32_t number = progress->stored.number;
-    auto states = stored_states(store, number, doubt);
-    if (!states) return tl::unexpected(states.error());
-    tracked.quantities.push_back({number, channel.quantity, std::move(*states)});
-    progress->channel = std::move(channel);
-    all.push_back(std::move(*progress));
-  }
-  meters_.push_back({.id = config.meter.id,
-                     .progress = std::move(all),
-                     .config = live,
-                     .text = config.text,
-                     .track = WeatherTrack{std::move(tracked)},
-                     .reads = std::move(*reads),
-                     .doubt = std::move(doubt)});
-  return {};
 }
 
 /// Creates the bus; with SunSpec devices, one that finds their models first.

@@ -6,37 +6,16 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "adapters/ports/bus.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
-#include "daemon/gateway/ingest/meter_progress.hpp"
-#include "daemon/gateway/ingest/meter_track.hpp"
-#include "daemon/gateway/ingest/weather_track.hpp"
 #include "daemon/gateway/poll/bus_runner.hpp"
+#include "daemon/gateway/run/live_meter.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
-
-/// A meter or a weather sensor.
-struct LiveMeter {
-  std::string id;
-  std::vector<MeterProgress> progress;  ///< One for a meter, or one per quantity of a sensor.
-  LiveMeterConfig config;
-  std::string text;  ///< As in MeterConfig.
-  std::variant<MeterTrack, WeatherTrack> track;
-  std::vector<modbus::PlannedRead> reads;
-  std::string doubt = {};  ///< What was wrong with its stored state; empty: nothing.
-
-  [[nodiscard]] StoreBatch take(const PolledRead& read, metering::Instant at);
-  void clock_was_set();
-  [[nodiscard]] std::vector<RefusedRegisters> refused() const;
-  [[nodiscard]] std::chrono::seconds interval() const {
-    return progress.front().stored.meter.interval;
-  }
-};
 
 class LiveBus {
  public:
@@ -70,10 +49,6 @@ class LiveBus {
 
  private:
   explicit LiveBus(BusConfig config) : config_(std::move(config)) {}
-  [[nodiscard]] Result<void> add_meter(const MeterConfig& meter,
-                                       const metering::LocalCalendar& calendar, Store& store);
-  [[nodiscard]] Result<void> add_sensor(const MeterConfig& sensor,
-                                        const metering::LocalCalendar& calendar, Store& store);
   [[nodiscard]] std::unique_ptr<Bus> make_bus(const Ports& ports) const;
   [[nodiscard]] std::vector<PolledUnit> polled_units() const;
 

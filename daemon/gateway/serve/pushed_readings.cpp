@@ -12,6 +12,7 @@
 #include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
 #include "core/metering/validation.hpp"
+#include "daemon/gateway/ingest/json_depth.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -29,22 +30,6 @@ constexpr double kValueMax = 1e18;  // keeps values finite after any unit and mu
 constexpr seconds kClocksDiffer{300};
 /// A sender whose clock was reset must not create months of the year 2000.
 constexpr std::chrono::days kOldest{400};
-
-/// Whether JSON has more open brackets at once than that. Checked before parsing: a megabyte of
-/// brackets would become a hundred times as much memory of nested values.
-bool is_nested_deeper(std::string_view json, int depth_max) {
-  int depth = 0;
-  bool is_text = false;
-  for (std::size_t i = 0; i < json.size() && depth <= depth_max; ++i) {
-    const char c = json[i];
-    if (c == '"') is_text = !is_text;
-    if (is_text && c == '\\') ++i;
-    if (is_text) continue;
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-  }
-  return depth > depth_max;
-}
 
 tl::unexpected<http::Response> malformed(std::string_view what, std::string_view field) {
   return refusal(400, "malformed", fmt::format("{}; send JSON such as {}", what, kExample), field);

@@ -7,16 +7,10 @@
 
 #include "adapters/http/url.hpp"
 #include "daemon/site/config/alert_kinds.hpp"
-#include "daemon/site/config/site_path.hpp"
+#include "daemon/site/config/server_access.hpp"
 
 namespace recald::daemon {
 namespace {
-
-std::filesystem::path read_path(TomlReader& table, std::string_view key,
-                                const std::filesystem::path& site_file) {
-  const auto text = table.text(key);
-  return text ? resolve(site_file, *text, key, table) : std::filesystem::path{};
-}
 
 bool is_mail_address(std::string_view text) {
   const std::size_t at = text.find('@');
@@ -43,10 +37,6 @@ std::optional<std::string> mail_host(const std::string& url) {
   return {};
 }
 
-bool is_this_machine(std::string_view host) {
-  return host == "localhost" || host == "::1" || host.starts_with("127.");
-}
-
 WebhookConfig read_webhook(TomlReader table, const std::filesystem::path& site_file) {
   WebhookConfig config{.url = table.required_text("url"),
                        .token_file = read_path(table, "token_file", site_file),
@@ -68,8 +58,9 @@ WebhookConfig read_webhook(TomlReader table, const std::filesystem::path& site_f
 MailConfig read_mail(TomlReader table, const std::filesystem::path& site_file) {
   MailConfig config;
   config.server = table.required_text("server");
-  config.user = table.text_or("user", "");
-  config.password_file = read_path(table, "password_file", site_file);
+  Login login = read_login(table, site_file);
+  config.user = std::move(login.user);
+  config.password_file = std::move(login.password_file);
   config.trusted_certificate = read_path(table, "trusted_certificate", site_file);
   config.from = table.required_text("from");
   if (!config.from.empty()) check_mail_address(table, "from", config.from);
@@ -84,10 +75,6 @@ MailConfig read_mail(TomlReader table, const std::filesystem::path& site_file) {
                                  config.server));
   }
   config.encrypts = table.boolean("encrypt").value_or(!host || !is_this_machine(*host));
-  if (config.user.empty() != config.password_file.empty()) {
-    table.problem_at(table.has("user") ? "user" : "password_file",
-                     "'user' and 'password_file' belong together");
-  }
   if (!config.encrypts && !config.user.empty() && host && !is_this_machine(*host)) {
     table.problem_at("encrypt",
                      "the password would be sent without encryption; leave 'encrypt' "

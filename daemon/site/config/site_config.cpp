@@ -168,8 +168,9 @@ std::optional<model::MeterMap> read_end_uses(TomlReader& table) {
 }
 
 MeterSource read_source(TomlReader& table) {
-  const auto word = table.word("source", {"csv", "modbus", "http"});
+  const auto word = table.word("source", {"csv", "modbus", "http", "mqtt"});
   if (word == "modbus") return MeterSource::modbus;
+  if (word == "mqtt") return MeterSource::mqtt;
   return word == "http" ? MeterSource::http : MeterSource::csv;
 }
 
@@ -198,7 +199,7 @@ MeterConfig read_sensor(TomlReader& table, const SiteConfig& site, RegisterMaps&
   config.source = read_source(table);
   if (config.source == MeterSource::modbus) {
     config.live = read_live_sensor(table, maps);
-  } else if (config.source == MeterSource::csv) {
+  } else if (config.source != MeterSource::http) {
     table.problem(
         "a weather sensor is polled (source = \"modbus\") or pushed (source = \"http\"); name a "
         "weather file, which may grow, in [weather] file");
@@ -223,14 +224,14 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   meter.id = read_meter_id(table);
   config.sum_of = read_sum(table);
   config.source = table.has("sum_of") ? MeterSource::sum : read_source(table);
-  const bool is_live = config.source == MeterSource::modbus;
+  const bool is_polled = config.source == MeterSource::modbus;
   const std::string utility_name = table.required_text("utility");
   if (const auto utility = metering::parse_utility(utility_name)) {
     meter.utility = *utility;
   } else if (!utility_name.empty()) {
     table.problem_at("utility", utility.error().message);
   }
-  if (is_live) {
+  if (is_polled) {
     config.live = read_live_meter(table, maps);
   } else if (config.source == MeterSource::csv) {
     if (!table.has("file")) table.problem("'file' is missing");
@@ -243,11 +244,6 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   config.interval = read_interval(table, "interval");
   meter.interval = config.interval.value_or(site.interval);
   meter.rated_kW = table.number("rated_kW", kPositive);
-  const bool only_knows_power =
-      is_live && config.live->map.energy.empty() && config.live->map.power.has_value();
-  if (is_live && !only_knows_power && !table.has("rated_kW")) {
-    table.problem("a live counter needs 'rated_kW', to tell a jump from a load");
-  }
   meter.zero_run_max = table.duration("zero_run_max");
   // Two hours without a single watt is a dead transformer, not a building; other utilities rest.
   if (!meter.zero_run_max && meter.utility == metering::Utility::electricity) {
@@ -259,6 +255,16 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   config.units.steam_kWh_per_kg =
       table.number_or("steam_kWh_per_kg", config.units.steam_kWh_per_kg, kFactor);
   config.units.gas_kWh_per_m3 = table.number("gas_kWh_per_m3", kFactor);
+  if (config.source == MeterSource::mqtt) {
+    config.mqtt = read_mqtt_meter(table, meter.utility, config.units);
+  }
+  const bool is_counted =
+      (config.live && !config.live->map.energy.empty()) || (config.mqtt && config.mqtt->energy);
+  const bool says_nothing =
+      config.live && config.live->map.energy.empty() && !config.live->map.power;
+  if ((is_counted || says_nothing) && !table.has("rated_kW")) {
+    table.problem("a live counter needs 'rated_kW', to tell a jump from a load");
+  }
   if (!config.files.empty() && is_table(table, config.files.front())) {
     config.table = read_table_config(table, config.files.front(), meter.utility, config.units);
   }
@@ -271,7 +277,7 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
     }
     config.counter = read_counter(*counter, meter.rated_kW);
   }
-  meter.is_counted = config.counter || (is_live && !config.live->map.energy.empty());
+  meter.is_counted = config.counter || is_counted;
   config.end_uses = read_end_uses(table);
   config.text = table.toml();
   table.finish();
@@ -667,6 +673,16 @@ void read_meters(std::vector<TomlReader>& tables, SiteConfig& config) {
   }
 }
 
+/// Messages come from a broker.
+void require_broker(TomlReader& root, const SiteConfig& config) {
+  const auto meter = std::ranges::find(config.meters, MeterSource::mqtt, &MeterConfig::source);
+  if (config.mqtt || meter == config.meters.end() || root.has("mqtt")) return;
+  root.problem(
+      fmt::format("meter '{}' has source = \"mqtt\", but there is no [mqtt] with the 'url' "
+                  "of a broker",
+                  meter->meter.id));
+}
+
 /// A file, sensors, or both.
 void read_whole_weather(TomlReader& root, SiteConfig& config) {
   if (auto weather = root.table("weather")) {
@@ -697,6 +713,10 @@ void read_root(TomlReader root, SiteConfig& config) {
   if (auto store = root.table("store")) config.store = read_store(*store, config.file);
   if (auto http = root.table("http")) config.http = read_http(*http, config.file);
   if (auto alerts = root.table("alerts")) config.alerts = read_alerts(*alerts, config.file);
+  if (auto mqtt = root.table("mqtt")) config.mqtt = read_mqtt(*mqtt, config.id, config.file);
+  for (TomlReader& write : root.tables("remote_write")) {
+    config.remote_writes.push_back(read_remote_write(write, config.file));
+  }
   if (auto table = root.table("tariff")) read_tariff(*table, config.tariff);
   if (auto table = root.table("emissions")) read_emissions(*table, config.tariff);
   if (auto table = root.table("recalibration")) {
@@ -715,6 +735,7 @@ void read_root(TomlReader root, SiteConfig& config) {
   }
   std::vector<TomlReader> tables = root.tables("meter");
   read_meters(tables, config);
+  require_broker(root, config);
   if (config.meters.empty()) {
     root.problem(config.sensors.empty() ? "there is no [[meter]]"
                                         : "there are only weather sensors and no other [[meter]]");
@@ -735,6 +756,8 @@ std::string_view name_of(MeterSource source) {
       return "modbus";
     case MeterSource::http:
       return "http";
+    case MeterSource::mqtt:
+      return "mqtt";
     case MeterSource::sum:
       return "sum";
     case MeterSource::csv:

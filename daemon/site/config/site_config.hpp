@@ -27,17 +27,19 @@
 #include "core/weather/sun.hpp"
 #include "daemon/site/config/alert_config.hpp"
 #include "daemon/site/config/bus_config.hpp"
+#include "daemon/site/config/mqtt_config.hpp"
+#include "daemon/site/config/remote_write_config.hpp"
 #include "daemon/site/config/service_config.hpp"
 #include "daemon/site/config/store_config.hpp"
 #include "daemon/site/config/table_config.hpp"
 
 namespace recald::daemon {
 
-/// Where a meter's readings come from: a file, registers that are read, whoever sends them, or
-/// other meters of the site.
-enum class MeterSource : std::uint8_t { csv, modbus, http, sum };
+/// Where a meter's readings come from: a file, registers that are read, whoever sends them,
+/// messages of a broker, or other meters of the site.
+enum class MeterSource : std::uint8_t { csv, modbus, http, mqtt, sum };
 
-/// "csv", "modbus", "http", "sum"
+/// "csv", "modbus", "http", "mqtt", "sum"
 [[nodiscard]] std::string_view name_of(MeterSource source);
 
 /// What a [[meter]] measures.
@@ -65,12 +67,14 @@ struct MeterConfig {
   std::optional<metering::CounterSettings> counter;
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
   std::optional<LiveMeterConfig> live;      ///< source = "modbus".
+  std::optional<MqttMeterConfig> mqtt;      ///< source = "mqtt".
   std::vector<SumPart> sum_of;  ///< source = sum: meters of the site, all in files or all stored.
   std::string text;  ///< The table as TOML: whether a file that is read again says something else.
 
   /// Its readings are in the site's store, and not in a file.
   [[nodiscard]] bool is_stored() const {
-    return source == MeterSource::modbus || source == MeterSource::http;
+    return source == MeterSource::modbus || source == MeterSource::http ||
+           source == MeterSource::mqtt;
   }
 };
 
@@ -159,6 +163,8 @@ struct SiteConfig {
   metering::CloserOptions closing;
   StoreConfig store;
   std::optional<HttpConfig> http;  ///< Absent: nothing is served.
+  std::optional<MqttConfig> mqtt;  ///< Absent: no broker.
+  std::vector<RemoteWriteConfig> remote_writes;
   AlertConfig alerts;
   RecalibrationConfig recalibration;
   /// [diagnosis] Probability that the model lacks nothing, before a reading is seen.
