@@ -11,6 +11,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <thread>
 
 #include "adapters/mqtt/message.hpp"
 #include "core/result.hpp"
@@ -50,9 +51,10 @@ class Connection {
 
  private:
   class Client;
-  explicit Connection(std::unique_ptr<Client> client);
+  explicit Connection(std::shared_ptr<Client> client);
 
-  std::unique_ptr<Client> client_;
+  std::shared_ptr<Client> client_;
+  std::thread thread_;
 };
 
 }  // namespace recald::mqtt
