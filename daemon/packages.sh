@@ -6,10 +6,11 @@
 BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnant-date-dev tzdata
   libexpected-dev libmodbus-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libspdlog-dev libsqlite3-dev libssl-dev libsystemd-dev zlib1g-dev libzip-dev libpugixml-dev
-  libcurl4-openssl-dev libmosquitto-dev"
+  libcurl4-openssl-dev libmosquitto-dev libsnappy-dev"
 TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r-cran-posterior
   mbpoll python3-pymodbus python3-aiosmtpd python3-venv python3-serial python3-serial-asyncio
-  clang clang-format libclang-rt-14-dev curl systemd mosquitto mosquitto-clients"
+  clang clang-format libclang-rt-14-dev curl systemd mosquitto mosquitto-clients
+  prometheus influxdb"
 
 is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q '^install ok installed'

@@ -13,6 +13,7 @@ namespace {
 
 constexpr long kConnect_ms = 10'000;
 constexpr long kWhole_ms = 30'000;
+constexpr std::size_t kAnswerBytes = 500;
 
 struct Close {
   void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
@@ -27,6 +28,12 @@ int ask_whether_to_stop(void* stop, curl_off_t, curl_off_t, curl_off_t, curl_off
 }
 
 std::size_t drop(char*, std::size_t, std::size_t count, void*) { return count; }
+
+std::size_t keep_beginning(char* bytes, std::size_t, std::size_t count, void* kept) {
+  auto& text = *static_cast<std::string*>(kept);
+  text.append(bytes, std::min(count, kAnswerBytes - text.size()));
+  return count;
+}
 
 std::size_t read_rest(char* to, std::size_t size, std::size_t count, void* rest) {
   auto& text = *static_cast<std::string_view*>(rest);
@@ -89,26 +96,51 @@ tl::unexpected<Error> no_handle() {
 
 }  // namespace
 
-Result<void> post_json(const Webhook& webhook, const std::string& document,
-                       const std::stop_token& stop) {
-  const Handle handle = begin(webhook.url, "http,https", webhook.trusted_certificate, stop);
+Result<Answer> post(const Post& post, const std::stop_token& stop) {
+  const Handle handle = begin(post.url, "http,https", post.trusted_certificate, stop);
   if (!handle) return no_handle();
   List headers;
-  add(headers, "Content-Type: application/json");
+  add(headers, "Content-Type: " + post.content_type);
   add(headers, "Expect:");  // none: some servers never answer it
-  if (!webhook.token.empty()) add(headers, "Authorization: Bearer " + webhook.token);
+  if (!post.token.empty()) add(headers, "Authorization: Bearer " + post.token);
+  for (const std::string& header : post.headers) add(headers, header);
   curl_easy_setopt(handle.get(), CURLOPT_HTTPHEADER, headers.get());
+  if (!post.user.empty()) {
+    curl_easy_setopt(handle.get(), CURLOPT_HTTPAUTH, static_cast<long>(CURLAUTH_BASIC));
+    curl_easy_setopt(handle.get(), CURLOPT_USERNAME, post.user.c_str());
+    curl_easy_setopt(handle.get(), CURLOPT_PASSWORD, post.password.c_str());
+  }
   curl_easy_setopt(handle.get(), CURLOPT_USERAGENT, "recald");
-  curl_easy_setopt(handle.get(), CURLOPT_POSTFIELDS, document.c_str());
+  curl_easy_setopt(handle.get(), CURLOPT_POSTFIELDS, post.body.data());
   curl_easy_setopt(handle.get(), CURLOPT_POSTFIELDSIZE_LARGE,
-                   static_cast<curl_off_t>(document.size()));
-  if (auto done = perform(handle, webhook.url); !done) return done;
-  long status = 0;
-  curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &status);
-  if (status >= 200 && status < 300) return {};
+                   static_cast<curl_off_t>(post.body.size()));
+  Answer answer{};
+  curl_easy_setopt(handle.get(), CURLOPT_WRITEFUNCTION, keep_beginning);
+  curl_easy_setopt(handle.get(), CURLOPT_WRITEDATA, &answer.body);
+  if (auto done = perform(handle, post.url); !done) return tl::unexpected(std::move(done.error()));
+  curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &answer.status);
+  curl_off_t wait_s = 0;
+  curl_easy_getinfo(handle.get(), CURLINFO_RETRY_AFTER, &wait_s);
+  answer.retry_after = std::chrono::seconds{wait_s};
+  return answer;
+}
+
+Result<void> post_json(const Webhook& webhook, const std::string& document,
+                       const std::stop_token& stop) {
+  const auto answer = post({.url = webhook.url,
+                            .token = webhook.token,
+                            .user = {},
+                            .password = {},
+                            .trusted_certificate = webhook.trusted_certificate,
+                            .content_type = "application/json",
+                            .headers = {},
+                            .body = document},
+                           stop);
+  if (!answer) return tl::unexpected(answer.error());
+  if (answer->status >= 200 && answer->status < 300) return {};
   return failure(ErrorCode::io_failed,
                  fmt::format("{} did not take the message: it answered with status {}",
-                             host_of(webhook.url), status));
+                             host_of(webhook.url), answer->status));
 }
 
 Result<void> send_mail(const MailServer& server, const Mail& mail, const std::stop_token& stop) {
