@@ -282,6 +282,7 @@ Result<void> Link::step(int wake, milliseconds time_max) {
     std::uint64_t ignored = 0;
     (void)!::read(wake, &ignored, sizeof ignored);
   }
+  logged_.clear();
   int code = MOSQ_ERR_SUCCESS;
   if (events[0].revents != 0 || has_more) code = mosquitto_loop_read(client_, 1);
   if (code == MOSQ_ERR_SUCCESS && mosquitto_want_write(client_)) {
@@ -308,9 +309,11 @@ tl::unexpected<Error> Link::lost(int code, int system_error) const {
                    fmt::format("{} is not trusted: its certificate has this fault: {}", name_,
                                X509_verify_cert_error_string(SSL_get_verify_result(tls))));
   }
-  if (!logged_.empty()) {
+  const std::string_view logged = last_words(logged_);
+  const bool is_closed = code == MOSQ_ERR_CONN_LOST || logged == "unexpected eof while reading";
+  if (!logged.empty() && !is_closed) {
     return failure(ErrorCode::io_failed,
-                   fmt::format("{}: the connection failed: {}", name_, last_words(logged_)));
+                   fmt::format("{}: the connection failed: {}", name_, logged));
   }
   const std::string_view why = code == MOSQ_ERR_KEEPALIVE   ? "the broker fell silent"
                                : code == MOSQ_ERR_CONN_LOST ? "the broker closed it without a word"

@@ -45,10 +45,9 @@ class MosquittoReader {
     for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
       if (text[begin] != '{') continue;
       const auto line = nlohmann::json::parse(text.substr(begin, end - begin));
+      const auto& payload = line.at("payload");  // null: empty
       found.push_back({.topic = line.at("topic"),
-                       .payload = line.at("payload").is_string()
-                                      ? line.at("payload").get<std::string>()
-                                      : line.at("payload").dump(),
+                       .payload = payload.is_null() ? "" : payload.get<std::string>(),
                        .is_retained = line.at("retain") == 1});
     }
     return found;

@@ -223,16 +223,5 @@ TEST_F(MqttConnection, WaitsNoLongerThanAskedAndStopsWhenAsked) {
   EXPECT_TRUE(connection.publish({{"c", "3"}, {"d", "4"}}).has_value());
 }
 
-TEST_F(MqttConnection, TwoOfOneIdAreTold) {
-  Mosquitto broker;
-  broker.start();
-  const Connected first{loopback(broker.port())};
-  ASSERT_TRUE(first.is_soon_connected());
-
-  const Connected second{loopback(broker.port())};
-
-  EXPECT_TRUE(first.is_soon_told("ended the connection: Session taken over"));
-}
-
 }  // namespace
 }  // namespace recald::mqtt
