@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -17,7 +19,16 @@ std::string reason_of(const std::string& body) {
   if (json.is_object() && json.contains("error") && json["error"].is_string()) {
     return json["error"];
   }
-  return body.substr(0, body.find_first_of("\r\n"));
+  // Anything may answer, and the body may have been cut within a character: others need UTF-8.
+  const nlohmann::json line = body.substr(0, body.find_first_of("\r\n"));
+  const auto replace = nlohmann::json::error_handler_t::replace;
+  return nlohmann::json::parse(line.dump(-1, ' ', false, replace));
+}
+
+/// What Prometheus says of a sample from before those that it has.
+bool is_of_a_sample_out_of_order(const std::string& body) {
+  return std::ranges::any_of(std::array{"out of order sample", "out of bounds", "too old sample"},
+                             [&](const char* text) { return body.find(text) != body.npos; });
 }
 
 Outcome outcome_of(const delivery::Answer& answer) {
@@ -26,9 +37,8 @@ Outcome outcome_of(const delivery::Answer& answer) {
     return Outcome::partly;
   }
   const bool is_refused = answer.status == 400 || answer.status == 413 || answer.status == 422;
-  // Prometheus up to 2.48, for a sample before its out_of_order_time_window; 400 since then.
-  const bool is_too_old =
-      answer.status == 500 && answer.body.find("too old sample") != std::string::npos;
+  // Prometheus up to 2.48 answers so before its out_of_order_time_window, later ones with 400.
+  const bool is_too_old = answer.status == 500 && is_of_a_sample_out_of_order(answer.body);
   return is_refused || is_too_old ? Outcome::refused : Outcome::later;
 }
 
@@ -51,10 +61,14 @@ Meaning meaning_of(const delivery::Answer& answer) {
   const Outcome outcome = outcome_of(answer);
   if (outcome == Outcome::taken) return {.outcome = outcome, .why = {}};
   const std::string reason = reason_of(answer.body);
-  return {.outcome = outcome,
-          .wait = answer.retry_after,
-          .why = fmt::format("answered with status {}{}{}", answer.status,
-                             reason.empty() ? "" : ": ", reason)};
+  return {
+      .outcome = outcome,
+      .wait = answer.retry_after,
+      .why = fmt::format(
+          "answered with status {}{}{}{}", answer.status, reason.empty() ? "" : ": ", reason,
+          is_of_a_sample_out_of_order(answer.body)
+              ? "; Prometheus takes older samples up to its storage.tsdb.out_of_order_time_window"
+              : "")};
 }
 
 }  // namespace recald::series

@@ -4,8 +4,9 @@
 
 Prints "mail PORT web PORT" once both listen. Each message is a JSON file in FOLDER, numbered in
 order of arrival over both: {"by": "mail", "from", "to", "subject", "id", "text"} as Python's own
-parser reads it, or {"by": "web", "path", "authorization", "body"}. Of web requests the first N get a
-503; /moved is redirected to /elsewhere; /slow is never answered.
+parser reads it, or {"by": "web", "path", "authorization", "headers", "body"}, the body in
+hexadecimal digits unless it is JSON. Of web requests the first N get a 503; /moved is redirected to
+/elsewhere; /busy gets a 429 with Retry-After and a long text; /slow is never answered.
 """
 
 import argparse
@@ -81,9 +82,10 @@ class WebHandler(http.server.BaseHTTPRequestHandler):
     refusals = options.refuse
 
     def do_POST(self):
-        body = self.rfile.read(int(self.headers["Content-Length"])).decode()
+        body = self.rfile.read(int(self.headers["Content-Length"]))
         if self.path == "/slow":
             time.sleep(3600)
+        is_json = self.headers["Content-Type"] == "application/json"
         status = 200
         with lock:
             if WebHandler.refusals > 0:
@@ -91,20 +93,28 @@ class WebHandler(http.server.BaseHTTPRequestHandler):
                 status = 503
         if self.path == "/moved":
             status = 302
+        if self.path == "/busy":
+            status = 429
         if status == 200:
             write_down(
                 {
                     "by": "web",
                     "path": self.path,
                     "authorization": self.headers.get("Authorization"),
-                    "body": json.loads(body),
+                    "headers": dict(self.headers),
+                    "body": json.loads(body) if is_json else body.hex(),
                 }
             )
         self.send_response(status)
         if status == 302:
             self.send_header("Location", "/elsewhere")
-        self.send_header("Content-Length", "0")
+        answer = b""
+        if status == 429:
+            self.send_header("Retry-After", "120")
+            answer = b"too many: " + 10000 * b"."
+        self.send_header("Content-Length", str(len(answer)))
         self.end_headers()
+        self.wfile.write(answer)
 
     def log_message(self, *_):
         pass

@@ -27,7 +27,7 @@ class Delivery : public ::testing::Test {
   void begin(const std::vector<std::string>& more = {}) {
     sink_ = std::make_unique<MessageSink>(RECALD_SOURCE_DIR "/tests/support/message_sink.py", more);
   }
-  Result<void> post(const std::string& path, const std::string& token = "") {
+  Result<void> post_to(const std::string& path, const std::string& token = "") {
     return post_json({.url = sink_->web_url(path), .token = token, .trusted_certificate = {}},
                      R"({"a": "ü"})", {});
   }
@@ -46,7 +46,7 @@ class Delivery : public ::testing::Test {
 
 TEST_F(Delivery, PostsADocument) {
   begin();
-  ASSERT_TRUE(post("/hook?x=1", "a-token").has_value());
+  ASSERT_TRUE(post_to("/hook?x=1", "a-token").has_value());
   const auto got = sink_->messages();
   ASSERT_THAT(got, SizeIs(1));
   EXPECT_EQ(got[0]["path"], "/hook?x=1");
@@ -54,15 +54,55 @@ TEST_F(Delivery, PostsADocument) {
   EXPECT_EQ(got[0]["body"]["a"], "ü");
 }
 
+TEST_F(Delivery, PostsAnyBytesWithAUsersPassword) {
+  begin();
+  const auto answer = post({.url = sink_->web_url("/write?db=a"),
+                            .token = {},
+                            .user = "ada",
+                            .password = "pass: wörd",
+                            .trusted_certificate = {},
+                            .content_type = "application/x-protobuf",
+                            .headers = {"Content-Encoding: snappy"},
+                            .body = std::string("\0\xff\n", 3)},
+                           {});
+  ASSERT_TRUE(answer.has_value()) << answer.error().message;
+  EXPECT_EQ(answer->status, 200);
+  EXPECT_EQ(answer->body, "");
+  EXPECT_EQ(answer->retry_after.count(), 0);
+  const auto got = sink_->messages();
+  ASSERT_THAT(got, SizeIs(1));
+  EXPECT_EQ(got[0]["body"], "00ff0a");
+  EXPECT_EQ(got[0]["authorization"], "Basic YWRhOnBhc3M6IHfDtnJk");
+  EXPECT_EQ(got[0]["headers"]["Content-Type"], "application/x-protobuf");
+  EXPECT_EQ(got[0]["headers"]["Content-Encoding"], "snappy");
+}
+
+TEST_F(Delivery, AnyStatusIsAnAnswer) {
+  begin();
+  const auto busy = post({.url = sink_->web_url("/busy"),
+                          .token = {},
+                          .user = {},
+                          .password = {},
+                          .trusted_certificate = {},
+                          .content_type = "text/plain",
+                          .headers = {},
+                          .body = {}},
+                         {});
+  ASSERT_TRUE(busy.has_value()) << busy.error().message;
+  EXPECT_EQ(busy->status, 429);
+  EXPECT_EQ(busy->retry_after, std::chrono::seconds{120});
+  EXPECT_THAT(busy->body, AllOf(SizeIs(500), ::testing::StartsWith("too many: ...")));
+}
+
 TEST_F(Delivery, ARefusalIsAFailureWithoutTheAddress) {
   begin({"--refuse", "1"});
-  const auto refused = post("/services/secret");
+  const auto refused = post_to("/services/secret");
   ASSERT_FALSE(refused.has_value());
   EXPECT_THAT(refused.error().message,
               HasSubstr("127.0.0.1 did not take the message: it answered with status 503"));
   EXPECT_THAT(refused.error().message, Not(HasSubstr("secret")));
-  EXPECT_TRUE(post("/services/secret").has_value());
-  const auto moved = post("/moved");
+  EXPECT_TRUE(post_to("/services/secret").has_value());
+  const auto moved = post_to("/moved");
   ASSERT_FALSE(moved.has_value());
   EXPECT_THAT(moved.error().message, HasSubstr("status 302"));
   EXPECT_THAT(sink_->messages(), SizeIs(1));
@@ -72,7 +112,7 @@ TEST_F(Delivery, ARefusalIsAFailureWithoutTheAddress) {
 TEST_F(Delivery, TheProxyIsNotForThisMachine) {
   begin();
   ASSERT_EQ(::setenv("http_proxy", "http://127.0.0.1:9", 1), 0);
-  const auto sent = post("/hook");
+  const auto sent = post_to("/hook");
   ASSERT_EQ(::unsetenv("http_proxy"), 0);
   EXPECT_TRUE(sent.has_value()) << sent.error().message;
 }
