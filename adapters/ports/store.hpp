@@ -184,6 +184,28 @@ struct StoreCheck {
   std::uint64_t intervals = 0;        ///< Rows, including all revisions.
 };
 
+/// What a store has, whatever version of recald wrote it.
+struct StoreSummary {
+  int schema_version = 0;
+  std::vector<std::string> meters;          ///< Ids, in order of their numbers.
+  std::optional<metering::Instant> newest;  ///< Start of the newest interval; absent: none.
+};
+
+/// A backup that is about to take the place of a store: copied beside it and checked. Abandoned
+/// before it is kept, it leaves nothing.
+class StoreRestoration {
+ public:
+  virtual ~StoreRestoration() = default;
+
+  /// Of the backup.
+  [[nodiscard]] virtual const StoreSummary& summary() const = 0;
+
+  /// Puts the copy in place, with an event "store_restored" that says so. Call it once.
+  /// @return the name under which the replaced store is kept, empty when there was none; or
+  ///         io_failed: then the old store is in place, or the next to open it puts the copy there.
+  virtual Result<std::filesystem::path> keep(metering::Instant now) = 0;
+};
+
 /// A consistent copy of a store that is still being written: copied in portions, checked, then
 /// kept. Abandoned before that, it leaves nothing.
 class StoreBackup {

@@ -15,6 +15,16 @@ namespace {
 
 constexpr int kBusyTimeout_ms = 5000;
 
+/// A file's name as SQLite takes it with options after it.
+std::string still_name(const std::filesystem::path& file) {
+  std::string name = "file:";
+  for (const char c : file.string()) {
+    const bool has_meaning = c == '%' || c == '?' || c == '#';
+    name += has_meaning ? fmt::format("%{:02x}", static_cast<unsigned>(c)) : std::string{c};
+  }
+  return name + "?immutable=1";
+}
+
 }  // namespace
 
 ErrorCode code_of(int result) {
@@ -128,11 +138,13 @@ Database& Database::operator=(Database&&) noexcept = default;
 Result<Database> Database::open(const std::filesystem::path& file, const Options& options) {
   const bool writes = options.access == Access::read_write;
   const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
-                    (writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
+                    (writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY) |
+                    (options.is_still ? SQLITE_OPEN_URI : 0);
   const bool is_on_disk = options.vfs.empty() && file != ":memory:";
   if (writes && is_on_disk) system::make_private_file(file);  // log and index get the same rights
   sqlite3* raw = nullptr;
-  const int result = sqlite3_open_v2(file.c_str(), &raw, flags,
+  const std::string name = options.is_still ? still_name(file) : file.string();
+  const int result = sqlite3_open_v2(name.c_str(), &raw, flags,
                                      options.vfs.empty() ? nullptr : options.vfs.c_str());
   Database database{std::make_unique<Impl>(Impl{DatabaseHandle{raw}, file.string()})};
   if (result != SQLITE_OK) return failed(result, raw, file.string());

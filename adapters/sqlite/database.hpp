@@ -61,6 +61,8 @@ class Database {
   struct Options {
     Access access = Access::read_write;
     std::string vfs;  ///< Name of a registered file system; empty: SQLite's own.
+    /// Nobody writes the file meanwhile: it is read without its log, and no file is made beside it.
+    bool is_still = false;
   };
 
   /// Opens a database, or with `read_write` creates it. ":memory:" lives as long as the object.

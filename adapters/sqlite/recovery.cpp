@@ -8,9 +8,10 @@
 #include <utility>
 
 #include "adapters/sqlite/damage.hpp"
-#include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/refill.hpp"
+#include "adapters/sqlite/restoration.hpp"
 #include "adapters/sqlite/schema.hpp"
+#include "adapters/sqlite/store_files.hpp"
 #include "adapters/system/durable_names.hpp"
 #include "adapters/system/write_file.hpp"
 
@@ -18,9 +19,6 @@ namespace recald::sqlite {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The files of a store. The log goes first, since it is useless without its file.
-constexpr const char* kParts[] = {"-wal", "-shm", ""};
 
 /// The files of a recovery.
 struct Places {
@@ -31,29 +29,6 @@ struct Places {
   explicit Places(const fs::path& file)
       : store(file), note(file.string() + ".recovery"), made(file.string() + ".recovering") {}
 };
-
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
-
-/// "20240301T051500Z", for a file name.
-std::string stamp_of(metering::Instant t) {
-  std::string stamp = metering::to_string(t);
-  std::erase_if(stamp, [](char c) { return c == '-' || c == ':'; });
-  return stamp;
-}
-
-/// A name that is not in use. Files put aside may hold the only copy of some rows, and time stamps
-/// repeat on a machine whose clock starts at the same time after each power cut.
-fs::path free_name(const fs::path& wanted) {
-  fs::path name = wanted;
-  const auto is_taken = [&](const char* part) { return is_there(name.string() + part); };
-  for (int n = 2; std::ranges::any_of(kParts, is_taken); ++n) {
-    name = fmt::format("{}-{}", wanted.string(), n);
-  }
-  return name;
-}
 
 /// Writes two lines: where the damaged file is put, and what was wrong with it.
 Result<void> write_note(const Places& places, const Recovery& recovery) {
@@ -73,7 +48,7 @@ std::optional<Recovery> read_note(const Places& places) {
 
 /// Moves the file and its log, which belong together. Parts that are already there stay.
 Result<void> put_aside(const Places& places, const fs::path& aside) {
-  for (const char* part : kParts) {
+  for (const char* part : kStoreParts) {
     const fs::path from = places.store.string() + part;
     if (!is_there(from)) continue;
     if (auto moved = system::rename_durably(from, aside.string() + part); !moved) return moved;
@@ -120,15 +95,6 @@ Result<void> take_rows(const fs::path& file, Database& to, Recovery& recovery,
   return {};
 }
 
-/// The time of the recovery event. A clock that has not been set yet shows a time before everything
-/// stored, and an event of 1970 would be deleted as old.
-Result<metering::Instant> time_of_event(Database& made, metering::Instant now) {
-  auto query = made.prepare("SELECT coalesce(max(t_start), 0) FROM interval");
-  if (!query) return tl::unexpected(query.error());
-  if (auto row = query->step(); !row) return tl::unexpected(row.error());
-  return std::max(now, instant_of(query->integer(0)));
-}
-
 Result<void> tell(SqliteStore& store, const Recovery& recovery, metering::Instant now) {
   const auto time = time_of_event(store.database(), now);
   if (!time) return tl::unexpected(time.error());
@@ -160,11 +126,6 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
   if (auto told = tell(made, recovery, now); !told) return told;
   // Moves everything into the one file that is renamed.
   return to.execute("PRAGMA wal_checkpoint(TRUNCATE)");
-}
-
-void remove_store(const fs::path& file) {
-  std::error_code ignored;
-  for (const char* part : kParts) fs::remove(file.string() + part, ignored);
 }
 
 /// Builds the complete new store and replaces the old one with it.
@@ -284,6 +245,9 @@ std::string Recovery::sentence() const {
 
 Result<CheckedStore> open_checked(const fs::path& file, const std::vector<fs::path>& backups,
                                   metering::Instant now, const OnProgress& on_progress) {
+  if (auto finished = finish_restoration(file); !finished) {
+    return tl::unexpected(finished.error());
+  }
   auto recovery = recover_if_damaged(Places{file}, backups, now, on_progress);
   if (!recovery) return tl::unexpected(recovery.error());
   auto store = SqliteStore::open(file);

@@ -47,9 +47,9 @@ struct CheckedStore {
   std::optional<Recovery> recovery;  ///< Absent: the file was sound, or new.
 };
 
-/// Opens a store to write after checking its structure (`quick_check`) and its rows' checksums. A
-/// damaged file becomes "FILE.damaged-<time>", with its log, and is replaced by a new one, in which
-/// an event "store_recovered" reports this.
+/// Opens a store to write after finishing a restoration (`restoration.hpp`) and checking its
+/// structure (`quick_check`) and its rows' checksums. A damaged file becomes "FILE.damaged-<time>",
+/// with its log, and is replaced by a new one, in which an event "store_recovered" reports this.
 ///
 /// @param backups  Newest first; the first sound one is used, and only for what is damaged.
 /// @pre  nobody else has the store open.

@@ -20,4 +20,9 @@ bool is_clock_settling() {
   return adjtimex(&asked) == TIME_ERROR;
 }
 
+bool is_clock_synchronised() {
+  timex asked{};
+  return adjtimex(&asked) != TIME_ERROR && (asked.status & STA_UNSYNC) == 0;
+}
+
 }  // namespace recald::system

@@ -8,4 +8,7 @@ namespace recald::system {
 /// some places have no time server. False if the kernel does not tell.
 [[nodiscard]] bool is_clock_settling();
 
+/// Whether the kernel hears from a time server, as it is told by chrony or systemd-timesyncd.
+[[nodiscard]] bool is_clock_synchronised();
+
 }  // namespace recald::system

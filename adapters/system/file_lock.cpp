@@ -26,6 +26,13 @@ Result<FileLock> FileLock::take(const std::filesystem::path& file) {
                              file.string()));
 }
 
+bool FileLock::is_held(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const FileLock asked{descriptor};
+  return ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
 FileLock::~FileLock() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }

@@ -15,6 +15,10 @@ class FileLock {
   ///         cannot be created.
   [[nodiscard]] static Result<FileLock> take(const std::filesystem::path& file);
 
+  /// Whether another process holds the lock, without creating the file. For a moment nobody else
+  /// can take it.
+  [[nodiscard]] static bool is_held(const std::filesystem::path& file);
+
   ~FileLock();
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
