@@ -238,6 +238,20 @@ void add_import(CLI::App& command, ImportArguments& arguments) {
   command.add_flag("--dry-run", arguments.dry_run, "Say what would happen, but change nothing");
 }
 
+void add_restore(CLI::App& command, RestoreArguments& arguments) {
+  add_site(command, arguments);
+  CLI::Option* list =
+      command.add_flag("--list", arguments.list, "List the backups, and restore none");
+  command
+      .add_option("--backup", arguments.backup,
+                  "File, or a name from --list; the newest backup by default")
+      ->excludes(list);
+  command
+      .add_flag("--dry-run", arguments.dry_run,
+                "Check the backup and say what would be lost, but change nothing")
+      ->excludes(list);
+}
+
 /// What every command was given on the command line; only one of them is run.
 struct Arguments {
   InitArguments init;
@@ -247,9 +261,11 @@ struct Arguments {
   DecodeArguments decode;
   ReplayArguments replay;
   ProfileArguments profile;
+  SiteArguments doctor;
   SiteArguments verify;
   ExportArguments exported;
   ImportArguments imported;
+  RestoreArguments restore;
   CalibrateArguments calibrate;
   CalibrateArguments report;
   ScreenArguments screen;
@@ -328,6 +344,15 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
                                       : console.misused("status needs a site file or --url");
                    }});
 
+  CLI::App* doctor =
+      app.add_subcommand("doctor",
+                         "Say what a report of a bug needs, and what is wrong, without secrets")
+          ->group(kRun);
+  doctor->add_option("site", given.doctor.site, "Site file (TOML); the machine alone without one");
+  doctor->add_flag("--json", given.doctor.json, "Print the result as one JSON object");
+  verbs.push_back(
+      {doctor, [&](const Console& console) { return run_doctor(given.doctor, console); }});
+
   CLI::App* replay =
       app.add_subcommand("replay", "Turn recorded readings into monthly figures")->group(kData);
   add_site(*replay, given.replay);
@@ -363,6 +388,12 @@ void add_store_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   add_import(*imported, given.imported);
   verbs.push_back(
       {imported, [&](const Console& console) { return run_import(given.imported, console); }});
+
+  CLI::App* restore =
+      app.add_subcommand("restore", "Put a backup of the store back into place")->group(kRun);
+  add_restore(*restore, given.restore);
+  verbs.push_back(
+      {restore, [&](const Console& console) { return run_restore(given.restore, console); }});
 }
 
 void add_device_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {

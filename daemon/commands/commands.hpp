@@ -167,6 +167,12 @@ struct ImportArguments : SiteArguments {
   bool dry_run = false;
 };
 
+struct RestoreArguments : SiteArguments {
+  std::filesystem::path backup;  ///< A file, or a name in the backup folder; empty: the newest.
+  bool list = false;             ///< Only say which backups there are.
+  bool dry_run = false;
+};
+
 struct DetectabilityArguments : SiteArguments {
   std::filesystem::path footprint;  ///< Readings CSV: with the effect minus without.
   std::filesystem::path out;        ///< Folder for detectability.json, or empty.
@@ -186,6 +192,8 @@ int run_decode(const DecodeArguments& arguments, const Console& console);
 int run_scan(const ScanArguments& arguments, const Console& console);
 /// What a running daemon says of itself, over HTTP.
 int run_status(const StatusArguments& arguments, const Console& console);
+/// What a report of a bug needs, of the machine and of a site if one is named; without secrets.
+int run_doctor(const SiteArguments& arguments, const Console& console);
 int run_replay(const ReplayArguments& arguments, const Console& console);
 /// Checks the store without changing it, beside a daemon if need be; a sentence a fault.
 int run_verify(const SiteArguments& arguments, const Console& console);
@@ -193,6 +201,8 @@ int run_verify(const SiteArguments& arguments, const Console& console);
 int run_export(const ExportArguments& arguments, const Console& console);
 /// Readings CSV into the store, as an edit with author and reason. Not while a daemon runs on it.
 int run_import(const ImportArguments& arguments, const Console& console);
+/// A backup into the place of the store, which is kept. Not while a daemon runs on it.
+int run_restore(const RestoreArguments& arguments, const Console& console);
 int run_profile(const ProfileArguments& arguments, const Console& console);
 /// Writes calibration.json, draws, months.csv, profile.json and report.html into the folder; where
 /// predictions are asked for also points.json.

@@ -2,63 +2,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "adapters/http/client.hpp"
 #include "adapters/http/credentials.hpp"
+#include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/commands.hpp"
-#include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Whom to ask, and how.
-struct Question {
-  http::Url url;
-  http::ClientOptions options;
-};
-
-/// Where a daemon with this configuration can be reached from this machine.
-std::string reachable_address(const std::string& listens_on) {
-  if (listens_on == "0.0.0.0") return "127.0.0.1";
-  if (listens_on == "::") return "::1";
-  return listens_on;
-}
-
-tl::expected<Question, std::vector<std::string>> question_for_site(
-    const std::filesystem::path& file) {
-  const auto site = load_site(file);
-  if (!site) return tl::unexpected(site.error());
-  const auto why_not = [](std::string sentence) {
-    return tl::unexpected(std::vector<std::string>{std::move(sentence)});
-  };
-  if (!site->http) {
-    return why_not(
-        fmt::format("{}: there is no [http], so its daemon cannot be asked; add [http] with listen "
-                    "= \"127.0.0.1:8080\"",
-                    file.filename().string()));
-  }
-  const HttpConfig& http = *site->http;
-  if (http.port == 0) {
-    return why_not(fmt::format(
-        "{}: [http] listens on a free port that the daemon's log names; pass it with --url",
-        file.filename().string()));
-  }
-  Question question;
-  question.url = {.is_tls = !http.certificate_file.empty(),
-                  .host = reachable_address(http.address),
-                  .port = http.port};
-  question.options.trusted_certificate = http.certificate_file;
-  if (!http.token_file.empty()) {
-    const auto token = http::read_token_file(http.token_file);
-    if (!token) return why_not(token.error().message);
-    question.options.token = *token;
-  }
-  return question;
-}
-
 tl::expected<Question, std::vector<std::string>> question_for(const StatusArguments& arguments) {
-  if (arguments.url.empty()) return question_for_site(arguments.site);
+  if (arguments.url.empty()) return question_for_file(arguments.site);
   const auto url = http::parse_url(arguments.url);
   if (!url) return tl::unexpected(std::vector<std::string>{url.error().message});
   Question question{.url = *url};
@@ -68,23 +22,6 @@ tl::expected<Question, std::vector<std::string>> question_for(const StatusArgume
     question.options.token = *token;
   }
   return question;
-}
-
-/// One route's JSON. 503 is an answer too: /readyz gives its reasons with it.
-Result<Json> ask(Question question, const std::string& path) {
-  question.url.path = path;
-  const auto response = http::get(question.url, question.options);
-  if (!response) return tl::unexpected(response.error());
-  Json json = Json::parse(response->body, nullptr, false);
-  if (response->status == 401) {
-    return failure(ErrorCode::invalid_value,
-                   question.url.text() + " needs a token; name its file with --token-file");
-  }
-  if (!json.is_object() || (response->status != 200 && response->status != 503)) {
-    return failure(ErrorCode::malformed, fmt::format("the server at {} is not recald (status {})",
-                                                     question.url.text(), response->status));
-  }
-  return json;
 }
 
 /// A member as people read it; whatever answers may be of another version.

@@ -82,6 +82,7 @@ extern "C" {
   }
 
 RECALD_FORWARD(int, rename, (const char* from, const char* to) noexcept, (from, to), (from, to))
+RECALD_FORWARD(int, link, (const char* from, const char* to) noexcept, (from, to), (from, to))
 RECALD_FORWARD(int, unlink, (const char* path) noexcept, (path), (path))
 RECALD_FORWARD(int, unlinkat, (int folder, const char* name, int flags) noexcept,
                (folder, name, flags), (folder, name))
