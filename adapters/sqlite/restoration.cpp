@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adapters/sqlite/damage.hpp"
+#include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/sqlite/store_files.hpp"
 #include "adapters/sqlite/summary.hpp"
@@ -65,6 +66,15 @@ Result<void> copy_file(const fs::path& from, const fs::path& to) {
                                                    from.string(), to.string(), error.message()));
 }
 
+/// The number of the last job of a store; 0: it had none, or cannot be read.
+std::int64_t last_job(const fs::path& store) {
+  auto database = open_untouched(store);
+  constexpr int kFirstWithJobs = 2;
+  if (!database || schema_version(*database).value_or(0) < kFirstWithJobs) return 0;
+  auto query = database->prepare("SELECT max(seq) FROM sqlite_sequence WHERE name = 'job'");
+  return query && query->step().value_or(false) ? query->integer(0) : 0;
+}
+
 class Restoration final : public StoreRestoration {
  public:
   Restoration(fs::path store, fs::path backup)
@@ -105,6 +115,7 @@ class Restoration final : public StoreRestoration {
     if (auto told = tell(replaced_name(store_, stamp), now); !told) {
       return tl::unexpected(told.error());
     }
+    if (auto set = number_jobs_on(); !set) return tl::unexpected(set.error());
     // Moves everything into the one file that is renamed.
     auto moved = opened_->database().execute("PRAGMA wal_checkpoint(TRUNCATE)");
     if (!moved) return tl::unexpected(moved.error());
@@ -121,6 +132,15 @@ class Restoration final : public StoreRestoration {
   [[nodiscard]] std::string free_stamp(metering::Instant now) const {
     const fs::path wanted = replaced_name(store_, stamp_of(now));
     return stamp_of(now) + free_name(wanted).string().substr(wanted.string().size());
+  }
+
+  /// Jobs have folders by their numbers: those of the replaced store are not written over.
+  Result<void> number_jobs_on() {
+    return opened_->database().execute(
+        fmt::format("DELETE FROM sqlite_sequence WHERE name = 'job' AND seq < {0};"
+                    "INSERT INTO sqlite_sequence SELECT 'job', {0} WHERE NOT EXISTS "
+                    "(SELECT 1 FROM sqlite_sequence WHERE name = 'job')",
+                    is_there(store_) ? last_job(store_) : 0));
   }
 
   Result<void> tell(const fs::path& replaced, metering::Instant now) {

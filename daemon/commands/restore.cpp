@@ -70,8 +70,9 @@ int finish(const StoreConfig& store, const RestoreArguments& arguments, const Co
 
 void print_words(const std::filesystem::path& backup, const RestoredStore& restored, bool dry_run,
                  const Console& console) {
-  console.out << fmt::format("{}: intact, {} meters, {}\n", backup.filename().string(),
-                             restored.in_backup.meters.size(), newest_words(restored.in_backup));
+  console.out << fmt::format(
+      "{}: intact, {} meter{}, {}\n", backup.filename().string(), restored.in_backup.meters.size(),
+      restored.in_backup.meters.size() == 1 ? "" : "s", newest_words(restored.in_backup));
   console.out << restored.loss() << "\n";
   if (dry_run) {
     console.out << "dry run: nothing was changed\n";

@@ -102,8 +102,9 @@ Facts store_file(const SiteConfig& site) {
   const auto summary = stores::summary_of(file);
   if (!summary) return {stopping("store", size_words(bytes), summary.error().message)};
   return {{"store",
-           fmt::format("{}, schema version {}, {} meters, {}", size_words(bytes),
+           fmt::format("{}, schema version {}, {} meter{}, {}", size_words(bytes),
                        summary->schema_version, summary->meters.size(),
+                       summary->meters.size() == 1 ? "" : "s",
                        summary->newest ? "newest reading " + metering::to_string(*summary->newest)
                                        : "no readings")}};
 }

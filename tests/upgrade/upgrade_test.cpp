@@ -163,7 +163,7 @@ TEST_P(Upgrade, TheDaemonTakesItAndEverythingIsStillThere) {
     EXPECT_THAT(recald("verify").said, HasSubstr("the daemon upgrades the file when it starts"));
   }
   EXPECT_THAT(recald("doctor").said,
-              HasSubstr(fmt::format("schema version {}, 1 meters", GetParam())));
+              HasSubstr(fmt::format("schema version {}, 1 meter,", GetParam())));
   ASSERT_NO_FATAL_FAILURE(run_daemon());
 
   const auto verified = recald("verify");

@@ -154,7 +154,7 @@ TEST_F(DoctorCommand, ASoundSite) {
   const auto found = facts();
   EXPECT_THAT(found.at("site file"), HasSubstr("site.toml, SHA-256 "));
   EXPECT_EQ(found.at("meters"), "1 csv, 1 http");
-  EXPECT_THAT(found.at("store"), AllOf(HasSubstr("1 meters, newest reading 2024-04-11T15:45:00Z"),
+  EXPECT_THAT(found.at("store"), AllOf(HasSubstr("1 meter, newest reading 2024-04-11T15:45:00Z"),
                                        HasSubstr("MiB, schema version "), Not(HasSubstr("!"))));
   EXPECT_THAT(found.at("store's structure"), HasSubstr("intact"));
   EXPECT_EQ(found.at("events"), "of the newest 4: 2 meter_silent, 1 store_refused");

@@ -89,6 +89,7 @@ class RestoreCommand : public ::testing::Test {
       back_up(store, "site-2024-03-03.db");
       EXPECT_TRUE(store.database().execute("PRAGMA wal_checkpoint(TRUNCATE)").has_value());
       add_quarters(store, kInBackup, kInStore);
+      EXPECT_EQ(store.add_job({.asked_by = "api", .asked = kStart}).value(), 1);
       for (const char* part : {"", "-wal"}) {
         fs::copy(made_ / ("live.db" + std::string{part}),
                  made_ / "site" / ("site.db" + std::string{part}));
@@ -157,7 +158,7 @@ class RestoreCommand : public ::testing::Test {
 TEST_F(RestoreCommand, TheNewestBackupTakesTheStoresPlaceAndTheStoreIsKept) {
   const auto done = restore();
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, AllOf(HasSubstr("site-2024-03-03.db: intact, 1 meters, newest reading "
+  EXPECT_THAT(done.out, AllOf(HasSubstr("site-2024-03-03.db: intact, 1 meter, newest reading "
                                         "2024-03-04T02:45:00Z"),
                               HasSubstr("the store has 50.0 h more: its newest reading is of "
                                         "2024-03-06T04:45:00Z"),
@@ -170,6 +171,8 @@ TEST_F(RestoreCommand, TheNewestBackupTakesTheStoresPlaceAndTheStoreIsKept) {
   EXPECT_EQ(event.kind, "store_restored");
   EXPECT_THAT(event.text, AllOf(HasSubstr("the backup 'site-2024-03-03.db'"),
                                 HasSubstr("is kept as 'site.db.replaced-20")));
+  // The folder of job 1 stays that of the replaced store's.
+  EXPECT_EQ(store.add_job({.asked_by = "api", .asked = kStart}).value(), 2);
 }
 
 TEST_F(RestoreCommand, WhatWasReplacedCanBePutBackWithItsLog) {
