@@ -119,6 +119,7 @@ struct StoredMonth {
 struct OutboxEntry {
   std::int64_t number = 0;  ///< 1, 2, 3 …; none is given twice.
   std::string meter;        ///< Its id.
+  std::chrono::seconds interval{};
   /// Nothing for what damage took.
   std::variant<std::monostate, StoredInterval, StoredMonth> stored;
 };

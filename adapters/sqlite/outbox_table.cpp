@@ -84,7 +84,8 @@ Result<void> keep_outbox_for(Database& database, const std::vector<std::string>&
 Result<std::vector<OutboxEntry>> outbox_after(Database& database, std::int64_t number, int limit) {
   // Revisions never change, so an entry is what was stored then, whatever has come since.
   auto query = database.prepare(fmt::format(
-      "SELECT i.{}, o.number, o.meter, meter.id, o.month, o.revision, i.t_start IS NOT NULL "
+      "SELECT i.{}, o.number, o.meter, meter.id, o.month, o.revision, i.t_start IS NOT NULL, "
+      "meter.interval_s "
       "FROM outbox AS o JOIN meter ON meter.number = o.meter "
       "LEFT JOIN interval AS i ON i.meter = o.meter AND i.t_start = o.t_start AND "
       "i.revision = o.revision WHERE o.number > ? ORDER BY o.number LIMIT ?",
@@ -96,7 +97,10 @@ Result<std::vector<OutboxEntry>> outbox_after(Database& database, std::int64_t n
     const auto row = query->step();
     if (!row) return tl::unexpected(row.error());
     if (!*row) return entries;
-    OutboxEntry entry{.number = query->integer(6), .meter = query->text(8), .stored = {}};
+    OutboxEntry entry{.number = query->integer(6),
+                      .meter = query->text(8),
+                      .interval = std::chrono::seconds{query->integer(12)},
+                      .stored = {}};
     const auto meter = static_cast<std::uint32_t>(query->integer(7));
     if (query->integer(11) != 0) {
       entry.stored = read_interval(*query, meter);

@@ -3,6 +3,7 @@
 #include <curl/curl.h>
 #include <fmt/core.h>
 #include <modbus/modbus.h>
+#include <mosquitto.h>
 #include <openssl/crypto.h>
 #include <spdlog/version.h>
 #include <sqlite3.h>
@@ -20,6 +21,8 @@ std::vector<LibraryVersion> library_versions() {
       {"SQLite", sqlite3_libversion()},
       {"OpenSSL", OpenSSL_version(OPENSSL_FULL_VERSION_STRING)},
       {"libcurl", curl_version_info(CURLVERSION_NOW)->version},
+      {"libmosquitto",
+       fmt::format("{}.{}.{}", LIBMOSQUITTO_MAJOR, LIBMOSQUITTO_MINOR, LIBMOSQUITTO_REVISION)},
       {"zlib", zlibVersion()},
       {"fmt",
        fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},

@@ -180,6 +180,7 @@ TEST_P(Upgrade, TheDaemonTakesItAndEverythingIsStillThere) {
   // January was to be closed again, and by today's rules.
   EXPECT_EQ(before.erase("reopened"), 1);
   before.erase("closing");
+  before.erase("outbox");  // its site tells nobody
   for (const auto& [table, rows] : before) {
     const Rows after = rows_of(database, table, columns[table]);
     for (const std::string& row : rows) {

@@ -56,6 +56,14 @@ struct BusStatus {
   LatencyHistogram lateness;
 };
 
+/// Somebody outside who is told of each interval and month.
+struct DestinationStatus {
+  std::string name;          ///< For people: "Prometheus at metrics.example.org".
+  std::int64_t waiting = 0;  ///< Entries of the outbox that it has not had yet.
+  std::string why = {};      ///< Why the last ones could not be sent; empty: nothing is wrong.
+  std::optional<metering::Instant> told_at = {};  ///< It last took some; nothing: not yet.
+};
+
 struct GatewayStatus {
   bool clock_ok = false;
   CommitHealth store;
@@ -64,6 +72,7 @@ struct GatewayStatus {
   std::array<std::uint64_t, 3> events{};  ///< Committed, by Severity.
   std::vector<BusStatus> buses;           ///< Buses that have meters.
   std::vector<MeterStatus> meters;
+  std::vector<DestinationStatus> destinations = {};
 };
 
 }  // namespace recald::daemon

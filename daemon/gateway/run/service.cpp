@@ -27,6 +27,7 @@
 #include "adapters/system/worker_thread.hpp"
 #include "daemon/gateway/alert/alerts.hpp"
 #include "daemon/gateway/alert/deliver.hpp"
+#include "daemon/gateway/forward/forwarding.hpp"
 #include "daemon/gateway/run/gateway.hpp"
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/run/load_watch.hpp"
@@ -108,7 +109,11 @@ class Service {
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }),
         alerts_(
             {loop_, *store_, messenger_}, site_.config, site_.calendar, deliver,
-            [this](StoreEvent event) { gateway_->note(std::move(event)); }, std::move(told)) {}
+            [this](StoreEvent event) { gateway_->note(std::move(event)); }, std::move(told)),
+        forwarding_(
+            {loop_, *store_, running_.missing.empty()}, site_.config, site_.calendar,
+            [this](StoreEvent event) { gateway_->note(std::move(event)); },
+            [this](const ToldValue& value) { (void)gateway_->take_told(value); }) {}
 
   /// @param memory  What an earlier service kept in memory; may be null.
   Result<void> open(Store* memory) {
@@ -154,6 +159,7 @@ class Service {
     jobs_.resume();
     schedule();
     catch_up();
+    forwarding_.start();
     gateway_->start();
     weather_wait_.start();
     load_watch_.start();
@@ -227,6 +233,7 @@ class Service {
                       [this] {
                         GatewayStatus status = gateway_->status();
                         status.no_store = running_.missing;
+                        status.destinations = forwarding_.status();
                         return status;
                       },
                   .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
@@ -312,6 +319,7 @@ class Service {
     weather_wait_.set_look(make_weather_look(site_));
     load_watch_.set_expect(make_load_expectation(site_));
     alerts_.set_site(site_.config);
+    forwarding_.set_site(site_.config);
     schedule();
     // A month that closed within the last minute would have been requested by the old schedule.
     catch_up();
@@ -395,6 +403,7 @@ class Service {
   Upkeep upkeep_;
   Watchdog watchdog_;
   Alerts alerts_;
+  Forwarding forwarding_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<http::Server> server_;
 };

@@ -151,6 +151,15 @@ void write_store(PrometheusText& text, const Served& served, const GatewayStatus
   text.sample(store_bytes(served.site.store.file));
 }
 
+void write_destinations(PrometheusText& text, const GatewayStatus& status) {
+  if (status.destinations.empty()) return;
+  text.begin("recald_outbox_entries", "gauge",
+             "Intervals and months that a broker or database has not been sent yet.");
+  for (const DestinationStatus& one : status.destinations) {
+    text.sample(static_cast<double>(one.waiting), {{"destination", one.name}});
+  }
+}
+
 /// Rises before an alarm does.
 void write_evidence(PrometheusText& text, const DriftSummary& drift, const std::string& model) {
   text.begin("recald_drift_evidence_ratio", "gauge",
@@ -218,6 +227,7 @@ http::Response metrics(const Served& served) {
   write_weather(text, status);
   write_intervals(text, status);
   write_store(text, served, status);
+  write_destinations(text, status);
   write_calibration(text, served);
   return {.content_type = "text/plain; version=0.0.4; charset=utf-8", .body = text.str()};
 }

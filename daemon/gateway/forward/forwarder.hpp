@@ -1,0 +1,92 @@
+/// Tells one destination of everything that the store's outbox has for it, in order.
+///
+/// Its position moves when a batch was taken, so a batch may be sent twice and none is left out.
+/// Sending happens on a worker of its own: no poll and no other destination waits for it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "adapters/ports/worker.hpp"
+#include "daemon/gateway/forward/sink.hpp"
+#include "daemon/gateway/ingest/gateway_status.hpp"
+
+namespace recald::daemon {
+
+struct ForwardRules {
+  std::chrono::milliseconds look_every{2'000};
+  std::chrono::milliseconds retry_min{5'000};  ///< After a failure; doubles.
+  std::chrono::milliseconds retry_max{300'000};
+  std::chrono::milliseconds asked_max{3'600'000};  ///< Waits as the other side asks, up to this.
+  int batch = 500;                                 ///< Entries and events at a time.
+  /// Entries that may wait; the oldest are left out first. They are still in the store.
+  std::int64_t waiting_max = 2'000'000;
+};
+
+/// Who is told.
+struct Destination {
+  std::string id;     ///< In the store; never changes, and has no secret in it.
+  std::string words;  ///< For people: "Prometheus at metrics.example.org".
+  bool wants_events = false;
+};
+
+class Forwarder {
+ public:
+  struct Ports {
+    Loop& loop;
+    Store& store;
+  };
+  using Tell = std::function<void(StoreEvent)>;
+
+  /// @pre the store keeps an outbox for the destination (Store::keep_outbox_for)
+  Forwarder(Ports ports, std::unique_ptr<Worker> worker, Destination destination,
+            std::unique_ptr<Sink> sink, Tell tell, const ForwardRules& rules = {});
+  /// Waits for a batch that is being sent, which is told to stop.
+  ~Forwarder();
+  Forwarder(const Forwarder&) = delete;
+  Forwarder& operator=(const Forwarder&) = delete;
+
+  void start() { schedule(std::chrono::milliseconds{0}); }
+
+  [[nodiscard]] const Destination& destination() const { return destination_; }
+  [[nodiscard]] DestinationStatus status() const;
+
+ private:
+  void schedule(std::chrono::milliseconds wait);
+  void look();
+  [[nodiscard]] Result<OutgoingBatch> next();
+  [[nodiscard]] Result<OutboxPosition> position();
+  [[nodiscard]] Result<std::int64_t> event_position();
+  void send(OutgoingBatch batch);
+  void finish(const OutgoingBatch& batch, const Sent& sent);
+  [[nodiscard]] bool move_past(const OutgoingBatch& batch);
+  [[nodiscard]] bool set_aside(const OutgoingBatch& batch, const std::string& why);
+  void wait_after(const Sent& sent);
+  void tell_of_success();
+  [[nodiscard]] std::string event_cursor() const { return "events of " + destination_.id; }
+
+  Ports ports_;
+  Destination destination_;
+  std::shared_ptr<Sink> sink_;  ///< Shared with the work in progress.
+  Tell tell_;
+  ForwardRules rules_;
+  int batch_;  ///< Entries at a time now: fewer after a refusal, to find what is refused.
+  std::chrono::milliseconds wait_{0};  ///< After the last failure; zero: it did not fail.
+  std::chrono::milliseconds not_before_{0};
+  std::string why_;
+  std::optional<metering::Instant> told_at_;
+  bool is_sending_ = false;
+  std::optional<std::chrono::milliseconds> due_;
+  std::stop_source stop_;
+  std::shared_ptr<Forwarder*> self_;
+  std::unique_ptr<Worker> worker_;  ///< Last: its work must end before the members it uses.
+};
+
+}  // namespace recald::daemon

@@ -1,0 +1,66 @@
+/// Everything that the site file has of brokers and databases: tells them of what is stored, and
+/// takes what a broker says of the site's meters.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adapters/mqtt/connection.hpp"
+#include "adapters/ports/loop.hpp"
+#include "adapters/ports/store.hpp"
+#include "daemon/gateway/forward/forwarder.hpp"
+#include "daemon/gateway/ingest/told_message.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+class Forwarding {
+ public:
+  struct Ports {
+    Loop& loop;
+    Store& store;
+    bool is_on_disk = true;  ///< Of the store: what is only in memory is told once it is on disk.
+  };
+  using Tell = std::function<void(StoreEvent)>;
+  using OnValue = std::function<void(const ToldValue&)>;
+
+  /// @param tell      Adds an event.
+  /// @param on_value  Called on the loop's thread for each value of a meter.
+  Forwarding(Ports ports, const SiteConfig& site, metering::LocalCalendar calendar, Tell tell,
+             OnValue on_value);
+  ~Forwarding();
+  Forwarding(const Forwarding&) = delete;
+  Forwarding& operator=(const Forwarding&) = delete;
+
+  void start();
+
+  /// Continues with another site file. A connection and a destination that are described as before
+  /// go on.
+  void set_site(const SiteConfig& site);
+
+  [[nodiscard]] std::vector<DestinationStatus> status() const;
+
+ private:
+  void begin();
+  void connect();
+  void keep_outbox();
+  void hear(const mqtt::Message& message);
+  void hear_state(bool is_connected, const std::string& why);
+  void again_in_a_minute(void (Forwarding::*what)());
+  void tell(Severity severity, const char* kind, const std::string& subject, std::string text);
+
+  Ports ports_;
+  SiteConfig site_;
+  metering::LocalCalendar calendar_;
+  Tell tell_;
+  OnValue on_value_;
+  bool is_started_ = false;
+  bool is_broker_lost_ = false;
+  std::shared_ptr<mqtt::Connection> connection_;
+  std::vector<std::unique_ptr<Forwarder>> forwarders_;
+  std::shared_ptr<Forwarding*> self_;
+};
+
+}  // namespace recald::daemon

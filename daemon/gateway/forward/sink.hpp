@@ -1,0 +1,42 @@
+/// Where intervals, months and events are sent: a broker or a database.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "adapters/ports/store.hpp"
+
+namespace recald::daemon {
+
+struct OutgoingBatch {
+  std::vector<OutboxEntry> entries;
+  std::vector<StoreEvent> events;
+
+  [[nodiscard]] std::size_t size() const { return entries.size() + events.size(); }
+};
+
+struct Sent {
+  enum class Outcome : std::uint8_t {
+    taken,
+    partly,   ///< Some of it was left out for good, and the rest taken.
+    refused,  ///< Nothing was taken, and the same batch never will be: a part of it may be.
+    later,    ///< Nothing is wrong with the batch.
+  };
+  Outcome outcome = Outcome::taken;
+  std::string why = {};          ///< Unless taken: who said what.
+  std::chrono::seconds wait{0};  ///< Of `later`: at least so long, as the other side asks.
+};
+
+class Sink {
+ public:
+  virtual ~Sink() = default;
+
+  /// Sends a batch and waits until it was taken. A batch may come twice. An empty one asks whether
+  /// anything would be taken. Runs on a thread of its own.
+  [[nodiscard]] virtual Sent send(const OutgoingBatch& batch, const std::stop_token& stop) = 0;
+};
+
+}  // namespace recald::daemon

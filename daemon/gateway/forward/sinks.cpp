@@ -1,0 +1,111 @@
+#include "daemon/gateway/forward/sinks.hpp"
+
+#include <utility>
+
+#include "adapters/http/credentials.hpp"
+#include "adapters/series/writing.hpp"
+#include "daemon/gateway/forward/mqtt_messages.hpp"
+#include "daemon/gateway/forward/series_points.hpp"
+
+namespace recald::daemon {
+namespace {
+
+constexpr std::chrono::seconds kPublishMax{30};
+
+Sent later(std::string why) { return {.outcome = Sent::Outcome::later, .why = std::move(why)}; }
+
+/// Address and secrets, without a body.
+Result<delivery::Post> post_to(const RemoteWriteConfig& config) {
+  delivery::Post post{.url = config.url,
+                      .token = {},
+                      .user = config.login.user,
+                      .password = {},
+                      .trusted_certificate = config.trusted_certificate,
+                      .content_type = {},
+                      .headers = {},
+                      .body = {}};
+  if (!config.token_file.empty()) {
+    auto token = http::read_token_file(config.token_file);
+    if (!token) return tl::unexpected(token.error());
+    post.token = std::move(*token);
+  }
+  if (!config.login.user.empty()) {
+    auto password = http::read_password_file(config.login.password_file);
+    if (!password) return tl::unexpected(password.error());
+    post.password = std::move(*password);
+  }
+  return post;
+}
+
+class SeriesSink final : public Sink {
+ public:
+  SeriesSink(SiteConfig site, metering::LocalCalendar calendar, RemoteWriteConfig config)
+      : site_(std::move(site)), calendar_(std::move(calendar)), config_(std::move(config)) {}
+
+  Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
+    auto to = post_to(config_);
+    if (!to) return later(to.error().message);
+    const auto protocol = config_.protocol == WriteProtocol::influx
+                              ? series::Protocol::influx
+                              : series::Protocol::remote_write;
+    const auto points = series_points(site_, calendar_, batch);
+    const auto answer = delivery::post(series::message(protocol, std::move(*to), points), stop);
+    if (!answer) return later(answer.error().message);
+    series::Meaning meaning = series::meaning_of(*answer);
+    return {.outcome = outcome_of(meaning.outcome),
+            .why = std::move(meaning.why),
+            .wait = meaning.wait};
+  }
+
+ private:
+  static Sent::Outcome outcome_of(series::Outcome outcome) {
+    switch (outcome) {
+      case series::Outcome::taken:
+        return Sent::Outcome::taken;
+      case series::Outcome::partly:
+        return Sent::Outcome::partly;
+      case series::Outcome::refused:
+        return Sent::Outcome::refused;
+      case series::Outcome::later:
+        break;
+    }
+    return Sent::Outcome::later;
+  }
+
+  SiteConfig site_;
+  metering::LocalCalendar calendar_;
+  RemoteWriteConfig config_;
+};
+
+class MqttSink final : public Sink {
+ public:
+  MqttSink(SiteConfig site, std::shared_ptr<mqtt::Connection> connection)
+      : site_(std::move(site)), connection_(std::move(connection)) {}
+
+  Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
+    const auto sent = connection_->publish(mqtt_messages(site_, batch), kPublishMax, stop);
+    if (sent) return {};
+    const bool is_refused = sent.error().code == ErrorCode::invalid_value;
+    return {.outcome = is_refused ? Sent::Outcome::refused : Sent::Outcome::later,
+            .why = sent.error().message};
+  }
+
+ private:
+  SiteConfig site_;
+  std::shared_ptr<mqtt::Connection> connection_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sink> make_series_sink(const SiteConfig& site,
+                                       const metering::LocalCalendar& calendar,
+                                       const RemoteWriteConfig& config) {
+  return std::make_unique<SeriesSink>(site, calendar, config);
+}
+
+std::unique_ptr<Sink> make_mqtt_sink(const SiteConfig& site,
+                                     std::shared_ptr<mqtt::Connection> connection) {
+  return std::make_unique<MqttSink>(site, std::move(connection));
+}
+
+}  // namespace recald::daemon

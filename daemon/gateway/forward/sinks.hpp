@@ -1,0 +1,23 @@
+/// The destinations that recald knows.
+#pragma once
+
+#include <memory>
+
+#include "adapters/mqtt/connection.hpp"
+#include "core/metering/civil_time.hpp"
+#include "daemon/gateway/forward/sink.hpp"
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+/// Prometheus or InfluxDB. Secrets are read from their files each time, so that they can be
+/// renewed.
+[[nodiscard]] std::unique_ptr<Sink> make_series_sink(const SiteConfig& site,
+                                                     const metering::LocalCalendar& calendar,
+                                                     const RemoteWriteConfig& config);
+
+/// A broker.
+[[nodiscard]] std::unique_ptr<Sink> make_mqtt_sink(const SiteConfig& site,
+                                                   std::shared_ptr<mqtt::Connection> connection);
+
+}  // namespace recald::daemon

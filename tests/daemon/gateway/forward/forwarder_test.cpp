@@ -1,0 +1,204 @@
+/// What a destination gets, on a virtual clock, whatever it does: everything, in order.
+#include "daemon/gateway/forward/forwarder.hpp"
+
+#include <gmock/gmock.h>
+
+#include "adapters/sqlite/sqlite_store.hpp"
+#include "tests/support/failing_store.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/virtual_loop.hpp"
+#include "tests/support/virtual_worker.hpp"
+
+namespace recald::daemon::forwarder_test {
+namespace {
+
+using metering::Instant;
+using recald::testing::FailingStore;
+using recald::testing::TemporaryFolder;
+using recald::testing::VirtualLoop;
+using recald::testing::VirtualWorker;
+using std::chrono::hours;
+using std::chrono::minutes;
+using std::chrono::seconds;
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const Instant kNoon = std::chrono::sys_days{std::chrono::year{2026} / 2 / 3} + hours{12};
+
+/// What the other side does and has taken; it outlives the processes that talk to it.
+struct Other {
+  bool is_down = false;
+  std::optional<double> refused;  ///< A value that it refuses, with all that is sent beside it.
+  bool refuses_all = false;
+  std::vector<double> taken;
+  std::vector<std::string> events;
+  std::vector<std::size_t> sizes;  ///< Of the batches that it was sent.
+};
+
+class ScriptedSink final : public Sink {
+ public:
+  explicit ScriptedSink(Other& other) : other_(other) {}
+
+  Sent send(const OutgoingBatch& batch, const std::stop_token&) override {
+    if (other_.is_down) return {.outcome = Sent::Outcome::later, .why = "connection refused"};
+    if (other_.refuses_all) return {.outcome = Sent::Outcome::refused, .why = "no such database"};
+    if (batch.size() > 0) other_.sizes.push_back(batch.size());
+    std::vector<double> values;
+    for (const OutboxEntry& entry : batch.entries) {
+      values.push_back(std::get<StoredInterval>(entry.stored).reading.mean_kW);
+      if (other_.refused == values.back()) {
+        return {.outcome = Sent::Outcome::refused, .why = "too old"};
+      }
+    }
+    other_.taken.insert(other_.taken.end(), values.begin(), values.end());
+    for (const StoreEvent& event : batch.events) other_.events.push_back(event.kind);
+    return {};
+  }
+
+ private:
+  Other& other_;
+};
+
+class ForwarderTest : public ::testing::Test {
+ protected:
+  void begin(const ForwardRules& rules = {}) {
+    ASSERT_TRUE(store_.keep_outbox_for({"other"}).has_value());
+    forwarder_.reset();
+    forwarder_ = std::make_unique<Forwarder>(
+        Forwarder::Ports{loop_, failing_}, std::make_unique<VirtualWorker>(loop_, seconds{1}),
+        Destination{.id = "other", .words = "the other", .wants_events = true},
+        std::make_unique<ScriptedSink>(other_),
+        [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); },
+        rules);
+    forwarder_->start();
+  }
+  void store(int from, int until) {
+    StoreBatch batch;
+    for (int i = from; i < until; ++i) {
+      batch.intervals.push_back({{main_, kNoon + i * seconds{900}, static_cast<double>(i)}});
+    }
+    ASSERT_TRUE(store_.commit(batch).has_value());
+  }
+  static std::vector<double> numbers(int from, int until) {
+    std::vector<double> all;
+    for (int i = from; i < until; ++i) all.push_back(i);
+    return all;
+  }
+
+  TemporaryFolder folder_;
+  sqlite::SqliteStore store_ = sqlite::SqliteStore::open(folder_ / "site.db").value();
+  std::uint32_t main_ = store_.meter_number("main", seconds{900}).value();
+  FailingStore failing_{store_};
+  VirtualLoop loop_{kNoon};
+  Other other_;
+  std::vector<std::string> told_;
+  std::unique_ptr<Forwarder> forwarder_;
+};
+
+TEST_F(ForwarderTest, SendsWhatIsStoredInOrder) {
+  begin({.batch = 7});
+  store(0, 20);
+  loop_.run_for(minutes{1});
+  store(20, 21);
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 21)));
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+  EXPECT_THAT(told_, IsEmpty());
+}
+
+TEST_F(ForwarderTest, AnOtherProcessGoesOnWhereTheLastOneEnded) {
+  begin();
+  store(0, 5);
+  loop_.run_for(minutes{1});
+  begin();
+  store(5, 8);
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 8)));
+}
+
+TEST_F(ForwarderTest, WhatCannotBeSentWaits) {
+  begin({.batch = 10});
+  other_.is_down = true;
+  store(0, 300);
+  loop_.run_for(hours{24});
+  EXPECT_THAT(other_.taken, IsEmpty());
+  EXPECT_EQ(forwarder_->status().waiting, 300);
+  EXPECT_EQ(forwarder_->status().why, "connection refused");
+  other_.is_down = false;
+  loop_.run_for(minutes{10});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 300)));
+  EXPECT_THAT(told_, ElementsAre(HasSubstr("nothing can be sent to the other: connection refused"),
+                                 HasSubstr("the other takes data again")));
+  EXPECT_EQ(forwarder_->status().why, "");
+}
+
+// The others of its batch are not lost with it, and it does not hold up what comes later.
+TEST_F(ForwarderTest, WhatIsRefusedForGoodIsSetAsideAlone) {
+  begin({.batch = 100});
+  other_.refused = 61.0;
+  store(0, 100);
+  loop_.run_for(minutes{2});
+  std::vector<double> expected = numbers(0, 100);
+  std::erase(expected, 61.0);
+  EXPECT_THAT(other_.taken, ElementsAreArray(expected));
+  EXPECT_THAT(told_, ElementsAre(HasSubstr("refuses a reading of 'main', which is not sent again: "
+                                           "too old")));
+}
+
+// An address that is wrong refuses everything; then nothing is at fault that is sent.
+TEST_F(ForwarderTest, ADestinationThatRefusesEverythingLosesNothing) {
+  begin();
+  other_.refuses_all = true;
+  store(0, 5);
+  loop_.run_for(hours{2});
+  EXPECT_EQ(forwarder_->status().waiting, 5);
+  other_.refuses_all = false;
+  loop_.run_for(minutes{10});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 5)));
+}
+
+TEST_F(ForwarderTest, EventsFromNowOnAreSentOnce) {
+  const auto happens = [&](const char* kind) {
+    const StoreEvent event{kNoon, Severity::info, kind, "main", "."};
+    ASSERT_TRUE(store_.commit({.events = {event}}).has_value());
+  };
+  happens("long_ago");
+  begin();
+  loop_.run_for(minutes{1});
+  happens("meter_silent");
+  loop_.run_for(minutes{1});
+  begin();
+  happens("meter_answers");
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.events, ElementsAre("meter_silent", "meter_answers"));
+}
+
+// A batch that was taken is sent again rather than forgotten.
+TEST_F(ForwarderTest, WhileTheStoreRefusesNothingIsLeftOut) {
+  begin();
+  store(0, 3);
+  failing_.refuses = true;
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.taken, IsEmpty());
+  failing_.refuses = false;
+  loop_.run_for(minutes{10});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 3)));
+}
+
+TEST_F(ForwarderTest, TheOldestAreLeftOutWhereFarTooManyWait) {
+  other_.is_down = true;
+  begin({.waiting_max = 50});
+  store(0, 60);
+  loop_.run_for(hours{1});
+  EXPECT_EQ(forwarder_->status().waiting, 50);
+  other_.is_down = false;
+  loop_.run_for(minutes{10});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(10, 60)));
+  EXPECT_THAT(told_, ::testing::Contains(HasSubstr("the oldest 10 intervals and months")));
+}
+
+}  // namespace
+}  // namespace recald::daemon::forwarder_test
