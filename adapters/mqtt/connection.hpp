@@ -20,10 +20,14 @@ namespace recald::mqtt {
 
 class Connection {
  public:
-  /// On the connection's thread; it should return soon and must not destroy the connection.
+  /// On the connection's thread; returns soon, does not throw and does not destroy the connection.
+  /// The broker is told that the message has arrived after it has returned: a process that ends
+  /// meanwhile gets the message again. A payload of more than 1 MiB is dropped, which is told once
+  /// a topic; the broker itself drops what is longer than 4 MiB.
   using OnMessage = std::function<void(const Message&)>;
   /// On the connection's thread. Told on each change, and once per cause of failure: `why` is a
-  /// sentence that names the broker.
+  /// sentence that names the broker. Connected and a `why`: the connection is good, but a
+  /// subscription or the birth message was refused, or a message was dropped.
   using OnState = std::function<void(bool is_connected, const std::string& why)>;
 
   /// Begins to connect and does not wait for the broker.
@@ -32,17 +36,20 @@ class Connection {
   [[nodiscard]] static Result<std::unique_ptr<Connection>> open(Broker broker, Session session,
                                                                 OnMessage on_message,
                                                                 OnState on_state);
-  /// Says goodbye, so that no will is sent; takes a second or two at most, whatever the broker
-  /// does.
+  /// Says goodbye, so that no will is sent; takes two seconds at most, whatever the broker does.
+  /// Waits for a callback that is running; nobody may be in publish(). A look-up of a name or a
+  /// connect that nobody answers goes on without us, and ends by itself.
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
   /// Publishes all and waits until the broker has acknowledged each. After a failure any of them
-  /// may have arrived: the caller sends all of them again. One caller at a time.
+  /// may have arrived: the caller sends all of them again. One caller at a time. The
+  /// broker's word is that it has the message, not that its disk has.
   /// @return or io_failed: not connected, connection lost, a message refused (the first is named,
   /// with
-  ///         the broker's reason), or time out; invalid_value: a topic that cannot be; cancelled.
+  ///         the broker's reason), or time out; invalid_value: a topic that cannot be;
+  ///         out_of_range: a message is longer than the broker takes; cancelled.
   [[nodiscard]] Result<void> publish(std::span<const Message> messages,
                                      std::chrono::milliseconds time_max,
                                      const std::stop_token& stop);

@@ -151,6 +151,7 @@ struct Link::Callbacks {
     mosquitto_property_read_int32(properties, MQTT_PROP_MAXIMUM_PACKET_SIZE,
                                   &link.packet_bytes_max_, false);
     link.is_connected_ = true;
+    link.logged_.clear();
     link.listener_.connected();
     link.begin_session();
   }
@@ -282,7 +283,6 @@ Result<void> Link::step(int wake, milliseconds time_max) {
     std::uint64_t ignored = 0;
     (void)!::read(wake, &ignored, sizeof ignored);
   }
-  logged_.clear();
   int code = MOSQ_ERR_SUCCESS;
   if (events[0].revents != 0 || has_more) code = mosquitto_loop_read(client_, 1);
   if (code == MOSQ_ERR_SUCCESS && mosquitto_want_write(client_)) {
@@ -310,7 +310,8 @@ tl::unexpected<Error> Link::lost(int code, int system_error) const {
                                X509_verify_cert_error_string(SSL_get_verify_result(tls))));
   }
   const std::string_view logged = last_words(logged_);
-  const bool is_closed = code == MOSQ_ERR_CONN_LOST || logged == "unexpected eof while reading";
+  const bool is_closed = code == MOSQ_ERR_CONN_LOST || logged == "unexpected eof while reading" ||
+                         (code == MOSQ_ERR_TLS && logged.empty());
   if (!logged.empty() && !is_closed) {
     return failure(ErrorCode::io_failed,
                    fmt::format("{}: the connection failed: {}", name_, logged));

@@ -1,6 +1,8 @@
 /// A connection to a broker of a test, and what it told.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -60,8 +62,12 @@ class Connected {
     for (const State& state : states()) count += state.why.find(words) != std::string::npos ? 1 : 0;
     return count;
   }
-  [[nodiscard]] bool is_soon_told(const std::string& words) const {
-    return testing::eventually([&] { return told(words) > 0; });
+  /// Whether a state gets the words; a failure says what was told.
+  [[nodiscard]] ::testing::AssertionResult is_soon_told(const std::string& words) const {
+    if (testing::eventually([&] { return told(words) > 0; })) return ::testing::AssertionSuccess();
+    auto not_told = ::testing::AssertionFailure() << "not told: " << words;
+    for (const State& state : states()) not_told << "\n" << state.is_connected << ' ' << state.why;
+    return not_told;
   }
   Result<void> publish(const std::vector<Message>& messages) const {
     return connection_->publish(messages, kPatience, {});
