@@ -1,7 +1,9 @@
 #include "daemon/site/config/service_config.hpp"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <optional>
 #include <regex>
@@ -35,6 +37,17 @@ std::optional<Endpoint> parse_endpoint(std::string_view text) {
 
 bool is_loopback(std::string_view address) {
   return address == "::1" || address.starts_with("127.");
+}
+
+bool is_ip_address(const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  return ::inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
+         ::inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
+}
+
+/// 0.0.0.0 and ::, however they are written.
+bool is_every_interface(std::string_view address) {
+  return address.find_first_not_of("0.:") == std::string_view::npos;
 }
 
 }  // namespace
@@ -84,6 +97,31 @@ HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) 
                      fmt::format("'listen' opens {} to other machines; add 'token_file', "
                                  "'certificate_file' and 'key_file', or listen on 127.0.0.1",
                                  config.address));
+  }
+  table.finish();
+  return config;
+}
+
+ModbusConfig read_modbus(TomlReader& table) {
+  ModbusConfig config;
+  const std::string listen = table.required_text("listen");
+  auto endpoint = parse_endpoint(listen);
+  if (endpoint && endpoint->address == "localhost") endpoint->address = "127.0.0.1";
+  if (listen.empty()) {
+    // told already
+  } else if (!endpoint || !is_ip_address(endpoint->address)) {
+    table.problem_at("listen",
+                     fmt::format("'listen' is \"{}\"; write the IP address of an interface and a "
+                                 "port such as \"10.20.0.5:502\" or \"[fd00::5]:502\"",
+                                 listen));
+  } else if (is_every_interface(endpoint->address)) {
+    table.problem_at("listen",
+                     fmt::format("'listen' is \"{}\", which is every interface, and Modbus has no "
+                                 "password; write the address of the one that the management "
+                                 "system is on",
+                                 listen));
+  } else {
+    config = {endpoint->address, endpoint->port};
   }
   table.finish();
   return config;

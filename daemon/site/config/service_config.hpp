@@ -20,6 +20,12 @@ struct HttpConfig {
   std::vector<std::string> origins;  ///< Whose pages may ask from a browser.
 };
 
+/// Where results are served as Modbus registers.
+struct ModbusConfig {
+  std::string address;     ///< Of one interface, as a number.
+  std::uint16_t port = 0;  ///< 0: one that is free.
+};
+
 struct RecalibrationConfig {
   Schedule schedule{.when_a_month_closes = true, .times = {}};
   int months = 24;  ///< The last so many closed months are fitted.
@@ -30,6 +36,9 @@ struct RecalibrationConfig {
 
 /// [http]. Whoever listens beyond this machine needs a token and TLS.
 [[nodiscard]] HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file);
+
+/// [modbus]. Modbus has no password, so one interface is named, and not all of them.
+[[nodiscard]] ModbusConfig read_modbus(TomlReader& table);
 
 /// [recalibration]
 [[nodiscard]] RecalibrationConfig read_recalibration(TomlReader& table,

@@ -712,6 +712,7 @@ void read_root(TomlReader root, SiteConfig& config) {
   config.store = default_store(config.file);
   if (auto store = root.table("store")) config.store = read_store(*store, config.file);
   if (auto http = root.table("http")) config.http = read_http(*http, config.file);
+  if (auto modbus = root.table("modbus")) config.modbus = read_modbus(*modbus);
   if (auto alerts = root.table("alerts")) config.alerts = read_alerts(*alerts, config.file);
   if (auto mqtt = root.table("mqtt")) config.mqtt = read_mqtt(*mqtt, config.id, config.file);
   for (TomlReader& write : root.tables("remote_write")) {

@@ -162,8 +162,9 @@ struct SiteConfig {
   model::Holidays holidays;
   metering::CloserOptions closing;
   StoreConfig store;
-  std::optional<HttpConfig> http;  ///< Absent: nothing is served.
-  std::optional<MqttConfig> mqtt;  ///< Absent: no broker.
+  std::optional<HttpConfig> http;      ///< Absent: nothing is served.
+  std::optional<ModbusConfig> modbus;  ///< Absent: no registers are served.
+  std::optional<MqttConfig> mqtt;      ///< Absent: no broker.
   std::vector<RemoteWriteConfig> remote_writes;
   AlertConfig alerts;
   RecalibrationConfig recalibration;

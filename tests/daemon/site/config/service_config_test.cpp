@@ -1,4 +1,4 @@
-/// [http] and [recalibration] of a site file.
+/// [http], [modbus] and [recalibration] of a site file.
 #include "daemon/site/config/service_config.hpp"
 
 #include <gmock/gmock.h>
@@ -20,6 +20,19 @@ ReadHttp http(const char* text) {
   const toml::table table = toml::parse(text);
   TomlReader reader{table, "site.toml", "[http]", read.problems};
   read.config = read_http(reader, "/etc/recald/site.toml");
+  return read;
+}
+
+struct ReadModbus {
+  ModbusConfig config;
+  Problems problems;
+};
+
+ReadModbus modbus(const std::string& text) {
+  ReadModbus read;
+  const toml::table table = toml::parse(text);
+  TomlReader reader{table, "site.toml", "[modbus]", read.problems};
+  read.config = read_modbus(reader);
   return read;
 }
 
@@ -94,6 +107,33 @@ TEST(HttpConfig, MistakesAreNamedWithTheirKey) {
   EXPECT_THAT(http("listen = 8080").problems, ElementsAre(HasSubstr("listen")));
   EXPECT_THAT(http("token_file = \"$RECALD_NO_SUCH/token\"").problems,
               ElementsAre(HasSubstr("'token_file' begins with $RECALD_NO_SUCH")));
+}
+
+TEST(ModbusConfig, ReadsAddressAndPort) {
+  const auto [config, problems] = modbus("listen = \"10.20.0.5:502\"");
+  EXPECT_THAT(problems, IsEmpty());
+  EXPECT_EQ(config.address, "10.20.0.5");
+  EXPECT_EQ(config.port, 502);
+  EXPECT_EQ(modbus("listen = \"[fd00::5]:1502\"").config.address, "fd00::5");
+  EXPECT_EQ(modbus("listen = \"localhost:0\"").config.address, "127.0.0.1");
+}
+
+TEST(ModbusConfig, OneInterfaceIsNamed) {
+  for (const char* all : {"0.0.0.0:502", "[::]:502", "[0:0::0]:502"}) {
+    EXPECT_THAT(modbus("listen = \"" + std::string{all} + "\"").problems,
+                ElementsAre(HasSubstr("which is every interface")))
+        << all;
+  }
+  for (const char* wrong : {"502", "10.20.0.5", "10.20.0.5:", ":502", "plant-room:502",
+                            "10.20.0:502", "10.20.0.5:70000", "fd00::5:502"}) {
+    EXPECT_THAT(modbus("listen = \"" + std::string{wrong} + "\"").problems,
+                ElementsAre(HasSubstr("site.toml:1: [modbus] 'listen' is")))
+        << wrong;
+  }
+  EXPECT_THAT(modbus("").problems, ElementsAre(HasSubstr("listen")));
+  EXPECT_THAT(modbus("listen = \"\"").problems, ElementsAre(HasSubstr("listen")));
+  EXPECT_THAT(modbus("listen = \"10.20.0.5:502\"\nunit = 1").problems,
+              ElementsAre(HasSubstr("unit")));
 }
 
 TEST(RecalibrationConfig, MistakesAreNamedWithTheirKey) {
