@@ -215,6 +215,16 @@ void add_status(CLI::App& command, StatusArguments& arguments) {
   site->excludes(url);
 }
 
+void add_registers(CLI::App& command, RegistersArguments& arguments) {
+  CLI::Option* site =
+      command.add_option("site", arguments.site, "Site file (TOML); without one, any site's map");
+  CLI::Option* csv = command.add_flag("--csv", arguments.csv, "Print one register a line, as CSV");
+  command.add_flag("--json", arguments.json, "Print the result as one JSON object")
+      ->needs(site)
+      ->excludes(csv);
+  csv->needs(site);
+}
+
 void add_export(CLI::App& command, ExportArguments& arguments) {
   add_site(command, arguments);
   command.add_option("--from", arguments.from, "First local day, YYYY-MM-DD");
@@ -277,6 +287,7 @@ struct Arguments {
   EcmArguments ecm;
   DetectabilityArguments detectability;
   StatusArguments status;
+  RegistersArguments registers;
   ModelArguments model;
   std::string command;
   std::string shell;
@@ -352,6 +363,12 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   doctor->add_flag("--json", given.doctor.json, "Print the result as one JSON object");
   verbs.push_back(
       {doctor, [&](const Console& console) { return run_doctor(given.doctor, console); }});
+  CLI::App* registers =
+      app.add_subcommand("registers", "List the Modbus registers that the daemon serves")
+          ->group(kRun);
+  add_registers(*registers, given.registers);
+  verbs.push_back(
+      {registers, [&](const Console& console) { return run_registers(given.registers, console); }});
 
   CLI::App* replay =
       app.add_subcommand("replay", "Turn recorded readings into monthly figures")->group(kData);

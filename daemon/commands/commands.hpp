@@ -152,6 +152,11 @@ struct StatusArguments : SiteArguments {
   std::filesystem::path token_file;  ///< With a URL; empty: none is sent.
 };
 
+/// Without a site: the page of any site's map.
+struct RegistersArguments : SiteArguments {
+  bool csv = false;
+};
+
 struct ExportArguments : SiteArguments {
   std::string from;  ///< Local day, or empty.
   std::string to;
@@ -194,6 +199,8 @@ int run_scan(const ScanArguments& arguments, const Console& console);
 int run_status(const StatusArguments& arguments, const Console& console);
 /// What a report of a bug needs, of the machine and of a site if one is named; without secrets.
 int run_doctor(const SiteArguments& arguments, const Console& console);
+/// The Modbus registers that a site serves, with their addresses.
+int run_registers(const RegistersArguments& arguments, const Console& console);
 int run_replay(const ReplayArguments& arguments, const Console& console);
 /// Checks the store without changing it, beside a daemon if need be; a sentence a fault.
 int run_verify(const SiteArguments& arguments, const Console& console);

@@ -10,6 +10,7 @@
 
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
+#include "daemon/site/model/hourly_run.hpp"
 #include "daemon/site/model/load_expectation.hpp"
 #include "daemon/site/model/site_parts.hpp"
 #include "tests/daemon/command_line.hpp"
@@ -148,6 +149,81 @@ TEST_F(LiveSite, ItsModelExpectsWhatTheMetersRead) {
     });
     EXPECT_GT(inside, 7 * 24);
   }
+}
+
+// December as of its 17th, from the eleven months before it and half of its own.
+TEST_F(LiveSite, ItsMonthIsForecastWhileItGoesOn) {
+  import_history();
+  const auto config = load_site(path("live.toml"));
+  ASSERT_TRUE(config.has_value());
+  const OpenSite site{*config, metering::LocalCalendar::open(config->timezone).value()};
+  const metering::Instant end =
+      recald::testing::kDepotBegin + std::chrono::hours{recald::testing::kDepotYear_h};
+  const metering::Instant now = end - std::chrono::days{15};
+  const metering::TimeSpan month = site.calendar.month_span(site.calendar.month_of(now));
+  const auto expectation = LoadExpectation::learn(site, now);
+  ASSERT_TRUE(expectation.has_value()) << expectation.error().message;
+  const auto expected = expectation->expect({now - std::chrono::days{8}, now});
+  ASSERT_TRUE(expected.has_value()) << expected.error().message;
+  auto store = sqlite::SqliteStore::open(path("live.db")).value();
+  for (const ExpectedMeter& meter : *expected) {
+    SCOPED_TRACE(meter.meter);
+    ASSERT_TRUE(meter.month.has_value());
+    EXPECT_EQ(meter.month->month, site.calendar.month_of(now));
+    EXPECT_EQ(meter.month->rest_from, now);
+    const auto mean_kW = [&](const metering::TimeSpan& span) {
+      double sum_kW = 0.0;
+      int count = 0;
+      (void)store.for_each_interval(store.find_meter(meter.meter).value().value(), span,
+                                    [&](const StoredInterval& one) {
+                                      sum_kW += one.reading.mean_kW;
+                                      ++count;
+                                    });
+      return sum_kW / count;
+    };
+    const double elapsed =
+        metering::in_hours(now - month.begin) / metering::in_hours(month.length());
+    const double forecast_kW =
+        elapsed * mean_kW({month.begin, now}) + (1.0 - elapsed) * meter.month->rest_kW;
+    const double scale_kW = forecast_scale_kW(forecast_kW, meter.month->mean_kW);
+    const double error = (mean_kW(month) - forecast_kW) / scale_kW;
+    EXPECT_GE(error, meter.month->error_q05);
+    EXPECT_LE(error, meter.month->error_q95);
+    // It says more than that some of the month is over, and no error is impossible.
+    EXPECT_LT(meter.month->error_q95 - meter.month->error_q05, 1.5);
+    EXPECT_GT(meter.month->error_q95 - meter.month->error_q05, 0.01);
+  }
+}
+
+// Errors of the same size both ways; with fewer nobody knows.
+TEST(HindcastBand, IsStudentsOfTheNextError) {
+  const std::vector<double> errors{-0.1, 0.1, -0.1, 0.1, -0.1, 0.1};
+  EXPECT_FALSE(band_of_errors(std::span{errors}.first(5)).has_value());
+  const auto band = band_of_errors(errors);
+  ASSERT_TRUE(band.has_value());
+  EXPECT_NEAR(band->middle, 0.0, 1e-12);
+  // t(0.95, 5) = 2.015, sd = 0.1095, sqrt(1 + 1/6) = 1.080
+  EXPECT_NEAR(band->high, 2.0150 * 0.109545 * 1.080123, 1e-4);
+  EXPECT_NEAR(band->low, -band->high, 1e-12);
+  EXPECT_NEAR(forecast_scale_kW(20.0, 20.0), 20.0, 1e-12);
+  EXPECT_NEAR(forecast_scale_kW(80.0, 20.0), 40.0, 1e-12);
+  EXPECT_NEAR(forecast_scale_kW(-1.0, 20.0), std::sqrt(4.0 * 20.0), 1e-12);
+}
+
+TEST(ContinuedWeather, TheLastWeekGoesOn) {
+  weather::WeatherSeries series;
+  series.begin = std::chrono::sys_days{std::chrono::year{2026} / 1 / 1};
+  for (int i = 0; i < 20 * 24; ++i) series.hours.push_back({.dry_bulb_C = 1.0 * i});
+  const auto day = [&](int days) { return series.begin + std::chrono::hours{24 * days}; };
+  const auto longer = continued(series, day(2), day(12), day(31));
+  EXPECT_EQ(longer.begin, day(2));
+  EXPECT_EQ(longer.end(), day(31));
+  EXPECT_EQ(longer.find(day(11))->dry_bulb_C, 24.0 * 11);
+  EXPECT_EQ(longer.find(day(12))->dry_bulb_C, 24.0 * 5) << "what came later is not known yet";
+  EXPECT_EQ(longer.find(day(19))->dry_bulb_C, 24.0 * 5);
+  EXPECT_EQ(longer.find(day(20))->dry_bulb_C, 24.0 * 6);
+  EXPECT_EQ(continued(series, day(2), day(8), day(31)).end(), day(8)) << "less than a week";
+  EXPECT_TRUE(continued(series, day(30), day(31), day(32)).hours.empty());
 }
 
 TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {

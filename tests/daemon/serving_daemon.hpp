@@ -43,6 +43,7 @@ class ServingDaemon {
                std::to_string(json.size()) + "\r\n\r\n" + json);
   }
 
+  void signal(int number) const { process_.signal(number); }
   /// @return the exit code, or minus the signal's number.
   int end(int signal) { return process_.end(signal); }
 

@@ -29,6 +29,7 @@ constexpr auto kOrder = std::to_array<std::string_view>({
     "daemon/gateway/upkeep",
     "daemon/gateway/alert",
     "daemon/gateway/serve",
+    "daemon/gateway/registers",
     "daemon/gateway/forward",
     "daemon/gateway/run",
     "daemon/commands",

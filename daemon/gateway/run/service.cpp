@@ -28,6 +28,7 @@
 #include "daemon/gateway/alert/alerts.hpp"
 #include "daemon/gateway/alert/deliver.hpp"
 #include "daemon/gateway/forward/forwarding.hpp"
+#include "daemon/gateway/registers/register_service.hpp"
 #include "daemon/gateway/run/gateway.hpp"
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/run/load_watch.hpp"
@@ -62,6 +63,11 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   if (now.http && (now.http->address != then.http->address || now.http->port != then.http->port)) {
     return needs_restart("[http] listen");
   }
+  if (now.modbus.has_value() != then.modbus.has_value()) return needs_restart("[modbus]");
+  if (now.modbus &&
+      (now.modbus->address != then.modbus->address || now.modbus->port != then.modbus->port)) {
+    return needs_restart("[modbus] listen");
+  }
   return {};
 }
 
@@ -95,7 +101,10 @@ class Service {
         options_(options),
         jobs_(
             {loop_, *store_, worker_}, make_site_work(site_),
-            [](const StoredJob& job) { log_job(job); },
+            [this](const StoredJob& job) {
+              log_job(job);
+              if (registers_) registers_->look_again();
+            },
             [this](const StoreEvent& event) {
               gateway_->count_stored(event);
               hear(event);
@@ -131,6 +140,7 @@ class Service {
                        .on_event = [this](const StoreEvent& event) { hear(event); }},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
+                        if (registers_) registers_->look_again();
                         recalibration_->month_closed(meter.id);
                       });
     if (!gateway) return tl::unexpected(gateway.error());
@@ -141,8 +151,15 @@ class Service {
     return {};
   }
 
-  /// Serves HTTP if the site is configured to.
+  /// Serves HTTP and registers if the site is configured to.
   Result<void> listen() {
+    if (const auto& modbus = site_.config.modbus) {
+      auto registers = RegisterService::listen(loop_, *modbus, served());
+      if (!registers) return tl::unexpected(registers.error());
+      registers_ = std::move(*registers);
+      spdlog::info("event=listening_modbus address={} port={}", modbus->address,
+                   registers_->port());
+    }
     const auto& http = site_.config.http;
     if (!http) return {};
     auto server = serve_site(context_, *http, served());
@@ -163,6 +180,7 @@ class Service {
     gateway_->start();
     weather_wait_.start();
     load_watch_.start();
+    if (registers_) registers_->start();
     alerts_.start();
     keep_up();
     if (!running_.missing.empty()) stand_in();
@@ -170,6 +188,7 @@ class Service {
     run_guarded(context_, loop_, [this](StoreEvent event) { gateway_->note(std::move(event)); });
     if (!found_) watchdog_.ending();
     server_.reset();
+    registers_.reset();
     jobs_.interrupt();
     const auto flushed = gateway_->flush();
     spdlog::info("event=ended");
@@ -320,6 +339,7 @@ class Service {
     load_watch_.set_expect(make_load_expectation(site_));
     alerts_.set_site(site_.config);
     forwarding_.set_site(site_.config);
+    if (registers_) registers_->look_again();
     schedule();
     // A month that closed within the last minute would have been requested by the old schedule.
     catch_up();
@@ -406,6 +426,7 @@ class Service {
   Forwarding forwarding_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<http::Server> server_;
+  std::unique_ptr<RegisterService> registers_;
 };
 
 /// Opening may take minutes more. It can be killed at any step, so do not wait for it.

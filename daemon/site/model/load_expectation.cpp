@@ -3,22 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/model/hourly/hourly.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
+#include "daemon/site/model/hourly_run.hpp"
 #include "daemon/site/replay/stored_readings.hpp"
 
 namespace recald::daemon {
 namespace {
-
-/// (hours x outputs) kW of the building as drawn.
-Eigen::ArrayXXd modelled_kW(const model::Building& building,
-                            std::shared_ptr<const model::Drivers> drivers,
-                            std::span<const model::MeterMap> maps) {
-  model::hourly::Hourly hourly{std::move(drivers)};
-  Eigen::ArrayXXd power_kW(hourly.step_count(), static_cast<Eigen::Index>(maps.size()));
-  hourly.run(building, {}, maps, power_kW);
-  return power_kW;
-}
 
 std::vector<profile::LoadBand> bands_of(const diagnosis::SiteProblem& problem,
                                         std::span<const model::MeterMap> maps) {
@@ -48,13 +38,20 @@ std::vector<metering::Month> months_of(const metering::LocalCalendar& calendar,
   return months;
 }
 
-/// A file may end today, and the model runs over whole months: the last day goes on. Hours from
-/// there on are not given out.
-weather::WeatherSeries continued(weather::WeatherSeries series, metering::Instant until) {
-  constexpr std::size_t kDay = 24;
-  if (series.hours.size() < kDay) return series;
-  while (series.end() < until) series.hours.push_back(series.hours[series.hours.size() - kDay]);
-  return series;
+std::vector<LoadExpectation::MonthErrors> month_errors(const OpenSite& site,
+                                                       const diagnosis::SiteProblem& problem,
+                                                       const weather::WeatherSeries& weather,
+                                                       metering::Instant now) {
+  const metering::TimeSpan month = site.calendar.month_span(site.calendar.month_of(now));
+  const auto errors = hindcast_errors(site, problem, weather, now - month.begin);
+  std::vector<LoadExpectation::MonthErrors> all;
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    const auto measured = problem.measured_kW.col(static_cast<Eigen::Index>(k));
+    const double known = static_cast<double>((!measured.isNaN()).count());
+    all.push_back(
+        {band_of_errors(errors[k]), measured.isNaN().select(0.0, measured).sum() / known});
+  }
+  return all;
 }
 
 }  // namespace
@@ -72,8 +69,9 @@ Result<LoadExpectation> LoadExpectation::learn(OpenSite site, metering::Instant 
   std::vector<model::MeterMap> maps;
   for (const diagnosis::MeterData& meter : problem->meters) maps.push_back(meter.end_uses);
   auto bands = bands_of(*problem, maps);
+  auto errors = month_errors(modelled->site, *problem, modelled->weather.filled.series, now);
   return LoadExpectation{std::move(modelled->site), problem->loads, std::move(maps),
-                         std::move(bands)};
+                         std::move(bands), std::move(errors)};
 }
 
 Result<std::vector<ExpectedMeter>> LoadExpectation::expect(const metering::TimeSpan& span) const {
@@ -84,24 +82,40 @@ Result<std::vector<ExpectedMeter>> LoadExpectation::expect(const metering::TimeS
       load_weather(site_.config, site_.calendar, {months.front(), months.back()}, live->get());
   if (!weather) return tl::unexpected(weather.error());
   const metering::Instant end = std::min(span.end, weather->filled.series.end());
-  auto drivers = model::make_drivers(
-      months, site_.calendar, site_.config.holidays, *site_.config.building, loads_,
-      *site_.config.location,
-      continued(weather->filled.series, site_.calendar.month_span(months.back()).end),
-      model::MissingWeather::assume);
+  auto drivers = model::make_drivers(months, site_.calendar, site_.config.holidays,
+                                     *site_.config.building, loads_, *site_.config.location,
+                                     continued(weather->filled.series, weather->filled.series.begin,
+                                               end, site_.calendar.month_span(months.back()).end),
+                                     model::MissingWeather::assume);
   if (!drivers) return tl::unexpected(drivers.error());
   const auto shared = std::make_shared<const model::Drivers>(std::move(*drivers));
   const Eigen::ArrayXXd expected_kW = modelled_kW(*site_.config.building, shared, maps_);
+  // Weather that ended in an earlier month says nothing of this one.
+  const bool is_in_month = end >= site_.calendar.month_span(months.back()).begin;
   std::vector<ExpectedMeter> meters;
   for (std::size_t k = 0; k < bands_.size(); ++k) {
     ExpectedMeter meter{site_.config.model->outputs[k], {}};
+    double rest_sum_kW = 0.0;
+    int rest_hours = 0;
     for (std::size_t i = 0; i < shared->hours.size(); ++i) {
       const model::DriverHour& hour = shared->hours[i];
-      if (hour.start < span.begin || hour.start >= end) continue;
+      const bool is_rest = hour.start >= end;
+      if (hour.start < span.begin && !is_rest) continue;
       const auto band =
           bands_[k].at(hour.day, hour.local_hour,
                        expected_kW(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
-      if (band) meter.hours.push_back({hour.start, *band});
+      if (!band) continue;
+      if (is_rest) {
+        rest_sum_kW += band->q50_kW;
+        ++rest_hours;
+      } else {
+        meter.hours.push_back({hour.start, *band});
+      }
+    }
+    if (const auto& error = errors_[k].band; error && rest_hours > 0 && is_in_month) {
+      meter.month = {months.back(),      end,        rest_sum_kW / rest_hours,
+                     errors_[k].mean_kW, error->low, error->middle,
+                     error->high};
     }
     meters.push_back(std::move(meter));
   }

@@ -14,11 +14,18 @@
 #include "core/result.hpp"
 #include "daemon/site/model/expected_load.hpp"
 #include "daemon/site/model/modelled_site.hpp"
+#include "daemon/site/model/month_hindcast.hpp"
 
 namespace recald::daemon {
 
 class LoadExpectation {
  public:
+  /// Of one output: how far forecasts of months that went on were off, as of this day of theirs.
+  struct MonthErrors {
+    std::optional<HindcastBand> band;
+    double mean_kW;
+  };
+
   /// Compares the closed months of the site with its hourly model.
   /// @return or unsupported: the site has no [building]; not_enough_data: no closed month with
   ///         weather, no readings; or an error of reading.
@@ -26,21 +33,24 @@ class LoadExpectation {
 
   /// @param span  Its months are run as a whole. Hours that have not begun by its end, or of which
   ///              the weather is not known yet, are left out.
+  ///              The month of its end is forecast too, from what is known at its end.
   /// @return one per output of the model; or an error of reading the weather.
   [[nodiscard]] Result<std::vector<ExpectedMeter>> expect(const metering::TimeSpan& span) const;
 
  private:
   LoadExpectation(OpenSite site, model::ElectricLoads loads, std::vector<model::MeterMap> maps,
-                  std::vector<profile::LoadBand> bands)
+                  std::vector<profile::LoadBand> bands, std::vector<MonthErrors> errors)
       : site_(std::move(site)),
         loads_(std::move(loads)),
         maps_(std::move(maps)),
-        bands_(std::move(bands)) {}
+        bands_(std::move(bands)),
+        errors_(std::move(errors)) {}
 
   OpenSite site_;  ///< Its first model is the hourly one.
   model::ElectricLoads loads_;
   std::vector<model::MeterMap> maps_;     ///< (outputs)
   std::vector<profile::LoadBand> bands_;  ///< (outputs)
+  std::vector<MonthErrors> errors_;       ///< (outputs)
 };
 
 }  // namespace recald::daemon

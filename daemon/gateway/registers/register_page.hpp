@@ -1,0 +1,23 @@
+/// The map of the registers for people and programs, made from its table.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "daemon/site/config/site_config.hpp"
+
+namespace recald::daemon {
+
+/// registers.md: the map of any site.
+[[nodiscard]] std::string register_page();
+
+/// The registers of this site, one a line: address,registers,type,meter,name,unit,meaning
+[[nodiscard]] std::string registers_csv(const SiteConfig& site);
+
+/// The same, with what codes stand for.
+[[nodiscard]] nlohmann::ordered_json registers_json(const SiteConfig& site);
+
+/// The same as columns for a console.
+[[nodiscard]] std::string registers_text(const SiteConfig& site);
+
+}  // namespace recald::daemon
