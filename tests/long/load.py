@@ -4,7 +4,9 @@ import json
 import os
 import re
 import signal
+import socket
 import sqlite3
+import struct
 import subprocess
 import sys
 import tempfile
@@ -17,6 +19,7 @@ TCP_ENDPOINTS = int(os.environ.get("ENDPOINTS", 250))
 LINES = int(os.environ.get("LINES", 8))
 UNITS = int(os.environ.get("UNITS", 4))
 REQUESTS_PER_S = float(os.environ.get("REQUESTS", 0))
+REGISTER_READS_PER_S = float(os.environ.get("REGISTER_READS", 0))
 CALIBRATES = os.environ.get("CALIBRATE") == "1"
 # A boundary a minute, so that ten minutes have ten of them; but years of minutes are many.
 INTERVAL_S = 300 if CALIBRATES else 60
@@ -68,7 +71,9 @@ def site(addresses, head, rest):
     text = head + """
 [http]
 listen = "127.0.0.1:0"
-"""
+""" + ("""[modbus]
+listen = "127.0.0.1:0"
+""" if REGISTER_READS_PER_S else "")
     meters = ""
     for number, address in enumerate(addresses):
         host, _, port = address.rpartition(":")
@@ -199,10 +204,40 @@ class Asking(threading.Thread):
             self.waits_s.append(time.monotonic() - asked)
 
     def print_figures(self, elapsed_s):
-        waits = sorted(self.waits_s) or [float("nan")]
-        print(f"requests: {len(self.waits_s) / elapsed_s:.0f} a second, {self.wrong} refused, answered "
-              f"within {1e3 * waits[len(waits) // 2]:.1f} ms (half), "
-              f"{1e3 * waits[int(0.99 * (len(waits) - 1))]:.1f} ms (99 %)")
+        print_waits(f"requests, {self.wrong} refused", self.waits_s, elapsed_s)
+
+
+def print_waits(what, waits_s, elapsed_s):
+    waits = sorted(waits_s) or [float("nan")]
+    print(f"{what}: {len(waits_s) / elapsed_s:.0f} a second, answered within "
+          f"{1e3 * waits[len(waits) // 2]:.2f} ms (half), "
+          f"{1e3 * waits[int(0.99 * (len(waits) - 1))]:.2f} ms (99 %), {1e3 * waits[-1]:.1f} ms (all)")
+
+
+class ReadingRegisters(threading.Thread):
+    """Reads 125 registers so many times a second over one connection, as a BMS would."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=30)
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.waits_s = []
+        self.goes_on = True
+
+    def run(self):
+        begin = time.monotonic()
+        while self.goes_on:
+            number = len(self.waits_s)
+            time.sleep(max(0.0, begin + number / REGISTER_READS_PER_S - time.monotonic()))
+            asked = time.monotonic()
+            self.socket.sendall(struct.pack(">HHHBBHH", number % 65536, 0, 6, 1, 4,
+                                            125 * (number % 10), 125))
+            reply = b""
+            while len(reply) < 9 + 250:
+                reply += self.socket.recv(1024)
+                assert reply, "the connection was closed"
+            assert reply[:2] == struct.pack(">H", number % 65536) and reply[7:9] == b"\x04\xfa"
+            self.waits_s.append(time.monotonic() - asked)
 
 
 def print_intervals(store, meters, first, last):
@@ -257,6 +292,11 @@ def main(build, minutes):
         asking = Asking(int(listening.group(1))) if listening and REQUESTS_PER_S else None
         if asking:
             asking.start()
+        registers = None
+        if REGISTER_READS_PER_S:
+            port = wait_for(said_by_daemon, r"event=listening_modbus .*port=(\d+)", daemon)
+            registers = ReadingRegisters(int(port.group(1)))
+            registers.start()
         recalibrating = Recalibrating(listening.group(1)) if listening and CALIBRATES else None
         if recalibrating:
             recalibrating.start()
@@ -270,6 +310,10 @@ def main(build, minutes):
             asking.goes_on = False
             asking.join()
             asking.print_figures(elapsed_s)
+        if registers:
+            registers.goes_on = False
+            registers.join()
+            print_waits("register reads", registers.waits_s, elapsed_s)
         if recalibrating:
             recalibrating.goes_on = False
             recalibrating.join()
