@@ -20,6 +20,7 @@ using recald::testing::eventually;
 using recald::testing::InfluxDb;
 using recald::testing::Mosquitto;
 using recald::testing::Prometheus;
+using recald::testing::read_text;
 using recald::testing::readings_json;
 using recald::testing::ServingDaemon;
 using recald::testing::TemporaryFolder;
@@ -205,6 +206,37 @@ TEST_F(DestinationsTest, ACounterInMessagesIsACounter) {
     EXPECT_NEAR(interval["energy_kWh"].get<double>(), 3.0, 1e-6) << interval;
   }
   EXPECT_THAT(daemon_->get("/api/v1/events"), HasSubstr("'nonsense' of 'plant/heat' is no JSON"));
+}
+
+TEST_F(DestinationsTest, HomeAssistantFindsEveryMeter) {
+  if (!std::filesystem::exists(RECALD_HOME_ASSISTANT "/installed")) {
+    GTEST_SKIP() << "Home Assistant could not be installed in " RECALD_HOME_ASSISTANT;
+  }
+  EXPECT_EQ(daemon_->end(SIGTERM), 0);
+  std::string site = read_text(folder_ / "site.toml");
+  site.replace(site.find("[mqtt]\n"), 7, "[mqtt]\nhome_assistant = \"homeassistant\"\n");
+  write_text(folder_ / "site.toml", site);
+  daemon_ = start();
+  constexpr std::size_t kEntities = 5 + 2 * 7;
+  std::vector<mqtt::Message> kept;
+  ASSERT_TRUE(eventually([&] {
+    kept = broker_.read("homeassistant/#", kEntities, seconds{2});
+    return kept.size() == kEntities;
+  })) << daemon_->said();
+  const auto states = broker_.read("recald/depot/#", 4, seconds{2});
+  kept.insert(kept.end(), states.begin(), states.end());
+  std::string lines;
+  for (const mqtt::Message& one : kept) {
+    EXPECT_TRUE(one.is_retained) << one.topic;
+    lines += json{{"topic", one.topic}, {"payload", one.payload}}.dump() + "\n";
+  }
+  write_text(folder_ / "messages.jsonl", lines);
+  const auto checked =
+      recald::testing::run_in_shell(RECALD_HOME_ASSISTANT "/bin/python " RECALD_SOURCE_DIR
+                                                          "/tests/daemon/check_home_assistant.py " +
+                                    (folder_ / "messages.jsonl").string());
+  EXPECT_EQ(checked.status, 0) << checked.said;
+  EXPECT_THAT(checked.said, HasSubstr(std::to_string(kEntities)));
 }
 
 TEST_F(DestinationsTest, AWrongPasswordIsSaidAndCostsNothing) {

@@ -79,10 +79,11 @@ Forwarding::Forwarding(Ports ports, const SiteConfig& site, metering::LocalCalen
 
 Forwarding::~Forwarding() {
   self_.reset();
-  forwarders_.clear();  // they use the connection
-  if (!connection_ || !connection_->is_connected() || !site_.mqtt->publishes) return;
+  forwarders_.clear();
+  state_.reset();
+  if (!link_ || !link_->is_connected() || !site_.mqtt->publishes) return;
   // A connection that ends well leaves no will behind.
-  (void)connection_->publish(std::vector{presence_message(site_, false)}, kGoodbyeMax, {});
+  (void)link_->publish(std::vector{presence_message(site_, false)}, kGoodbyeMax, {});
 }
 
 void Forwarding::start() {
@@ -96,12 +97,17 @@ void Forwarding::set_site(const SiteConfig& site) {
   site_ = site;
   if (!is_started_) return;
   forwarders_.clear();
-  if (!is_same_connection) connection_.reset();  // the session of a name has one owner
+  state_.reset();
+  if (!is_same_connection) link_.reset();  // the session of a name has one owner
   begin();
 }
 
 void Forwarding::begin() {
-  if (site_.mqtt && !connection_) connect();
+  if (site_.mqtt && !link_) connect();
+  if (link_ && site_.mqtt->publishes && !state_) {
+    state_ = std::make_unique<BrokerState>(
+        ports_.loop, std::make_unique<system::WorkerThread>(ports_.loop), site_, link_);
+  }
   keep_outbox();
 }
 
@@ -113,7 +119,7 @@ void Forwarding::again_in_a_minute(void (Forwarding::*what)()) {
 }
 
 void Forwarding::connect() {
-  if (!site_.mqtt || connection_) return;
+  if (!site_.mqtt || link_) return;
   const auto broker = broker_of(*site_.mqtt);
   // Both are called on the connection's thread.
   auto opened =
@@ -135,7 +141,7 @@ void Forwarding::connect() {
     hear_state(false, opened.error().message);
     return again_in_a_minute(&Forwarding::begin);
   }
-  connection_ = std::move(*opened);
+  link_ = std::make_shared<BrokerLink>(std::move(*opened));
 }
 
 void Forwarding::hear(const mqtt::Message& message) {
@@ -154,7 +160,10 @@ void Forwarding::hear_state(bool is_connected, const std::string& why) {
     is_broker_lost_ = true;
     tell(Severity::warning, "broker_lost", words,
          fmt::format("the {} is not connected: {}; recald keeps trying", words, why));
-  } else if (std::exchange(is_broker_lost_, false)) {
+    return;
+  }
+  if (state_) state_->begin_anew();
+  if (std::exchange(is_broker_lost_, false)) {
     tell(Severity::info, "broker_found", words, fmt::format("the {} is connected again", words));
   }
 }
@@ -179,8 +188,8 @@ void Forwarding::keep_outbox() {
                                     std::move(destination), std::move(sink), tell_));
     forwarders_.back()->start();
   };
-  if (connection_ && site_.mqtt->publishes) {
-    add(destination_of(*site_.mqtt), make_mqtt_sink(site_, connection_));
+  if (link_ && site_.mqtt->publishes) {
+    add(destination_of(*site_.mqtt), make_mqtt_sink(site_, link_));
   }
   for (const RemoteWriteConfig& write : site_.remote_writes) {
     add(destination_of(write), make_series_sink(site_, calendar_, write));

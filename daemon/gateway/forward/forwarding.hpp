@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "adapters/mqtt/connection.hpp"
+#include "adapters/mqtt/message.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
+#include "daemon/gateway/forward/broker_link.hpp"
+#include "daemon/gateway/forward/broker_state.hpp"
 #include "daemon/gateway/forward/forwarder.hpp"
 #include "daemon/gateway/ingest/told_message.hpp"
 #include "daemon/site/config/site_config.hpp"
@@ -40,6 +42,11 @@ class Forwarding {
   /// go on.
   void set_site(const SiteConfig& site);
 
+  /// For the retained state at the broker; may be called often.
+  void set_facts(const SiteFacts& facts) {
+    if (state_) state_->set(facts);
+  }
+
   [[nodiscard]] std::vector<DestinationStatus> status() const;
 
  private:
@@ -58,7 +65,8 @@ class Forwarding {
   OnValue on_value_;
   bool is_started_ = false;
   bool is_broker_lost_ = false;
-  std::shared_ptr<mqtt::Connection> connection_;
+  std::shared_ptr<BrokerLink> link_;
+  std::unique_ptr<BrokerState> state_;
   std::vector<std::unique_ptr<Forwarder>> forwarders_;
   std::shared_ptr<Forwarding*> self_;
 };

@@ -79,11 +79,11 @@ class SeriesSink final : public Sink {
 
 class MqttSink final : public Sink {
  public:
-  MqttSink(SiteConfig site, std::shared_ptr<mqtt::Connection> connection)
-      : site_(std::move(site)), connection_(std::move(connection)) {}
+  MqttSink(SiteConfig site, std::shared_ptr<BrokerLink> link)
+      : site_(std::move(site)), link_(std::move(link)) {}
 
   Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
-    const auto sent = connection_->publish(mqtt_messages(site_, batch), kPublishMax, stop);
+    const auto sent = link_->publish(mqtt_messages(site_, batch), kPublishMax, stop);
     if (sent) return {};
     const bool is_refused = sent.error().code == ErrorCode::invalid_value;
     return {.outcome = is_refused ? Sent::Outcome::refused : Sent::Outcome::later,
@@ -92,7 +92,7 @@ class MqttSink final : public Sink {
 
  private:
   SiteConfig site_;
-  std::shared_ptr<mqtt::Connection> connection_;
+  std::shared_ptr<BrokerLink> link_;
 };
 
 }  // namespace
@@ -103,9 +103,8 @@ std::unique_ptr<Sink> make_series_sink(const SiteConfig& site,
   return std::make_unique<SeriesSink>(site, calendar, config);
 }
 
-std::unique_ptr<Sink> make_mqtt_sink(const SiteConfig& site,
-                                     std::shared_ptr<mqtt::Connection> connection) {
-  return std::make_unique<MqttSink>(site, std::move(connection));
+std::unique_ptr<Sink> make_mqtt_sink(const SiteConfig& site, std::shared_ptr<BrokerLink> link) {
+  return std::make_unique<MqttSink>(site, std::move(link));
 }
 
 }  // namespace recald::daemon

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "adapters/mqtt/connection.hpp"
 #include "core/metering/civil_time.hpp"
+#include "daemon/gateway/forward/broker_link.hpp"
 #include "daemon/gateway/forward/sink.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -18,6 +18,6 @@ namespace recald::daemon {
 
 /// A broker.
 [[nodiscard]] std::unique_ptr<Sink> make_mqtt_sink(const SiteConfig& site,
-                                                   std::shared_ptr<mqtt::Connection> connection);
+                                                   std::shared_ptr<BrokerLink> link);
 
 }  // namespace recald::daemon

@@ -51,6 +51,7 @@ struct MeterFacts {
   bool is_silent = false;
   std::uint16_t quality = 0;  ///< 0: no interval yet; else 1 + Validity.
   double power_kW = kAbsent;
+  double register_kWh = kAbsent;  ///< Of its counter; no register, since a float has 7 digits.
   double interval_mean_kW = kAbsent;
   std::optional<metering::Instant> interval_start;
   QuantileFacts expected_kW;

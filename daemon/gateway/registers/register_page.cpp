@@ -99,6 +99,14 @@ std::string in_quotes(std::string_view text) {
 
 }  // namespace
 
+std::string words_of(AlarmCode code) {
+  std::string found;
+  for_each_alarm_code([&](int number, std::string words) {
+    if (number == static_cast<int>(code)) found = std::move(words);
+  });
+  return found;
+}
+
 std::string register_page() {
   std::string page = fmt::format(
       "# The map of the registers, version {}\n\n"

@@ -4,9 +4,13 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "daemon/gateway/registers/alarm_codes.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
+
+/// What an alarm's code stands for.
+[[nodiscard]] std::string words_of(AlarmCode code);
 
 /// registers.md: the map of any site.
 [[nodiscard]] std::string register_page();

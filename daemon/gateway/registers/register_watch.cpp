@@ -95,7 +95,7 @@ void RegisterWatch::renew() {
   });
   if (std::exchange(results_are_due_, false)) read_results();
   const GatewayStatus status = served_.status();
-  publish_(register_values(facts_of(status)));
+  publish_(facts_of(status));
   // Without a clock there is no month.
   if (!status.clock_ok || is_reading_) return;
   note_news(status);
@@ -188,11 +188,12 @@ MeterFacts RegisterWatch::facts_of(const MeterConfig& config, const MeterStatus*
   facts.state = state_of(status);
   if (status != nullptr) {
     const Instant heard = heard_from(*status, config.meter.interval, served_.started);
-    facts.is_silent =
-        served_.now() - heard > meter_silence_max(config.meter.interval, status->poll.has_value());
+    facts.is_silent = served_.now() - heard >
+                      meter_silence_max(config.meter.interval, config.source != MeterSource::http);
     // The last value of a meter that does not answer is no value.
     const bool answers = facts.state != MeterState::down;
     facts.power_kW = answers ? status->live.power_kW.value_or(kAbsent) : kAbsent;
+    facts.register_kWh = status->live.register_kWh.value_or(kAbsent);
     facts.open.coverage = status->open_month_coverage;
     if (status->last_interval) {
       const metering::Reading& last = *status->last_interval;

@@ -20,8 +20,8 @@ namespace recald::daemon {
 /// when something has changed, and every six hours all of it.
 class RegisterWatch {
  public:
-  /// Called with all registers.
-  using Publish = std::function<void(std::vector<std::uint16_t>)>;
+  /// Called with everything that is told, every two seconds.
+  using Publish = std::function<void(const SiteFacts&)>;
 
   RegisterWatch(Loop& loop, Served served, Publish publish);
   RegisterWatch(const RegisterWatch&) = delete;

@@ -22,13 +22,15 @@
 #include "adapters/http/credentials.hpp"
 #include "adapters/http/server.hpp"
 #include "adapters/modbus/bus_thread.hpp"
+#include "adapters/modbus/register_server.hpp"
 #include "adapters/system/clock_setting.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/system/worker_thread.hpp"
 #include "daemon/gateway/alert/alerts.hpp"
 #include "daemon/gateway/alert/deliver.hpp"
 #include "daemon/gateway/forward/forwarding.hpp"
-#include "daemon/gateway/registers/register_service.hpp"
+#include "daemon/gateway/registers/register_table.hpp"
+#include "daemon/gateway/registers/register_watch.hpp"
 #include "daemon/gateway/run/gateway.hpp"
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/run/load_watch.hpp"
@@ -103,7 +105,7 @@ class Service {
             {loop_, *store_, worker_}, make_site_work(site_),
             [this](const StoredJob& job) {
               log_job(job);
-              if (registers_) registers_->look_again();
+              if (facts_) facts_->look_again();
             },
             [this](const StoreEvent& event) {
               gateway_->count_stored(event);
@@ -140,7 +142,7 @@ class Service {
                        .on_event = [this](const StoreEvent& event) { hear(event); }},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
-                        if (registers_) registers_->look_again();
+                        if (facts_) facts_->look_again();
                         recalibration_->month_closed(meter.id);
                       });
     if (!gateway) return tl::unexpected(gateway.error());
@@ -154,7 +156,9 @@ class Service {
   /// Serves HTTP and registers if the site is configured to.
   Result<void> listen() {
     if (const auto& modbus = site_.config.modbus) {
-      auto registers = RegisterService::listen(loop_, *modbus, served());
+      auto registers =
+          modbus::RegisterServer::listen({.address = modbus->address, .port = modbus->port},
+                                         modbus::Words(static_cast<std::size_t>(kFirstMeterAt)));
       if (!registers) return tl::unexpected(registers.error());
       registers_ = std::move(*registers);
       spdlog::info("event=listening_modbus address={} port={}", modbus->address,
@@ -180,7 +184,7 @@ class Service {
     gateway_->start();
     weather_wait_.start();
     load_watch_.start();
-    if (registers_) registers_->start();
+    tell_facts();
     alerts_.start();
     keep_up();
     if (!running_.missing.empty()) stand_in();
@@ -188,6 +192,7 @@ class Service {
     run_guarded(context_, loop_, [this](StoreEvent event) { gateway_->note(std::move(event)); });
     if (!found_) watchdog_.ending();
     server_.reset();
+    facts_.reset();
     registers_.reset();
     jobs_.interrupt();
     const auto flushed = gateway_->flush();
@@ -269,6 +274,17 @@ class Service {
                       }};
   }
 
+  /// For management systems and brokers, if the site has any.
+  void tell_facts() {
+    const bool is_wanted = registers_ || (site_.config.mqtt && site_.config.mqtt->publishes);
+    if (!is_wanted || facts_) return;
+    facts_ = std::make_unique<RegisterWatch>(loop_, served(), [this](const SiteFacts& facts) {
+      if (registers_) registers_->set(register_values(facts));
+      forwarding_.set_facts(facts);
+    });
+    facts_->start();
+  }
+
   boost::asio::awaitable<void> heed_signals() {
     for (;;) {
       co_await signal_file_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
@@ -339,7 +355,8 @@ class Service {
     load_watch_.set_expect(make_load_expectation(site_));
     alerts_.set_site(site_.config);
     forwarding_.set_site(site_.config);
-    if (registers_) registers_->look_again();
+    tell_facts();
+    if (facts_) facts_->look_again();
     schedule();
     // A month that closed within the last minute would have been requested by the old schedule.
     catch_up();
@@ -426,7 +443,8 @@ class Service {
   Forwarding forwarding_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<http::Server> server_;
-  std::unique_ptr<RegisterService> registers_;
+  std::unique_ptr<modbus::RegisterServer> registers_;
+  std::unique_ptr<RegisterWatch> facts_;
 };
 
 /// Opening may take minutes more. It can be killed at any step, so do not wait for it.
