@@ -44,11 +44,10 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   /// Publishes all and waits until the broker has acknowledged each. After a failure any of them
-  /// may have arrived: the caller sends all of them again. One caller at a time. The
-  /// broker's word is that it has the message, not that its disk has.
-  /// @return or io_failed: not connected, connection lost, a message refused (the first is named,
-  /// with
-  ///         the broker's reason), or time out; invalid_value: a topic that cannot be;
+  /// may have arrived: the caller sends all of them again. One caller at a time. The broker's word
+  /// is that it has the message, not that its disk has.
+  /// @return or io_failed: not connected, connection lost, a message refused (it is named, with the
+  ///         broker's reason), or time out; invalid_value: a topic that cannot be;
   ///         out_of_range: a message is longer than the broker takes; cancelled.
   [[nodiscard]] Result<void> publish(std::span<const Message> messages,
                                      std::chrono::milliseconds time_max,

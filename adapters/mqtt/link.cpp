@@ -316,8 +316,8 @@ tl::unexpected<Error> Link::lost(int code, int system_error) const {
     return failure(ErrorCode::io_failed,
                    fmt::format("{}: the connection failed: {}", name_, logged));
   }
-  const std::string_view why = code == MOSQ_ERR_KEEPALIVE   ? "the broker fell silent"
-                               : code == MOSQ_ERR_CONN_LOST ? "the broker closed it without a word"
+  const std::string_view why = is_closed                    ? "the broker closed it without a word"
+                               : code == MOSQ_ERR_KEEPALIVE ? "the broker fell silent"
                                : code == MOSQ_ERR_ERRNO     ? std::strerror(system_error)
                                                             : mosquitto_strerror(code);
   return failure(ErrorCode::io_failed, fmt::format("{}: the connection is lost: {}", name_, why));
