@@ -9,7 +9,7 @@ namespace recald::daemon {
 namespace {
 
 constexpr std::chrono::minutes kEvery{1};
-constexpr std::chrono::seconds kPublishMax{10};
+constexpr std::chrono::seconds kStatePublishMax{10};
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void BrokerState::set(const SiteFacts& facts) {
   const auto is_published = std::make_shared<bool>(false);
   worker_->run(
       [link = link_, shared, is_published, stop = stop_.get_token()] {
-        *is_published = link->publish(*shared, kPublishMax, stop).has_value();
+        *is_published = link->publish(*shared, kStatePublishMax, stop).has_value();
       },
       [weak = std::weak_ptr{self_}, shared, is_published] {
         if (const auto self = weak.lock()) (*self)->finish(*shared, *is_published);

@@ -85,7 +85,8 @@ class MqttSink final : public Sink {
   Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
     const auto sent = link_->publish(mqtt_messages(site_, batch), kPublishMax, stop);
     if (sent) return {};
-    const bool is_refused = sent.error().code == ErrorCode::invalid_value;
+    const bool is_refused = sent.error().code == ErrorCode::invalid_value ||
+                            sent.error().code == ErrorCode::out_of_range;
     return {.outcome = is_refused ? Sent::Outcome::refused : Sent::Outcome::later,
             .why = sent.error().message};
   }

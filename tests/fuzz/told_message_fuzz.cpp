@@ -1,0 +1,47 @@
+// A message of a broker gives values that a counter can take, or a reason; nothing else.
+#include <cmath>
+
+#include "daemon/gateway/ingest/plausible_time.hpp"
+#include "daemon/gateway/ingest/told_message.hpp"
+#include "tests/fuzz/require.hpp"
+
+namespace recald::fuzz {
+namespace {
+
+constexpr std::string_view kSite = R"([site]
+id = "tower"
+timezone = "Europe/Berlin"
+[mqtt]
+url = "mqtt://localhost"
+[[meter]]
+id = "timed"
+source = "mqtt"
+utility = "electricity"
+rated_kW = 100
+energy = { topic = "a", pointer = "/e/0", time_pointer = "/t", unit = "MWh" }
+[[meter]]
+id = "plain"
+source = "mqtt"
+utility = "electricity"
+power = { topic = "a", unit = "W" }
+)";
+
+const metering::Instant kNow = std::chrono::sys_days{std::chrono::year{2026} / 3 / 1};
+
+}  // namespace
+}  // namespace recald::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace recald::fuzz;
+  static const auto site = recald::daemon::parse_site(kSite, "/nowhere/site.toml").value();
+  const auto told = recald::daemon::read_told(site, "a", text_of(data, size), false, kNow);
+  for (const auto& value : told.values) {
+    require(std::isfinite(value.value), "a value is finite");
+    require(value.measured.has_value() == value.is_counter, "of the one that has a time");
+    require(!value.measured || (recald::daemon::is_plausible_time(*value.measured) &&
+                                *value.measured <= kNow + std::chrono::minutes{5}),
+            "it has happened");
+  }
+  for (const auto& refusal : told.refusals) require_sentence(refusal.why);
+  return 0;
+}
