@@ -16,6 +16,7 @@ using metering::Placement;
 using metering::Reading;
 
 struct BatchWriter::Statements {
+  Statement newest_interval;
   Statement latest_interval;
   Statement insert_interval;
   Statement insert_outbox_entry;
@@ -33,6 +34,8 @@ BatchWriter::BatchWriter(BatchWriter&&) noexcept = default;
 BatchWriter& BatchWriter::operator=(BatchWriter&&) noexcept = default;
 
 Result<BatchWriter> BatchWriter::prepare(Database& database) {
+  auto newest = database.prepare("SELECT max(t_start) FROM interval WHERE meter = ?");
+  if (!newest) return tl::unexpected(newest.error());
   auto latest =
       database.prepare(fmt::format("SELECT {} FROM interval WHERE meter = ? AND t_start = ? "
                                    "ORDER BY revision DESC LIMIT 1",
@@ -62,8 +65,9 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
   auto reopen = database.prepare("INSERT OR IGNORE INTO reopened VALUES (?, ?)");
   if (!reopen) return tl::unexpected(reopen.error());
   return BatchWriter{std::make_unique<Statements>(
-      Statements{std::move(*latest), std::move(*interval), std::move(*outbox), std::move(*state),
-                 std::move(*sample), std::move(*event), std::move(*count), std::move(*reopen)})};
+      Statements{std::move(*newest), std::move(*latest), std::move(*interval), std::move(*outbox),
+                 std::move(*state), std::move(*sample), std::move(*event), std::move(*count),
+                 std::move(*reopen)})};
 }
 
 Result<CommitCounts> BatchWriter::write(const StoreBatch& batch) {
@@ -100,11 +104,29 @@ Result<std::optional<StoredInterval>> BatchWriter::latest(std::uint32_t meter,
   return std::optional{found};
 }
 
+Result<bool> BatchWriter::is_newer_than_all(std::uint32_t meter, metering::Instant start) {
+  auto known = newest_.find(meter);
+  if (known == newest_.end()) {
+    Statement& query = statements_->newest_interval;
+    const auto row = query.bind(0, std::int64_t{meter}).step();
+    if (!row) return tl::unexpected(row.error());
+    const auto newest = query.is_null(0) ? metering::Instant::min() : instant_of(query.integer(0));
+    query.reset();
+    known = newest_.emplace(meter, newest).first;
+  }
+  const bool is_newer = start > known->second;
+  if (is_newer) known->second = start;
+  return is_newer;
+}
+
 Result<void> BatchWriter::put_interval(const StoreBatch::Interval& interval,
                                        const std::optional<std::int64_t>& edit,
                                        CommitCounts& counts) {
   const Reading& reading = interval.reading;
-  const auto known = latest(reading.meter, reading.start);
+  const auto is_new = is_newer_than_all(reading.meter, reading.start);
+  if (!is_new) return tl::unexpected(is_new.error());
+  const auto known =
+      *is_new ? Result<std::optional<StoredInterval>>{} : latest(reading.meter, reading.start);
   if (!known) return tl::unexpected(known.error());
   const std::optional<Reading> known_reading =
       *known ? std::optional{(*known)->reading} : std::nullopt;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <unordered_map>
 
 #include "adapters/ports/store.hpp"
 #include "adapters/sqlite/database.hpp"
@@ -32,6 +33,8 @@ class BatchWriter {
                                           CommitCounts& counts);
   [[nodiscard]] Result<std::optional<StoredInterval>> latest(std::uint32_t meter,
                                                              metering::Instant start);
+  /// Whether the meter has no interval from `start` on, as that of a live meter has not.
+  [[nodiscard]] Result<bool> is_newer_than_all(std::uint32_t meter, metering::Instant start);
   [[nodiscard]] Result<void> put_registers(const StoreBatch& batch);
   [[nodiscard]] Result<void> put_samples(const StoreBatch& batch);
   [[nodiscard]] Result<bool> count_event(const StoreEvent& event);
@@ -39,6 +42,8 @@ class BatchWriter {
   [[nodiscard]] Result<void> reopen_months(const StoreBatch& batch);
 
   std::unique_ptr<Statements> statements_;
+  /// Of each meter, no interval starts later. After a rollback it may name one that is not there.
+  std::unordered_map<std::uint32_t, metering::Instant> newest_;
 };
 
 }  // namespace recald::sqlite

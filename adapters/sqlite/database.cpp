@@ -201,15 +201,32 @@ void Database::on_progress(OnProgress call) {
 
 void Database::interrupt() { sqlite3_interrupt(impl_->handle.get()); }
 
+template <class Handle>
+Result<void> Database::run_kept(Handle& kept, std::string_view sql) {
+  sqlite3* const database = impl_->handle.get();
+  if (!kept) {
+    sqlite3_stmt* raw = nullptr;
+    const int result = sqlite3_prepare_v3(database, sql.data(), static_cast<int>(sql.size()),
+                                          SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
+    if (result != SQLITE_OK) return failed(result, database, impl_->file);
+    kept.reset(raw);
+  }
+  const int result = sqlite3_step(kept.get());
+  auto done = result == SQLITE_DONE ? Result<void>{} : failed(result, database, impl_->file);
+  sqlite3_reset(kept.get());
+  return done;
+}
+
 Result<bool> Database::begin() {
   const bool is_part = sqlite3_get_autocommit(impl_->handle.get()) == 0;
-  if (auto begun = execute(is_part ? "SAVEPOINT part" : "BEGIN IMMEDIATE"); !begun) {
-    return tl::unexpected(begun.error());
-  }
+  auto begun = is_part ? execute("SAVEPOINT part") : run_kept(impl_->begin, "BEGIN IMMEDIATE");
+  if (!begun) return tl::unexpected(begun.error());
   return is_part;
 }
 
-Result<void> Database::finish(bool is_part) { return execute(is_part ? "RELEASE part" : "COMMIT"); }
+Result<void> Database::finish(bool is_part) {
+  return is_part ? execute("RELEASE part") : run_kept(impl_->commit, "COMMIT");
+}
 
 void Database::roll_back(bool is_part) {
   // Some failures (a full disk) have already rolled back, so there is nothing left to do.

@@ -117,6 +117,9 @@ class Database {
   [[nodiscard]] Result<bool> begin();  ///< @return whether it is part of another transaction.
   [[nodiscard]] Result<void> finish(bool is_part);
   void roll_back(bool is_part);
+  /// Runs a statement without rows; `kept` is the prepared one, or empty at the first call.
+  template <class Handle>
+  [[nodiscard]] Result<void> run_kept(Handle& kept, std::string_view sql);
   std::unique_ptr<Impl> impl_;
 };
 

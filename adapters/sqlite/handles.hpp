@@ -35,6 +35,9 @@ struct Database::Impl {
   DatabaseHandle handle;
   std::string file;
   std::function<void()> on_progress{};
+  // Kept, because parsing them anew takes longer than a small transaction itself.
+  StatementHandle begin{};
+  StatementHandle commit{};
 };
 
 }  // namespace recald::sqlite

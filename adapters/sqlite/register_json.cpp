@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -111,6 +112,8 @@ class Writer {
   /// For known letters only; other text goes through `Json`.
   Writer& word(std::string_view text) { return raw("\"").raw(text).raw("\""); }
   Writer& text(const std::string& any) {
+    const auto needs_care = [](char c) { return c < ' ' || c > '~' || c == '"' || c == '\\'; };
+    if (std::ranges::none_of(any, needs_care)) return word(any);
     return raw(Json(any).dump(-1, ' ', false, Json::error_handler_t::replace));
   }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "adapters/sqlite/handles.hpp"
 
@@ -39,10 +40,18 @@ constexpr std::array<TableShape, 13> kShapes{{
     {"outbox", true, "iinui", 5, 1, nullptr},
 }};
 
+/// The bytes are gathered first, because most values are short and a call takes as long as a
+/// hundred bytes.
 class Crc {
  public:
   void add(const void* bytes, std::size_t size) {
-    sum_ = crc32(sum_, static_cast<const Bytef*>(bytes), static_cast<uInt>(size));
+    if (size > gathered_.size() - used_) flush();
+    if (size > gathered_.size()) {
+      sum_ = crc32(sum_, static_cast<const Bytef*>(bytes), static_cast<uInt>(size));
+      return;
+    }
+    std::memcpy(gathered_.data() + used_, bytes, size);
+    used_ += size;
   }
   void add(char tag) { add(&tag, 1); }
   void add(std::int64_t value) {
@@ -61,9 +70,16 @@ class Crc {
     add(&size, sizeof size);
     add(text.data(), text.size());
   }
-  [[nodiscard]] std::uint32_t sum() const { return static_cast<std::uint32_t>(sum_); }
+  [[nodiscard]] std::uint32_t sum() {
+    flush();
+    return static_cast<std::uint32_t>(sum_);
+  }
 
  private:
+  void flush() { sum_ = crc32(sum_, gathered_.data(), static_cast<uInt>(std::exchange(used_, 0))); }
+
+  std::array<Bytef, 256> gathered_;
+  std::size_t used_ = 0;
   uLong sum_ = crc32(0, nullptr, 0);
 };
 

@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>
+#include <zlib.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "adapters/sqlite/register_json.hpp"
 #include "adapters/sqlite/schema.hpp"
@@ -106,6 +109,53 @@ TEST_F(StoreFile, EverythingMayArriveTwice) {
   EXPECT_EQ(again.taken, 0);
   EXPECT_EQ(again.duplicates, 2);
   EXPECT_THAT(intervals(main), SizeIs(2));
+}
+
+// Whatever the order, and whatever this process has seen of them.
+TEST_F(StoreFile, WhatArrivesLateIsTakenOnce) {
+  const std::uint32_t main = meter("main");
+  const auto counts = [&](int quarter) {
+    const CommitCounts found = commit({.intervals = {{reading(main, quarter, 10.0 + quarter)}}});
+    return std::pair{found.taken, found.duplicates};
+  };
+  EXPECT_EQ(counts(5), std::pair(1, 0));
+  EXPECT_EQ(counts(3), std::pair(1, 0));
+  EXPECT_EQ(counts(3), std::pair(0, 1));
+  EXPECT_EQ(counts(5), std::pair(0, 1));
+  reopen();
+  EXPECT_EQ(counts(5), std::pair(0, 1));
+  EXPECT_EQ(counts(4), std::pair(1, 0));
+  EXPECT_EQ(counts(6), std::pair(1, 0));
+  EXPECT_EQ(counts(6), std::pair(0, 1));
+  EXPECT_THAT(intervals(main), SizeIs(4));
+}
+
+// Files of every version carry these sums: the CRC-32 of the values' bytes, of any length.
+TEST_F(StoreFile, AChecksumIsOfAllBytesInOrder) {
+  for (const std::size_t length : {0u, 1u, 60u, 230u, 256u, 257u, 300u, 5000u}) {
+    const std::string text(length, 'x');
+    std::string bytes;
+    const auto add = [&](char tag, const auto& value) {
+      bytes += tag;
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const auto add_text = [&](const std::string& one) {
+      add('t', static_cast<std::uint32_t>(one.size()));
+      bytes += one;
+    };
+    add_text("interval");
+    add('i', std::int64_t{-7});
+    add_text(text);
+    add('r', 0.25);
+    bytes += 'n';
+    const auto expected =
+        crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
+    auto query =
+        store_->database().prepare("SELECT row_sum('interval', -7, ?, 0.25, NULL)").value();
+    query.bind(0, std::string_view{text});
+    ASSERT_TRUE(query.step().value());
+    EXPECT_EQ(query.integer(0), static_cast<std::int64_t>(expected)) << length;
+  }
 }
 
 TEST_F(StoreFile, BetterReadingsAreNewRevisionsAndTheOldRowStays) {

@@ -137,6 +137,8 @@ TEST_F(StoreTables, WhatIsDoneAsOneMayHaveParts) {
   ASSERT_FALSE(undone.has_value());
   EXPECT_EQ(undone.error().code, ErrorCode::cancelled);
   EXPECT_EQ(intervals(store_, main_), 2);
+  EXPECT_EQ(store_.commit(batch(5, 3)).value().taken, 3);  // as if it had never been tried
+  EXPECT_EQ(store_.commit(batch(5, 3)).value().duplicates, 3);
 }
 
 TEST_F(StoreTables, ABackupInPortionsHasWhatCameMeanwhile) {
