@@ -154,6 +154,13 @@ def quantile_bound(buckets, share):
     return next((edge for edge, count in edges if total and count >= share * total), None)
 
 
+def shares(buckets):
+    """How many of the polls are within each edge that matters, as text."""
+    total = buckets.get("+Inf", 0)
+    return ", ".join(f"{edge} s {100 * buckets[edge] / total:.2f} %"
+                     for edge in ("0.025", "0.05", "0.1", "0.25", "0.5") if edge in buckets)
+
+
 def print_lateness(metrics):
     """Lateness by kind of bus: the first TCP_ENDPOINTS buses are TCP, the rest lines."""
     line = re.compile(r'recald_poll_lateness_seconds_bucket\{(.*)\} (\S+)')
@@ -166,7 +173,8 @@ def print_lateness(metrics):
     for kind, buckets in by_kind.items():
         if buckets:
             print(f"poll lateness, {kind}: p50 <= {quantile_bound(buckets, 0.5)} s, "
-                  f"p99 <= {quantile_bound(buckets, 0.99)} s of {buckets.get('+Inf', 0):.0f} polls")
+                  f"p99 <= {quantile_bound(buckets, 0.99)} s of {buckets.get('+Inf', 0):.0f} polls; "
+                  f"within {shares(buckets)}")
         else:
             print(f"poll lateness, {kind}: not in /metrics")
 

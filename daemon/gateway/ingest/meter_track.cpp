@@ -20,8 +20,11 @@ using metering::RegisterSample;
 using modbus::RegisterField;
 using PollTime = std::chrono::sys_time<std::chrono::milliseconds>;
 
-/// The two samples around each interval boundary are kept, and all that the counter doubts.
-constexpr std::chrono::seconds kNearBoundary{60};
+/// The two samples around each interval boundary are kept, and all that the counter doubts. Of a
+/// poll a minute the last before a boundary is made up to a period and a half before it
+/// (PollTimes).
+constexpr std::chrono::seconds kBeforeBoundary{90};
+constexpr std::chrono::seconds kAfterBoundary{30};
 /// The open interval of a power-only meter is stored this often, so a restart loses no more of it.
 constexpr std::chrono::seconds kKeepPowerEvery{60};
 /// A synchronised clock never steps back further.
@@ -79,9 +82,9 @@ std::string_view kind_of(CounterEvent event) {
 MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
                        const std::optional<RegisterState>& restored)
     : meter_(std::move(meter)),
-      fields_(metered_fields(meter_.map)),
       usual_(std::move(calendar), meter_.booking.interval),
       refusals_(meter_.id) {
+  meter_.map.fields = metered_fields(meter_.map);  // the others are never read
   if (restored) state_ = *restored;
   state_.field = meter_.map.energy.empty() ? "power" : "energy";
   // Use the current settings of the site file; the stored state was reached under the old ones.
@@ -124,13 +127,13 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   if (!result) {
     note_failure(result.error());
     // A field that could not be read no longer has a current value.
-    for (const std::size_t i : read.fields) latest_.erase(fields_[i].name);
+    for (const std::size_t i : read.fields) latest_.erase(meter_.map.fields[i].name);
     update_power();
     return batch;
   }
   live_.read_at = at;
-  for (const modbus::FieldValue& found : decode_read(fields_, read, *result)) {
-    const RegisterField& field = fields_[found.field];
+  for (const modbus::FieldValue& found : decode_read(meter_.map.fields, read, *result)) {
+    const RegisterField& field = meter_.map.fields[found.field];
     if (found.value) {
       latest_[field.name] = {found.value->value, found.value->resolution, found.power_of_ten, poll};
     } else {
@@ -222,7 +225,7 @@ void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
 
 std::optional<double> MeterTrack::new_power_kW(const modbus::PlannedRead& read) const {
   const bool is_new = std::ranges::any_of(
-      read.fields, [&](std::size_t i) { return meter_.map.power == fields_[i].name; });
+      read.fields, [&](std::size_t i) { return meter_.map.power == meter_.map.fields[i].name; });
   return is_new ? live_.power_kW : std::nullopt;
 }
 
@@ -247,7 +250,7 @@ void MeterTrack::take_power(StoreBatch& batch, double power_kW, Instant at) {
 bool MeterTrack::is_worth_keeping(const RegisterSample& sample) const {
   if (state_.counter.phase != metering::CounterPhase::run) return true;
   const auto past = sample.time.time_since_epoch() % meter_.booking.interval;
-  return past < kNearBoundary || meter_.booking.interval - past <= kNearBoundary;
+  return past < kAfterBoundary || meter_.booking.interval - past <= kBeforeBoundary;
 }
 
 /// Times of two clocks cannot be subtracted, so the counter starts anew and the time between is

@@ -94,8 +94,7 @@ class MeterTrack {
                                     const metering::CounterState& before) const;
   [[nodiscard]] bool is_worth_keeping(const metering::RegisterSample& sample) const;
 
-  TrackedMeter meter_;
-  std::vector<modbus::RegisterField> fields_;
+  TrackedMeter meter_;  ///< Its map has only the fields that are read.
   metering::UsualDay usual_;
   RegisterState state_;
   LiveValues live_;

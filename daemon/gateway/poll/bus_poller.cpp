@@ -18,29 +18,22 @@ constexpr milliseconds kPatience{60'000};
 /// Probes may take this long before their share of the bus's time is checked.
 constexpr milliseconds kProbeCredit{5'000};
 
-WallTime next_multiple(WallTime t, milliseconds step) {
-  const milliseconds past = t.time_since_epoch() % step;
-  return t - past + step;
-}
-
 }  // namespace
 
 BusPoller::BusPoller(std::vector<PolledUnit> units, const BusRules& rules, Rng rng)
     : units_(std::move(units)), rules_(rules), rng_(rng) {
   for (std::size_t i = 0; i < units_.size(); ++i) {
-    assert(!units_[i].reads.empty() && units_[i].period > milliseconds{0});
+    assert(!units_[i].reads.empty());
     states_.push_back(unknown(i));
   }
 }
 
 BusPoller::UnitPolling BusPoller::unknown(std::size_t unit) const {
-  return {.health = UnitHealth{rules_.health},
-          .timeout = LearnedTimeout{units_[unit].timeout},
-          .refusals = std::vector<Refusal>(units_[unit].reads.size())};
-}
-
-WallTime BusPoller::due_after(std::size_t unit, WallTime t) const {
-  return std::min(next_multiple(t, units_[unit].period), next_multiple(t, units_[unit].interval));
+  const PolledUnit& polled = units_[unit];
+  return {.times = PollTimes{polled.period, polled.interval, polled.phase},
+          .health = UnitHealth{rules_.health},
+          .timeout = LearnedTimeout{polled.timeout},
+          .refusals = std::vector<Refusal>(polled.reads.size())};
 }
 
 /// At the first call, and after the wall clock was set, all polls are scheduled anew.
@@ -52,11 +45,12 @@ void BusPoller::notice_clock(const Moment& now) {
                                      *wall_minus_monotonic_ - offset > kClockSet);
   wall_minus_monotonic_ = offset;
   if (!is_first && !was_set) return;
-  for (std::size_t i = 0; i < units_.size(); ++i) {
-    states_[i].to_read.clear();
-    states_[i].is_asked = false;
-    // At the start all units are polled at once, to show values; then the schedule applies.
-    states_[i].due = is_first ? now.wall : due_after(i, now.wall);
+  for (UnitPolling& polling : states_) {
+    polling.to_read.clear();
+    polling.is_asked = false;
+    // At the start all units are polled within a second, to show values; then the schedule applies.
+    polling.due =
+        is_first ? now.wall + polling.times.boundary_delay() : polling.times.after(now.wall);
   }
 }
 
@@ -67,8 +61,8 @@ void BusPoller::begin_due_polls(const Moment& now) {
     if (polling.due > now.wall || polling.is_asked) continue;
     const bool is_waiting = !polling.to_read.empty();
     if (!is_waiting) polling.since = polling.due;
-    for (WallTime later = due_after(i, polling.due); later <= now.wall;
-         later = due_after(i, polling.due)) {
+    for (WallTime later = polling.times.after(polling.due); later <= now.wall;
+         later = polling.times.after(polling.due)) {
       polling.due = later;
       ++polling.skipped;
     }
@@ -196,7 +190,7 @@ void BusPoller::end_poll(std::size_t unit) {
   polling.is_asked = false;
   polling.busy = 0;
   polling.not_before = milliseconds{0};
-  polling.due = due_after(unit, polling.due);
+  polling.due = polling.times.after(polling.due);
 }
 
 void BusPoller::take_exception(const BusOrder& order, const modbus::ReadFailure& failure,

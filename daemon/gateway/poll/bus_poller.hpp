@@ -14,20 +14,19 @@
 #include "adapters/ports/clock.hpp"
 #include "core/random/rng.hpp"
 #include "daemon/gateway/poll/learned_timeout.hpp"
+#include "daemon/gateway/poll/poll_times.hpp"
 #include "daemon/gateway/poll/unit_health.hpp"
 
 namespace recald::daemon {
-
-using WallTime = std::chrono::sys_time<std::chrono::milliseconds>;
 
 /// A meter on the bus.
 struct PolledUnit {
   std::string meter;  ///< Its id.
   std::uint8_t unit = 1;
   std::vector<modbus::PlannedRead> reads;  ///< Each poll makes all of them. @pre not empty
-  /// Polls are due at multiples of it since 1970, and also at every interval boundary.
   std::chrono::milliseconds period{60'000};
-  std::chrono::seconds interval{900};
+  std::chrono::seconds interval{900};    ///< Each of its boundaries is polled as well.
+  double phase = 0.0;                    ///< As in PollTimes.
   std::chrono::milliseconds timeout{0};  ///< Zero: learned.
 };
 
@@ -89,7 +88,7 @@ class BusPoller {
                 std::chrono::milliseconds duration, const Moment& now);
 
   /// Forgets everything about its units and the bus: misses, time-outs, refusals, pauses. All units
-  /// are polled at once, as at the start. The outcome of an order in progress is ignored.
+  /// are polled within a second, as at the start. The outcome of an order in progress is ignored.
   void begin_anew();
 
   [[nodiscard]] const std::vector<PolledUnit>& units() const { return units_; }
@@ -106,6 +105,7 @@ class BusPoller {
     bool is_busy = false;  ///< The last poll found the unit busy throughout.
   };
   struct UnitPolling {
+    PollTimes times;
     UnitHealth health;
     LearnedTimeout timeout;
     std::vector<Refusal> refusals;     ///< By read.
@@ -120,7 +120,6 @@ class BusPoller {
   };
 
   [[nodiscard]] UnitPolling unknown(std::size_t unit) const;
-  [[nodiscard]] WallTime due_after(std::size_t unit, WallTime t) const;
   void notice_clock(const Moment& now);
   void begin_due_polls(const Moment& now);
   [[nodiscard]] static bool is_reliable(const UnitPolling& polling);

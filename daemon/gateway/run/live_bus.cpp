@@ -28,7 +28,9 @@ Result<std::unique_ptr<LiveBus>> LiveBus::open(const SiteConfig& site, const Bus
                                                const metering::LocalCalendar& calendar,
                                                Store& store) {
   std::unique_ptr<LiveBus> live{new LiveBus{bus}};
-  for (const MeterConfig* meter : meters_on(site, bus.name)) {
+  const auto meters = meters_on(site, bus.name);
+  live->meters_.reserve(meters.size());
+  for (const MeterConfig* meter : meters) {
     auto opened = meter->role == MeterRole::weather
                       ? open_live_sensor(*meter, calendar, store)
                       : open_live_meter(*meter, *meter->live, calendar, store);
@@ -59,6 +61,7 @@ std::vector<PolledUnit> LiveBus::polled_units() const {
                      .reads = meter.reads,
                      .period = live.poll,
                      .interval = meter.interval(),
+                     .phase = poll_phase(config_.name, units.size(), meters_.size()),
                      .timeout = live.timeout > milliseconds{0} ? live.timeout : config_.timeout});
   }
   return units;

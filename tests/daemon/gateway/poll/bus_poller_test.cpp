@@ -136,6 +136,35 @@ TEST(BusPoller, PollsAtEveryIntervalBoundary) {
   EXPECT_THAT(all, ::testing::Contains(kNoon + seconds{920}));
 }
 
+// A poll is late by what has passed since its own due time, not since the full minute.
+TEST(BusPoller, EachUnitIsDueAtItsOwnTime) {
+  std::vector<PolledUnit> units{unit(1), unit(2)};
+  units[0].phase = 0.25;
+  units[1].phase = 0.26;  // 0.6 s later
+  VirtualBus bus{units, [](const BusOrder&, const Moment&) { return Reply{milliseconds{900}}; }};
+  bus.run(minutes{10});
+  bus.made.clear();
+  bus.run(minutes{4});
+  EXPECT_THAT(times(bus, 0), ElementsAre(kNoon + seconds{615}, kNoon + seconds{675},
+                                         kNoon + seconds{735}, kNoon + seconds{795}));
+  EXPECT_THAT(bus.lateness(0), Each(milliseconds{0}));
+  EXPECT_THAT(bus.lateness(1), SizeIs(4));
+  EXPECT_THAT(bus.lateness(1), Each(milliseconds{300}));
+}
+
+TEST(BusPoller, BegunAnewAUnitKeepsItsPhase) {
+  std::vector<PolledUnit> units{unit(1)};
+  units[0].phase = 0.75;
+  VirtualBus bus{units, all_answer()};
+  bus.run(minutes{2});
+  bus.poller.begin_anew();
+  bus.made.clear();
+  bus.run(minutes{2});
+  // At the start within a second: 0.75 of 0.8 s.
+  EXPECT_THAT(times(bus, 0), ElementsAre(kNoon + milliseconds{132'345 + 600}, kNoon + seconds{165},
+                                         kNoon + seconds{225}));
+}
+
 TEST(BusPoller, AllReadsOfAPollInOrder) {
   VirtualBus bus{{unit(1, seconds{60}, 3)}, all_answer()};
   bus.run(seconds{1});

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "tests/daemon/gateway/gateway_rig.hpp"
 
@@ -100,6 +102,47 @@ TEST_F(Reload, AFileThatSaysTheSameBeginsTheBusesAnewAndCostsNothing) {
   loop_.run_for(hours{3});
   EXPECT_EQ(flawed("main"), 0);
   EXPECT_EQ(flawed("lift"), 0);
+}
+
+// Meters are not polled at the same instant, and each keeps its place in the minute.
+TEST_F(Reload, PlacesInThePeriodStay) {
+  std::map<int, std::vector<WallTime>> polled_at;
+  for (std::uint8_t unit = 1; unit <= 3; ++unit) {
+    devices_[unit].energy_kWh = [&polled_at, this, unit](milliseconds t) {
+      polled_at[unit].push_back(loop_.now().wall);
+      return 50.0 * unit * testing::hours_of(t);
+    };
+  }
+  const std::string two = bus("plant") + meter("a", "plant", 1) + meter("b", "plant", 2);
+  begin(two);
+  // Some minutes in the middle of an interval.
+  const auto places = [&] {
+    const milliseconds past = loop_.now().wall.time_since_epoch() % minutes{15};
+    (void)loop_.run_for(minutes{20} - past);
+    polled_at.clear();
+    (void)loop_.run_for(minutes{5});
+    std::map<int, std::set<milliseconds>> found;
+    for (const auto& [unit, times] : polled_at) {
+      for (const WallTime t : times) found[unit].insert(t.time_since_epoch() % minutes{1});
+    }
+    return found;
+  };
+  const auto before = places();
+  ASSERT_THAT(before, SizeIs(2));
+  const auto place_of = [](std::size_t unit) {
+    return PollTimes{minutes{1}, minutes{15}, poll_phase("plant", unit, 2)}
+               .after(kStart + minutes{5})
+               .time_since_epoch() %
+           minutes{1};
+  };
+  EXPECT_THAT(before.at(1), ElementsAre(place_of(0)));
+  EXPECT_THAT(before.at(2), ElementsAre(place_of(1)));
+  ASSERT_TRUE(reload(site(two + bus("other") + meter("c", "other", 3))).has_value());
+  auto after = places();
+  EXPECT_THAT(after, SizeIs(3));
+  EXPECT_NE(after.at(3), before.at(1));
+  after.erase(3);
+  EXPECT_EQ(after, before);
 }
 
 TEST_F(Reload, AChangedBusIsOpenedAnewAndItsNeighbourGoesOn) {
