@@ -1,10 +1,12 @@
 #include "core/weather/weather_series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/absent.hpp"
 
@@ -269,15 +271,26 @@ Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds 
   WeatherSeries series;
   series.begin = full_hour_before(records.front().start);
   const Instant last = full_hour_before(records.back().start + length - seconds{1});
-  std::vector<HourMeans> means(static_cast<std::size_t>((last - series.begin) / hours{1}) + 1);
+  series.hours.reserve(static_cast<std::size_t>((last - series.begin) / hours{1}) + 1);
+  // A record lies in one hour or in two that follow each other, and none comes back to one before:
+  // years of sums would be larger than the records themselves.
+  Instant open_hour = series.begin;
+  std::array<HourMeans, 2> open{};
+  const auto close_until = [&](Instant hour) {
+    for (; open_hour < hour; open_hour += hours{1}) {
+      series.hours.push_back(to_hour(open[0]));
+      open[0] = std::exchange(open[1], {});
+    }
+  };
   for (std::size_t i = 0; i < records.size(); ++i) {
     const WeatherRecord& record = records[i];
     const WeatherHour* neighbour = neighbour_of(records, i, step, stand);
     const Instant end = record.start + length;
+    close_until(full_hour_before(record.start));
     for (Instant hour = full_hour_before(record.start); hour < end; hour += hours{1}) {
       const Instant from = std::max(hour, record.start);
       const seconds overlap = std::min<Instant>(hour + hours{1}, end) - from;
-      HourMeans& mean = means[static_cast<std::size_t>((hour - series.begin) / hours{1})];
+      HourMeans& mean = open[hour == open_hour ? 0 : 1];
       const double weight = metering::in_hours(overlap);
       if (stand == ValuesStand::over_the_record) {
         add_to(mean, record.values, weight);
@@ -289,8 +302,7 @@ Result<WeatherSeries> to_hourly(std::span<const WeatherRecord> records, seconds 
                    stand == ValuesStand::at_its_end ? 1.0 - share : share, weight);
     }
   }
-  series.hours.reserve(means.size());
-  for (const HourMeans& hour : means) series.hours.push_back(to_hour(hour));
+  close_until(last + hours{1});
   return series;
 }
 

@@ -395,7 +395,7 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
   auto config = load_site(folder_ / "live.toml").value();
   config.recalibration.months = 8;
   const auto calendar = metering::LocalCalendar::open(config.timezone).value();
-  const DoJob work = make_site_work({config, calendar});
+  const DoJob work = make_site_work(share({config, calendar}));
   StoredJob job;
   job.number = 7;
   const metering::Instant now = std::chrono::sys_days{std::chrono::year{2021} / 12 / 20};
@@ -430,7 +430,7 @@ TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   config.recalibration.months = 8;
   config.recalibration.design = folder_ / "doe";
   const DoJob work =
-      make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+      make_site_work(share({config, metering::LocalCalendar::open(config.timezone).value()}));
   const auto outcome =
       work({}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, nobody_stops_it());
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
@@ -455,7 +455,7 @@ TEST_F(LiveSite, ADesignOfAnotherSiteIsRefused) {
   auto config = load_site(folder_ / "live.toml").value();
   config.recalibration.design = folder_ / "doe";
   const auto calendar = metering::LocalCalendar::open(config.timezone).value();
-  const auto outcome = make_site_work({config, calendar})(
+  const auto outcome = make_site_work(share({config, calendar}))(
       {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, nobody_stops_it());
   EXPECT_THAT(why_failed(outcome), HasSubstr("not for this site"));
 }
@@ -465,7 +465,7 @@ TEST_F(LiveSite, AJobSaysThatItsDesignIsMissing) {
   auto config = load_site(folder_ / "live.toml").value();
   config.recalibration.design = folder_ / "nowhere";
   const auto calendar = metering::LocalCalendar::open(config.timezone).value();
-  const auto outcome = make_site_work({config, calendar})(
+  const auto outcome = make_site_work(share({config, calendar}))(
       {}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, nobody_stops_it());
   EXPECT_THAT(why_failed(outcome), HasSubstr("nowhere"));
 }
@@ -474,7 +474,7 @@ TEST_F(LiveSite, AJobThatIsToldToStopStops) {
   import_history();
   const auto config = load_site(folder_ / "live.toml").value();
   const DoJob work =
-      make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+      make_site_work(share({config, metering::LocalCalendar::open(config.timezone).value()}));
   JobWatch watch;
   watch.stop();
   const auto outcome = work({}, std::chrono::sys_days{std::chrono::year{2022} / 2 / 1}, watch);
@@ -528,7 +528,7 @@ class FollowedSite : public LiveSite {
     auto config = load_site(folder_ / "live.toml").value();
     config.recalibration.months = 8;
     const DoJob work =
-        make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+        make_site_work(share({config, metering::LocalCalendar::open(config.timezone).value()}));
     const auto outcome = work({}, std::chrono::sys_days{day}, nobody_stops_it());
     EXPECT_TRUE(outcome.has_value()) << outcome.error().message;
     EXPECT_TRUE(store_.add_forecasts(outcome->forecasts).has_value());
@@ -570,7 +570,7 @@ TEST_F(LiveSite, AJobBeforeAnyMonthHasClosedSaysSo) {
   import_history();
   const auto config = load_site(folder_ / "live.toml").value();
   const DoJob work =
-      make_site_work({config, metering::LocalCalendar::open(config.timezone).value()});
+      make_site_work(share({config, metering::LocalCalendar::open(config.timezone).value()}));
   const auto outcome =
       work({}, std::chrono::sys_days{std::chrono::year{2021} / 1 / 20}, nobody_stops_it());
   EXPECT_THAT(why_failed(outcome), HasSubstr("has no usable closed month yet"));

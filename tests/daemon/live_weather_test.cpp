@@ -92,7 +92,7 @@ class LiveWeather : public ::testing::Test {
   /// What a calibration gives on the latest closed months.
   json calibrated(Instant now = kNow) {
     JobWatch watch;
-    const auto outcome = make_site_work({site_, calendar_})({}, now, watch);
+    const auto outcome = make_site_work(share({site_, calendar_}))({}, now, watch);
     EXPECT_TRUE(outcome.has_value()) << outcome.error().message;
     EXPECT_FALSE(outcome->failed) << outcome->message;
     said_ = outcome->message;
@@ -218,12 +218,12 @@ class Sent : public LiveWeather {
   void begin() {
     rig_.emplace(*store_, loop_, kNow);
     rig_->begin(site_);
-    jobs_.emplace(JobRunner::Ports{loop_, *store_, worker_}, make_site_work({site_, calendar_}),
-                  [this](const StoredJob& job) {
+    jobs_.emplace(JobRunner::Ports{loop_, *store_, worker_},
+                  make_site_work(share({site_, calendar_})), [this](const StoredJob& job) {
                     if (job.ended) ended_.push_back(job);
                   });
     wait_.emplace(WeatherWait::Ports{loop_, *store_, looker_},
-                  make_weather_look({site_, calendar_}), [this] { ask("weather"); });
+                  make_weather_look(share({site_, calendar_})), [this] { ask("weather"); });
     wait_->start();
   }
   void ask(const char* by) { ASSERT_TRUE(jobs_->ask(JobKind::calibration, by).has_value()); }

@@ -62,9 +62,9 @@ std::string destination_words(const AlertDestination& destination) {
   return fmt::format("mail to {}", fmt::join(std::get<MailConfig>(destination).to, ", "));
 }
 
-Alerts::Alerts(Ports ports, const SiteConfig& site, metering::LocalCalendar calendar,
-               Deliver deliver, std::function<void(StoreEvent)> tell, Told told,
-               const AlertRules& rules)
+Alerts::Alerts(Ports ports, std::shared_ptr<const SiteConfig> site,
+               metering::LocalCalendar calendar, Deliver deliver,
+               std::function<void(StoreEvent)> tell, Told told, const AlertRules& rules)
     : ports_(ports),
       calendar_(std::move(calendar)),
       deliver_(std::move(deliver)),
@@ -72,17 +72,17 @@ Alerts::Alerts(Ports ports, const SiteConfig& site, metering::LocalCalendar cale
       rules_(rules),
       told_(std::move(told)),
       self_(std::make_shared<Alerts*>(this)) {
-  set_site(site);
+  set_site(std::move(site));
 }
 
 Alerts::~Alerts() { stop_.request_stop(); }
 
 void Alerts::start() { schedule(rules_.gather); }
 
-void Alerts::set_site(const SiteConfig& site) {
-  site_ = site;
+void Alerts::set_site(std::shared_ptr<const SiteConfig> site) {
+  site_ = std::move(site);
   std::vector<Outgoing> outgoing;
-  for (const AlertDestination& destination : site.alerts.destinations) {
+  for (const AlertDestination& destination : site_->alerts.destinations) {
     const std::string cursor = cursor_name(destination);
     // Twice in the file is once: there is one cursor.
     if (std::ranges::find(outgoing, cursor, &Outgoing::cursor) != outgoing.end()) continue;
@@ -199,7 +199,7 @@ void Alerts::add_unstored(const Outgoing& outgoing, const Moment& now, Pending& 
 
 bool Alerts::is_alert(const StoreEvent& event, Instant now) const {
   const bool is_chosen =
-      std::ranges::find(site_.alerts.about, event.kind) != site_.alerts.about.end();
+      std::ranges::find(site_->alerts.about, event.kind) != site_->alerts.about.end();
   // What happened before the clock was set has no age.
   const Instant at = event.last.value_or(event.time);
   return is_chosen && (!is_plausible_time(at) || at > now - rules_.forget);
@@ -217,9 +217,9 @@ bool Alerts::was_told(const Outgoing& outgoing, const StoreEvent& event) const {
 }
 
 bool Alerts::waits_for_morning(const Pending& pending, Instant now) const {
-  if (!site_.alerts.quiet) return false;
+  if (!site_->alerts.quiet) return false;
   const std::chrono::minutes time_of_day{calendar_.local_time(now).minute_of_day};
-  return site_.alerts.quiet->contain(time_of_day) &&
+  return site_->alerts.quiet->contain(time_of_day) &&
          std::ranges::none_of(pending.events, [](const StoreEvent& event) {
            return event.severity == Severity::error;
          });
@@ -240,7 +240,7 @@ void Alerts::send(const Outgoing& outgoing, Pending pending, Instant now) {
     pending.position = last->number > 0 ? std::optional{last->number} : std::nullopt;
   }
   const auto sent = std::make_shared<Result<void>>();
-  AlertMessage message = alert_message(site_, calendar_, pending.events, now);
+  AlertMessage message = alert_message(*site_, calendar_, pending.events, now);
   is_sending_ = true;
   ports_.worker.run(
       [deliver = deliver_, destination = outgoing.destination, message = std::move(message),

@@ -61,8 +61,9 @@ class Alerts {
 
   /// @param tell  Receives events about the deliveries themselves.
   /// @param told  By an earlier object, whose store was another.
-  Alerts(Ports ports, const SiteConfig& site, metering::LocalCalendar calendar, Deliver deliver,
-         std::function<void(StoreEvent)> tell, Told told = {}, const AlertRules& rules = {});
+  Alerts(Ports ports, std::shared_ptr<const SiteConfig> site, metering::LocalCalendar calendar,
+         Deliver deliver, std::function<void(StoreEvent)> tell, Told told = {},
+         const AlertRules& rules = {});
   /// Stops the worker's delivery early.
   ~Alerts();
   Alerts(const Alerts&) = delete;
@@ -75,7 +76,7 @@ class Alerts {
   void heard(const StoreEvent& event);
 
   /// Continues with another site file. Destinations that stay are told what is new to them.
-  void set_site(const SiteConfig& site);
+  void set_site(std::shared_ptr<const SiteConfig> site);
 
   [[nodiscard]] Told take_told() { return std::move(told_); }
 
@@ -107,7 +108,7 @@ class Alerts {
   void finish(const std::string& cursor, const Pending& pending, const Result<void>& sent);
 
   Ports ports_;
-  SiteConfig site_;
+  std::shared_ptr<const SiteConfig> site_;
   metering::LocalCalendar calendar_;
   Deliver deliver_;
   std::function<void(StoreEvent)> tell_;

@@ -13,10 +13,10 @@ constexpr std::chrono::seconds kStatePublishMax{10};
 
 }  // namespace
 
-BrokerState::BrokerState(Loop& loop, std::unique_ptr<Worker> worker, const SiteConfig& site,
-                         std::shared_ptr<BrokerLink> link)
+BrokerState::BrokerState(Loop& loop, std::unique_ptr<Worker> worker,
+                         std::shared_ptr<const SiteConfig> site, std::shared_ptr<BrokerLink> link)
     : loop_(loop),
-      site_(site),
+      site_(std::move(site)),
       link_(std::move(link)),
       self_(std::make_shared<BrokerState*>(this)),
       worker_(std::move(worker)) {}
@@ -33,8 +33,8 @@ void BrokerState::set(const SiteFacts& facts) {
   const auto now = loop_.now().monotonic;
   if (is_publishing_ || now < not_before_.value_or(now) || !link_->is_connected()) return;
   not_before_ = now + kEvery;
-  auto messages = discovery_messages(site_);
-  std::ranges::move(state_messages(site_, facts), std::back_inserter(messages));
+  auto messages = discovery_messages(*site_);
+  std::ranges::move(state_messages(*site_, facts), std::back_inserter(messages));
   std::erase_if(messages, [&](const mqtt::Message& message) {
     const auto known = published_.find(message.topic);
     return known != published_.end() && known->second == message.payload;

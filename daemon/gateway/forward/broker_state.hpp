@@ -20,7 +20,7 @@ namespace recald::daemon {
 /// state that could not be published is replaced by the next one.
 class BrokerState {
  public:
-  BrokerState(Loop& loop, std::unique_ptr<Worker> worker, const SiteConfig& site,
+  BrokerState(Loop& loop, std::unique_ptr<Worker> worker, std::shared_ptr<const SiteConfig> site,
               std::shared_ptr<BrokerLink> link);
   /// Waits for what is being published, which is told to stop.
   ~BrokerState();
@@ -37,7 +37,7 @@ class BrokerState {
   void finish(const std::vector<mqtt::Message>& messages, bool is_published);
 
   Loop& loop_;
-  SiteConfig site_;
+  std::shared_ptr<const SiteConfig> site_;
   std::shared_ptr<BrokerLink> link_;
   std::map<std::string, std::string> published_;  ///< Payload by topic.
   std::optional<std::chrono::milliseconds> not_before_;

@@ -68,10 +68,10 @@ mqtt::Session session_of(const SiteConfig& site) {
 
 }  // namespace
 
-Forwarding::Forwarding(Ports ports, const SiteConfig& site, metering::LocalCalendar calendar,
-                       Tell tell, OnValue on_value)
+Forwarding::Forwarding(Ports ports, std::shared_ptr<const SiteConfig> site,
+                       metering::LocalCalendar calendar, Tell tell, OnValue on_value)
     : ports_(ports),
-      site_(site),
+      site_(std::move(site)),
       calendar_(std::move(calendar)),
       tell_(std::move(tell)),
       on_value_(std::move(on_value)),
@@ -81,9 +81,9 @@ Forwarding::~Forwarding() {
   self_.reset();
   forwarders_.clear();
   state_.reset();
-  if (!link_ || !link_->is_connected() || !site_.mqtt->publishes) return;
+  if (!link_ || !link_->is_connected() || !site_->mqtt->publishes) return;
   // A connection that ends well leaves no will behind.
-  (void)link_->publish(std::vector{presence_message(site_, false)}, kGoodbyeMax, {});
+  (void)link_->publish(std::vector{presence_message(*site_, false)}, kGoodbyeMax, {});
 }
 
 void Forwarding::start() {
@@ -91,10 +91,10 @@ void Forwarding::start() {
   begin();
 }
 
-void Forwarding::set_site(const SiteConfig& site) {
+void Forwarding::set_site(std::shared_ptr<const SiteConfig> site) {
   const bool is_same_connection =
-      site_.mqtt == site.mqtt && told_topics(site_) == told_topics(site);
-  site_ = site;
+      site_->mqtt == site->mqtt && told_topics(*site_) == told_topics(*site);
+  site_ = std::move(site);
   if (!is_started_) return;
   forwarders_.clear();
   state_.reset();
@@ -103,8 +103,8 @@ void Forwarding::set_site(const SiteConfig& site) {
 }
 
 void Forwarding::begin() {
-  if (site_.mqtt && !link_) connect();
-  if (link_ && site_.mqtt->publishes && !state_) {
+  if (site_->mqtt && !link_) connect();
+  if (link_ && site_->mqtt->publishes && !state_) {
     state_ = std::make_unique<BrokerState>(
         ports_.loop, std::make_unique<system::WorkerThread>(ports_.loop), site_, link_);
   }
@@ -119,13 +119,13 @@ void Forwarding::again_in_a_minute(void (Forwarding::*what)()) {
 }
 
 void Forwarding::connect() {
-  if (!site_.mqtt || link_) return;
-  const auto broker = broker_of(*site_.mqtt);
+  if (!site_->mqtt || link_) return;
+  const auto broker = broker_of(*site_->mqtt);
   // Both are called on the connection's thread.
   auto opened =
       !broker ? tl::unexpected(broker.error())
               : mqtt::Connection::open(
-                    *broker, session_of(site_),
+                    *broker, session_of(*site_),
                     [&loop = ports_.loop, weak = std::weak_ptr{self_}](const mqtt::Message& one) {
                       loop.post([weak, one] {
                         if (const auto self = weak.lock()) (*self)->hear(one);
@@ -145,7 +145,7 @@ void Forwarding::connect() {
 }
 
 void Forwarding::hear(const mqtt::Message& message) {
-  const ToldMessage told = read_told(site_, message.topic, message.payload, message.is_retained,
+  const ToldMessage told = read_told(*site_, message.topic, message.payload, message.is_retained,
                                      ports_.loop.now().instant());
   for (const ToldValue& value : told.values) on_value_(value);
   for (const ToldRefusal& refusal : told.refusals) {
@@ -154,8 +154,8 @@ void Forwarding::hear(const mqtt::Message& message) {
 }
 
 void Forwarding::hear_state(bool is_connected, const std::string& why) {
-  if (!site_.mqtt) return;
-  const std::string words = broker_words(*site_.mqtt);
+  if (!site_->mqtt) return;
+  const std::string words = broker_words(*site_->mqtt);
   if (!is_connected) {
     is_broker_lost_ = true;
     tell(Severity::warning, "broker_lost", words,
@@ -172,8 +172,8 @@ void Forwarding::hear_state(bool is_connected, const std::string& why) {
 void Forwarding::keep_outbox() {
   if (!ports_.is_on_disk) return;
   std::vector<std::string> ids;
-  if (site_.mqtt && site_.mqtt->publishes) ids.push_back(destination_of(*site_.mqtt).id);
-  for (const RemoteWriteConfig& write : site_.remote_writes) {
+  if (site_->mqtt && site_->mqtt->publishes) ids.push_back(destination_of(*site_->mqtt).id);
+  for (const RemoteWriteConfig& write : site_->remote_writes) {
     ids.push_back(destination_of(write).id);
   }
   if (!ports_.store.keep_outbox_for(ids)) return again_in_a_minute(&Forwarding::begin);
@@ -188,10 +188,10 @@ void Forwarding::keep_outbox() {
                                     std::move(destination), std::move(sink), tell_));
     forwarders_.back()->start();
   };
-  if (link_ && site_.mqtt->publishes) {
-    add(destination_of(*site_.mqtt), make_mqtt_sink(site_, link_));
+  if (link_ && site_->mqtt->publishes) {
+    add(destination_of(*site_->mqtt), make_mqtt_sink(site_, link_));
   }
-  for (const RemoteWriteConfig& write : site_.remote_writes) {
+  for (const RemoteWriteConfig& write : site_->remote_writes) {
     add(destination_of(write), make_series_sink(site_, calendar_, write));
   }
 }

@@ -30,8 +30,8 @@ class Forwarding {
 
   /// @param tell      Adds an event.
   /// @param on_value  Called on the loop's thread for each value of a meter.
-  Forwarding(Ports ports, const SiteConfig& site, metering::LocalCalendar calendar, Tell tell,
-             OnValue on_value);
+  Forwarding(Ports ports, std::shared_ptr<const SiteConfig> site, metering::LocalCalendar calendar,
+             Tell tell, OnValue on_value);
   ~Forwarding();
   Forwarding(const Forwarding&) = delete;
   Forwarding& operator=(const Forwarding&) = delete;
@@ -40,7 +40,7 @@ class Forwarding {
 
   /// Continues with another site file. A connection and a destination that are described as before
   /// go on.
-  void set_site(const SiteConfig& site);
+  void set_site(std::shared_ptr<const SiteConfig> site);
 
   /// For the retained state at the broker; may be called often.
   void set_facts(const SiteFacts& facts) {
@@ -59,7 +59,7 @@ class Forwarding {
   void tell(Severity severity, const char* kind, const std::string& subject, std::string text);
 
   Ports ports_;
-  SiteConfig site_;
+  std::shared_ptr<const SiteConfig> site_;
   metering::LocalCalendar calendar_;
   Tell tell_;
   OnValue on_value_;

@@ -39,7 +39,8 @@ Result<delivery::Post> post_to(const RemoteWriteConfig& config) {
 
 class SeriesSink final : public Sink {
  public:
-  SeriesSink(SiteConfig site, metering::LocalCalendar calendar, RemoteWriteConfig config)
+  SeriesSink(std::shared_ptr<const SiteConfig> site, metering::LocalCalendar calendar,
+             RemoteWriteConfig config)
       : site_(std::move(site)), calendar_(std::move(calendar)), config_(std::move(config)) {}
 
   Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
@@ -48,7 +49,7 @@ class SeriesSink final : public Sink {
     const auto protocol = config_.protocol == WriteProtocol::influx
                               ? series::Protocol::influx
                               : series::Protocol::remote_write;
-    const auto points = series_points(site_, calendar_, batch);
+    const auto points = series_points(*site_, calendar_, batch);
     const auto answer = delivery::post(series::message(protocol, std::move(*to), points), stop);
     if (!answer) return later(answer.error().message);
     series::Meaning meaning = series::meaning_of(*answer);
@@ -72,18 +73,18 @@ class SeriesSink final : public Sink {
     return Sent::Outcome::later;
   }
 
-  SiteConfig site_;
+  std::shared_ptr<const SiteConfig> site_;
   metering::LocalCalendar calendar_;
   RemoteWriteConfig config_;
 };
 
 class MqttSink final : public Sink {
  public:
-  MqttSink(SiteConfig site, std::shared_ptr<BrokerLink> link)
+  MqttSink(std::shared_ptr<const SiteConfig> site, std::shared_ptr<BrokerLink> link)
       : site_(std::move(site)), link_(std::move(link)) {}
 
   Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
-    const auto sent = link_->publish(mqtt_messages(site_, batch), kPublishMax, stop);
+    const auto sent = link_->publish(mqtt_messages(*site_, batch), kPublishMax, stop);
     if (sent) return {};
     const bool is_refused = sent.error().code == ErrorCode::invalid_value ||
                             sent.error().code == ErrorCode::out_of_range;
@@ -92,20 +93,21 @@ class MqttSink final : public Sink {
   }
 
  private:
-  SiteConfig site_;
+  std::shared_ptr<const SiteConfig> site_;
   std::shared_ptr<BrokerLink> link_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sink> make_series_sink(const SiteConfig& site,
+std::unique_ptr<Sink> make_series_sink(std::shared_ptr<const SiteConfig> site,
                                        const metering::LocalCalendar& calendar,
                                        const RemoteWriteConfig& config) {
-  return std::make_unique<SeriesSink>(site, calendar, config);
+  return std::make_unique<SeriesSink>(std::move(site), calendar, config);
 }
 
-std::unique_ptr<Sink> make_mqtt_sink(const SiteConfig& site, std::shared_ptr<BrokerLink> link) {
-  return std::make_unique<MqttSink>(site, std::move(link));
+std::unique_ptr<Sink> make_mqtt_sink(std::shared_ptr<const SiteConfig> site,
+                                     std::shared_ptr<BrokerLink> link) {
+  return std::make_unique<MqttSink>(std::move(site), std::move(link));
 }
 
 }  // namespace recald::daemon

@@ -12,12 +12,12 @@ namespace recald::daemon {
 
 /// Prometheus or InfluxDB. Secrets are read from their files each time, so that they can be
 /// renewed.
-[[nodiscard]] std::unique_ptr<Sink> make_series_sink(const SiteConfig& site,
+[[nodiscard]] std::unique_ptr<Sink> make_series_sink(std::shared_ptr<const SiteConfig> site,
                                                      const metering::LocalCalendar& calendar,
                                                      const RemoteWriteConfig& config);
 
 /// A broker.
-[[nodiscard]] std::unique_ptr<Sink> make_mqtt_sink(const SiteConfig& site,
+[[nodiscard]] std::unique_ptr<Sink> make_mqtt_sink(std::shared_ptr<const SiteConfig> site,
                                                    std::shared_ptr<BrokerLink> link);
 
 }  // namespace recald::daemon

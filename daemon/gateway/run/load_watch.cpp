@@ -81,16 +81,16 @@ void LoadWatch::take(Result<std::vector<ExpectedMeter>> expected) {
   failure_ = failure;
 }
 
-ExpectLoads make_load_expectation(OpenSite site) {
+ExpectLoads make_load_expectation(SharedSite site) {
   struct Learned {
     std::optional<LoadExpectation> expectation;
     metering::Instant at{};
   };
   return [site = std::move(site), learned = std::make_shared<Learned>()](
              const metering::TimeSpan& span) -> Result<std::vector<ExpectedMeter>> {
-    if (!site.config.model || !site.config.building) return std::vector<ExpectedMeter>{};
+    if (!site->config.model || !site->config.building) return std::vector<ExpectedMeter>{};
     if (!learned->expectation || span.end - learned->at >= kLearnEvery) {
-      auto again = LoadExpectation::learn(site, span.end);
+      auto again = LoadExpectation::learn(*site, span.end);
       if (!again) return tl::unexpected(again.error());
       learned->expectation = std::move(*again);
       learned->at = span.end;

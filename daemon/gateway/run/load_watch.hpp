@@ -52,6 +52,6 @@ class LoadWatch {
 };
 
 /// Learns from the site's closed months at the first call, and again every day.
-[[nodiscard]] ExpectLoads make_load_expectation(OpenSite site);
+[[nodiscard]] ExpectLoads make_load_expectation(SharedSite site);
 
 }  // namespace recald::daemon

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <malloc.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -73,6 +74,16 @@ Result<void> can_reload(const SiteConfig& now, const SiteConfig& then) {
   return {};
 }
 
+/// Of the hundreds of threads most allocate a few bytes a second, so two of glibc's arenas do
+/// for all; each more keeps megabytes. Long arrays, of hours of weather or readings, go back to the
+/// system when they are freed: by default glibc learns from the first one to keep them.
+void save_memory() {
+  constexpr int kArenas = 2;
+  constexpr int kLongArray_bytes = 128 * 1024;
+  ::mallopt(M_ARENA_MAX, kArenas);
+  ::mallopt(M_MMAP_THRESHOLD, kLongArray_bytes);
+}
+
 /// For a store in memory: no backups, and no more data than memory allows.
 StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
   if (running.missing.empty()) return config;
@@ -90,6 +101,7 @@ class Service {
   Service(OpenSite site, const ServiceOptions& options, RunningStore store, StoreOpener& opener,
           Signals& signals, Alerts::Told told)
       : site_(std::move(site)),
+        shared_site_(share(site_)),
         running_(std::move(store)),
         store_(running_.store.get()),
         opener_(opener),
@@ -102,7 +114,7 @@ class Service {
         expecter_(loop_),
         options_(options),
         jobs_(
-            {loop_, *store_, worker_}, make_site_work(site_),
+            {loop_, *store_, worker_}, make_site_work(shared_site_),
             [this](const StoredJob& job) {
               log_job(job);
               if (facts_) facts_->look_again();
@@ -111,18 +123,18 @@ class Service {
               gateway_->count_stored(event);
               hear(event);
             }),
-        weather_wait_({loop_, *store_, looker_}, make_weather_look(site_),
+        weather_wait_({loop_, *store_, looker_}, make_weather_look(shared_site_),
                       [this] { calibrate_with_weather(); }),
-        load_watch_(loop_, expecter_, make_load_expectation(site_),
+        load_watch_(loop_, expecter_, make_load_expectation(shared_site_),
                     [this] { return jobs_.is_running(); }),
         upkeep_(*store_, checker_, upkeep_of(site_.config.store, running_), site_.calendar,
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }),
         alerts_(
-            {loop_, *store_, messenger_}, site_.config, site_.calendar, deliver,
+            {loop_, *store_, messenger_}, shared_config(), site_.calendar, deliver,
             [this](StoreEvent event) { gateway_->note(std::move(event)); }, std::move(told)),
         forwarding_(
-            {loop_, *store_, running_.missing.empty()}, site_.config, site_.calendar,
+            {loop_, *store_, running_.missing.empty()}, shared_config(), site_.calendar,
             [this](StoreEvent event) { gateway_->note(std::move(event)); },
             [this](const ToldValue& value) { (void)gateway_->take_told(value); }) {}
 
@@ -210,6 +222,10 @@ class Service {
   [[nodiscard]] bool is_opening() const { return is_opening_; }
 
  private:
+  [[nodiscard]] std::shared_ptr<const SiteConfig> shared_config() const {
+    return {shared_site_, &shared_site_->config};
+  }
+
   void stand_in() {
     gateway_->note(
         {.time = loop_.now().instant(),
@@ -350,11 +366,12 @@ class Service {
     if (*tls) server_->set_tls(std::move(*tls));
     upkeep_.set_config(upkeep_of(config->store, running_));
     site_.config = std::move(*config);
-    jobs_.set_work(make_site_work(site_));
-    weather_wait_.set_look(make_weather_look(site_));
-    load_watch_.set_expect(make_load_expectation(site_));
-    alerts_.set_site(site_.config);
-    forwarding_.set_site(site_.config);
+    shared_site_ = share(site_);
+    jobs_.set_work(make_site_work(shared_site_));
+    weather_wait_.set_look(make_weather_look(shared_site_));
+    load_watch_.set_expect(make_load_expectation(shared_site_));
+    alerts_.set_site(shared_config());
+    forwarding_.set_site(shared_config());
     tell_facts();
     if (facts_) facts_->look_again();
     schedule();
@@ -418,6 +435,7 @@ class Service {
   }
 
   OpenSite site_;
+  SharedSite shared_site_;  ///< For work on other threads; a reload does not change it.
   RunningStore running_;
   Store* store_;  ///< From `running_`.
   StoreOpener& opener_;
@@ -455,6 +473,7 @@ class Service {
 }  // namespace
 
 Result<void> run_service(OpenSite site, const ServiceOptions& options) {
+  save_memory();
   spdlog::set_default_logger(spdlog::stderr_logger_st("recald"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
   auto signals = Signals::open();
@@ -466,13 +485,14 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   signals->hold_ends();
   Alerts::Told told;
   for (std::unique_ptr<Store> memory;;) {
-    auto service = std::make_unique<Service>(site, options, std::move(*store), opener, *signals,
-                                             std::exchange(told, {}));
+    auto service = std::make_unique<Service>(std::move(site), options, std::move(*store), opener,
+                                             *signals, std::exchange(told, {}));
     if (auto opened = service->open(memory.get()); !opened) {
       if (!memory) return opened;
       // The readings in memory exist nowhere else: continue with them, and try again later.
       spdlog::error("event=not_taken_over why=\"{}\"", opened.error().message);
       opener.back_off();
+      site = service->site();
       told = service->take_told();
       store = RunningStore{std::move(memory), opened.error().message};
       continue;

@@ -34,6 +34,12 @@ constexpr std::uint64_t kSeed = 1;  // a result must not depend on the number of
 
 constexpr double kCalibrating = 0.5;  // Of a calibration job; following its months is the rest.
 
+/// A job uses the latest months, whatever period the site file names.
+OpenSite on_latest_months(OpenSite site) {
+  site.config.period.reset();
+  return site;
+}
+
 /// How far a calibration is; chains run one after the other.
 double share_of(const calibration::Progress& progress) {
   constexpr double kSampling = 0.8;
@@ -177,11 +183,10 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
   return summary_of(*drift);
 }
 
-Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Instant now,
+Result<JobOutcome> calibrate(const OpenSite& site, const StoredJob& job, metering::Instant now,
                              JobWatch& watch) {
   const auto folder = job_folder(site.config.store, job.kind, job.number);
-  const OpenSite whole = site;
-  auto modelled = load_modelled_site(std::move(site), now);
+  auto modelled = load_modelled_site(on_latest_months(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
   const calibration::RunContext context{
       .seed = kSeed, .observer = [&](const calibration::Progress& progress) {
@@ -202,7 +207,7 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
         const double part = static_cast<double>(progress.done) / std::max(progress.total, 1);
         return watch.say("following the months", kCalibrating + (1.0 - kCalibrating) * part);
       }};
-  auto followed = follow(whole, now, following, folder, outcome);
+  auto followed = follow(on_latest_months(site), now, following, folder, outcome);
   if (!followed && followed.error().code == ErrorCode::cancelled) {
     return tl::unexpected(followed.error());
   }
@@ -213,13 +218,14 @@ Result<JobOutcome> calibrate(OpenSite site, const StoredJob& job, metering::Inst
 
 /// The outcome of a failed calibration, with the weather of its months. Missing weather may be the
 /// cause; then it is run again once the weather arrives.
-Result<JobOutcome> with_known_weather(const Error& error, const OpenSite& site,
+Result<JobOutcome> with_known_weather(const Error& error, const SharedSite& shared,
                                       metering::Instant now) {
+  const OpenSite& site = *shared;
   if (error.code == ErrorCode::cancelled || !site.config.weather) return tl::unexpected(error);
   const metering::Month last = metering::previous_month(site.calendar.month_of(now));
   const metering::MonthRange months{
       last - std::chrono::months{site.config.recalibration.months - 1}, last};
-  auto known = make_weather_look(site)(months);
+  auto known = make_weather_look(shared)(months);
   if (!known) {  // the file may be just being written: nothing is known
     known.emplace();
     for (metering::Month month = months.first; month <= last; month = metering::next_month(month)) {
@@ -312,27 +318,25 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
 
 }  // namespace
 
-DoJob make_site_work(OpenSite site) {
+DoJob make_site_work(SharedSite site) {
   return [site = std::move(site)](const StoredJob& job, metering::Instant now,
                                   JobWatch& watch) -> Result<JobOutcome> {
-    if (auto modelled = require_model(site.config); !modelled) {
+    if (auto modelled = require_model(site->config); !modelled) {
       return tl::unexpected(modelled.error());
     }
-    OpenSite latest = site;
-    latest.config.period.reset();
-    if (job.kind == JobKind::diagnosis) return diagnose(std::move(latest), job, now, watch);
-    auto outcome = calibrate(std::move(latest), job, now, watch);
+    if (job.kind == JobKind::diagnosis) return diagnose(on_latest_months(*site), job, now, watch);
+    auto outcome = calibrate(*site, job, now, watch);
     return outcome ? outcome : with_known_weather(outcome.error(), site, now);
   };
 }
 
-LookAtWeather make_weather_look(OpenSite site) {
+LookAtWeather make_weather_look(SharedSite site) {
   return [site = std::move(site)](
              const metering::MonthRange& months) -> Result<std::vector<MonthWeather>> {
-    if (!site.config.weather) return std::vector<MonthWeather>{};
-    const auto live = open_sensors(site.config);
+    if (!site->config.weather) return std::vector<MonthWeather>{};
+    const auto live = open_sensors(site->config);
     if (!live) return tl::unexpected(live.error());
-    return known_weather(site.config, site.calendar, months, live->get());
+    return known_weather(site->config, site->calendar, months, live->get());
   };
 }
 

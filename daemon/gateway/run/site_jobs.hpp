@@ -13,9 +13,9 @@ namespace recald::daemon {
 ///
 /// A calibration says which months' weather it lacked; a failed one does too, since the weather
 /// may be the reason.
-[[nodiscard]] DoJob make_site_work(OpenSite site);
+[[nodiscard]] DoJob make_site_work(SharedSite site);
 
 /// Reads what the site's weather file and sensors have now, in the same way.
-[[nodiscard]] LookAtWeather make_weather_look(OpenSite site);
+[[nodiscard]] LookAtWeather make_weather_look(SharedSite site);
 
 }  // namespace recald::daemon

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <utility>
 
 #include "core/metering/civil_time.hpp"
 #include "daemon/site/config/site_config.hpp"
@@ -15,6 +17,13 @@ struct OpenSite {
   SiteConfig config;
   metering::LocalCalendar calendar;
 };
+
+/// For parts that keep a site only to read it: the descriptions of a thousand meters are megabytes.
+using SharedSite = std::shared_ptr<const OpenSite>;
+
+[[nodiscard]] inline SharedSite share(OpenSite site) {
+  return std::make_shared<const OpenSite>(std::move(site));
+}
 
 /// First calibration month to last validation month. @pre site.period
 [[nodiscard]] metering::MonthRange whole_period(const SiteConfig& site);

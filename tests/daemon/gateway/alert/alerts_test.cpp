@@ -58,7 +58,7 @@ class AlertsTest : public ::testing::Test {
   void begin(const std::string& alerts) { begin(site_with(alerts)); }
   void begin(const SiteConfig& site, Alerts::Told told = {}) {
     alerts_ = std::make_unique<Alerts>(
-        Alerts::Ports{loop_, failing_, worker_}, site,
+        Alerts::Ports{loop_, failing_, worker_}, std::make_shared<const SiteConfig>(site),
         metering::LocalCalendar::open("Europe/Berlin").value(),
         [this](const AlertDestination& to, const AlertMessage& message, const std::stop_token&) {
           return take(to, message);
@@ -279,7 +279,7 @@ TEST_F(AlertsTest, WhatWasKeptInMemoryIsNotToldAgainFromTheStore) {
   ASSERT_TRUE(found.commit({.events = store_.events_after(0, 100).value()}).has_value());
   auto told = alerts_->take_told();
   alerts_ = std::make_unique<Alerts>(
-      Alerts::Ports{loop_, found, worker_}, site_with(kMail),
+      Alerts::Ports{loop_, found, worker_}, std::make_shared<const SiteConfig>(site_with(kMail)),
       metering::LocalCalendar::open("Europe/Berlin").value(),
       [this](const AlertDestination& to, const AlertMessage& message, const std::stop_token&) {
         return take(to, message);
@@ -298,7 +298,7 @@ TEST_F(AlertsTest, ANewDestinationIsToldOfTheLastHour) {
   happens("meter_answers", Severity::info);
   loop_.run_for(minutes{5});
   ASSERT_THAT(mails_, SizeIs(2));
-  alerts_->set_site(site_with(std::string{kMail} + kHook));
+  alerts_->set_site(std::make_shared<const SiteConfig>(site_with(std::string{kMail} + kHook)));
   loop_.run_for(minutes{5});
   EXPECT_THAT(mails_, SizeIs(2));
   EXPECT_THAT(subjects(hooks_), ElementsAre("The depot: a meter answers again (main)"));
