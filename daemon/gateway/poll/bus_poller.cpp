@@ -75,7 +75,8 @@ void BusPoller::begin_due_polls(const Moment& now) {
 }
 
 bool BusPoller::is_reliable(const UnitPolling& polling) {
-  return polling.has_answered && polling.health.state() == UnitState::up;
+  const bool is_trusted = polling.has_answered || all_have_answered_;
+  return is_trusted && polling.health.state() == UnitState::up;
 }
 
 /// Whether a read that may take `timeout` ends before an answering unit falls due.
@@ -214,6 +215,7 @@ void BusPoller::take_exception(const BusOrder& order, const modbus::ReadFailure&
 
 void BusPoller::take_silence(const BusOrder& order, const Moment& now) {
   UnitPolling& polling = states_[order.unit];
+  all_have_answered_ = all_have_answered_ && polling.has_answered;
   polling.health.missed(now.monotonic, rng_);
   polling.timeout.missed();
   if (!order.is_probe) end_poll(order.unit);
@@ -291,6 +293,7 @@ void BusPoller::begin_anew() {
     states_[i].skipped = skipped;
   }
   under_way_ = false;
+  all_have_answered_ = true;
   wall_minus_monotonic_.reset();
   probing_ = milliseconds{0};
   silent_asked_ = milliseconds{0};

@@ -139,6 +139,9 @@ class BusPoller {
   BusRules rules_;
   Rng rng_;
   bool under_way_ = false;
+  /// No unit was silent before its first answer: then a unit that was not asked yet need not wait
+  /// for those that were, or a start would take long on a busy bus.
+  bool all_have_answered_ = true;
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
   std::chrono::milliseconds begun_{0};         ///< Monotonic, of the first call.
   std::chrono::milliseconds probing_{0};       ///< Bus time given to probes.

@@ -406,7 +406,7 @@ Result<bool> Gateway::take_told(const ToldValue& value) {
   const auto told = std::ranges::find(told_, value.meter, &LiveMeter::id);
   const auto is_it = [&](const modbus::PlannedRead& read) {
     const modbus::RegisterMap& map = told->config.map;
-    const std::string& field = metered_fields(map)[read.fields.front()].name;
+    const std::string field = metered_fields(map)[read.fields.front()].name;
     return value.is_counter ? field == map.energy.front() : map.power == field;
   };
   const auto read = told == told_.end() ? std::vector<modbus::PlannedRead>::iterator{}
