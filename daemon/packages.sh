@@ -12,6 +12,15 @@ TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r
   clang clang-format libclang-rt-14-dev curl systemd mosquitto mosquitto-clients
   prometheus influxdb"
 
+# To make packages (daemon/packaging), and to check them.
+PACKAGING_PACKAGES="git python3 debhelper mmdebstrap crossbuild-essential-arm64 qemu-user-static umoci lintian crun"
+
+# Those of BUILD_PACKAGES that have headers, a line each.
+dev_packages() {
+  # shellcheck disable=SC2086  # a list of words
+  printf '%s\n' $BUILD_PACKAGES | grep -e '-dev$'
+}
+
 is_installed() {
   dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q '^install ok installed'
 }

@@ -1,4 +1,4 @@
-/// The pages' own scripts and style, bundled at build time by build.mjs and compiled in as bytes.
+/// The pages' own scripts and style, bundled at build time by build.mjs and compiled in compressed.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +16,7 @@ struct Assets {
   std::size_t gzip_bytes;  ///< Script and style together, compressed, as measured by the build.
 };
 
+/// Unpacked when they are first asked for, and kept.
 [[nodiscard]] const Assets& assets();
 
 }  // namespace recald::report
