@@ -17,15 +17,27 @@ effect=${EFFECT:-weekend_operation}
 # shellcheck disable=SC2086  # lists of words
 install_packages $BUILD_PACKAGES
 
+# An installed recald will do if it is of this version; the simulator is in no package.
+version=$(sed -n 's/^project(recald VERSION \([^ ]*\).*/\1/p' "$root/CMakeLists.txt")
+recald=$(command -v recald || true)
+[ -n "$recald" ] && [ "$("$recald" --version)" = "$version" ] || recald=
+
 log=$(mktemp)
 build() {
   cmake -S "$root" --preset release -DRECALD_TESTS=OFF -DRECALD_WARNINGS_AS_ERRORS=OFF \
     -DRECALD_TOGETHER=ON -B "$root/.build/demo" &&
-    cmake --build "$root/.build/demo" --target recald recald-sim --parallel "$(build_jobs)"
+    cmake --build "$root/.build/demo" --target "$@" --parallel "$(build_jobs)"
 }
 
-echo "Building recald; the first time takes some minutes …"
-build >"$log" 2>&1 &
+if [ -n "$recald" ]; then
+  echo "Using $recald, which is recald $version; building the simulator alone …"
+  set -- recald-sim
+else
+  echo "Building recald; the first time takes some minutes …"
+  recald=$root/.build/demo/daemon/recald
+  set -- recald recald-sim
+fi
+build "$@" >"$log" 2>&1 &
 building=$!
 trap 'kill $building 2>/dev/null; exit 130' INT TERM
 while [ -t 1 ] && kill -0 $building 2>/dev/null; do
@@ -41,7 +53,6 @@ wait $building || {
 trap - INT TERM
 rm -f "$log"
 
-recald=$root/.build/demo/daemon/recald
 sim=$root/.build/demo/simulators/recald-sim
 mkdir -p "$dir"
 dir=$(cd "$dir" && pwd)

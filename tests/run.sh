@@ -22,11 +22,11 @@ stage() {
   [ -z "$name" ] || echo "--- $name"
 }
 
-stage "packages"
+stage "Debian packages"
 long=
 [ "${1:-}" != "--long" ] || long="python3 clang-tidy"
 # shellcheck disable=SC2086  # lists of words
-install_packages $BUILD_PACKAGES $TEST_PACKAGES $long
+install_packages $BUILD_PACKAGES $TEST_PACKAGES $PACKAGING_PACKAGES $long
 
 if [ "${1:-}" = "--long" ]; then
   study=$root/tests/long/${2:-}.sh
@@ -88,6 +88,11 @@ if [ "${1:-}" != "--plain" ]; then
   instrumented tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy"
   part=rest  # what a sanitizer has watched need not run again
 fi
+
+stage "packages for amd64 and arm64"
+for arch in amd64 arm64; do
+  sh "$root/daemon/packaging/make_deb.sh" "$arch" "$root/.build/packages"
+done
 
 stage "build (dev: optimised, assertions on, warnings are errors)"
 cmake --preset dev -DRECALD_PART=$part >/dev/null
