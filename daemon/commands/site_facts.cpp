@@ -261,6 +261,19 @@ Facts secrets(const SiteConfig& site) {
                              http::read_token_file(hook->token_file)));
     }
   }
+  if (site.mqtt && !site.mqtt->login.user.empty()) {
+    facts.push_back(
+        secret("[mqtt] password_file", http::read_password_file(site.mqtt->login.password_file)));
+  }
+  for (const RemoteWriteConfig& write : site.remote_writes) {
+    if (!write.token_file.empty()) {
+      facts.push_back(secret("[remote_write] token_file", http::read_token_file(write.token_file)));
+    }
+    if (!write.login.user.empty()) {
+      facts.push_back(secret("[remote_write] password_file",
+                             http::read_password_file(write.login.password_file)));
+    }
+  }
   return facts;
 }
 

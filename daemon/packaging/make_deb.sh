@@ -18,7 +18,7 @@ sysroot=$place/sysroot-$arch
 build=$place/build-$arch
 work=$place/debian-$arch
 triplet=$(dpkg-architecture -a"$arch" -qDEB_HOST_MULTIARCH 2>/dev/null)
-SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct)
+SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct 2>/dev/null || stat -c %Y "$root/CHANGELOG.md")
 export SOURCE_DATE_EPOCH
 mkdir -p "$place"
 sh "$packaging/make_sysroot.sh" "$arch" "$sysroot"
@@ -26,7 +26,8 @@ sh "$packaging/make_sysroot.sh" "$arch" "$sysroot"
 # To print its manual pages the program has to run.
 emulator=
 [ "$arch" = "$(dpkg --print-architecture)" ] || emulator="qemu-${triplet%%-*}-static;-L;$sysroot"
-cmake -S "$root" -B "$build" --preset release -DRECALD_TESTS=OFF -DRECALD_UNIT_DIR=/lib/systemd/system \
+cmake -S "$root" -B "$build" --preset release -DRECALD_TESTS=OFF \
+  -DRECALD_COMMIT="$(git -C "$root" rev-parse --short HEAD 2>/dev/null)" -DRECALD_UNIT_DIR=/lib/systemd/system \
   -DCMAKE_TOOLCHAIN_FILE="$packaging/sysroot.cmake" -DRECALD_TRIPLET="$triplet" -DCMAKE_SYSROOT="$sysroot" \
   -DCMAKE_CROSSCOMPILING_EMULATOR="$emulator" -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$root/=" >/dev/null
 cmake --build "$build" --target recald --parallel "$(build_jobs)"
