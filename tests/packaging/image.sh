@@ -29,7 +29,7 @@ process = config["process"]
 assert process["args"][0] == "/usr/bin/recald", process
 assert process["user"]["uid"] != 0, process
 process.update(terminal=False, args=["/usr/bin/recald", *arguments])
-config["mounts"] = [one for one in config["mounts"] if one["destination"] not in ("/sys/fs/cgroup", "/etc/recald")]
+config["mounts"] = [one for one in config["mounts"] if one["destination"] not in ("/sys/fs/cgroup", "/var/lib/recald")]
 config["mounts"].append({"destination": "/etc/recald", "type": "bind", "source": f"{place}/site", "options": ["rbind", "ro"]})
 file.write_text(json.dumps(config))
 END
@@ -43,7 +43,7 @@ said=$(contained --version)
 [ "$said" = "$version" ] || { echo "--version: $said, not $version"; exit 1; }
 contained replay -q /etc/recald/site.toml --out /var/lib/recald/tower
 cat "$place/bundle/rootfs/var/lib/recald/tower/months.csv"
-[ "$(grep -c '^[a-z]*,\?2023\|2023-0[12]' "$place/bundle/rootfs/var/lib/recald/tower/months.csv")" -ge 2 ] || {
+[ "$(grep -c '2023-0[12]' "$place/bundle/rootfs/var/lib/recald/tower/months.csv")" -ge 2 ] || {
   echo "not two months"
   exit 1
 }

@@ -16,7 +16,11 @@ fail() {
   echo "$1"
   exit 1
 }
-inside() { unshare --mount --propagation private chroot "$root" env DEBIAN_FRONTEND=noninteractive "$@"; }
+# systemd's tools look into /proc.
+inside() {
+  unshare --mount --propagation private sh -c 'mount -t proc proc "$0/proc" && exec chroot "$0" env DEBIAN_FRONTEND=noninteractive "$@"' \
+    "$root" "$@"
+}
 install() { inside apt-get install -q -y --no-install-recommends "$@" >"$place/log" 2>&1 || fail "$(cat "$place/log")"; }
 # is MODE:OWNER:GROUP PATH
 is() { [ "$(inside stat -c %a:%U:%G "$2")" = "$1" ] || fail "$2 is $(inside stat -c %a:%U:%G "$2"), not $1"; }
