@@ -74,7 +74,7 @@ void BusPoller::begin_due_polls(const Moment& now) {
   }
 }
 
-bool BusPoller::is_reliable(const UnitPolling& polling) {
+bool BusPoller::is_reliable(const UnitPolling& polling) const {
   const bool is_trusted = polling.has_answered || all_have_answered_;
   return is_trusted && polling.health.state() == UnitState::up;
 }

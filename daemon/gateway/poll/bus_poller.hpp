@@ -122,7 +122,7 @@ class BusPoller {
   [[nodiscard]] UnitPolling unknown(std::size_t unit) const;
   void notice_clock(const Moment& now);
   void begin_due_polls(const Moment& now);
-  [[nodiscard]] static bool is_reliable(const UnitPolling& polling);
+  [[nodiscard]] bool is_reliable(const UnitPolling& polling) const;
   [[nodiscard]] bool fits_before_reliable(std::chrono::milliseconds timeout,
                                           const Moment& now) const;
   [[nodiscard]] bool was_patient(const Moment& now) const;
