@@ -19,9 +19,9 @@ class Watched : public ServedSite {
   explicit Watched(const std::string& more = "") : ServedSite{more} {}
 
   void watch() {
-    watch_ = std::make_unique<RegisterWatch>(loop_, served_, [this](auto values) {
+    watch_ = std::make_unique<RegisterWatch>(loop_, served_, [this](const SiteFacts& facts) {
       ++published_;
-      values_ = std::move(values);
+      values_ = register_values(facts);
     });
     watch_->start();
   }
