@@ -16,6 +16,7 @@ namespace recald::daemon {
 namespace {
 
 constexpr std::chrono::milliseconds kGoodbyeMax{1'000};
+constexpr std::chrono::minutes kRefusalsEvery{10};
 
 /// An address may hold a secret, so it is not part of the name as it is.
 std::string hashed(std::string_view kind, const std::string& what) {
@@ -148,7 +149,12 @@ void Forwarding::hear(const mqtt::Message& message) {
   const ToldMessage told = read_told(*site_, message.topic, message.payload, message.is_retained,
                                      ports_.loop.now().instant());
   for (const ToldValue& value : told.values) on_value_(value);
+  const auto now = ports_.loop.now().monotonic;
   for (const ToldRefusal& refusal : told.refusals) {
+    // Whoever sends nonsense ten times a second does not have it stored as often.
+    const auto known = refused_at_.find(refusal.meter);
+    if (known != refused_at_.end() && now - known->second < kRefusalsEvery) continue;
+    refused_at_[refusal.meter] = now;
     tell(Severity::warning, "message_refused", refusal.meter, refusal.why);
   }
 }

@@ -2,7 +2,9 @@
 /// takes what a broker says of the site's meters.
 #pragma once
 
+#include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -65,6 +67,7 @@ class Forwarding {
   OnValue on_value_;
   bool is_started_ = false;
   bool is_broker_lost_ = false;
+  std::map<std::string, std::chrono::milliseconds> refused_at_;  ///< By meter, monotonic.
   std::shared_ptr<BrokerLink> link_;
   std::unique_ptr<BrokerState> state_;
   std::vector<std::unique_ptr<Forwarder>> forwarders_;

@@ -25,11 +25,15 @@ mqtt::Message month_message(const SiteConfig& site, const OutboxEntry& entry,
                             const metering::MonthlyFigure& figure) {
   return {.topic = fmt::format("{}/meter/{}/month/{}", site_topic(site), entry.meter,
                                metering::to_string(figure.month)),
-          .payload = month_json(entry.meter, figure).dump(),
+          .payload = payload_of(month_json(entry.meter, figure)),
           .is_retained = true};
 }
 
 }  // namespace
+
+std::string payload_of(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
 
 std::string site_topic(const SiteConfig& site) { return site.mqtt->topic + "/" + site.id; }
 
@@ -49,7 +53,8 @@ std::vector<mqtt::Message> mqtt_messages(const SiteConfig& site, const OutgoingB
     }
   }
   for (const StoreEvent& event : batch.events) {
-    messages.push_back({.topic = site_topic(site) + "/event", .payload = event_json(event).dump()});
+    messages.push_back(
+        {.topic = site_topic(site) + "/event", .payload = payload_of(event_json(event))});
   }
   return messages;
 }

@@ -1,6 +1,7 @@
 /// Intervals, months and events as messages for a broker.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
+
+/// As a payload: what is no UTF-8 in a text, such as a piece of a message, is replaced.
+[[nodiscard]] std::string payload_of(const nlohmann::ordered_json& json);
 
 /// "recald/tower-3", under which everything of the site is.
 [[nodiscard]] std::string site_topic(const SiteConfig& site);

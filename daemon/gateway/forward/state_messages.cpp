@@ -91,7 +91,7 @@ mqtt::Message sensor_message(const SiteConfig& site, const Entity& entity, const
   if (!entity.device_class.empty()) json["device_class"] = entity.device_class;
   if (!entity.state_class.empty()) json["state_class"] = entity.state_class;
   return {.topic = fmt::format("{}/sensor/{}/{}/config", site.mqtt->home_assistant, id, entity.key),
-          .payload = json.dump(),
+          .payload = payload_of(json),
           .is_retained = true};
 }
 
@@ -101,13 +101,13 @@ std::vector<mqtt::Message> state_messages(const SiteConfig& site, const SiteFact
   std::vector<mqtt::Message> messages;
   Json state = state_of(site_registers(), facts);
   messages.push_back(
-      {.topic = site_topic(site) + "/state", .payload = state.dump(), .is_retained = true});
+      {.topic = site_topic(site) + "/state", .payload = payload_of(state), .is_retained = true});
   for (std::size_t i = 0; i < facts.meters.size(); ++i) {
     const MeterFacts& meter = facts.meters[i];
     Json json = state_of(meter_registers(), meter);
     json["register_kWh"] = std::isfinite(meter.register_kWh) ? Json(meter.register_kWh) : Json();
     messages.push_back({.topic = meter_topic(site, site.meters[i].meter.id),
-                        .payload = json.dump(),
+                        .payload = payload_of(json),
                         .is_retained = true});
   }
   return messages;

@@ -1,6 +1,5 @@
 #include "daemon/gateway/run/live_bus.hpp"
 
-
 #include <algorithm>
 #include <utility>
 
