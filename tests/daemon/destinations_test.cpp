@@ -68,7 +68,7 @@ source = "mqtt"
 utility = "heating"
 rated_kW = 100
 every = "5m"
-energy = { topic = "plant/heat", pointer = "/total", time_pointer = "/time", unit = "MWh" }
+energy_from = { topic = "plant/heat", pointer = "/total", time_pointer = "/time", unit = "MWh" }
 )");
     daemon_ = start();
   }

@@ -18,12 +18,12 @@ id = "timed"
 source = "mqtt"
 utility = "electricity"
 rated_kW = 100
-energy = { topic = "a", pointer = "/e/0", time_pointer = "/t", unit = "MWh" }
+energy_from = { topic = "a", pointer = "/e/0", time_pointer = "/t", unit = "MWh" }
 [[meter]]
 id = "plain"
 source = "mqtt"
 utility = "electricity"
-power = { topic = "a", unit = "W" }
+power_from = { topic = "a", unit = "W" }
 )";
 
 const metering::Instant kNow = std::chrono::sys_days{std::chrono::year{2026} / 3 / 1};

@@ -26,18 +26,22 @@ std::optional<http::Url> parse_broker(std::string_view url) {
   return {};
 }
 
+bool is_one_word(const std::string& text) {
+  return !text.empty() && text.find_first_of(" \t\r\n") == std::string::npos;
+}
+
 /// Topics under which something is published have no wildcards and no empty parts at their ends.
 void check_topic(TomlReader& table, std::string_view key, const std::string& topic) {
-  const bool is_one = !topic.empty() && topic.find_first_of("+#") == std::string::npos &&
+  const bool is_one = is_one_word(topic) && topic.find_first_of("+#") == std::string::npos &&
                       topic.front() != '/' && topic.back() != '/' && topic.front() != '$';
   if (is_one) return;
   table.problem_at(key, fmt::format("'{}' is \"{}\"; write a topic such as \"buildings/recald\", "
-                                    "without + and # and without a slash at its ends",
+                                    "without blanks, + and #, and without a slash at its ends",
                                     key, topic));
 }
 
 void check_pointer(TomlReader& table, std::string_view key, const std::string& pointer) {
-  if (pointer.empty() || pointer.starts_with('/')) return;
+  if (!table.has(key) || pointer.starts_with('/')) return;
   table.problem_at(key, fmt::format("'{}' is \"{}\"; write a JSON pointer such as "
                                     "\"/energy/total\"",
                                     key, pointer));
@@ -119,6 +123,11 @@ MqttConfig read_mqtt(TomlReader& table, const std::string& site_id,
     }
   }
   config.client_id = table.text_or("client_id", "recald-" + site_id);
+  if (!is_one_word(config.client_id)) {
+    table.problem_at("client_id", fmt::format("'client_id' is \"{}\"; write one word such as "
+                                              "\"recald-tower\"",
+                                              config.client_id));
+  }
   config.publishes = table.boolean("publish").value_or(config.publishes);
   config.topic = table.text_or("topic", config.topic);
   check_topic(table, "topic", config.topic);
@@ -136,8 +145,8 @@ MqttConfig read_mqtt(TomlReader& table, const std::string& site_id,
 MqttMeterConfig read_mqtt_meter(TomlReader& table, metering::Utility utility,
                                 const metering::UnitFactors& factors) {
   MqttMeterConfig config;
-  config.energy = read_value(table, {"energy", false, "kWh or MWh"}, utility, factors);
-  config.power = read_value(table, {"power", true, "W or kW"}, utility, factors);
+  config.energy = read_value(table, {"energy_from", false, "kWh or MWh"}, utility, factors);
+  config.power = read_value(table, {"power_from", true, "W or kW"}, utility, factors);
   config.map.name = "mqtt";
   config.map.limits.one_request_per_field = true;
   if (config.energy) {
@@ -148,10 +157,11 @@ MqttMeterConfig read_mqtt_meter(TomlReader& table, metering::Utility utility,
     config.map.fields.push_back(float64_at("power", 4, "kW"));
     config.map.power = "power";
   }
-  if (!table.has("energy") && !table.has("power")) {
+  if (!table.has("energy_from") && !table.has("power_from")) {
     table.problem(
-        "a meter with source = \"mqtt\" needs 'energy' (a counter), 'power' or both, such "
-        "as energy = { topic = \"plant/heat\", pointer = \"/total\", unit = \"MWh\" }");
+        "a meter with source = \"mqtt\" needs 'energy_from' (a counter), 'power_from' or both, "
+        "such "
+        "as energy_from = { topic = \"plant/heat\", pointer = \"/total\", unit = \"MWh\" }");
   }
   config.every = table.duration("every").value_or(config.every);
   const seconds longest{config.energy ? 900 : 120};

@@ -32,18 +32,18 @@ id = "main"
 source = "mqtt"
 utility = "electricity"
 rated_kW = 100
-energy = { topic = "plant/main", pointer = "/energy/total", time_pointer = "/time", unit = "MWh" }
-power = { topic = "plant/main", pointer = "/power", time_pointer = "/time", unit = "W" }
+energy_from = { topic = "plant/main", pointer = "/energy/total", time_pointer = "/time", unit = "MWh" }
+power_from = { topic = "plant/main", pointer = "/power", time_pointer = "/time", unit = "W" }
 [[meter]]
 id = "pump"
 source = "mqtt"
 utility = "electricity"
-power = { topic = "plant/pump", unit = "kW" }
+power_from = { topic = "plant/pump", unit = "kW" }
 [[meter]]
 id = "fan"
 source = "mqtt"
 utility = "electricity"
-power = { topic = "plant/fan", pointer = "/watts/0", unit = "W" }
+power_from = { topic = "plant/fan", pointer = "/watts/0", unit = "W" }
 )",
                            "/nowhere/site.toml");
     if (!site) throw std::runtime_error(site.error().front());

@@ -362,7 +362,8 @@ TEST_F(RunCommand, ASiteWithNothingToDoIsTold) {
       "utility = \"electricity\"\n";
   recald::testing::write_text(folder_ / "site.toml", site + "file = \"m.csv\"\n");
   EXPECT_EQ((BackgroundProcess{command("run"), said()}.wait()), 1);
-  EXPECT_THAT(what_was_said(), HasSubstr("no [[meter]] has source = \"modbus\" or \"http\""));
+  EXPECT_THAT(what_was_said(),
+              HasSubstr("no [[meter]] has source = \"modbus\", \"http\" or \"mqtt\""));
   recald::testing::write_text(folder_ / "site.toml", site + "source = \"http\"\n");
   EXPECT_EQ((BackgroundProcess{command("run"), said()}.wait()), 1);
   EXPECT_THAT(what_was_said(), HasSubstr("no [http] to send its readings to"));

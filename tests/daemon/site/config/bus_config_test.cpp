@@ -157,7 +157,7 @@ TEST(BusConfig, EveryMistakeHasItsSentence) {
       {"power = \"power_heating\"", "power = \"watts\"", "'power' names 'watts'"},
       {"energy = [\"energy_heating\"]\n", "",
        "meters 'cooling' and 'heat' are the same registers of unit 3 on bus 'cellar'"},
-      {"source = \"modbus\"\nutility = \"heating\"", "source = \"mqtt\"\nutility = \"heating\"",
+      {"source = \"modbus\"\nutility = \"heating\"", "source = \"opc\"\nutility = \"heating\"",
        "it must be one of csv, modbus"},
   };
   for (const Mistake& mistake : mistakes) {
