@@ -91,7 +91,7 @@ fi
 
 stage "packages for amd64 and arm64"
 for arch in amd64 arm64; do
-  sh "$root/daemon/packaging/make_deb.sh" "$arch" "$root/.build/packages"
+  sh "$root/daemon/packaging/make_deb.sh" "$arch" "$root/.build/packages" || failed="$failed package-$arch"
 done
 
 stage "build (dev: optimised, assertions on, warnings are errors)"

@@ -78,7 +78,7 @@ class Connection::Client final : private LinkListener {
 
   void connected() override;
   void received(const Message& message) override { on_message_(message); }
-  void acknowledged(int id, const std::string& refusal) override;
+  void acknowledged(int id, const std::string& refusal, bool is_for_good) override;
   void complain(const std::string& sentence) override;
 
   Error stay_connected();
@@ -173,7 +173,7 @@ void Connection::Client::begin_to_publish(Link& link) {
   }
 }
 
-void Connection::Client::acknowledged(int id, const std::string& refusal) {
+void Connection::Client::acknowledged(int id, const std::string& refusal, bool is_for_good) {
   const auto found = in_flight_.find(id);
   if (found == in_flight_.end()) return;
   const InFlight about = found->second;
@@ -183,9 +183,10 @@ void Connection::Client::acknowledged(int id, const std::string& refusal) {
   if (publication_ == nullptr || publication_number_ != about.publication) return;
   if (publication_->outcome) return;
   if (!refusal.empty()) {
-    publication_->outcome = failure(
-        ErrorCode::io_failed, fmt::format("{} refused the message on {}: {}", name_,
-                                          publication_->messages[about.index].topic, refusal));
+    publication_->outcome =
+        failure(is_for_good ? ErrorCode::unsupported : ErrorCode::io_failed,
+                fmt::format("{} refused the message on {}: {}", name_,
+                            publication_->messages[about.index].topic, refusal));
   } else if (++publication_->acknowledged == publication_->messages.size()) {
     publication_->outcome = Result<void>{};
   }

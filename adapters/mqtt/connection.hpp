@@ -46,8 +46,9 @@ class Connection {
   /// Publishes all and waits until the broker has acknowledged each. After a failure any of them
   /// may have arrived: the caller sends all of them again. One caller at a time. The broker's word
   /// is that it has the message, not that its disk has.
-  /// @return or io_failed: not connected, connection lost, a message refused (it is named, with the
-  ///         broker's reason), or time out; invalid_value: a topic that cannot be;
+  /// @return or io_failed: not connected, connection lost, time out, or a message refused for now;
+  ///         unsupported: a message refused for good, such as one on a topic that is not allowed
+  ///         (it is named, with the broker's reason); invalid_value: a topic that cannot be;
   ///         out_of_range: a message is longer than the broker takes; cancelled.
   [[nodiscard]] Result<void> publish(std::span<const Message> messages,
                                      std::chrono::milliseconds time_max,

@@ -166,7 +166,10 @@ struct Link::Callbacks {
     Link& link = of(to);
     const std::string refusal = code < kFailures ? "" : reason(code, properties);
     if (id != link.birth_id_) {
-      link.listener_.acknowledged(id, refusal);
+      const bool is_for_good = code == MQTT_RC_NOT_AUTHORIZED ||
+                               code == MQTT_RC_TOPIC_NAME_INVALID ||
+                               code == MQTT_RC_PAYLOAD_FORMAT_INVALID;
+      link.listener_.acknowledged(id, refusal, is_for_good);
       return;
     }
     link.birth_id_ = -1;

@@ -30,8 +30,9 @@ class LinkListener {
   virtual ~LinkListener() = default;
   virtual void connected() = 0;
   virtual void received(const Message& message) = 0;
-  /// @param refusal  Why the broker did not take the message; empty: it did.
-  virtual void acknowledged(int id, const std::string& refusal) = 0;
+  /// @param refusal      Why the broker did not take the message; empty: it did.
+  /// @param is_for_good  It will not take the same message later either.
+  virtual void acknowledged(int id, const std::string& refusal, bool is_for_good) = 0;
   /// The connection is good, but something else is not.
   virtual void complain(const std::string& sentence) = 0;
 };

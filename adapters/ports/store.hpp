@@ -124,6 +124,11 @@ struct OutboxEntry {
   std::variant<std::monostate, StoredInterval, StoredMonth> stored;
 };
 
+/// The cursor over the events (Store::cursor) of a destination that has them beside the outbox.
+[[nodiscard]] inline std::string events_cursor(const std::string& destination) {
+  return "events of " + destination;
+}
+
 /// How far a destination has been told.
 struct OutboxPosition {
   std::int64_t told;  ///< Number of the last entry that it has had.
@@ -314,8 +319,8 @@ class Store {
   virtual Result<void> put_cursor(const std::string& destination, std::int64_t position) = 0;
 
   /// Sets which destinations are told of each interval and month that is stored from now on; until
-  /// then, of none. Those that were set before keep their positions. What everyone has been told
-  /// is forgotten.
+  /// then, of none. Those that were set before keep their positions, others lose theirs. What
+  /// everyone has been told is forgotten.
   virtual Result<void> keep_outbox_for(const std::vector<std::string>& destinations) = 0;
 
   /// Entries with a greater number, in order of their numbers.

@@ -70,12 +70,14 @@ Result<void> keep_outbox_for(Database& database, const std::vector<std::string>&
       if (std::ranges::find(*kept, cursor) != kept->end()) continue;
       if (auto put = put_cursor(database, cursor, *last); !put) return put;
     }
-    auto forget = database.prepare("DELETE FROM cursor WHERE destination = ?");
+    auto forget = database.prepare("DELETE FROM cursor WHERE destination IN (?1, ?2)");
     if (!forget) return tl::unexpected(forget.error());
     for (const std::string& cursor : *kept) {
       const auto name = std::string_view{cursor}.substr(kPrefix.size());
       if (std::ranges::find(destinations, name) != destinations.end()) continue;
-      if (auto done = forget->bind(0, std::string_view{cursor}).run(); !done) return done;
+      const std::string events = events_cursor(std::string{name});
+      forget->bind(0, std::string_view{cursor}).bind(1, std::string_view{events});
+      if (auto done = forget->run(); !done) return done;
     }
     return forget_told(database);
   });

@@ -1,6 +1,7 @@
 #include "daemon/gateway/forward/broker_state.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "daemon/gateway/forward/state_messages.hpp"
@@ -9,6 +10,7 @@ namespace recald::daemon {
 namespace {
 
 constexpr std::chrono::minutes kEvery{1};
+constexpr std::size_t kPart = 200;  // messages that are done before the next ones begin
 constexpr std::chrono::seconds kStatePublishMax{10};
 
 }  // namespace
@@ -33,8 +35,8 @@ void BrokerState::set(const SiteFacts& facts) {
   const auto now = loop_.now().monotonic;
   if (is_publishing_ || now < not_before_.value_or(now) || !link_->is_connected()) return;
   not_before_ = now + kEvery;
-  auto messages = discovery_messages(*site_);
-  std::ranges::move(state_messages(*site_, facts), std::back_inserter(messages));
+  auto messages = state_messages(*site_, facts);
+  std::ranges::move(discovery_messages(*site_), std::back_inserter(messages));
   std::erase_if(messages, [&](const mqtt::Message& message) {
     const auto known = published_.find(message.topic);
     return known != published_.end() && known->second == message.payload;
@@ -42,20 +44,25 @@ void BrokerState::set(const SiteFacts& facts) {
   if (messages.empty()) return;
   is_publishing_ = true;
   const auto shared = std::make_shared<const std::vector<mqtt::Message>>(std::move(messages));
-  const auto is_published = std::make_shared<bool>(false);
+  const auto published = std::make_shared<std::size_t>(0);
   worker_->run(
-      [link = link_, shared, is_published, stop = stop_.get_token()] {
-        *is_published = link->publish(*shared, kStatePublishMax, stop).has_value();
+      [link = link_, shared, published, stop = stop_.get_token()] {
+        for (std::size_t& done = *published; done < shared->size();) {
+          const auto part =
+              std::span{*shared}.subspan(done, std::min(kPart, shared->size() - done));
+          if (!link->publish(part, kStatePublishMax, stop)) return;
+          done += part.size();
+        }
       },
-      [weak = std::weak_ptr{self_}, shared, is_published] {
-        if (const auto self = weak.lock()) (*self)->finish(*shared, *is_published);
+      [weak = std::weak_ptr{self_}, shared, published] {
+        if (const auto self = weak.lock()) (*self)->finish(std::span{*shared}.first(*published));
       });
 }
 
-void BrokerState::finish(const std::vector<mqtt::Message>& messages, bool is_published) {
+void BrokerState::finish(std::span<const mqtt::Message> published) {
   is_publishing_ = false;
-  if (std::exchange(is_anew_, false) || !is_published) return;
-  for (const mqtt::Message& message : messages) published_[message.topic] = message.payload;
+  if (std::exchange(is_anew_, false)) return;
+  for (const mqtt::Message& message : published) published_[message.topic] = message.payload;
 }
 
 }  // namespace recald::daemon

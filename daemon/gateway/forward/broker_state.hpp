@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -34,7 +35,7 @@ class BrokerState {
   void begin_anew();
 
  private:
-  void finish(const std::vector<mqtt::Message>& messages, bool is_published);
+  void finish(std::span<const mqtt::Message> published);
 
   Loop& loop_;
   std::shared_ptr<const SiteConfig> site_;

@@ -104,13 +104,13 @@ Result<OutboxPosition> Forwarder::position() {
 
 /// A new destination is told of what happens from now on.
 Result<std::int64_t> Forwarder::event_position() {
-  const auto known = ports_.store.cursor(event_cursor());
+  const auto known = ports_.store.cursor(events_cursor(destination_.id));
   if (!known) return tl::unexpected(known.error());
   if (*known) return **known;
   const auto last = ports_.store.events(1);
   if (!last) return tl::unexpected(last.error());
   const std::int64_t position = last->empty() ? 0 : last->front().number;
-  if (auto put = ports_.store.put_cursor(event_cursor(), position); !put) {
+  if (auto put = ports_.store.put_cursor(events_cursor(destination_.id), position); !put) {
     return tl::unexpected(put.error());
   }
   return position;
@@ -160,7 +160,7 @@ bool Forwarder::move_past(const OutgoingBatch& batch) {
       if (!put) return put;
     }
     if (batch.events.empty()) return {};
-    return ports_.store.put_cursor(event_cursor(), batch.events.back().number);
+    return ports_.store.put_cursor(events_cursor(destination_.id), batch.events.back().number);
   });
   if (!moved) wait_after({.outcome = Sent::Outcome::later, .why = moved.error().message});
   return moved.has_value();

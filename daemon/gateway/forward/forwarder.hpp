@@ -70,7 +70,6 @@ class Forwarder {
   [[nodiscard]] bool set_aside(const OutgoingBatch& batch, const std::string& why);
   void wait_after(const Sent& sent);
   void tell_of_success();
-  [[nodiscard]] std::string event_cursor() const { return "events of " + destination_.id; }
 
   Ports ports_;
   Destination destination_;

@@ -80,8 +80,8 @@ Forwarding::Forwarding(Ports ports, std::shared_ptr<const SiteConfig> site,
 
 Forwarding::~Forwarding() {
   self_.reset();
+  state_.reset();  // first: others wait for what it publishes
   forwarders_.clear();
-  state_.reset();
   if (!link_ || !link_->is_connected() || !site_->mqtt->publishes) return;
   // A connection that ends well leaves no will behind.
   (void)link_->publish(std::vector{presence_message(*site_, false)}, kGoodbyeMax, {});
@@ -97,14 +97,18 @@ void Forwarding::set_site(std::shared_ptr<const SiteConfig> site) {
       site_->mqtt == site->mqtt && told_topics(*site_) == told_topics(*site);
   site_ = std::move(site);
   if (!is_started_) return;
-  forwarders_.clear();
   state_.reset();
-  if (!is_same_connection) link_.reset();  // the session of a name has one owner
+  forwarders_.clear();
+  // The session of a name has one owner. One that was refused may have another password by now.
+  if (!is_same_connection || (link_ && !link_->is_connected())) link_.reset();
   begin();
 }
 
 void Forwarding::begin() {
-  if (site_->mqtt && !link_) connect();
+  if (site_->mqtt && !link_) {
+    connect();
+    if (link_) forwarders_.clear();  // the one that had no link
+  }
   if (link_ && site_->mqtt->publishes && !state_) {
     state_ = std::make_unique<BrokerState>(
         ports_.loop, std::make_unique<system::WorkerThread>(ports_.loop), site_, link_);
@@ -113,9 +117,13 @@ void Forwarding::begin() {
 }
 
 /// Without its password, say: the reason may go away by itself.
-void Forwarding::again_in_a_minute(void (Forwarding::*what)()) {
-  ports_.loop.after(std::chrono::minutes{1}, [weak = std::weak_ptr{self_}, what] {
-    if (const auto self = weak.lock()) ((*self)->*what)();
+void Forwarding::begin_again_in_a_minute() {
+  if (std::exchange(is_again_due_, true)) return;
+  ports_.loop.after(std::chrono::minutes{1}, [weak = std::weak_ptr{self_}] {
+    const auto self = weak.lock();
+    if (!self) return;
+    (*self)->is_again_due_ = false;
+    (*self)->begin();
   });
 }
 
@@ -140,7 +148,7 @@ void Forwarding::connect() {
                     });
   if (!opened) {
     hear_state(false, opened.error().message);
-    return again_in_a_minute(&Forwarding::begin);
+    return begin_again_in_a_minute();
   }
   link_ = std::make_shared<BrokerLink>(std::move(*opened));
 }
@@ -163,10 +171,15 @@ void Forwarding::hear_state(bool is_connected, const std::string& why) {
   if (!site_->mqtt) return;
   const std::string words = broker_words(*site_->mqtt);
   if (!is_connected) {
-    is_broker_lost_ = true;
+    // Of an attempt each minute, once.
+    if (std::exchange(is_broker_lost_, true) && why == lost_why_) return;
+    lost_why_ = why;
     tell(Severity::warning, "broker_lost", words,
          fmt::format("the {} is not connected: {}; recald keeps trying", words, why));
     return;
+  }
+  if (!why.empty()) {  // connected, and something was refused or dropped
+    return tell(Severity::warning, "broker_refuses", words, why);
   }
   if (state_) state_->begin_anew();
   if (std::exchange(is_broker_lost_, false)) {
@@ -182,7 +195,7 @@ void Forwarding::keep_outbox() {
   for (const RemoteWriteConfig& write : site_->remote_writes) {
     ids.push_back(destination_of(write).id);
   }
-  if (!ports_.store.keep_outbox_for(ids)) return again_in_a_minute(&Forwarding::begin);
+  if (!ports_.store.keep_outbox_for(ids)) return begin_again_in_a_minute();
   const auto add = [&](Destination destination, std::unique_ptr<Sink> sink) {
     // Twice in the file is once: there is one position.
     const bool is_there = std::ranges::any_of(
@@ -194,7 +207,7 @@ void Forwarding::keep_outbox() {
                                     std::move(destination), std::move(sink), tell_));
     forwarders_.back()->start();
   };
-  if (link_ && site_->mqtt->publishes) {
+  if (site_->mqtt && site_->mqtt->publishes) {
     add(destination_of(*site_->mqtt), make_mqtt_sink(site_, link_));
   }
   for (const RemoteWriteConfig& write : site_->remote_writes) {

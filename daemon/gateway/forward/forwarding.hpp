@@ -57,7 +57,7 @@ class Forwarding {
   void keep_outbox();
   void hear(const mqtt::Message& message);
   void hear_state(bool is_connected, const std::string& why);
-  void again_in_a_minute(void (Forwarding::*what)());
+  void begin_again_in_a_minute();
   void tell(Severity severity, const char* kind, const std::string& subject, std::string text);
 
   Ports ports_;
@@ -66,7 +66,9 @@ class Forwarding {
   Tell tell_;
   OnValue on_value_;
   bool is_started_ = false;
+  bool is_again_due_ = false;
   bool is_broker_lost_ = false;
+  std::string lost_why_;
   std::map<std::string, std::chrono::milliseconds> refused_at_;  ///< By meter, monotonic.
   std::shared_ptr<BrokerLink> link_;
   std::unique_ptr<BrokerState> state_;

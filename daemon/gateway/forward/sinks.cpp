@@ -84,11 +84,16 @@ class MqttSink final : public Sink {
       : site_(std::move(site)), link_(std::move(link)) {}
 
   Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
-    const auto sent = link_->publish(mqtt_messages(*site_, batch), kPublishMax, stop);
+    if (!link_) return later("it is not connected");
+    auto messages = mqtt_messages(*site_, batch);
+    // A broker that refuses this one refuses all of them.
+    if (batch.size() == 0) messages.push_back(presence_message(*site_, true));
+    const auto sent = link_->publish(messages, kPublishMax, stop);
     if (sent) return {};
-    const bool is_refused = sent.error().code == ErrorCode::invalid_value ||
-                            sent.error().code == ErrorCode::out_of_range;
-    return {.outcome = is_refused ? Sent::Outcome::refused : Sent::Outcome::later,
+    // Too long, no topic, or not allowed.
+    const ErrorCode code = sent.error().code;
+    const bool is_later = code == ErrorCode::io_failed || code == ErrorCode::cancelled;
+    return {.outcome = is_later ? Sent::Outcome::later : Sent::Outcome::refused,
             .why = sent.error().message};
   }
 

@@ -16,7 +16,7 @@ namespace recald::daemon {
                                                      const metering::LocalCalendar& calendar,
                                                      const RemoteWriteConfig& config);
 
-/// A broker.
+/// A broker. @param link  Null while there is none: everything waits.
 [[nodiscard]] std::unique_ptr<Sink> make_mqtt_sink(std::shared_ptr<const SiteConfig> site,
                                                    std::shared_ptr<BrokerLink> link);
 

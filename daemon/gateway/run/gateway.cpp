@@ -420,7 +420,8 @@ Result<bool> Gateway::take_told(const ToldValue& value) {
   const Instant at = value.measured.value_or(now.instant());
   const MeterTrack& track = std::get<MeterTrack>(told->track);
   const bool makes_intervals = value.is_counter || told->config.map.energy.empty();
-  const bool is_late = makes_intervals && at <= track.last_sample().value_or(Instant::min());
+  const bool is_late = makes_intervals ? at <= track.last_sample().value_or(Instant::min())
+                                       : at < track.live().read_at.value_or(Instant::min());
   if (value.measured && is_late) return false;
   PolledRead polled{.order = {.unit = 0,
                               .read = static_cast<std::size_t>(read - told->reads.begin()),

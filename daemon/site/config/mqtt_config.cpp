@@ -99,10 +99,10 @@ MqttConfig read_mqtt(TomlReader& table, const std::string& site_id,
     config.port = broker->port;
     config.is_tls = broker->is_tls;
   } else if (!url.empty()) {
-    table.problem_at("url", fmt::format("'url' is \"{}\"; write an address such as "
-                                        "\"mqtts://broker.example.org\" or "
-                                        "\"mqtt://127.0.0.1:1883\"",
-                                        url));
+    // Not what it is: somebody may have put the password into it, and this becomes an event.
+    table.problem_at("url",
+                     "'url' is no address of a broker; write one such as "
+                     "\"mqtts://broker.example.org\" or \"mqtt://127.0.0.1:1883\"");
   }
   config.login = read_login(table, site_file);
   config.trusted_certificate = read_path(table, "trusted_certificate", site_file);

@@ -152,7 +152,7 @@ TEST_F(MqttConnection, AMessageThatTheBrokerRefusesIsAFailure) {
   const auto taken = connection.publish({{"open/a", "1"}});
 
   ASSERT_FALSE(refused.has_value());
-  EXPECT_EQ(refused.error().code, ErrorCode::io_failed);
+  EXPECT_EQ(refused.error().code, ErrorCode::unsupported);
   EXPECT_THAT(refused.error().message,
               HasSubstr(" refused the message on closed/b: Not authorized"));
   EXPECT_TRUE(taken.has_value()) << taken.error().message;
