@@ -32,5 +32,8 @@ cp -r "$INSIDE/site" "$root/tmp/site"
 chroot "$root" /usr/bin/recald replay -q /tmp/site/site.toml --out /tmp/out >/dev/null
 "$recald" replay -q "$INSIDE/site/site.toml" --out "$INSIDE/out" >/dev/null
 [ "$(wc -l <"$INSIDE/out/months.csv")" -ge 3 ] || { echo "no months"; exit 1; }
+for months in "$root/tmp/out/months.csv" "$INSIDE/out/months.csv"; do
+  sed -i 's/,[^,]*$//' "$months"  # the release of the time zones, which may be another there
+done
 cmp "$root/tmp/out/months.csv" "$INSIDE/out/months.csv"
 echo "the same months"
