@@ -1,0 +1,35 @@
+/// Takes what gateways send into the record, and gives it back.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adapters/ports/store.hpp"
+#include "adapters/postgres/connection.hpp"
+#include "adapters/record/record_batch.hpp"
+#include "core/result.hpp"
+
+namespace recald::record {
+
+/// Commits a batch in one transaction: what is above the outbox's watermark, the watermark itself,
+/// and jobs for months that are complete now (channel `recald_job` is notified). A batch may come
+/// twice, late, or to two workers at once.
+/// @return the watermark after it; not_found: the site is not registered; io_failed: nothing was
+/// taken, try later.
+[[nodiscard]] Result<Watermark> take(postgres::Connection& connection, const std::string& site,
+                                     const RecordBatch& batch, metering::Instant now);
+
+/// The newest outbox's watermark of each site that has sent something.
+[[nodiscard]] Result<std::vector<std::pair<std::string, Watermark>>> watermarks(
+    postgres::Connection& connection);
+
+/// Copies what the record has of a site into an empty store: the last revision of each interval and
+/// month among the rows with seq <= until_seq. The same arguments give the same store for ever.
+[[nodiscard]] Result<void> copy_into(Store& store, postgres::Connection& connection,
+                                     const std::string& site, std::int64_t until_seq);
+
+/// Results that gateways sent, and those of jobs: see jobs.hpp.
+
+}  // namespace recald::record

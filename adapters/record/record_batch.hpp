@@ -1,0 +1,58 @@
+/// What a gateway tells the record of a fleet, and what the record answers, as messages.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adapters/ports/store.hpp"
+#include "core/result.hpp"
+
+namespace recald::record {
+
+/// How far the outbox, the events and the finished jobs of a gateway's store have been told.
+struct Progress {
+  std::int64_t entries = 0;  ///< Number of the last outbox entry.
+  std::int64_t events = 0;   ///< Number of the last event.
+  std::int64_t results = 0;  ///< Number of the last finished job.
+
+  bool operator==(const Progress&) const = default;
+};
+
+/// Until where the record has committed what one outbox said: the gateway may forget that.
+struct Watermark {
+  std::int64_t outbox = 0;  ///< Identity of the outbox: numbers of another mean something else.
+  Progress until;
+
+  bool operator==(const Watermark&) const = default;
+};
+
+/// A part of what a gateway's store has, in order. Empty: asks for the watermark.
+struct RecordBatch {
+  std::int64_t outbox = 0;
+  Progress after;  ///< All up to here was told before.
+  std::vector<OutboxEntry> entries;
+  std::vector<StoreEvent> events;
+  std::vector<StoredJob> results;  ///< Finished jobs. Only the summary of a result: its document.
+
+  /// Where the record is after it.
+  [[nodiscard]] Progress until() const;
+};
+
+/// "recald/v1/tower-3/batch" and "recald/v1/tower-3/watermark"
+[[nodiscard]] std::string batch_topic(std::string_view site);
+[[nodiscard]] std::string watermark_topic(std::string_view site);
+/// The site of such a topic; empty: another topic.
+[[nodiscard]] std::string site_of_topic(std::string_view topic);
+
+/// As JSON, without line breaks; numbers of 64 bits as they are, so that parsing gives the same.
+[[nodiscard]] std::string to_json(const RecordBatch& batch);
+[[nodiscard]] std::string to_json(const Watermark& watermark);
+
+/// @return malformed with a sentence: no JSON, a field that is missing or of another kind, numbers
+/// that do not rise.
+[[nodiscard]] Result<RecordBatch> parse_batch(std::string_view json);
+[[nodiscard]] Result<Watermark> parse_watermark(std::string_view json);
+
+}  // namespace recald::record
