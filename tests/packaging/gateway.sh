@@ -52,6 +52,9 @@ trap 'echo "--- failed; what the programs said:"; tail -n 15 ./*.log' ERR
 set -x
 . ./page.sh
 END
-# Whatever the page starts is in a namespace of processes of its own, and ends with it.
-unshare --mount --pid --fork --kill-child --propagation private \
-  chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 bash -E /gateway/run.sh
+# Whatever the page starts is in a namespace of processes of its own, and ends with it. Where no devices could be made,
+# as by the root of a user namespace, they are this machine's.
+# shellcheck disable=SC2016  # for the shell inside
+unshare --mount --pid --fork --kill-child --propagation private sh -c '
+  [ -c "$1/dev/null" ] || mount --rbind /dev "$1/dev"
+  exec chroot "$1" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 bash -E /gateway/run.sh' sh "$root"
