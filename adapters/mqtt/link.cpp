@@ -215,9 +215,9 @@ Result<std::unique_ptr<Link>> Link::make(const Broker& broker, const Session& se
                                          LinkListener& listener) {
   static const int initialised = mosquitto_lib_init();
   std::unique_ptr<Link> link{new Link{broker, session, listener}};
-  // The session outlives the connection, so that the broker keeps what is sent to us meanwhile.
+  // A session that is kept outlives the connection.
   link->client_ = initialised == MOSQ_ERR_SUCCESS
-                      ? mosquitto_new(broker.client_id.c_str(), false, link.get())
+                      ? mosquitto_new(broker.client_id.c_str(), !session.is_kept, link.get())
                       : nullptr;
   ::mosquitto* const client = link->client_;
   if (client == nullptr) {
@@ -258,7 +258,7 @@ Result<std::unique_ptr<Link>> Link::make(const Broker& broker, const Session& se
 
 Result<void> Link::connect() {
   Properties properties;
-  properties.add(MQTT_PROP_SESSION_EXPIRY_INTERVAL, kSession_s);
+  if (session_.is_kept) properties.add(MQTT_PROP_SESSION_EXPIRY_INTERVAL, kSession_s);
   properties.add(MQTT_PROP_MAXIMUM_PACKET_SIZE, kPacket_bytes_max);
   const int code = mosquitto_connect_bind_v5(client_, broker_.host.c_str(), broker_.port,
                                              kKeepAlive_s, nullptr, properties.list());

@@ -37,6 +37,8 @@ struct Session {
   std::optional<Message> will;      ///< Sent by the broker if the connection breaks.
   std::optional<Message> birth;     ///< Published after each connect.
   std::vector<std::string> topics;  ///< Topic filters, subscribed with QoS 1.
+  /// The broker keeps for a day what is sent to us while we are away; otherwise nothing.
+  bool is_kept = true;
 };
 
 }  // namespace recald::mqtt

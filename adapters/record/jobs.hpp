@@ -82,6 +82,10 @@ struct FleetResult {
 [[nodiscard]] Result<bool> give_back(postgres::Connection& connection, const FleetJob& job,
                                      const std::string& reason, const LeaseRules& rules);
 
+/// The worker stops, or its machine cannot do it: somebody else may at once, and the try does not
+/// count. @return as finish.
+[[nodiscard]] Result<bool> hand_back(postgres::Connection& connection, const FleetJob& job);
+
 /// The state that the job begins with: as the last finished job of the site left it.
 [[nodiscard]] Result<std::map<std::string, std::string>> state_before(
     postgres::Connection& connection, const FleetJob& job);

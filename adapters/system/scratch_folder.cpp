@@ -8,15 +8,15 @@
 
 namespace recald::system {
 
-Result<ScratchFolder> ScratchFolder::make() {
+Result<ScratchFolder> ScratchFolder::make(std::filesystem::path place, const std::string& name) {
   std::error_code failed;
-  const std::filesystem::path place = std::filesystem::temp_directory_path(failed);
+  if (place.empty()) place = std::filesystem::temp_directory_path(failed);
   if (failed) return failure(ErrorCode::io_failed, "no temporary folder: " + failed.message());
-  std::string name = (place / "recald-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) {
-    return failure(ErrorCode::io_failed, "cannot create " + name + ": " + std::strerror(errno));
+  std::string path = (place / (name + "XXXXXX")).string();
+  if (::mkdtemp(path.data()) == nullptr) {
+    return failure(ErrorCode::io_failed, "cannot create " + path + ": " + std::strerror(errno));
   }
-  return ScratchFolder{std::move(name)};
+  return ScratchFolder{std::move(path)};
 }
 
 ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept

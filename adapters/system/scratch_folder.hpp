@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/result.hpp"
 
@@ -10,8 +11,11 @@ namespace recald::system {
 /// New, private, and gone with all that is in it when the value is.
 class ScratchFolder {
  public:
-  /// Where the system keeps temporary files. @return io_failed with the path and the reason.
-  [[nodiscard]] static Result<ScratchFolder> make();
+  /// @param place  An existing folder; empty: where the system keeps temporary files.
+  /// @param name   What its name begins with.
+  /// @return io_failed with the path and the reason.
+  [[nodiscard]] static Result<ScratchFolder> make(std::filesystem::path place = {},
+                                                  const std::string& name = "recald-");
 
   ~ScratchFolder();
   ScratchFolder(ScratchFolder&& other) noexcept;

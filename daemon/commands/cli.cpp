@@ -29,6 +29,7 @@ constexpr const char* kData = "Look at readings";
 constexpr const char* kCalibrate = "Calibrate and forecast";
 constexpr const char* kFind = "Find what the model is missing";
 constexpr const char* kDesigns = "Work with simulation runs";
+constexpr const char* kFleet = "Many buildings";
 constexpr const char* kShell = "Help";
 
 void add_site(CLI::App& command, SiteArguments& arguments) {
@@ -289,6 +290,10 @@ struct Arguments {
   StatusArguments status;
   RegistersArguments registers;
   ModelArguments model;
+  WorkerArguments worker;
+  FleetArguments fleet;
+  FleetAddArguments fleet_sites;
+  FleetRerunArguments rerun;
   std::string command;
   std::string shell;
 };
@@ -581,6 +586,75 @@ void add_engine_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs)
       {show, [&](const Console& console) { return run_engine_show(given.engine, console); }});
 }
 
+CLI::Option* add_fleet(CLI::App& command, FleetArguments& arguments) {
+  return command.add_option("fleet", arguments.fleet, "File of the fleet (TOML)")->required();
+}
+
+void add_worker_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* worker =
+      app.add_subcommand("worker", "Take readings of gateways in, and calibrate their sites")
+          ->group(kFleet);
+  CLI::Option* fleet = add_fleet(*worker, given.worker);
+  worker->add_option("--jobs", given.worker.jobs, "Jobs at the same time, instead of the file's")
+      ->check(CLI::Range(0, 64));
+  worker->add_flag("--until-idle", given.worker.until_idle, "End when no job is left");
+  // How a worker starts the process of one job.
+  worker->add_option("--do", given.worker.job_folder, "Do the job in this folder")
+      ->group("")
+      ->excludes(fleet);
+  fleet->required(false);
+  verbs.push_back({worker, [&](const Console& console) {
+                     if (given.worker.fleet.empty() && given.worker.job_folder.empty()) {
+                       return console.misused("worker needs the file of a fleet");
+                     }
+                     return run_worker(given.worker, console);
+                   }});
+}
+
+void add_fleet_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
+  CLI::App* fleet =
+      app.add_subcommand("fleet", "The record of many sites, in PostgreSQL")->group(kFleet);
+  fleet->require_subcommand(1);
+  CLI::App* init = fleet->add_subcommand("init", "Make the record's tables, or update them");
+  add_fleet(*init, given.fleet);
+  verbs.push_back(
+      {init, [&](const Console& console) { return run_fleet_init(given.fleet, console); }});
+  CLI::App* add = fleet->add_subcommand("add", "Register sites, or new versions of their files");
+  add_fleet(*add, given.fleet_sites);
+  add->add_option("sites", given.fleet_sites.sites, "Site files (TOML)")->required();
+  add->add_option("--use", given.fleet_sites.use, "What they are used for, to compare them");
+  add->add_option("--climate", given.fleet_sites.climate, "Their climate, to compare them");
+  add->add_option("--calibrate-from", given.fleet_sites.calibrate_from,
+                  "First month to calibrate, YYYY-MM; the last month by default");
+  verbs.push_back(
+      {add, [&](const Console& console) { return run_fleet_add(given.fleet_sites, console); }});
+  CLI::App* remove = fleet->add_subcommand("remove", "Take nothing more from sites");
+  add_fleet(*remove, given.fleet_sites);
+  remove->add_option("sites", given.fleet_sites.sites, "Ids of sites")->required();
+  verbs.push_back({remove, [&](const Console& console) {
+                     return run_fleet_remove(given.fleet_sites, console);
+                   }});
+  CLI::App* status = fleet->add_subcommand("status", "List sites, jobs and what went wrong");
+  add_fleet(*status, given.fleet);
+  status->add_flag("--json", given.fleet.json, "Print the result as one JSON object");
+  verbs.push_back(
+      {status, [&](const Console& console) { return run_fleet_status(given.fleet, console); }});
+  CLI::App* serve = fleet->add_subcommand("serve", "Serve the pages of all sites over HTTP");
+  add_fleet(*serve, given.fleet);
+  verbs.push_back(
+      {serve, [&](const Console& console) { return run_fleet_serve(given.fleet, console); }});
+  CLI::App* rerun = fleet->add_subcommand("rerun", "List jobs to run again, and let them run");
+  add_fleet(*rerun, given.rerun);
+  rerun->add_option("sites", given.rerun.sites, "Ids of sites; all by default");
+  rerun->add_option("--month", given.rerun.month, "YYYY-MM; the last of each site by default");
+  CLI::Option* failed = rerun->add_flag("--failed", given.rerun.failed, "Only those that failed");
+  rerun->add_flag("--set-aside", given.rerun.set_aside, "Only those that were set aside")
+      ->excludes(failed);
+  rerun->add_flag("--yes", given.rerun.yes, "Let them run");
+  verbs.push_back(
+      {rerun, [&](const Console& console) { return run_fleet_rerun(given.rerun, console); }});
+}
+
 /// Pages and scripts made from `app`, which has all commands by then.
 void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* man =
@@ -657,7 +731,8 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   add_ecm_verb(app, given, verbs);
   add_model_verbs(app, given, verbs);
   add_engine_verbs(app, given, verbs);
-
+  add_worker_verb(app, given, verbs);
+  add_fleet_verbs(app, given, verbs);
   add_shell_verbs(app, given, verbs);
   const std::span words{argv, static_cast<std::size_t>(argc)};
   if (const auto why = unknown_command(app, words.subspan(std::min<std::size_t>(1, words.size())));

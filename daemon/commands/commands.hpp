@@ -187,6 +187,31 @@ struct ModelArguments : SiteArguments {
   std::string version;  ///< Or its first digits; empty: the one in force, for revert its parent.
 };
 
+struct FleetArguments {
+  std::filesystem::path fleet;  ///< File of the fleet (TOML).
+  bool json = false;
+};
+
+struct WorkerArguments : FleetArguments {
+  std::optional<int> jobs;           ///< At the same time; absent: as the file says.
+  bool until_idle = false;           ///< Ends when no job is left.
+  std::filesystem::path job_folder;  ///< Does the job in it and nothing else; empty: a worker.
+};
+
+struct FleetAddArguments : FleetArguments {
+  std::vector<std::filesystem::path> sites;  ///< Site files; to remove: ids.
+  std::string use, climate;                  ///< For comparisons; may be empty.
+  std::string calibrate_from;                ///< "2026-01"; empty: the last month.
+};
+
+struct FleetRerunArguments : FleetArguments {
+  std::vector<std::string> sites;  ///< Empty: all.
+  std::string month;               ///< Empty: the last of each site.
+  bool failed = false;             ///< Only those that failed …
+  bool set_aside = false;          ///< … or were set aside.
+  bool yes = false;                ///< Otherwise it only lists them.
+};
+
 /// Looks at exports of meters and writes a site file that reads them, each guess a comment.
 int run_init(const InitArguments& arguments, const Console& console);
 /// Explains a site file; with `meters` it also reads each live meter once.
@@ -239,5 +264,18 @@ int run_model_show(const ModelArguments& arguments, const Console& console);
 /// Puts the parent of the version in force, or the given version, in force again.
 int run_model_apply(const ModelArguments& arguments, const Console& console);
 int run_model_revert(const ModelArguments& arguments, const Console& console);
+/// Takes what gateways send into the record of a fleet, and does the jobs of its sites.
+int run_worker(const WorkerArguments& arguments, const Console& console);
+/// Makes the tables of a fleet's record, or brings them up to date.
+int run_fleet_init(const FleetArguments& arguments, const Console& console);
+/// Registers sites, or new versions of them; those that cannot be are said and left out.
+int run_fleet_add(const FleetAddArguments& arguments, const Console& console);
+int run_fleet_remove(const FleetAddArguments& arguments, const Console& console);
+/// Sites, jobs, and what a person should look at.
+int run_fleet_status(const FleetArguments& arguments, const Console& console);
+/// Pages and API of a fleet, until it is told to stop.
+int run_fleet_serve(const FleetArguments& arguments, const Console& console);
+/// Lists jobs that would run again, and lets them if told to.
+int run_fleet_rerun(const FleetRerunArguments& arguments, const Console& console);
 
 }  // namespace recald::daemon

@@ -32,6 +32,10 @@ constexpr auto kOrder = std::to_array<std::string_view>({
     "daemon/gateway/registers",
     "daemon/gateway/forward",
     "daemon/gateway/run",
+    "daemon/fleet/config",
+    "daemon/fleet/ingest",
+    "daemon/fleet/work",
+    "daemon/fleet/serve",
     "daemon/commands",
     "daemon/main",
 });

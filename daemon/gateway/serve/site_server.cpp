@@ -6,8 +6,7 @@
 
 namespace recald::daemon {
 
-Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
-                                                 const HttpConfig& config, Served served) {
+Result<http::ServerOptions> server_options(const HttpConfig& config) {
   http::ServerOptions options{.address = config.address,
                               .port = config.port,
                               .open_paths = {"/healthz", "/readyz"},
@@ -20,7 +19,14 @@ Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& contex
   if (!config.certificate_file.empty()) {
     options.tls = http::TlsFiles{config.certificate_file, config.key_file};
   }
-  return http::Server::listen(context, options,
+  return options;
+}
+
+Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
+                                                 const HttpConfig& config, Served served) {
+  const auto options = server_options(config);
+  if (!options) return tl::unexpected(options.error());
+  return http::Server::listen(context, *options,
                               [served = std::move(served)](const http::Request& request) {
                                 return answer(served, request);
                               });

@@ -9,11 +9,15 @@
 
 namespace recald::daemon {
 
-/// Listens with the configured token and certificate. /healthz and /readyz need no token, so that a
+/// Address, token and certificate as configured. /healthz and /readyz need no token, so that a
 /// supervisor needs no secret.
+/// @return or an error of http::read_token_file.
+[[nodiscard]] Result<http::ServerOptions> server_options(const HttpConfig& config);
+
+/// Listens with the configured options.
 /// @param context  Run by one thread; outlives the server.
 /// @param served   Everything it refers to outlives the server.
-/// @return the server, or an error of http::read_token_file or http::Server::listen.
+/// @return the server, or an error of server_options or http::Server::listen.
 [[nodiscard]] Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
                                                                const HttpConfig& config,
                                                                Served served);

@@ -1,0 +1,86 @@
+#include "daemon/fleet/config/fleet_config.hpp"
+
+#include <fmt/format.h>
+
+#include "adapters/system/read_file.hpp"
+#include "daemon/site/config/server_access.hpp"
+#include "daemon/site/config/toml_reader.hpp"
+
+namespace recald::daemon {
+namespace {
+
+constexpr double kMegabyte = 1e6;
+
+RecordConfig read_record(TomlReader& table, const std::filesystem::path& file) {
+  RecordConfig config{.url = table.required_text("url"),
+                      .password_file = read_path(table, "password_file", file)};
+  const bool is_address =
+      config.url.starts_with("postgresql://") || config.url.starts_with("postgres://");
+  if (!config.url.empty() && !is_address) {
+    table.problem_at("url",
+                     "'url' is no address of PostgreSQL; write one such as "
+                     "\"postgresql://recald@db.example.org/fleet\"");
+  }
+  // The address is logged and shown; "user:password@" is in its authority alone.
+  const std::size_t begin = config.url.find("//");
+  const std::string authority =
+      is_address ? config.url.substr(begin + 2, config.url.find('/', begin + 2) - begin - 2) : "";
+  const std::size_t at = authority.find('@');
+  if (at != std::string::npos && authority.substr(0, at).find(':') != std::string::npos) {
+    table.problem_at("url", "'url' has a password in it; write it into 'password_file'");
+  }
+  table.finish();
+  return config;
+}
+
+WorkerConfig read_worker(TomlReader& table, const std::filesystem::path& file) {
+  WorkerConfig config;
+  config.jobs = table.whole_number_or("jobs", config.jobs, {0.0, 64.0});
+  config.folder = read_path(table, "folder", file);
+  config.time_max = table.duration("time_max").value_or(config.time_max);
+  config.memory_max_bytes = static_cast<std::uint64_t>(
+      kMegabyte * table.number_or("memory_max_MB",
+                                  static_cast<double>(config.memory_max_bytes) / kMegabyte,
+                                  {500.0, 1e6}));
+  table.finish();
+  return config;
+}
+
+void read_root(TomlReader root, FleetConfig& config) {
+  if (auto record = root.table("record")) {
+    config.record = read_record(*record, config.file);
+  } else {
+    root.problem(
+        "[record] is missing: the database of the fleet, such as url = "
+        "\"postgresql://recald@db.example.org/fleet\"");
+  }
+  if (auto broker = root.table("mqtt")) config.broker = read_mqtt(*broker, "worker", config.file);
+  if (auto worker = root.table("worker")) config.worker = read_worker(*worker, config.file);
+  if (auto http = root.table("http")) config.http = read_http(*http, config.file);
+  root.finish();
+}
+
+}  // namespace
+
+tl::expected<FleetConfig, std::vector<std::string>> parse_fleet(std::string_view text,
+                                                                const std::filesystem::path& file) {
+  Problems problems;
+  const std::string name = file.filename().string();
+  FleetConfig config{.file = file};
+  try {
+    const toml::table root = toml::parse(text, name);
+    read_root(TomlReader{root, name, "", problems}, config);
+  } catch (const toml::parse_error& error) {
+    problems.push_back(syntax_problem(name, error));
+  }
+  if (!problems.empty()) return tl::unexpected(problems);
+  return config;
+}
+
+tl::expected<FleetConfig, std::vector<std::string>> load_fleet(const std::filesystem::path& file) {
+  const auto text = system::read_file(file);
+  if (!text) return tl::unexpected(Problems{text.error().message});
+  return parse_fleet(*text, file);
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,40 @@
+#include "daemon/fleet/config/keep_trying.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+namespace recald::daemon {
+namespace {
+
+constexpr std::chrono::seconds kWaitMin{5};
+constexpr std::chrono::seconds kWaitMax{60};
+
+}  // namespace
+
+void keep_trying(const std::string& meanwhile, const std::function<Result<void>()>& work,
+                 const TellWords& tell, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  auto wait = kWaitMin;
+  std::string said;
+  while (!stop.stop_requested()) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Result<void> ended = work();
+    if (ended || stop.stop_requested()) return;
+    const bool has_worked = std::chrono::steady_clock::now() - begin > kWaitMax;
+    if (has_worked) wait = kWaitMin;
+    if (std::exchange(said, ended.error().message) != ended.error().message || has_worked) {
+      tell(fmt::format("{}: {}; trying again", meanwhile, said));
+    }
+    std::unique_lock lock{mutex};
+    stopped.wait_for(lock, stop, wait, [] { return false; });
+    wait = std::min(2 * wait, kWaitMax);
+  }
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,21 @@
+/// How a worker waits for a record or a broker that is away.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "core/result.hpp"
+
+namespace recald::daemon {
+
+/// Takes a sentence for people; safe from any thread.
+using TellWords = std::function<void(const std::string&)>;
+
+/// Does `work`, and after a failure again, 5 s to 60 s apart, until it returns without one or is
+/// told to stop. Each new reason is told once.
+/// @param meanwhile  What does not happen then: "no jobs are done".
+void keep_trying(const std::string& meanwhile, const std::function<Result<void>()>& work,
+                 const TellWords& tell, const std::stop_token& stop);
+
+}  // namespace recald::daemon

@@ -1,0 +1,17 @@
+#include "daemon/fleet/config/open_record.hpp"
+
+#include "adapters/http/credentials.hpp"
+
+namespace recald::daemon {
+
+Result<std::unique_ptr<postgres::Connection>> open_record(const RecordConfig& config) {
+  std::string password;
+  if (!config.password_file.empty()) {
+    auto read = http::read_password_file(config.password_file);
+    if (!read) return tl::unexpected(read.error());
+    password = std::move(*read);
+  }
+  return postgres::Connection::open(config.url, password);
+}
+
+}  // namespace recald::daemon

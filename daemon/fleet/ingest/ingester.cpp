@@ -1,0 +1,203 @@
+#include "daemon/fleet/ingest/ingester.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "adapters/mqtt/connection.hpp"
+#include "adapters/record/ingest.hpp"
+#include "adapters/record/record_batch.hpp"
+#include "adapters/record/schema.hpp"
+#include "adapters/record/sites.hpp"
+#include "daemon/fleet/config/open_record.hpp"
+#include "daemon/gateway/forward/broker_of.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kLook{500};
+constexpr seconds kPublishMax{20};
+constexpr std::size_t kAtOnce = 32;  ///< Batches between two rounds of telling their gateways.
+constexpr std::size_t kWaiting_bytes_max = 64 * 1024 * 1024;
+constexpr std::chrono::minutes kRefusalsEvery{10};
+
+/// What has arrived and is not committed. It is no promise to anybody: what does not fit is
+/// dropped, and its gateway sends it again.
+class Arrivals {
+ public:
+  void push(const mqtt::Message& message) {
+    const std::scoped_lock lock{mutex_};
+    if (bytes_ + message.payload.size() > kWaiting_bytes_max) return;
+    bytes_ += message.payload.size();
+    waiting_.push_back(message);
+    changed_.notify_one();
+  }
+
+  void connected() {
+    const std::scoped_lock lock{mutex_};
+    is_new_connection_ = true;
+    changed_.notify_one();
+  }
+
+  /// Whether the connection was made since the last call.
+  [[nodiscard]] bool is_new_connection() {
+    const std::scoped_lock lock{mutex_};
+    return std::exchange(is_new_connection_, false);
+  }
+
+  /// Waits a moment for the first.
+  [[nodiscard]] std::vector<mqtt::Message> take() {
+    std::unique_lock lock{mutex_};
+    changed_.wait_for(lock, kLook, [&] { return !waiting_.empty() || is_new_connection_; });
+    std::vector<mqtt::Message> taken;
+    while (!waiting_.empty() && taken.size() < kAtOnce) {
+      bytes_ -= waiting_.front().payload.size();
+      taken.push_back(std::move(waiting_.front()));
+      waiting_.pop_front();
+    }
+    return taken;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<mqtt::Message> waiting_;
+  std::size_t bytes_ = 0;
+  bool is_new_connection_ = false;
+};
+
+mqtt::Message told(const std::string& site, const record::Watermark& watermark) {
+  return {.topic = record::watermark_topic(site),
+          .payload = record::to_json(watermark),
+          .is_retained = true};
+}
+
+metering::Instant now() { return std::chrono::floor<seconds>(std::chrono::system_clock::now()); }
+
+class Ingester {
+ public:
+  Ingester(const MqttConfig& broker, const TellWords& tell, const std::stop_token& stop,
+           IngestCounts& counts)
+      : broker_(broker), tell_(tell), stop_(stop), counts_(counts) {}
+
+  /// Takes batches until it is told to stop. @return or why the record or the broker cannot go on.
+  Result<void> serve(postgres::Connection& record) {
+    if (auto checked = record::check_schema(record); !checked) return checked;
+    auto broker = broker_of(broker_);
+    if (!broker) return tl::unexpected(broker.error());
+    Arrivals arrivals;
+    auto connection = mqtt::Connection::open(
+        std::move(*broker),
+        {.will = {},
+         .birth = {},
+         .topics = {"$share/recald/" + record::batch_topic("+")},
+         .is_kept = false},
+        [&](const mqtt::Message& message) { arrivals.push(message); },
+        [&](bool is_connected, const std::string& why) {
+          if (is_connected && why.empty()) arrivals.connected();
+          if (!why.empty()) tell_(why);
+        });
+    if (!connection) return tl::unexpected(connection.error());
+    tell_("the record is there: batches of gateways are taken");
+    while (!stop_.stop_requested()) {
+      if (arrivals.is_new_connection()) {
+        if (auto done = tell_all(record, **connection); !done) return done;
+      }
+      std::vector<mqtt::Message> answers;
+      for (const mqtt::Message& message : arrivals.take()) {
+        auto answer = take(record, message);
+        if (!answer) return tl::unexpected(answer.error());
+        if (!answer->topic.empty()) answers.push_back(std::move(*answer));
+      }
+      publish(**connection, answers);
+    }
+    return {};
+  }
+
+ private:
+  /// Everything that was retained may be gone, and gateways may wait for a word.
+  Result<void> tell_all(postgres::Connection& record, mqtt::Connection& connection) {
+    const auto all = record::watermarks(record);
+    if (!all) return tl::unexpected(all.error());
+    std::vector<mqtt::Message> messages;
+    for (const auto& [site, watermark] : *all) messages.push_back(told(site, watermark));
+    publish(connection, messages);
+    return {};
+  }
+
+  /// What is not told now is told with the next batch, which the gateway sends again.
+  void publish(mqtt::Connection& connection, const std::vector<mqtt::Message>& messages) {
+    if (messages.empty()) return;
+    if (auto sent = connection.publish(messages, kPublishMax, stop_); !sent) {
+      refuse("", "watermarks cannot be told: " + sent.error().message);
+    }
+  }
+
+  /// @return the watermark to tell, without a topic where the batch is refused; or io_failed: the
+  ///         record is away.
+  Result<mqtt::Message> take(postgres::Connection& record, const mqtt::Message& message) {
+    const std::string site = record::site_of_topic(message.topic);
+    const auto batch = record::parse_batch(message.payload);
+    if (site.empty() || !batch) {
+      ++counts_.refused;
+      refuse(site, fmt::format("a message on {} is no batch: {}", message.topic,
+                               batch ? "its topic names no site" : batch.error().message));
+      return mqtt::Message{};
+    }
+    const auto watermark = record::take(record, site, *batch, now());
+    if (watermark) {
+      ++counts_.batches;
+      counts_.entries += static_cast<std::int64_t>(batch->entries.size());
+      return told(site, *watermark);
+    }
+    if (watermark.error().code == ErrorCode::io_failed) return tl::unexpected(watermark.error());
+    ++counts_.refused;
+    refuse(site,
+           fmt::format("a batch of site '{}' is not taken: {}", site, watermark.error().message));
+    return mqtt::Message{};
+  }
+
+  void refuse(const std::string& site, const std::string& why) {
+    const auto moment = steady_clock::now();
+    const auto known = refused_.find(site);
+    if (known != refused_.end() && moment - known->second < kRefusalsEvery) return;
+    refused_[site] = moment;
+    tell_(why);
+  }
+
+  const MqttConfig& broker_;
+  const TellWords& tell_;
+  const std::stop_token& stop_;
+  IngestCounts& counts_;
+  std::map<std::string, steady_clock::time_point> refused_;
+};
+
+}  // namespace
+
+IngestCounts ingest(const RecordConfig& record, const MqttConfig& broker, const TellWords& tell,
+                    const std::stop_token& stop) {
+  IngestCounts counts;
+  Ingester ingester{broker, tell, stop, counts};
+  keep_trying(
+      "no batches are taken, and gateways keep what they have",
+      [&]() -> Result<void> {
+        auto connection = open_record(record);
+        if (!connection) return tl::unexpected(connection.error());
+        return ingester.serve(**connection);
+      },
+      tell, stop);
+  return counts;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,101 @@
+#include "daemon/fleet/work/site_description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "adapters/system/read_file.hpp"
+#include "daemon/site/config/toml_reader.hpp"
+
+namespace recald::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A register map of one's own is named by the file that it is in.
+void add_map(const MeterConfig& meter, const fs::path& folder, std::vector<fs::path>& paths) {
+  if (!meter.live) return;
+  const toml::table table = toml::parse(meter.text);
+  const auto name = table["map"].value<std::string>();
+  if (name && name->ends_with(".toml")) paths.push_back(folder / *name);
+}
+
+void add_model(const ModelConfig& model, std::vector<fs::path>& paths) {
+  if (!model.energyplus) return;
+  paths.push_back(model.energyplus->file);
+  paths.push_back(model.energyplus->design);
+}
+
+/// Files and folders that the site file names for its model.
+std::vector<fs::path> named_paths(const SiteConfig& site) {
+  std::vector<fs::path> paths{site.file};
+  const fs::path folder = site.file.parent_path();
+  for (const auto* const list : {&site.meters, &site.sensors}) {
+    for (const MeterConfig& meter : *list) {
+      paths.insert(paths.end(), meter.files.begin(), meter.files.end());
+      add_map(meter, folder, paths);
+    }
+  }
+  if (site.weather) {
+    paths.insert(paths.end(), site.weather->files.begin(), site.weather->files.end());
+  }
+  if (site.model) add_model(*site.model, paths);
+  for (const ModelConfig& model : site.other_models) add_model(model, paths);
+  if (!site.recalibration.design.empty()) paths.push_back(site.recalibration.design);
+  return paths;
+}
+
+Result<void> add_file(const fs::path& file, const fs::path& folder,
+                      record::SiteDescription& description) {
+  const std::string name = file.lexically_relative(folder).generic_string();
+  if (name.empty() || name.starts_with("..")) {
+    return failure(
+        ErrorCode::invalid_value,
+        fmt::format("'{}' lies outside the folder of the site file, so workers elsewhere "
+                    "would not find it; put it beside the site file",
+                    file.string()));
+  }
+  auto bytes = system::read_file(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  description.files[name] = std::move(*bytes);
+  return {};
+}
+
+/// A design is a folder, which may not be there yet.
+Result<void> add_path(const fs::path& path, const fs::path& folder,
+                      record::SiteDescription& description) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) {
+    return path.has_extension() ? add_file(path, folder, description) : Result<void>{};
+  }
+  for (const auto& entry : fs::recursive_directory_iterator{path, ignored}) {
+    if (!entry.is_regular_file(ignored)) continue;
+    if (auto added = add_file(entry.path(), folder, description); !added) return added;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<record::SiteDescription> describe(const OpenSite& site) {
+  const SiteConfig& config = site.config;
+  if (auto modelled = require_model(config); !modelled) return tl::unexpected(modelled.error());
+  record::SiteDescription description{.id = config.id, .name = config.name};
+  if (config.location) {
+    description.latitude_deg = config.location->latitude_deg;
+    description.longitude_deg = config.location->longitude_deg;
+  }
+  if (config.building) description.floor_area_m2 = config.building->floor_area_m2;
+  description.currency = config.tariff.currency;
+  description.outputs = config.without_sums(config.model->outputs);
+  description.site_file = config.file.filename().generic_string();
+  const fs::path folder = fs::absolute(config.file).lexically_normal().parent_path();
+  for (const fs::path& path : named_paths(config)) {
+    auto added = add_path(fs::absolute(path).lexically_normal(), folder, description);
+    if (!added) return tl::unexpected(added.error());
+  }
+  return description;
+}
+
+}  // namespace recald::daemon

@@ -1,0 +1,54 @@
+#include "daemon/fleet/config/fleet_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace recald::daemon {
+namespace {
+
+constexpr auto kRecord = "[record]\nurl = \"postgresql://recald@db.example.org/fleet\"\n";
+
+std::vector<std::string> problems_of(const std::string& text) {
+  const auto config = parse_fleet(text, "/etc/recald/fleet.toml");
+  return config ? std::vector<std::string>{} : config.error();
+}
+
+TEST(FleetConfig, HasWhatAWorkerNeeds) {
+  const auto config = parse_fleet(std::string{kRecord} + R"(password_file = "db-password"
+[mqtt]
+url = "mqtts://broker.example.org"
+[worker]
+jobs = 3
+folder = "work"
+time_max = "10m"
+memory_max_MB = 2000
+)",
+                                  "/etc/recald/fleet.toml");
+  ASSERT_TRUE(config) << config.error().front();
+  EXPECT_EQ(config->record.password_file, "/etc/recald/db-password");
+  ASSERT_TRUE(config->broker);
+  EXPECT_EQ(config->worker.jobs, 3);
+  EXPECT_EQ(config->worker.folder, "/etc/recald/work");
+  EXPECT_EQ(config->worker.time_max, std::chrono::minutes{10});
+  EXPECT_EQ(config->worker.memory_max_bytes, 2'000'000'000u);
+}
+
+TEST(FleetConfig, AnAddressWithAPasswordIsRefusedWithoutRepeatingIt) {
+  const auto problems =
+      problems_of("[record]\nurl = \"postgresql://recald:hunter2@db.example.org/fleet\"\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems.front().find("password_file"), std::string::npos) << problems.front();
+  EXPECT_EQ(problems.front().find("hunter2"), std::string::npos) << problems.front();
+}
+
+TEST(FleetConfig, SaysWhatIsMissingOrWrong) {
+  EXPECT_NE(problems_of("").front().find("[record] is missing"), std::string::npos);
+  EXPECT_EQ(problems_of("[record]\nurl = \"mysql://db/fleet\"\n").size(), 1u);
+  EXPECT_EQ(problems_of(std::string{kRecord} + "[worker]\njobs = -1\n").size(), 1u);
+  EXPECT_EQ(problems_of(std::string{kRecord} + "[worker]\nmemory_max_MB = 10\n").size(), 1u);
+  EXPECT_EQ(problems_of(std::string{kRecord} + "[workers]\n").size(), 1u);
+}
+
+}  // namespace
+}  // namespace recald::daemon
