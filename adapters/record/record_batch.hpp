@@ -1,4 +1,15 @@
 /// What a gateway tells the record of a fleet, and what the record answers, as messages.
+///
+///   {"outbox":81,"after":{"entries":7,"events":2,"results":0},
+///    "entries":[[8,"main",900,1772323200,0,12.5,0,0,false],  // number, meter, interval, start,
+///                                  // revision, mean, validity, reasons (bits), late
+///               [9,"main",900,{"month":"2026-02", …}],       // a closed month
+///               [10,"main",900,null]],                       // what damage took
+///    "events":[{"number":3,"time":1772323200,"kind":"meter_silent", …}],
+///    "results":[{"number":1,"kind":"calibration","state":"done","document":"{…}", …}]}
+///   {"outbox":81,"entries":10,"events":3,"results":1}
+///
+/// Times are seconds since 1970; null is a number that is not known.
 #pragma once
 
 #include <cstdint>
@@ -32,9 +43,10 @@ struct Watermark {
 struct RecordBatch {
   std::int64_t outbox = 0;
   Progress after;  ///< All up to here was told before.
-  std::vector<OutboxEntry> entries;
-  std::vector<StoreEvent> events;
-  std::vector<StoredJob> results;  ///< Finished jobs. Only the summary of a result: its document.
+  std::vector<OutboxEntry> entries = {};
+  std::vector<StoreEvent> events = {};
+  std::vector<StoredJob> results =
+      {};  ///< Finished jobs. Only the summary of a result: its document.
 
   /// Where the record is after it.
   [[nodiscard]] Progress until() const;
@@ -46,12 +58,14 @@ struct RecordBatch {
 /// The site of such a topic; empty: another topic.
 [[nodiscard]] std::string site_of_topic(std::string_view topic);
 
-/// As JSON, without line breaks; numbers of 64 bits as they are, so that parsing gives the same.
+/// As JSON, without line breaks; numbers of 64 bits as they are, so that parsing gives the same. A
+/// meter's number, and of a job its folder and tries, mean nothing elsewhere and are left out. What
+/// is no UTF-8 in a text is replaced.
 [[nodiscard]] std::string to_json(const RecordBatch& batch);
 [[nodiscard]] std::string to_json(const Watermark& watermark);
 
 /// @return malformed with a sentence: no JSON, a field that is missing or of another kind, numbers
-/// that do not rise.
+/// that do not rise. Fields of a newer recald are left out.
 [[nodiscard]] Result<RecordBatch> parse_batch(std::string_view json);
 [[nodiscard]] Result<Watermark> parse_watermark(std::string_view json);
 
