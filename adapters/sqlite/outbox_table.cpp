@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/month_table.hpp"
 #include "adapters/sqlite/tables.hpp"
@@ -70,13 +71,16 @@ Result<void> keep_outbox_for(Database& database, const std::vector<std::string>&
       if (std::ranges::find(*kept, cursor) != kept->end()) continue;
       if (auto put = put_cursor(database, cursor, *last); !put) return put;
     }
-    auto forget = database.prepare("DELETE FROM cursor WHERE destination IN (?1, ?2)");
+    auto forget = database.prepare("DELETE FROM cursor WHERE destination IN (?1, ?2, ?3, ?4)");
     if (!forget) return tl::unexpected(forget.error());
     for (const std::string& cursor : *kept) {
-      const auto name = std::string_view{cursor}.substr(kPrefix.size());
+      const std::string name = cursor.substr(kPrefix.size());
       if (std::ranges::find(destinations, name) != destinations.end()) continue;
-      const std::string events = events_cursor(std::string{name});
-      forget->bind(0, std::string_view{cursor}).bind(1, std::string_view{events});
+      int parameter = 0;
+      for (const std::string& of_it :
+           {cursor, events_cursor(name), results_cursor(name), identity_cursor(name)}) {
+        forget->bind(parameter++, std::string_view{of_it});
+      }
       if (auto done = forget->run(); !done) return done;
     }
     return forget_told(database);
@@ -136,6 +140,10 @@ Result<void> put_outbox_position(Database& database, const std::string& destinat
     }
     return forget_told(database);
   });
+}
+
+Result<void> forget_identities(Database& database) {
+  return database.execute("DELETE FROM cursor WHERE destination GLOB 'identity for *'");
 }
 
 }  // namespace recald::sqlite

@@ -26,4 +26,7 @@ namespace recald::sqlite {
 [[nodiscard]] Result<void> put_outbox_position(Database& database, const std::string& destination,
                                                std::int64_t number);
 
+/// Numbers are given again from here on (adapters/ports/destination_cursors.hpp).
+[[nodiscard]] Result<void> forget_identities(Database& database);
+
 }  // namespace recald::sqlite

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adapters/sqlite/damage.hpp"
+#include "adapters/sqlite/outbox_table.hpp"
 #include "adapters/sqlite/refill.hpp"
 #include "adapters/sqlite/restoration.hpp"
 #include "adapters/sqlite/schema.hpp"
@@ -123,6 +124,7 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
   if (!refilled) return tl::unexpected(refilled.error());
   recovery.from_samples = refilled->from_samples;
   recovery.lost_intervals = refilled->still_missing;
+  if (auto forgotten = forget_identities(to); !forgotten) return forgotten;
   if (auto told = tell(made, recovery, now); !told) return told;
   // Moves everything into the one file that is renamed.
   return to.execute("PRAGMA wal_checkpoint(TRUNCATE)");
@@ -168,6 +170,8 @@ Result<void> close_note(const Places& places, Recovery& recovery, metering::Inst
     if (!tells) return tl::unexpected(tells.error());
     recovery.is_overtaken = !*tells;
     if (recovery.is_overtaken) {
+      // It may be an older one.
+      if (auto forgotten = forget_identities(store->database()); !forgotten) return forgotten;
       if (auto told = tell(*store, recovery, now); !told) return told;
     }
   }

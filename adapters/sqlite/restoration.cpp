@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adapters/sqlite/damage.hpp"
+#include "adapters/sqlite/outbox_table.hpp"
 #include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/sqlite/store_files.hpp"
@@ -116,6 +117,8 @@ class Restoration final : public StoreRestoration {
       return tl::unexpected(told.error());
     }
     if (auto set = number_jobs_on(); !set) return tl::unexpected(set.error());
+    auto forgotten = forget_identities(opened_->database());
+    if (!forgotten) return tl::unexpected(forgotten.error());
     // Moves everything into the one file that is renamed.
     auto moved = opened_->database().execute("PRAGMA wal_checkpoint(TRUNCATE)");
     if (!moved) return tl::unexpected(moved.error());

@@ -1,6 +1,7 @@
 /// The outbox: what is stored is given out in order to each destination, once and for ever.
 #include <gmock/gmock.h>
 
+#include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/sqlite/tables.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -106,11 +107,29 @@ TEST_F(OutboxTable, ADestinationThatIsTakenOutHoldsNothingBack) {
   EXPECT_EQ(rows(), 0);
 }
 
+// Numbers begin again where nobody is told any more, so they are of another numbering then.
+TEST_F(OutboxTable, ADestinationThatIsTakenOutLosesAllItsCursors) {
+  const std::vector<std::string> cursors{events_cursor("fleet"), results_cursor("fleet"),
+                                         identity_cursor("fleet")};
+  ASSERT_TRUE(store_->keep_outbox_for({"fleet", "fleet 2"}).has_value());
+  for (const std::string& cursor : cursors) ASSERT_TRUE(store_->put_cursor(cursor, 7));
+  ASSERT_TRUE(store_->put_cursor(identity_cursor("fleet 2"), 8));
+  ASSERT_TRUE(store_->keep_outbox_for({"fleet", "fleet 2"}).has_value());
+  for (const std::string& cursor : cursors) EXPECT_EQ(store_->cursor(cursor).value(), 7) << cursor;
+  ASSERT_TRUE(store_->keep_outbox_for({"fleet 2"}).has_value());
+  for (const std::string& cursor : cursors) {
+    EXPECT_EQ(store_->cursor(cursor).value(), std::nullopt) << cursor;
+  }
+  EXPECT_EQ(store_->cursor(identity_cursor("fleet 2")).value(), 8);
+}
+
 // A position of the outbox is no number of an event, although both are in one table.
 TEST_F(OutboxTable, NumbersOfEventsDoNotDependOnIt) {
   ASSERT_TRUE(store_->keep_outbox_for({"broker"}).has_value());
   for (int quarter = 0; quarter < 20; ++quarter) store(quarter, 1.0);
   ASSERT_TRUE(store_->put_outbox_position("broker", 20).has_value());
+  ASSERT_TRUE(store_->put_cursor(identity_cursor("broker"), 1'000'000).has_value());
+  ASSERT_TRUE(store_->put_cursor(results_cursor("broker"), 20).has_value());
   ASSERT_TRUE(
       store_->commit({.events = {{kStart, Severity::info, "some", "main", "."}}}).has_value());
   EXPECT_EQ(store_->events(1)->front().number, 1);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/tables.hpp"
 #include "core/random/rng.hpp"
@@ -144,6 +145,23 @@ TEST_F(RecoveryTest, ABackupFillsTheHole) {
   const RecoveredTable& intervals = table(*opened.recovery, "interval");
   EXPECT_EQ(intervals.from_damaged + intervals.from_backup, 2 * kQuarters);
   EXPECT_GT(intervals.from_backup, 0);
+}
+
+// Numbers that the lost rows had are given again.
+TEST_F(RecoveryTest, ARecoveredStoreIsOfAnotherNumbering) {
+  {
+    auto store = SqliteStore::open(file()).value();
+    ASSERT_TRUE(store.put_cursor(events_cursor("fleet"), 5).has_value());
+    ASSERT_TRUE(store.put_cursor(identity_cursor("fleet"), 81).has_value());
+  }
+  const auto backup = folder_ / "backup.db";
+  back_up_to(backup);
+  EXPECT_EQ(open(file()).store.cursor(identity_cursor("fleet")).value(), 81);
+  recald::testing::damage_leaf(file(), "interval", 20);
+  CheckedStore opened = open(file(), {backup});
+  ASSERT_TRUE(opened.recovery.has_value());
+  EXPECT_EQ(opened.store.cursor(events_cursor("fleet")).value(), 5);
+  EXPECT_EQ(opened.store.cursor(identity_cursor("fleet")).value(), std::nullopt);
 }
 
 TEST_F(RecoveryTest, WithoutItsMetersReadingsKeepTheirNumbers) {
@@ -474,11 +492,12 @@ TEST_F(RecoveryTest, AStoreThatTookItsPlaceIsToldOf) {
   std::filesystem::rename(file(), aside);
   recald::testing::write_text(folder_ / "site.db.recovery",
                               aside.filename().string() + "\nbad page\n");
-  { ASSERT_TRUE(SqliteStore::open(file()).has_value()); }
+  { ASSERT_TRUE(SqliteStore::open(file())->put_cursor(identity_cursor("fleet"), 81)); }
   {
     CheckedStore opened = open(file());
     ASSERT_TRUE(opened.recovery.has_value());
     EXPECT_TRUE(opened.recovery->is_overtaken);
+    EXPECT_EQ(opened.store.cursor(identity_cursor("fleet")).value(), std::nullopt);
     EXPECT_THAT(opened.recovery->sentence(),
                 HasSubstr("does not contain the data of 'site.db.damaged-20240409T000000Z'"));
     EXPECT_EQ(opened.store.events(1)->at(0).text, opened.recovery->sentence());

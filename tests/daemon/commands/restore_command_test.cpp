@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/system/file_lock.hpp"
@@ -173,6 +174,20 @@ TEST_F(RestoreCommand, TheNewestBackupTakesTheStoresPlaceAndTheStoreIsKept) {
                                 HasSubstr("is kept as 'site.db.replaced-20")));
   // The folder of job 1 stays that of the replaced store's.
   EXPECT_EQ(store.add_job({.asked_by = "api", .asked = kStart}).value(), 2);
+}
+
+// What was told since the backup had numbers that are given again.
+TEST_F(RestoreCommand, ARestoredStoreIsOfAnotherNumbering) {
+  {
+    auto backup = sqlite::SqliteStore::open(path("backups/site-2024-03-03.db")).value();
+    ASSERT_TRUE(backup.put_cursor(events_cursor("fleet"), 5).has_value());
+    ASSERT_TRUE(backup.put_cursor(identity_cursor("fleet"), 81).has_value());
+  }
+  const auto done = restore();
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  auto store = sqlite::SqliteStore::open(path("site.db")).value();
+  EXPECT_EQ(store.cursor(events_cursor("fleet")).value(), 5);
+  EXPECT_EQ(store.cursor(identity_cursor("fleet")).value(), std::nullopt);
 }
 
 TEST_F(RestoreCommand, WhatWasReplacedCanBePutBackWithItsLog) {

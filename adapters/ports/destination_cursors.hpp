@@ -1,0 +1,21 @@
+/// Cursors (Store::cursor) that a destination of the outbox may have beside its position and that
+/// over the events. A destination that is taken out loses them.
+#pragma once
+
+#include <string>
+
+namespace recald {
+
+/// The number of the last finished job that the destination has had.
+[[nodiscard]] inline std::string results_cursor(const std::string& destination) {
+  return "results of " + destination;
+}
+
+/// Which numbering the destination's positions are of: no position, but a number by chance. It is
+/// removed wherever numbers of entries and events are given again: from a backup that is restored,
+/// and when a damaged store is recovered.
+[[nodiscard]] inline std::string identity_cursor(const std::string& destination) {
+  return "identity for " + destination;
+}
+
+}  // namespace recald
