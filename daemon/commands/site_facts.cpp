@@ -261,10 +261,13 @@ Facts secrets(const SiteConfig& site) {
                              http::read_token_file(hook->token_file)));
     }
   }
-  if (site.mqtt && !site.mqtt->login.user.empty()) {
+  const auto add_broker = [&](const std::string& name, const BrokerConfig& broker) {
+    if (broker.login.user.empty()) return;
     facts.push_back(
-        secret("[mqtt] password_file", http::read_password_file(site.mqtt->login.password_file)));
-  }
+        secret(name + " password_file", http::read_password_file(broker.login.password_file)));
+  };
+  if (site.mqtt) add_broker("[mqtt]", site.mqtt->broker);
+  if (site.fleet) add_broker("[fleet]", *site.fleet);
   for (const RemoteWriteConfig& write : site.remote_writes) {
     if (!write.token_file.empty()) {
       facts.push_back(secret("[remote_write] token_file", http::read_token_file(write.token_file)));

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
+
+#include "adapters/ports/destination_cursors.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -21,6 +24,37 @@ Sent send_safely(Sink& sink, const OutgoingBatch& batch, const std::stop_token& 
   } catch (const std::exception& thrown) {
     return {.outcome = Sent::Outcome::later, .why = thrown.what()};
   }
+}
+
+constexpr int kResults_max = 10;  // of a tenth of a megabyte each
+constexpr std::array kJobKinds{JobKind::calibration, JobKind::diagnosis};
+
+/// The number before the first job that waits or runs, so that a position passes none; without
+/// one, that of the newest.
+Result<std::int64_t> last_settled_job(Store& store) {
+  const auto unfinished = store.unfinished_jobs();
+  if (!unfinished) return tl::unexpected(unfinished.error());
+  if (!unfinished->empty()) return unfinished->front().number - 1;
+  std::int64_t last = 0;
+  for (const JobKind kind : kJobKinds) {
+    const auto newest = store.jobs(kind, 1);
+    if (!newest) return tl::unexpected(newest.error());
+    if (!newest->empty()) last = std::max(last, newest->front().number);
+  }
+  return last;
+}
+
+/// Those with a number of (after, last], in order, with their results.
+Result<std::vector<StoredJob>> jobs_between(Store& store, std::int64_t after, std::int64_t last,
+                                            int limit) {
+  std::vector<StoredJob> jobs;
+  for (std::int64_t number = after + 1; number <= last; ++number) {
+    if (static_cast<int>(jobs.size()) == limit) break;
+    auto job = store.job(number);
+    if (!job) return tl::unexpected(job.error());
+    if (*job) jobs.push_back(std::move(**job));
+  }
+  return jobs;
 }
 
 }  // namespace
@@ -57,6 +91,12 @@ void Forwarder::schedule(milliseconds wait) {
   });
 }
 
+void Forwarder::try_now() {
+  if (wait_ == milliseconds{0}) return;
+  not_before_ = milliseconds{0};
+  schedule(milliseconds{0});
+}
+
 void Forwarder::look() {
   schedule(rules_.look_every);
   if (is_sending_ || ports_.loop.now().monotonic < not_before_) return;
@@ -69,17 +109,45 @@ Result<OutgoingBatch> Forwarder::next() {
   OutgoingBatch batch;
   const auto from = position();
   if (!from) return tl::unexpected(from.error());
+  batch.after.entries = from->told;
   auto entries = ports_.store.outbox_after(from->told, batch_);
   if (!entries) return tl::unexpected(entries.error());
   batch.entries = std::move(*entries);
-  const int left = batch_ - static_cast<int>(batch.entries.size());
-  if (!destination_.wants_events || left <= 0) return batch;
-  const auto after = event_position();
+  for (const auto add : {&Forwarder::add_events, &Forwarder::add_results}) {
+    if (auto added = (this->*add)(batch); !added) return tl::unexpected(added.error());
+  }
+  return batch;
+}
+
+Result<void> Forwarder::add_events(OutgoingBatch& batch) {
+  if (!destination_.wants_events) return {};
+  const auto after = position_of(events_cursor(destination_.id), [this]() -> Result<std::int64_t> {
+    const auto last = ports_.store.events(1);
+    if (!last) return tl::unexpected(last.error());
+    return last->empty() ? 0 : last->front().number;
+  });
   if (!after) return tl::unexpected(after.error());
-  auto events = ports_.store.events_after(*after, left);
+  batch.after.events = *after;
+  const int room = room_in(batch);
+  if (room == 0) return {};
+  auto events = ports_.store.events_after(*after, room);
   if (!events) return tl::unexpected(events.error());
   batch.events = std::move(*events);
-  return batch;
+  return {};
+}
+
+Result<void> Forwarder::add_results(OutgoingBatch& batch) {
+  if (!destination_.wants_results) return {};
+  const auto last = last_settled_job(ports_.store);
+  if (!last) return tl::unexpected(last.error());
+  const auto after = position_of(results_cursor(destination_.id), [&] { return last; });
+  if (!after) return tl::unexpected(after.error());
+  batch.after.results = *after;
+  if (*after >= *last) return {};
+  auto results = jobs_between(ports_.store, *after, *last, std::min(room_in(batch), kResults_max));
+  if (!results) return tl::unexpected(results.error());
+  batch.results = std::move(*results);
+  return {};
 }
 
 Result<OutboxPosition> Forwarder::position() {
@@ -102,15 +170,16 @@ Result<OutboxPosition> Forwarder::position() {
   return position;
 }
 
-/// A new destination is told of what happens from now on.
-Result<std::int64_t> Forwarder::event_position() {
-  const auto known = ports_.store.cursor(events_cursor(destination_.id));
+/// A new destination is told of what happens from now on. @param last  Number of what happened
+/// last.
+Result<std::int64_t> Forwarder::position_of(const std::string& cursor,
+                                            const std::function<Result<std::int64_t>()>& last) {
+  const auto known = ports_.store.cursor(cursor);
   if (!known) return tl::unexpected(known.error());
   if (*known) return **known;
-  const auto last = ports_.store.events(1);
-  if (!last) return tl::unexpected(last.error());
-  const std::int64_t position = last->empty() ? 0 : last->front().number;
-  if (auto put = ports_.store.put_cursor(events_cursor(destination_.id), position); !put) {
+  auto position = last();
+  if (!position) return position;
+  if (auto put = ports_.store.put_cursor(cursor, *position); !put) {
     return tl::unexpected(put.error());
   }
   return position;
@@ -159,8 +228,13 @@ bool Forwarder::move_past(const OutgoingBatch& batch) {
       auto put = ports_.store.put_outbox_position(destination_.id, number);
       if (!put) return put;
     }
-    if (batch.events.empty()) return {};
-    return ports_.store.put_cursor(events_cursor(destination_.id), batch.events.back().number);
+    if (!batch.events.empty()) {
+      const std::int64_t number = batch.events.back().number;
+      auto put = ports_.store.put_cursor(events_cursor(destination_.id), number);
+      if (!put) return put;
+    }
+    if (batch.results.empty()) return {};
+    return ports_.store.put_cursor(results_cursor(destination_.id), batch.results.back().number);
   });
   if (!moved) wait_after({.outcome = Sent::Outcome::later, .why = moved.error().message});
   return moved.has_value();
@@ -169,9 +243,10 @@ bool Forwarder::move_past(const OutgoingBatch& batch) {
 bool Forwarder::set_aside(const OutgoingBatch& batch, const std::string& why) {
   if (!move_past(batch)) return false;
   const std::string what =
-      batch.size() > 1        ? fmt::format("a part of {} intervals and months", batch.size())
-      : batch.entries.empty() ? "an event"
-                              : fmt::format("a reading of '{}'", batch.entries.front().meter);
+      batch.size() > 1         ? fmt::format("a part of {} intervals and months", batch.size())
+      : !batch.entries.empty() ? fmt::format("a reading of '{}'", batch.entries.front().meter)
+      : !batch.events.empty()  ? "an event"
+                               : "a result";
   tell_({.time = ports_.loop.now().instant(),
          .severity = Severity::warning,
          .kind = "forward_refused",

@@ -4,6 +4,7 @@
 /// Sending happens on a worker of its own: no poll and no other destination waits for it.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -35,6 +36,7 @@ struct Destination {
   std::string id;     ///< In the store; never changes, and has no secret in it.
   std::string words;  ///< For people: "Prometheus at metrics.example.org".
   bool wants_events = false;
+  bool wants_results = false;
 };
 
 class Forwarder {
@@ -55,6 +57,9 @@ class Forwarder {
 
   void start() { schedule(std::chrono::milliseconds{0}); }
 
+  /// The other side has shown that it is there: ends the wait after a failure.
+  void try_now();
+
   [[nodiscard]] const Destination& destination() const { return destination_; }
   [[nodiscard]] DestinationStatus status() const;
 
@@ -63,7 +68,13 @@ class Forwarder {
   void look();
   [[nodiscard]] Result<OutgoingBatch> next();
   [[nodiscard]] Result<OutboxPosition> position();
-  [[nodiscard]] Result<std::int64_t> event_position();
+  [[nodiscard]] Result<void> add_events(OutgoingBatch& batch);
+  [[nodiscard]] Result<void> add_results(OutgoingBatch& batch);
+  [[nodiscard]] int room_in(const OutgoingBatch& batch) const {
+    return std::max(batch_ - static_cast<int>(batch.size()), 0);
+  }
+  [[nodiscard]] Result<std::int64_t> position_of(const std::string& cursor,
+                                                 const std::function<Result<std::int64_t>()>& last);
   void send(OutgoingBatch batch);
   void finish(const OutgoingBatch& batch, const Sent& sent);
   [[nodiscard]] bool move_past(const OutgoingBatch& batch);

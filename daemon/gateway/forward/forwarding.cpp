@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "adapters/http/credentials.hpp"
 #include "adapters/http/url.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/worker_thread.hpp"
 #include "daemon/gateway/forward/mqtt_messages.hpp"
+#include "daemon/gateway/forward/record_sink.hpp"
 #include "daemon/gateway/forward/sinks.hpp"
 
 namespace recald::daemon {
@@ -33,29 +33,24 @@ Destination destination_of(const RemoteWriteConfig& config) {
                                url ? url->authority() : "?")};
 }
 
-std::string broker_words(const MqttConfig& config) { return "MQTT broker at " + config.where(); }
+std::string broker_words(const MqttConfig& config) {
+  return "MQTT broker at " + config.broker.where();
+}
 
 Destination destination_of(const MqttConfig& config) {
-  return {.id = hashed("mqtt", config.where() + " " + config.topic),
+  return {.id = hashed("mqtt", config.broker.where() + " " + config.topic),
           .words = broker_words(config),
           .wants_events = true};
 }
 
-Result<mqtt::Broker> broker_of(const MqttConfig& config) {
-  mqtt::Broker broker{.host = config.host,
-                      .port = config.port,
-                      .is_tls = config.is_tls,
-                      .client_id = config.client_id,
-                      .user = config.login.user,
-                      .password = {},
-                      .trusted_certificate = config.trusted_certificate,
-                      .certificate_file = config.certificate_file,
-                      .key_file = config.key_file};
-  if (config.login.user.empty()) return broker;
-  auto password = http::read_password_file(config.login.password_file);
-  if (!password) return tl::unexpected(password.error());
-  broker.password = std::move(*password);
-  return broker;
+/// A record has one broker or another: what it has been told stays the same.
+constexpr auto kFleet = "fleet";
+
+Destination destination_of_fleet(const BrokerConfig& config) {
+  return {.id = kFleet,
+          .words = "fleet at " + config.where(),
+          .wants_events = true,
+          .wants_results = true};
 }
 
 mqtt::Session session_of(const SiteConfig& site) {
@@ -82,6 +77,7 @@ Forwarding::~Forwarding() {
   self_.reset();
   state_.reset();  // first: others wait for what it publishes
   forwarders_.clear();
+  fleet_.reset();
   if (!link_ || !link_->is_connected() || !site_->mqtt->publishes) return;
   // A connection that ends well leaves no will behind.
   (void)link_->publish(std::vector{presence_message(*site_, false)}, kGoodbyeMax, {});
@@ -95,12 +91,14 @@ void Forwarding::start() {
 void Forwarding::set_site(std::shared_ptr<const SiteConfig> site) {
   const bool is_same_connection =
       site_->mqtt == site->mqtt && told_topics(*site_) == told_topics(*site);
+  const bool is_same_fleet = site_->fleet == site->fleet;
   site_ = std::move(site);
   if (!is_started_) return;
   state_.reset();
   forwarders_.clear();
   // The session of a name has one owner. One that was refused may have another password by now.
   if (!is_same_connection || (link_ && !link_->is_connected())) link_.reset();
+  if (!is_same_fleet || (fleet_ && !fleet_->is_connected())) fleet_.reset();
   begin();
 }
 
@@ -108,6 +106,10 @@ void Forwarding::begin() {
   if (site_->mqtt && !link_) {
     connect();
     if (link_) forwarders_.clear();  // the one that had no link
+  }
+  if (site_->fleet && !fleet_) {
+    connect_to_fleet();
+    if (fleet_) forwarders_.clear();
   }
   if (link_ && site_->mqtt->publishes && !state_) {
     state_ = std::make_unique<BrokerState>(
@@ -128,29 +130,23 @@ void Forwarding::begin_again_in_a_minute() {
 }
 
 void Forwarding::connect() {
-  if (!site_->mqtt || link_) return;
-  const auto broker = broker_of(*site_->mqtt);
-  // Both are called on the connection's thread.
-  auto opened =
-      !broker ? tl::unexpected(broker.error())
-              : mqtt::Connection::open(
-                    *broker, session_of(*site_),
-                    [&loop = ports_.loop, weak = std::weak_ptr{self_}](const mqtt::Message& one) {
-                      loop.post([weak, one] {
-                        if (const auto self = weak.lock()) (*self)->hear(one);
-                      });
-                    },
-                    [&loop = ports_.loop, weak = std::weak_ptr{self_}](bool is_connected,
-                                                                       const std::string& why) {
-                      loop.post([weak, is_connected, why] {
-                        if (const auto self = weak.lock()) (*self)->hear_state(is_connected, why);
-                      });
-                    });
+  auto opened = open_broker(site_->mqtt->broker, session_of(*site_), on_loop(&Forwarding::hear),
+                            on_loop(&Forwarding::hear_state));
   if (!opened) {
     hear_state(false, opened.error().message);
     return begin_again_in_a_minute();
   }
   link_ = std::make_shared<BrokerLink>(std::move(*opened));
+}
+
+void Forwarding::connect_to_fleet() {
+  auto opened = RecordLink::open(*site_->fleet, site_->id, on_loop(&Forwarding::hear_record),
+                                 on_loop(&Forwarding::hear_fleet_state));
+  if (!opened) {
+    hear_fleet_state(false, opened.error().message);
+    return begin_again_in_a_minute();
+  }
+  fleet_ = std::move(*opened);
 }
 
 void Forwarding::hear(const mqtt::Message& message) {
@@ -163,28 +159,32 @@ void Forwarding::hear(const mqtt::Message& message) {
     const auto known = refused_at_.find(refusal.meter);
     if (known != refused_at_.end() && now - known->second < kRefusalsEvery) continue;
     refused_at_[refusal.meter] = now;
-    tell(Severity::warning, "message_refused", refusal.meter, refusal.why);
+    tell({.time = {},
+          .severity = Severity::warning,
+          .kind = "message_refused",
+          .subject = refusal.meter,
+          .text = refusal.why,
+          .is_counted = true});
   }
 }
 
 void Forwarding::hear_state(bool is_connected, const std::string& why) {
   if (!site_->mqtt) return;
-  const std::string words = broker_words(*site_->mqtt);
-  if (!is_connected) {
-    // Of an attempt each minute, once.
-    if (std::exchange(is_broker_lost_, true) && why == lost_why_) return;
-    lost_why_ = why;
-    tell(Severity::warning, "broker_lost", words,
-         fmt::format("the {} is not connected: {}; recald keeps trying", words, why));
-    return;
+  if (is_connected && why.empty() && state_) state_->begin_anew();
+  auto news = broker_news_.hear(broker_words(*site_->mqtt), is_connected, why);
+  if (news) tell(std::move(*news));
+}
+
+void Forwarding::hear_record() {
+  for (const auto& forwarder : forwarders_) {
+    if (forwarder->destination().id == kFleet) forwarder->try_now();
   }
-  if (!why.empty()) {  // connected, and something was refused or dropped
-    return tell(Severity::warning, "broker_refuses", words, why);
-  }
-  if (state_) state_->begin_anew();
-  if (std::exchange(is_broker_lost_, false)) {
-    tell(Severity::info, "broker_found", words, fmt::format("the {} is connected again", words));
-  }
+}
+
+void Forwarding::hear_fleet_state(bool is_connected, const std::string& why) {
+  if (!site_->fleet) return;
+  const std::string words = "broker of the fleet at " + site_->fleet->where();
+  if (auto news = fleet_news_.hear(words, is_connected, why)) tell(std::move(*news));
 }
 
 /// A destination that is not reached yet is one: it is told later.
@@ -195,24 +195,30 @@ void Forwarding::keep_outbox() {
   for (const RemoteWriteConfig& write : site_->remote_writes) {
     ids.push_back(destination_of(write).id);
   }
+  if (site_->fleet) ids.emplace_back(kFleet);
   if (!ports_.store.keep_outbox_for(ids)) return begin_again_in_a_minute();
-  const auto add = [&](Destination destination, std::unique_ptr<Sink> sink) {
-    // Twice in the file is once: there is one position.
-    const bool is_there = std::ranges::any_of(
-        forwarders_, [&](const auto& one) { return one->destination().id == destination.id; });
-    if (is_there) return;
-    forwarders_.push_back(
-        std::make_unique<Forwarder>(Forwarder::Ports{ports_.loop, ports_.store},
-                                    std::make_unique<system::WorkerThread>(ports_.loop),
-                                    std::move(destination), std::move(sink), tell_));
-    forwarders_.back()->start();
-  };
   if (site_->mqtt && site_->mqtt->publishes) {
-    add(destination_of(*site_->mqtt), make_mqtt_sink(site_, link_));
+    add_forwarder(destination_of(*site_->mqtt), make_mqtt_sink(site_, link_));
   }
   for (const RemoteWriteConfig& write : site_->remote_writes) {
-    add(destination_of(write), make_series_sink(site_, calendar_, write));
+    add_forwarder(destination_of(write), make_series_sink(site_, calendar_, write));
   }
+  if (!site_->fleet) return;
+  const auto outbox = outbox_identity(ports_.store, kFleet);
+  if (!outbox) return begin_again_in_a_minute();
+  add_forwarder(destination_of_fleet(*site_->fleet), make_record_sink(site_->id, *outbox, fleet_));
+}
+
+void Forwarding::add_forwarder(Destination destination, std::unique_ptr<Sink> sink) {
+  // Twice in the file is once: there is one position.
+  const bool is_there = std::ranges::any_of(
+      forwarders_, [&](const auto& one) { return one->destination().id == destination.id; });
+  if (is_there) return;
+  forwarders_.push_back(
+      std::make_unique<Forwarder>(Forwarder::Ports{ports_.loop, ports_.store},
+                                  std::make_unique<system::WorkerThread>(ports_.loop),
+                                  std::move(destination), std::move(sink), tell_));
+  forwarders_.back()->start();
 }
 
 std::vector<DestinationStatus> Forwarding::status() const {
@@ -221,14 +227,9 @@ std::vector<DestinationStatus> Forwarding::status() const {
   return all;
 }
 
-void Forwarding::tell(Severity severity, const char* kind, const std::string& subject,
-                      std::string text) {
-  tell_({.time = ports_.loop.now().instant(),
-         .severity = severity,
-         .kind = kind,
-         .subject = subject,
-         .text = std::move(text),
-         .is_counted = true});
+void Forwarding::tell(StoreEvent event) {
+  event.time = ports_.loop.now().instant();
+  tell_(std::move(event));
 }
 
 }  // namespace recald::daemon

@@ -1,5 +1,5 @@
-/// Everything that the site file has of brokers and databases: tells them of what is stored, and
-/// takes what a broker says of the site's meters.
+/// Everything that the site file has of brokers, databases and a fleet: tells them of what is
+/// stored, and takes what a broker says of the site's meters.
 #pragma once
 
 #include <chrono>
@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "adapters/mqtt/message.hpp"
@@ -15,6 +16,8 @@
 #include "daemon/gateway/forward/broker_link.hpp"
 #include "daemon/gateway/forward/broker_state.hpp"
 #include "daemon/gateway/forward/forwarder.hpp"
+#include "daemon/gateway/forward/open_broker.hpp"
+#include "daemon/gateway/forward/record_link.hpp"
 #include "daemon/gateway/ingest/told_message.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -54,11 +57,27 @@ class Forwarding {
  private:
   void begin();
   void connect();
+  void connect_to_fleet();
   void keep_outbox();
+  void add_forwarder(Destination destination, std::unique_ptr<Sink> sink);
   void hear(const mqtt::Message& message);
   void hear_state(bool is_connected, const std::string& why);
+  void hear_record();
+  void hear_fleet_state(bool is_connected, const std::string& why);
   void begin_again_in_a_minute();
-  void tell(Severity severity, const char* kind, const std::string& subject, std::string text);
+  void tell(StoreEvent event);
+
+  /// A function for other threads: calls a member on the loop's thread, while this lives.
+  template <class... Arguments>
+  [[nodiscard]] auto on_loop(void (Forwarding::*member)(Arguments...)) const {
+    return [&loop = ports_.loop, weak = std::weak_ptr{self_}, member](const auto&... values) {
+      loop.post([weak, member, copies = std::tuple{values...}] {
+        const auto self = weak.lock();
+        if (!self) return;
+        std::apply([&](const auto&... each) { ((*self)->*member)(each...); }, copies);
+      });
+    };
+  }
 
   Ports ports_;
   std::shared_ptr<const SiteConfig> site_;
@@ -67,11 +86,11 @@ class Forwarding {
   OnValue on_value_;
   bool is_started_ = false;
   bool is_again_due_ = false;
-  bool is_broker_lost_ = false;
-  std::string lost_why_;
+  BrokerNews broker_news_, fleet_news_;
   std::map<std::string, std::chrono::milliseconds> refused_at_;  ///< By meter, monotonic.
   std::shared_ptr<BrokerLink> link_;
   std::unique_ptr<BrokerState> state_;
+  std::shared_ptr<RecordLink> fleet_;
   std::vector<std::unique_ptr<Forwarder>> forwarders_;
   std::shared_ptr<Forwarding*> self_;
 };

@@ -1,4 +1,4 @@
-/// Where intervals, months and events are sent: a broker or a database.
+/// Where intervals, months, events and results are sent: a broker, a database or a fleet's record.
 #pragma once
 
 #include <chrono>
@@ -8,14 +8,17 @@
 #include <vector>
 
 #include "adapters/ports/store.hpp"
+#include "adapters/record/record_batch.hpp"
 
 namespace recald::daemon {
 
 struct OutgoingBatch {
   std::vector<OutboxEntry> entries;
   std::vector<StoreEvent> events;
+  std::vector<StoredJob> results;  ///< Finished jobs.
+  record::Progress after = {};     ///< Where the destination is before it, in what it wants.
 
-  [[nodiscard]] std::size_t size() const { return entries.size() + events.size(); }
+  [[nodiscard]] std::size_t size() const { return entries.size() + events.size() + results.size(); }
 };
 
 struct Sent {

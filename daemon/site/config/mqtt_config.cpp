@@ -2,37 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "adapters/http/url.hpp"
-
 namespace recald::daemon {
 namespace {
 
 using std::chrono::seconds;
 
-/// The address after "mqtt://" or "mqtts://"; nothing for another text.
-std::optional<http::Url> parse_broker(std::string_view url) {
-  for (const bool is_tls : {false, true}) {
-    const std::string_view scheme = is_tls ? "mqtts://" : "mqtt://";
-    if (!url.starts_with(scheme)) continue;
-    const std::string address{url.substr(scheme.size())};
-    // Its usual port is none that a broker has.
-    auto parsed = http::parse_url("http://" + address);
-    if (!parsed || parsed->path != "/") return {};
-    const bool has_port = address.find(':', address.rfind(']') + 1) != std::string::npos;
-    if (!has_port) parsed->port = is_tls ? 8883 : 1883;
-    parsed->is_tls = is_tls;
-    return *parsed;
-  }
-  return {};
-}
-
-bool is_one_word(const std::string& text) {
-  return !text.empty() && text.find_first_of(" \t\r\n") == std::string::npos;
-}
-
 /// Topics under which something is published have no wildcards and no empty parts at their ends.
 void check_topic(TomlReader& table, std::string_view key, const std::string& topic) {
-  const bool is_one = is_one_word(topic) && topic.find_first_of("+#") == std::string::npos &&
+  const bool is_one = !topic.empty() && topic.find_first_of(" \t\r\n+#") == std::string::npos &&
                       topic.front() != '/' && topic.back() != '/' && topic.front() != '$';
   if (is_one) return;
   table.problem_at(key, fmt::format("'{}' is \"{}\"; write a topic such as \"buildings/recald\", "
@@ -88,46 +65,10 @@ modbus::RegisterField float64_at(std::string name, std::uint16_t address, std::s
 
 }  // namespace
 
-std::string MqttConfig::where() const { return http::Url{.host = host, .port = port}.authority(); }
-
 MqttConfig read_mqtt(TomlReader& table, const std::string& site_id,
                      const std::filesystem::path& site_file) {
   MqttConfig config;
-  const std::string url = table.required_text("url");
-  if (const auto broker = parse_broker(url)) {
-    config.host = broker->host;
-    config.port = broker->port;
-    config.is_tls = broker->is_tls;
-  } else if (!url.empty()) {
-    // Not what it is: somebody may have put the password into it, and this becomes an event.
-    table.problem_at("url",
-                     "'url' is no address of a broker; write one such as "
-                     "\"mqtts://broker.example.org\" or \"mqtt://127.0.0.1:1883\"");
-  }
-  config.login = read_login(table, site_file);
-  config.trusted_certificate = read_path(table, "trusted_certificate", site_file);
-  config.certificate_file = read_path(table, "certificate_file", site_file);
-  config.key_file = read_path(table, "key_file", site_file);
-  if (config.certificate_file.empty() != config.key_file.empty()) {
-    table.problem("'certificate_file' and 'key_file' belong together");
-  }
-  const bool is_open = !config.is_tls && !config.host.empty() && !is_this_machine(config.host);
-  if (is_open && !config.login.user.empty()) {
-    table.problem_at("url", "'url' would send the password without encryption; use mqtts");
-  }
-  for (const char* key : {"trusted_certificate", "certificate_file"}) {
-    if (!config.is_tls && !config.host.empty() && table.has(key)) {
-      table.problem_at(key, fmt::format("'{}' belongs to an encrypted connection; use mqtts in "
-                                        "'url'",
-                                        key));
-    }
-  }
-  config.client_id = table.text_or("client_id", "recald-" + site_id);
-  if (!is_one_word(config.client_id)) {
-    table.problem_at("client_id", fmt::format("'client_id' is \"{}\"; write one word such as "
-                                              "\"recald-tower\"",
-                                              config.client_id));
-  }
+  config.broker = read_broker(table, site_file, "recald-" + site_id);
   config.publishes = table.boolean("publish").value_or(config.publishes);
   config.topic = table.text_or("topic", config.topic);
   check_topic(table, "topic", config.topic);

@@ -1,34 +1,23 @@
-/// A broker of MQTT, and what of a [[meter]] belongs to it, as a site file says it.
+/// What a broker of MQTT is told, and what of a [[meter]] belongs to it, as a site file says it.
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "adapters/modbus/register_map.hpp"
 #include "core/metering/units.hpp"
-#include "daemon/site/config/server_access.hpp"
+#include "daemon/site/config/broker_config.hpp"
 
 namespace recald::daemon {
 
 /// [mqtt]
 struct MqttConfig {
-  std::string host;
-  std::uint16_t port = 1883;
-  bool is_tls = false;
-  Login login;
-  std::filesystem::path trusted_certificate;  ///< Empty: what the system trusts.
-  std::filesystem::path certificate_file;     ///< Of recald itself; empty: none.
-  std::filesystem::path key_file;
-  std::string client_id;
+  BrokerConfig broker;
   bool publishes = true;
   std::string topic = "recald";  ///< Results are under "recald/SITE/".
   std::string home_assistant;    ///< Prefix of its discovery topics; empty: no discovery.
-
-  /// "broker.example.org:1883"
-  [[nodiscard]] std::string where() const;
 
   bool operator==(const MqttConfig&) const = default;
 };

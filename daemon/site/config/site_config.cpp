@@ -683,6 +683,20 @@ void require_broker(TomlReader& root, const SiteConfig& config) {
                   meter->meter.id));
 }
 
+BrokerConfig read_fleet(TomlReader& table, const SiteConfig& config) {
+  BrokerConfig broker = read_broker(table, config.file, "fleet-recald-" + config.id);
+  // Of two connections with one name, each ends the other.
+  const bool is_twice = config.mqtt && config.mqtt->broker.where() == broker.where() &&
+                        config.mqtt->broker.client_id == broker.client_id;
+  if (is_twice) {
+    table.problem_at("client_id", fmt::format("'client_id' is \"{}\", as in [mqtt] at the same "
+                                              "broker; write another, or none",
+                                              broker.client_id));
+  }
+  table.finish();
+  return broker;
+}
+
 /// A file, sensors, or both.
 void read_whole_weather(TomlReader& root, SiteConfig& config) {
   if (auto weather = root.table("weather")) {
@@ -715,6 +729,7 @@ void read_root(TomlReader root, SiteConfig& config) {
   if (auto modbus = root.table("modbus")) config.modbus = read_modbus(*modbus);
   if (auto alerts = root.table("alerts")) config.alerts = read_alerts(*alerts, config.file);
   if (auto mqtt = root.table("mqtt")) config.mqtt = read_mqtt(*mqtt, config.id, config.file);
+  if (auto fleet = root.table("fleet")) config.fleet = read_fleet(*fleet, config);
   for (TomlReader& write : root.tables("remote_write")) {
     config.remote_writes.push_back(read_remote_write(write, config.file));
   }

@@ -165,6 +165,7 @@ struct SiteConfig {
   std::optional<HttpConfig> http;      ///< Absent: nothing is served.
   std::optional<ModbusConfig> modbus;  ///< Absent: no registers are served.
   std::optional<MqttConfig> mqtt;      ///< Absent: no broker.
+  std::optional<BrokerConfig> fleet;   ///< Between the site and its fleet's record; absent: none.
   std::vector<RemoteWriteConfig> remote_writes;
   AlertConfig alerts;
   RecalibrationConfig recalibration;

@@ -35,7 +35,9 @@ struct Other {
   bool refuses_all = false;
   std::vector<double> taken;
   std::vector<std::string> events;
-  std::vector<std::size_t> sizes;  ///< Of the batches that it was sent.
+  std::vector<std::string> results;  ///< Their documents.
+  record::Progress after;            ///< Of the last batch.
+  std::vector<std::size_t> sizes;    ///< Of the batches that it was sent.
 };
 
 class ScriptedSink final : public Sink {
@@ -55,6 +57,8 @@ class ScriptedSink final : public Sink {
     }
     other_.taken.insert(other_.taken.end(), values.begin(), values.end());
     for (const StoreEvent& event : batch.events) other_.events.push_back(event.kind);
+    for (const StoredJob& job : batch.results) other_.results.push_back(job.result.document);
+    other_.after = batch.after;
     return {};
   }
 
@@ -69,7 +73,8 @@ class ForwarderTest : public ::testing::Test {
     forwarder_.reset();
     forwarder_ = std::make_unique<Forwarder>(
         Forwarder::Ports{loop_, failing_}, std::make_unique<VirtualWorker>(loop_, seconds{1}),
-        Destination{.id = "other", .words = "the other", .wants_events = true},
+        Destination{
+            .id = "other", .words = "the other", .wants_events = true, .wants_results = true},
         std::make_unique<ScriptedSink>(other_),
         [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); },
         rules);
@@ -174,6 +179,50 @@ TEST_F(ForwarderTest, EventsFromNowOnAreSentOnce) {
   happens("meter_answers");
   loop_.run_for(minutes{1});
   EXPECT_THAT(other_.events, ElementsAre("meter_silent", "meter_answers"));
+}
+
+// One that runs is told of when it has ended, and those after it wait for it.
+TEST_F(ForwarderTest, ResultsFromNowOnAreSentOnceInOrder) {
+  const auto ask = [&](JobKind kind, JobState state, const std::string& document) {
+    StoredJob job{.kind = kind, .state = state, .asked_by = "api", .asked = kNoon};
+    job.result.document = document;
+    job.number = store_.add_job(job).value();
+    return job;
+  };
+  ask(JobKind::calibration, JobState::done, "long ago");
+  StoredJob running = ask(JobKind::calibration, JobState::running, "");
+  begin();
+  loop_.run_for(minutes{1});
+  ask(JobKind::diagnosis, JobState::done, "third");
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.results, IsEmpty());
+  running.state = JobState::failed;
+  running.result.document = "second";
+  ASSERT_TRUE(store_.put_job(running).has_value());
+  StoredJob waiting = ask(JobKind::calibration, JobState::waiting, "");
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.results, ElementsAre("second", "third"));
+  begin();
+  waiting.state = JobState::done;
+  waiting.result.document = "fourth";
+  ASSERT_TRUE(store_.put_job(waiting).has_value());
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.results, ElementsAre("second", "third", "fourth"));
+  EXPECT_EQ(other_.after, (record::Progress{.entries = 0, .events = 0, .results = 3}));
+}
+
+TEST_F(ForwarderTest, WhoIsKnownToBeThereIsNotWaitedFor) {
+  begin();
+  other_.is_down = true;
+  store(0, 3);
+  loop_.run_for(hours{24});
+  forwarder_->try_now();
+  loop_.run_for(seconds{3});
+  EXPECT_THAT(other_.taken, IsEmpty());  // it was asked, and is still down
+  other_.is_down = false;
+  forwarder_->try_now();
+  loop_.run_for(seconds{3});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 3)));
 }
 
 // A batch that was taken is sent again rather than forgotten.

@@ -1,0 +1,325 @@
+/// What a fleet's record gets through a real broker: everything, in order, whoever is away. The
+/// test plays the record; the waits between attempts are on a virtual clock.
+#include "daemon/gateway/forward/record_sink.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+
+#include "adapters/ports/destination_cursors.hpp"
+#include "adapters/sqlite/sqlite_store.hpp"
+#include "daemon/gateway/forward/forwarder.hpp"
+#include "tests/support/mosquitto.hpp"
+#include "tests/support/played_record.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/virtual_loop.hpp"
+#include "tests/support/virtual_worker.hpp"
+
+namespace recald::daemon::record_sink_test {
+namespace {
+
+using metering::Instant;
+using recald::testing::eventually;
+using recald::testing::Mosquitto;
+using recald::testing::PlayedRecord;
+using recald::testing::TemporaryFolder;
+using recald::testing::VirtualLoop;
+using recald::testing::VirtualWorker;
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using std::chrono::seconds;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using Mood = PlayedRecord::Mood;
+
+const Instant kNoon = std::chrono::sys_days{std::chrono::year{2026} / 2 / 3} + hours{12};
+
+/// Of a test in which the record answers, and of one in which it does not.
+constexpr RecordRules kPatient{};
+constexpr RecordRules kHasty{.confirm_max = milliseconds{200}};
+
+class RecordSinkTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!Mosquitto::can_run()) GTEST_SKIP() << "mosquitto of Debian is not installed";
+    broker_.start();
+  }
+
+  /// A gateway starts: a connection of its own, and what the store has.
+  void begin(const RecordRules& rules = kPatient) {
+    end();
+    ASSERT_TRUE(store_.keep_outbox_for({"fleet"}).has_value());
+    BrokerConfig broker;
+    broker.host = "127.0.0.1";
+    broker.port = broker_.port();
+    broker.client_id = "gateway";
+    link_ = RecordLink::open(
+                broker, "depot", [this] { ++signs_; },
+                [this](bool, const std::string& why) {
+                  const std::scoped_lock lock{mutex_};
+                  heard_.push_back(why);
+                })
+                .value();
+    ASSERT_TRUE(is_connected());
+    forwarder_ = std::make_unique<Forwarder>(
+        Forwarder::Ports{loop_, store_}, std::make_unique<VirtualWorker>(loop_, seconds{1}),
+        Destination{
+            .id = "fleet", .words = "the fleet", .wants_events = true, .wants_results = true},
+        make_record_sink("depot", outbox_identity(store_, "fleet").value(), link_, rules),
+        [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); });
+    forwarder_->start();
+  }
+  void end() {
+    forwarder_.reset();
+    link_.reset();
+  }
+  [[nodiscard]] bool is_connected() const {
+    return eventually([this] { return link_->is_connected(); });
+  }
+
+  void store(int from, int until) {
+    StoreBatch batch;
+    for (int i = from; i < until; ++i) {
+      batch.intervals.push_back({{main_, kNoon + i * seconds{900}, static_cast<double>(i)}});
+    }
+    ASSERT_TRUE(store_.commit(batch).has_value());
+  }
+  void happens(const std::string& kind) {
+    const StoreEvent event{kNoon, Severity::info, kind, "main", "."};
+    ASSERT_TRUE(store_.commit({.events = {event}}).has_value());
+  }
+  void finish_job(const std::string& document) {
+    StoredJob job{.state = JobState::done, .asked_by = "api", .asked = kNoon};
+    job.ended = kNoon;
+    job.result.document = document;
+    ASSERT_TRUE(store_.add_job(job).has_value());
+  }
+  static std::vector<double> numbers(int from, int until) {
+    std::vector<double> all;
+    for (int i = from; i < until; ++i) all.push_back(i);
+    return all;
+  }
+
+  TemporaryFolder folder_;
+  sqlite::SqliteStore store_ = sqlite::SqliteStore::open(folder_ / "site.db").value();
+  std::uint32_t main_ = store_.meter_number("main", seconds{900}).value();
+  VirtualLoop loop_{kNoon};
+  Mosquitto broker_;  ///< Without persistence: a kill wipes it.
+  std::atomic<int> signs_ = 0;
+  std::mutex mutex_;
+  std::vector<std::string> heard_;
+  std::vector<std::string> told_;
+  std::shared_ptr<RecordLink> link_;
+  std::unique_ptr<Forwarder> forwarder_;
+};
+
+TEST_F(RecordSinkTest, EverythingIsSentInOrder) {
+  const PlayedRecord record{broker_.port()};
+  happens("long_ago");
+  begin();
+  loop_.run_for(seconds{10});
+  store(0, 1200);
+  ASSERT_TRUE(store_
+                  .put_month(main_,
+                             {.month = std::chrono::year{2026} / 1, .daily_average_kWh = 240.0},
+                             "2025b", kNoon)
+                  .has_value());
+  happens("meter_silent");
+  finish_job("{\"parameters\":[]}");
+  loop_.run_for(minutes{1});
+  happens("meter_answers");
+  loop_.run_for(minutes{1});
+  const auto taken = record.of("depot");
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 1200)));
+  ASSERT_THAT(taken.entries, SizeIs(1201));
+  EXPECT_EQ(std::get<StoredMonth>(taken.entries.back().stored).figure.daily_average_kWh, 240.0);
+  ASSERT_THAT(taken.events, SizeIs(2));
+  EXPECT_EQ(taken.events[0].kind, "meter_silent");
+  EXPECT_EQ(taken.events[1].kind, "meter_answers");
+  ASSERT_THAT(taken.results, SizeIs(1));
+  EXPECT_EQ(taken.results[0].result.document, "{\"parameters\":[]}");
+  EXPECT_EQ(taken.watermark.outbox, outbox_identity(store_, "fleet").value());
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+  EXPECT_THAT(told_, IsEmpty());
+  record::Progress until{.entries = 0, .events = 1, .results = 0};
+  for (const std::string& payload : record.payloads()) {
+    const auto batch = record::parse_batch(payload).value();
+    EXPECT_EQ(batch.after, until);  // one goes on where the other ended
+    until = batch.until();
+    EXPECT_LE(payload.size(), 128u * 1024u);
+  }
+}
+
+// What the broker has acknowledged is not what the record has.
+TEST_F(RecordSinkTest, WithoutAWatermarkNothingIsForgottenAndTheSameComesAgain) {
+  PlayedRecord record{broker_.port(), Mood::away};
+  begin(kHasty);
+  store(0, 3);
+  loop_.run_for(minutes{1});
+  const auto payloads = record.payloads();
+  ASSERT_GE(payloads.size(), 2u);
+  EXPECT_THAT(payloads, Each(payloads.front()));
+  EXPECT_EQ(forwarder_->status().waiting, 3);
+  EXPECT_THAT(told_, ElementsAre(HasSubstr("the fleet's record has not confirmed what was sent "
+                                           "within 0.2 s; `recald worker` or its PostgreSQL is "
+                                           "away, or site 'depot' is not registered there")));
+  record.set(Mood::takes);
+  loop_.run_for(minutes{5});
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 3)));
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+}
+
+TEST_F(RecordSinkTest, AWatermarkOfAnotherOutboxOrOfLessDoesNotCount) {
+  const PlayedRecord record{broker_.port(), Mood::away};
+  begin(kHasty);
+  store(0, 3);
+  const std::int64_t ours = outbox_identity(store_, "fleet").value();
+  const record::Progress all{.entries = 3, .events = 0, .results = 0};
+  const auto say = [&](const record::Watermark& watermark) {
+    const int before = signs_;
+    broker_.send({.topic = "recald/v1/depot/watermark",
+                  .payload = record::to_json(watermark),
+                  .is_retained = true});
+    ASSERT_TRUE(eventually([&] { return signs_ > before; }));
+    loop_.run_for(minutes{5});
+  };
+  say({.outbox = ours == 1 ? 2 : ours - 1, .until = {1000, 1000, 1000}});
+  EXPECT_EQ(forwarder_->status().waiting, 3);
+  say({.outbox = ours, .until = {2, 1000, 1000}});
+  EXPECT_EQ(forwarder_->status().waiting, 3);
+  say({.outbox = ours, .until = all});
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+}
+
+TEST_F(RecordSinkTest, ABrokerThatIsKilledAndWipedLosesNothing) {
+  PlayedRecord record{broker_.port()};
+  begin(kHasty);
+  store(0, 100);
+  loop_.run_for(minutes{1});
+  ASSERT_THAT(record.means_of("depot"), SizeIs(100));
+  // Acknowledged by a broker that dies before the record has it.
+  record.set(Mood::away);
+  store(100, 200);
+  loop_.run_for(seconds{5});
+  const std::size_t arrived = record.payloads().size();
+  broker_.kill();
+  store(200, 300);
+  loop_.run_for(minutes{1});
+  EXPECT_EQ(forwarder_->status().waiting, 200);
+  record.set(Mood::takes);
+  broker_.start();
+  ASSERT_TRUE(record.is_soon_connected());
+  ASSERT_TRUE(is_connected());
+  loop_.run_for(minutes{10});
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 300)));
+  EXPECT_GT(record.payloads().size(), arrived);
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+}
+
+// The broker has kept the record's last word, which a gateway finds after its start.
+TEST_F(RecordSinkTest, WhatIsConfirmedWhileTheGatewayIsAwayIsNotSentAgain) {
+  PlayedRecord record{broker_.port(), Mood::mute};
+  begin(kHasty);
+  store(0, 5);
+  loop_.run_for(seconds{3});
+  ASSERT_THAT(record.means_of("depot"), SizeIs(5));
+  EXPECT_EQ(forwarder_->status().waiting, 5);
+  end();
+  record.set(Mood::takes);
+  ASSERT_THAT(broker_.read("recald/v1/depot/watermark", 1, seconds{30}), SizeIs(1));
+  const std::size_t arrived = record.payloads().size();
+  begin();
+  ASSERT_TRUE(eventually([&] { return signs_ > 0; }));
+  loop_.run_for(minutes{1});
+  EXPECT_EQ(record.payloads().size(), arrived);
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+  store(5, 8);
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 8)));
+}
+
+// Of an hour in which its database is away, the gateway waits no minute longer.
+TEST_F(RecordSinkTest, ARecordThatComesBackEndsTheWait) {
+  PlayedRecord record{broker_.port()};
+  begin(kHasty);
+  store(0, 5);
+  loop_.run_for(minutes{1});
+  record.set(Mood::away);
+  store(5, 2000);
+  loop_.run_for(hours{1});
+  EXPECT_EQ(forwarder_->status().waiting, 1995);
+  EXPECT_LT(record.payloads().size(), 30u);
+  const int before = signs_;
+  record.set(Mood::takes);
+  ASSERT_TRUE(eventually([&] { return signs_ > before; }));
+  forwarder_->try_now();
+  loop_.run_for(seconds{10});
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 2000)));
+}
+
+TEST_F(RecordSinkTest, AStoreOfAnotherNumberingIsAnotherOutbox) {
+  const PlayedRecord record{broker_.port()};
+  begin();
+  store(0, 5);
+  loop_.run_for(minutes{1});
+  const std::int64_t first = record.of("depot").watermark.outbox;
+  EXPECT_GT(first, 0);
+  begin();
+  EXPECT_EQ(outbox_identity(store_, "fleet").value(), first);
+  // As from a backup of before.
+  ASSERT_TRUE(store_.put_outbox_position("fleet", 2).has_value());
+  ASSERT_TRUE(store_.keep_outbox_for({}).has_value());
+  store(5, 6);  // nobody is told
+  begin();
+  store(6, 8);
+  loop_.run_for(minutes{1});
+  EXPECT_NE(record.of("depot").watermark.outbox, first);
+  EXPECT_GT(record.of("depot").watermark.outbox, 0);
+  EXPECT_THAT(record.means_of("depot"), ElementsAre(0, 1, 2, 3, 4, 6, 7));
+}
+
+TEST_F(RecordSinkTest, MessagesAreNotTooLong) {
+  const PlayedRecord record{broker_.port()};
+  begin({.payload_bytes = 1500, .result_bytes = 4000});
+  loop_.run_for(seconds{10});
+  store(0, 100);
+  for (int i = 0; i < 10; ++i) happens("kind_" + std::to_string(i));
+  finish_job(std::string(3000, 'a'));
+  finish_job(std::string(5000, 'b'));
+  finish_job(std::string(2000, 'c'));
+  loop_.run_for(minutes{1});
+  const auto taken = record.of("depot");
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 100)));
+  EXPECT_THAT(taken.events, SizeIs(10));
+  ASSERT_THAT(taken.results, SizeIs(3));
+  EXPECT_EQ(taken.results[0].result.document, std::string(3000, 'a'));
+  EXPECT_EQ(taken.results[1].result.document, "");
+  EXPECT_EQ(taken.results[2].result.document, std::string(2000, 'c'));
+  int with_results = 0;
+  for (const std::string& payload : record.payloads()) {
+    const bool is_result = !record::parse_batch(payload)->results.empty();
+    with_results += static_cast<int>(is_result);
+    EXPECT_LE(payload.size(), is_result ? 4000u : 1500u);
+  }
+  EXPECT_EQ(with_results, 3);
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+}
+
+TEST_F(RecordSinkTest, NonsenseOnTheTopicIsTold) {
+  begin();
+  broker_.send({.topic = "recald/v1/depot/watermark", .payload = "nonsense"});
+  EXPECT_TRUE(eventually([&] {
+    const std::scoped_lock lock{mutex_};
+    return std::ranges::find(heard_,
+                             "recald/v1/depot/watermark: the watermark: it is no JSON object") !=
+           heard_.end();
+  }));
+}
+
+}  // namespace
+}  // namespace recald::daemon::record_sink_test
