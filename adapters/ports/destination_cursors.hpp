@@ -11,6 +11,11 @@ namespace recald {
   return "results of " + destination;
 }
 
+/// The number of the last entry of the store's past that the destination has had.
+[[nodiscard]] inline std::string history_cursor(const std::string& destination) {
+  return "history of " + destination;
+}
+
 /// Which numbering the destination's positions are of: no position, but a number by chance. It is
 /// removed wherever numbers of entries and events are given again: from a backup that is restored,
 /// and when a damaged store is recovered.

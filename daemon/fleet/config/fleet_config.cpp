@@ -1,6 +1,9 @@
 #include "daemon/fleet/config/fleet_config.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
 
 #include "adapters/system/read_file.hpp"
 #include "daemon/site/config/server_access.hpp"
@@ -46,6 +49,13 @@ WorkerConfig read_worker(TomlReader& table, const std::filesystem::path& file) {
   return config;
 }
 
+/// Two workers of one name would push each other off the broker.
+std::string this_process() {
+  std::array<char, 256> host{};
+  (void)::gethostname(host.data(), host.size() - 1);
+  return fmt::format("{}-{}", host.data(), ::getpid());
+}
+
 void read_root(TomlReader root, FleetConfig& config) {
   if (auto record = root.table("record")) {
     config.record = read_record(*record, config.file);
@@ -54,7 +64,10 @@ void read_root(TomlReader root, FleetConfig& config) {
         "[record] is missing: the database of the fleet, such as url = "
         "\"postgresql://recald@db.example.org/fleet\"");
   }
-  if (auto broker = root.table("mqtt")) config.broker = read_mqtt(*broker, "worker", config.file);
+  if (auto broker = root.table("mqtt")) {
+    config.broker = read_broker(*broker, config.file, "recald-" + this_process());
+    broker->finish();
+  }
   if (auto worker = root.table("worker")) config.worker = read_worker(*worker, config.file);
   if (auto http = root.table("http")) config.http = read_http(*http, config.file);
   root.finish();

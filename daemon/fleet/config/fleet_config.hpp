@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/site/config/mqtt_config.hpp"
+#include "daemon/site/config/broker_config.hpp"
 #include "daemon/site/config/service_config.hpp"
 
 namespace recald::daemon {
@@ -30,7 +30,7 @@ struct WorkerConfig {
 struct FleetConfig {
   std::filesystem::path file;
   RecordConfig record;
-  std::optional<MqttConfig> broker;  ///< Absent: a worker takes no readings in.
+  std::optional<BrokerConfig> broker;  ///< Absent: a worker takes no readings in.
   WorkerConfig worker;
   std::optional<HttpConfig> http;  ///< Absent: `recald fleet serve` listens where it usually does.
 };

@@ -17,7 +17,7 @@
 #include "adapters/record/schema.hpp"
 #include "adapters/record/sites.hpp"
 #include "daemon/fleet/config/open_record.hpp"
-#include "daemon/gateway/forward/broker_of.hpp"
+#include "daemon/gateway/forward/open_broker.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -87,18 +87,16 @@ metering::Instant now() { return std::chrono::floor<seconds>(std::chrono::system
 
 class Ingester {
  public:
-  Ingester(const MqttConfig& broker, const TellWords& tell, const std::stop_token& stop,
+  Ingester(const BrokerConfig& broker, const TellWords& tell, const std::stop_token& stop,
            IngestCounts& counts)
       : broker_(broker), tell_(tell), stop_(stop), counts_(counts) {}
 
   /// Takes batches until it is told to stop. @return or why the record or the broker cannot go on.
   Result<void> serve(postgres::Connection& record) {
     if (auto checked = record::check_schema(record); !checked) return checked;
-    auto broker = broker_of(broker_);
-    if (!broker) return tl::unexpected(broker.error());
     Arrivals arrivals;
-    auto connection = mqtt::Connection::open(
-        std::move(*broker),
+    auto connection = open_broker(
+        broker_,
         {.will = {},
          .birth = {},
          .topics = {"$share/recald/" + record::batch_topic("+")},
@@ -176,7 +174,7 @@ class Ingester {
     tell_(why);
   }
 
-  const MqttConfig& broker_;
+  const BrokerConfig& broker_;
   const TellWords& tell_;
   const std::stop_token& stop_;
   IngestCounts& counts_;
@@ -185,7 +183,7 @@ class Ingester {
 
 }  // namespace
 
-IngestCounts ingest(const RecordConfig& record, const MqttConfig& broker, const TellWords& tell,
+IngestCounts ingest(const RecordConfig& record, const BrokerConfig& broker, const TellWords& tell,
                     const std::stop_token& stop) {
   IngestCounts counts;
   Ingester ingester{broker, tell, stop, counts};

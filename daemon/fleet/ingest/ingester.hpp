@@ -24,7 +24,7 @@ struct IngestCounts {
 /// again, 5 s to 60 s apart.
 /// @param tell  Gets a sentence about each change, and about each site whose batches are refused,
 ///              at most once in ten minutes.
-[[nodiscard]] IngestCounts ingest(const RecordConfig& record, const MqttConfig& broker,
+[[nodiscard]] IngestCounts ingest(const RecordConfig& record, const BrokerConfig& broker,
                                   const TellWords& tell, const std::stop_token& stop);
 
 }  // namespace recald::daemon

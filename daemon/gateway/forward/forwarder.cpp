@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "adapters/ports/destination_cursors.hpp"
@@ -25,6 +26,9 @@ Sent send_safely(Sink& sink, const OutgoingBatch& batch, const std::stop_token& 
     return {.outcome = Sent::Outcome::later, .why = thrown.what()};
   }
 }
+
+/// Position in the past of a store whose past has been told.
+constexpr std::int64_t kHistoryTold = std::numeric_limits<std::int64_t>::max();
 
 constexpr int kResults_max = 10;  // of a tenth of a megabyte each
 constexpr std::array kJobKinds{JobKind::calibration, JobKind::diagnosis};
@@ -106,6 +110,8 @@ void Forwarder::look() {
 }
 
 Result<OutgoingBatch> Forwarder::next() {
+  auto past = next_history();
+  if (!past || past->size() > 0) return past;
   OutgoingBatch batch;
   const auto from = position();
   if (!from) return tl::unexpected(from.error());
@@ -116,6 +122,28 @@ Result<OutgoingBatch> Forwarder::next() {
   for (const auto add : {&Forwarder::add_events, &Forwarder::add_results}) {
     if (auto added = (this->*add)(batch); !added) return tl::unexpected(added.error());
   }
+  return batch;
+}
+
+/// @return an empty one: all of it was told, or none is wanted.
+Result<OutgoingBatch> Forwarder::next_history() {
+  OutgoingBatch batch;
+  if (destination_.history.empty()) return batch;
+  const std::string cursor = history_cursor(destination_.id);
+  const auto known = ports_.store.cursor(cursor);
+  if (!known) return tl::unexpected(known.error());
+  const std::int64_t after = known->value_or(0);
+  if (after == kHistoryTold) return batch;
+  auto entries = history_after(ports_.store, destination_.history, after, batch_);
+  if (!entries) return tl::unexpected(entries.error());
+  if (entries->empty()) {
+    auto put = ports_.store.put_cursor(cursor, kHistoryTold);
+    if (!put) return tl::unexpected(put.error());
+    return batch;
+  }
+  batch.is_history = true;
+  batch.after.entries = after;
+  batch.entries = std::move(*entries);
   return batch;
 }
 
@@ -225,7 +253,8 @@ bool Forwarder::move_past(const OutgoingBatch& batch) {
   const auto moved = ports_.store.as_one([&]() -> Result<void> {
     if (!batch.entries.empty()) {
       const std::int64_t number = batch.entries.back().number;
-      auto put = ports_.store.put_outbox_position(destination_.id, number);
+      auto put = batch.is_history ? ports_.store.put_cursor(history_cursor(destination_.id), number)
+                                  : ports_.store.put_outbox_position(destination_.id, number);
       if (!put) return put;
     }
     if (!batch.events.empty()) {

@@ -12,11 +12,13 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
 #include "daemon/gateway/forward/sink.hpp"
+#include "daemon/gateway/forward/store_history.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
 
 namespace recald::daemon {
@@ -37,6 +39,8 @@ struct Destination {
   std::string words;  ///< For people: "Prometheus at metrics.example.org".
   bool wants_events = false;
   bool wants_results = false;
+  /// Whose past it is told first, before what the outbox has.
+  std::vector<MeterInStore> history = {};
 };
 
 class Forwarder {
@@ -67,6 +71,7 @@ class Forwarder {
   void schedule(std::chrono::milliseconds wait);
   void look();
   [[nodiscard]] Result<OutgoingBatch> next();
+  [[nodiscard]] Result<OutgoingBatch> next_history();
   [[nodiscard]] Result<OutboxPosition> position();
   [[nodiscard]] Result<void> add_events(OutgoingBatch& batch);
   [[nodiscard]] Result<void> add_results(OutgoingBatch& batch);

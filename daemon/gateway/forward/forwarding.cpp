@@ -11,6 +11,7 @@
 #include "daemon/gateway/forward/mqtt_messages.hpp"
 #include "daemon/gateway/forward/record_sink.hpp"
 #include "daemon/gateway/forward/sinks.hpp"
+#include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -46,11 +47,28 @@ Destination destination_of(const MqttConfig& config) {
 /// A record has one broker or another: what it has been told stays the same.
 constexpr auto kFleet = "fleet";
 
-Destination destination_of_fleet(const BrokerConfig& config) {
+/// Everything that the store may have intervals of.
+std::vector<MeterInStore> stored_meters(const SiteConfig& site) {
+  std::vector<MeterInStore> meters;
+  for (const MeterConfig& one : site.meters) {
+    if (one.is_stored()) meters.push_back({one.meter.id, one.meter.interval});
+  }
+  for (const MeterConfig& sensor : site.sensors) {
+    if (!sensor.is_stored()) continue;
+    for (const WeatherChannel& channel : channels_of(sensor)) {
+      const metering::Meter meter = stored_meter(sensor, channel);
+      meters.push_back({meter.id, meter.interval});
+    }
+  }
+  return meters;
+}
+
+Destination destination_of_fleet(const SiteConfig& site) {
   return {.id = kFleet,
-          .words = "fleet at " + config.where(),
+          .words = "fleet at " + site.fleet->where(),
           .wants_events = true,
-          .wants_results = true};
+          .wants_results = true,
+          .history = stored_meters(site)};
 }
 
 mqtt::Session session_of(const SiteConfig& site) {
@@ -206,7 +224,7 @@ void Forwarding::keep_outbox() {
   if (!site_->fleet) return;
   const auto outbox = outbox_identity(ports_.store, kFleet);
   if (!outbox) return begin_again_in_a_minute();
-  add_forwarder(destination_of_fleet(*site_->fleet), make_record_sink(site_->id, *outbox, fleet_));
+  add_forwarder(destination_of_fleet(*site_), make_record_sink(site_->id, *outbox, fleet_));
 }
 
 void Forwarding::add_forwarder(Destination destination, std::unique_ptr<Sink> sink) {

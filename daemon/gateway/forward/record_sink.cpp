@@ -48,7 +48,7 @@ class RecordSink final : public Sink {
 
   Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
     if (!link_) return waits("it is not connected");
-    return send(RecordBatch{.outbox = outbox_,
+    return send(RecordBatch{.outbox = batch.is_history ? -outbox_ : outbox_,
                             .after = batch.after,
                             .entries = batch.entries,
                             .events = batch.events,
@@ -62,7 +62,7 @@ class RecordSink final : public Sink {
   }
 
   Sent send(RecordBatch batch, const std::stop_token& stop) {
-    const record::Watermark wanted{.outbox = outbox_, .until = batch.until()};
+    const record::Watermark wanted{.outbox = batch.outbox, .until = batch.until()};
     // What was sent before the last failure may have arrived after it.
     if (link_->wait_for(wanted, std::chrono::milliseconds{0}, stop)) return {};
     std::string payload = record::to_json(batch);

@@ -17,6 +17,7 @@ struct OutgoingBatch {
   std::vector<StoreEvent> events;
   std::vector<StoredJob> results;  ///< Finished jobs.
   record::Progress after = {};     ///< Where the destination is before it, in what it wants.
+  bool is_history = false;  ///< Entries of `history_after`, which are numbered by themselves.
 
   [[nodiscard]] std::size_t size() const { return entries.size() + events.size() + results.size(); }
 };
