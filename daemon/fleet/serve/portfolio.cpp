@@ -9,7 +9,7 @@
 namespace recald::daemon {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr auto kSilentAfter = std::chrono::hours{24};
 constexpr double kDaysPerYear = 365.25;

@@ -73,8 +73,11 @@ class ForwarderTest : public ::testing::Test {
     forwarder_.reset();
     forwarder_ = std::make_unique<Forwarder>(
         Forwarder::Ports{loop_, failing_}, std::make_unique<VirtualWorker>(loop_, seconds{1}),
-        Destination{
-            .id = "other", .words = "the other", .wants_events = true, .wants_results = true},
+        Destination{.id = "other",
+                    .words = "the other",
+                    .wants_events = true,
+                    .wants_results = true,
+                    .history = history_},
         std::make_unique<ScriptedSink>(other_),
         [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); },
         rules);
@@ -99,6 +102,7 @@ class ForwarderTest : public ::testing::Test {
   FailingStore failing_{store_};
   VirtualLoop loop_{kNoon};
   Other other_;
+  std::vector<MeterInStore> history_;
   std::vector<std::string> told_;
   std::unique_ptr<Forwarder> forwarder_;
 };
@@ -112,6 +116,24 @@ TEST_F(ForwarderTest, SendsWhatIsStoredInOrder) {
   EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 21)));
   EXPECT_EQ(forwarder_->status().waiting, 0);
   EXPECT_THAT(told_, IsEmpty());
+}
+
+TEST_F(ForwarderTest, TellsThePastFirstToWhoeverWantsIt) {
+  store(0, 250);  // nobody is told
+  history_ = {{"main", seconds{900}}};
+  begin({.batch = 40});
+  store(250, 260);
+  loop_.run_for(seconds{4});
+  EXPECT_LT(other_.taken.size(), 200u);
+  begin({.batch = 40});  // another process
+  loop_.run_for(minutes{2});
+  store(260, 261);
+  loop_.run_for(minutes{1});
+  // What came after the beginning is in the past and in the outbox.
+  std::vector<double> expected = numbers(0, 260);
+  const auto once_more = numbers(250, 261);
+  expected.insert(expected.end(), once_more.begin(), once_more.end());
+  EXPECT_THAT(other_.taken, ElementsAreArray(expected));
 }
 
 TEST_F(ForwarderTest, AnOtherProcessGoesOnWhereTheLastOneEnded) {
