@@ -6,11 +6,11 @@
 BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnant-date-dev tzdata
   libexpected-dev libmodbus-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libspdlog-dev libsqlite3-dev libssl-dev libsystemd-dev zlib1g-dev libzip-dev libpugixml-dev
-  libcurl4-openssl-dev libmosquitto-dev libsnappy-dev"
+  libcurl4-openssl-dev libmosquitto-dev libsnappy-dev libpq-dev"
 TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r-cran-posterior
   mbpoll python3-pymodbus python3-aiosmtpd python3-venv python3-serial python3-serial-asyncio
   clang clang-format libclang-rt-14-dev curl systemd mosquitto mosquitto-clients
-  prometheus influxdb"
+  prometheus influxdb postgresql-15"
 
 # To make packages (daemon/packaging), and to check them.
 PACKAGING_PACKAGES="git python3 debhelper mmdebstrap crossbuild-essential-arm64 qemu-user-static umoci lintian crun"
@@ -43,6 +43,14 @@ install_packages() {
     as_root=sudo
   fi
   echo "Installing Debian packages:$missing"
+  # Nobody asked for a database that runs from now on.
+  own_clusters=/etc/postgresql-common/createcluster.d/recald.conf
+  case $missing in
+    *postgresql*)
+      $as_root mkdir -p "${own_clusters%/*}"
+      echo 'create_main_cluster = false' | $as_root tee "$own_clusters" >/dev/null
+      ;;
+  esac
   log=$(mktemp)
   # shellcheck disable=SC2086  # a list of words
   if ! { $as_root apt-get update -q &&
@@ -52,7 +60,7 @@ install_packages() {
     echo "Installing the packages failed; the last lines of apt-get are above." >&2
     return 1
   fi
-  rm -f "$log"
+  $as_root rm -f "$log" "$own_clusters"
 }
 
 # build_jobs: compilers at a time, as many as there are cores and three gigabytes of free memory for

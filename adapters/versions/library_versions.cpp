@@ -12,6 +12,8 @@
 #include <Eigen/Core>
 #include <boost/version.hpp>
 
+#include "adapters/postgres/connection.hpp"
+
 namespace recald {
 
 std::vector<LibraryVersion> library_versions() {
@@ -23,6 +25,7 @@ std::vector<LibraryVersion> library_versions() {
       {"libcurl", curl_version_info(CURLVERSION_NOW)->version},
       {"libmosquitto",
        fmt::format("{}.{}.{}", LIBMOSQUITTO_MAJOR, LIBMOSQUITTO_MINOR, LIBMOSQUITTO_REVISION)},
+      {"libpq", postgres::library_version()},
       {"zlib", zlibVersion()},
       {"fmt",
        fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
