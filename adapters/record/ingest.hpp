@@ -15,9 +15,12 @@ namespace recald::record {
 
 /// Commits a batch in one transaction: what is above the outbox's watermark, the watermark itself,
 /// and jobs for months that are complete now (channel `recald_job` is notified). A batch may come
-/// twice, late, or to two workers at once.
-/// @return the watermark after it; not_found: the site is not registered; io_failed: nothing was
-/// taken, try later.
+/// twice, late, or to two workers at once. What is missing before it is audited. A new outbox of
+/// the site goes on after the last row, whatever numbers it gives.
+/// @param now  When it came.
+/// @return the watermark after it, zeros for an empty batch of an outbox that the record does not
+///         know; not_found: the site is not registered, or retired; io_failed: nothing was taken as
+///         far as we know, try later.
 [[nodiscard]] Result<Watermark> take(postgres::Connection& connection, const std::string& site,
                                      const RecordBatch& batch, metering::Instant now);
 
@@ -25,11 +28,10 @@ namespace recald::record {
 [[nodiscard]] Result<std::vector<std::pair<std::string, Watermark>>> watermarks(
     postgres::Connection& connection);
 
-/// Copies what the record has of a site into an empty store: the last revision of each interval and
-/// month among the rows with seq <= until_seq. The same arguments give the same store for ever.
+/// Copies what the record has of a site into an empty store: the last revision of each interval,
+/// and all of each month, among the rows with seq <= until_seq. The same arguments give the same
+/// store for ever. Not copied are closing rules, counters, events and jobs: a worker needs none.
 [[nodiscard]] Result<void> copy_into(Store& store, postgres::Connection& connection,
                                      const std::string& site, std::int64_t until_seq);
-
-/// Results that gateways sent, and those of jobs: see jobs.hpp.
 
 }  // namespace recald::record

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adapters/ports/store.hpp"
@@ -43,9 +44,10 @@ struct LeaseRules {
       60};  ///< Doubles: a job that kills its worker does not keep all of them busy.
 };
 
-/// Takes the next job: one running job a site, in order of (month, number) within a site, the
-/// oldest first among sites. A job whose lease ran out counts as a try that failed; after
-/// `tries_max` it is set aside here, with the reason.
+/// Takes the next job: one running job a site, in order of (month, until_seq, number) within a
+/// site, the oldest first among sites. A job that waits for another try holds up its site's others.
+/// A job whose lease ran out counts as a try that failed; after `tries_max` it is set aside here,
+/// with the reason.
 /// @return nothing: no job waits.
 [[nodiscard]] Result<std::optional<FleetJob>> lease(postgres::Connection& connection,
                                                     const std::string& worker,
@@ -86,11 +88,12 @@ struct FleetResult {
 /// count. @return as finish.
 [[nodiscard]] Result<bool> hand_back(postgres::Connection& connection, const FleetJob& job);
 
-/// The state that the job begins with: as the last finished job of the site left it.
+/// The state that the job begins with: as the last finished job before it, in the order of the
+/// site's jobs, left it. So it is the same whenever the job runs.
 [[nodiscard]] Result<std::map<std::string, std::string>> state_before(
     postgres::Connection& connection, const FleetJob& job);
 
-/// Which jobs to run again.
+/// Which jobs to run again: of those of one kind and month the newest, unless it waits or runs.
 struct RerunWhat {
   std::vector<std::string> sites;      ///< Empty: all.
   std::optional<FleetJobState> state;  ///< Only those; usually set_aside or failed.
@@ -115,14 +118,15 @@ struct RerunWhat {
 struct FleetResultRow {
   std::string site;
   JobKind kind = JobKind::calibration;
-  metering::Month month;
-  std::string from;  ///< "worker" or "gateway"
+  metering::Month month;  ///< Of a gateway's: the last that the record had then.
+  std::string from;       ///< "worker" or "gateway"
   metering::Instant at;
   bool accepted = false;
+  bool named = false;  ///< Of a worker's.
   std::string message;
   std::string summary;
-  std::string input_sha256;
-  std::string sha256;  ///< Of the files.
+  std::string input_sha256;  ///< Of a worker's job.
+  std::string sha256;        ///< Of the files.
   std::vector<std::string> files;
 };
 /// The newest of a kind of each site, by site.

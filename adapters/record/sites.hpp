@@ -33,7 +33,7 @@ struct SiteDescription {
 /// One version of a description; a change makes another.
 struct SiteVersion {
   int number = 0;       ///< 1, 2, 3 …
-  std::string sha256;   ///< Of names and bytes of all files.
+  std::string sha256;   ///< Of the description and of names and bytes of all files.
   bool is_new = false;  ///< It was not there before.
 };
 
@@ -45,7 +45,7 @@ struct RecordedSite {
   std::optional<metering::Instant> newest;  ///< Start of its newest interval.
 };
 
-/// Registers a site, or a new version of it. @param who  For the audit.
+/// Registers a site, or a new version of it; a retired one is back. @param who  For the audit.
 [[nodiscard]] Result<SiteVersion> put_site(postgres::Connection& connection,
                                            const SiteDescription& site, const std::string& who);
 

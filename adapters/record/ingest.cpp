@@ -1,0 +1,508 @@
+#include "adapters/record/ingest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "adapters/record/figure_json.hpp"
+#include "adapters/record/job_rows.hpp"
+#include "adapters/record/schema.hpp"
+#include "adapters/record/sites.hpp"
+#include "adapters/record/values.hpp"
+
+namespace recald::record {
+namespace {
+
+using metering::Instant;
+using postgres::Array;
+using postgres::Connection;
+using postgres::integer;
+
+/// Beyond it a store's transaction gains nothing.
+constexpr std::size_t kIntervalsAtOnce = 5'000;
+
+std::int64_t seconds_of(Instant t) { return t.time_since_epoch().count(); }
+
+Result<void> nothing_or_error(const Result<postgres::Rows>& rows) {
+  if (!rows) return tl::unexpected(rows.error());
+  return {};
+}
+
+/// Intervals of one batch begin in few partitions.
+std::map<std::string, Instant> partitions_of(const RecordBatch& batch) {
+  std::map<std::string, Instant> found;
+  for (const OutboxEntry& entry : batch.entries) {
+    const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
+    if (interval == nullptr) continue;
+    found.emplace(partition_of(interval->reading.start), interval->reading.start);
+  }
+  return found;
+}
+
+/// Takes one batch, within a transaction that somebody else begins and ends; once.
+class Taking {
+ public:
+  Taking(Connection& connection, const std::string& site, const RecordBatch& batch, Instant now)
+      : connection_{connection}, site_id_{site}, batch_{batch}, now_{now} {}
+
+  /// Why it stopped without an error of the record.
+  enum class End : std::uint8_t { taken, unknown_outbox, partitions_missing };
+
+  [[nodiscard]] Result<End> run();
+  [[nodiscard]] const Progress& until() const { return until_; }
+
+ private:
+  [[nodiscard]] Result<bool> lock();
+  [[nodiscard]] Result<void> audit_gap(const char* what, std::int64_t known, std::int64_t after);
+  [[nodiscard]] Result<void> find_meters();
+  [[nodiscard]] Result<void> put_intervals();
+  [[nodiscard]] Result<void> put_months();
+  [[nodiscard]] Result<void> put_month_jobs();
+  [[nodiscard]] Result<void> put_events();
+  [[nodiscard]] Result<void> put_results();
+  [[nodiscard]] Result<void> put_watermark();
+
+  [[nodiscard]] bool is_new(const OutboxEntry& entry) const {
+    return entry.number > known_.entries;
+  }
+  /// The record's own number of an entry: it goes on over all outboxes of a site.
+  [[nodiscard]] std::int64_t seq_of(std::int64_t number) const {
+    return seq_ + number - known_.entries;
+  }
+  [[nodiscard]] std::int64_t meter_of(const OutboxEntry& entry) const {
+    return meters_.at({text_of(entry.meter), entry.interval.count()});
+  }
+
+  Connection& connection_;
+  const std::string& site_id_;
+  const RecordBatch& batch_;
+  Instant now_;
+
+  std::int64_t site_ = 0;
+  bool is_new_outbox_ = false;
+  bool has_partitions_ = true;
+  Progress known_;                        ///< The watermark before.
+  Progress until_;                        ///< The watermark after.
+  std::int64_t seq_ = 0, event_seq_ = 0;  ///< Of the site, before.
+  std::map<std::pair<std::string, std::int64_t>, std::int64_t> meters_;
+};
+
+/// Nobody else takes anything from the site until the transaction ends.
+/// @return false: there is no such site.
+Result<bool> Taking::lock() {
+  Array partitions;
+  for (const auto& [name, start] : partitions_of(batch_)) partitions.add(name);
+  // Both rows are read as they are once they are locked. What an outbox said before the record
+  // heard of it, it said to others.
+  const auto rows = connection_.run(
+      "WITH s AS (UPDATE site SET heard = greatest(heard, $2::timestamptz) "
+      "WHERE id = $1 AND retired IS NULL RETURNING number, seq, event_seq) "
+      "INSERT INTO source (site, outbox, entries, events, results, begun) "
+      "SELECT number, $3, $4, $5, $6, $2::timestamptz FROM s "
+      "ON CONFLICT (site, outbox) DO UPDATE SET outbox = excluded.outbox "
+      "RETURNING site, entries, events, results, xmax = 0, (SELECT seq FROM s), "
+      "(SELECT event_seq FROM s), "
+      "(SELECT coalesce(bool_and(to_regclass(p) IS NOT NULL), true) FROM unnest($7::text[]) p)",
+      {site_id_, parameter(now_), integer(batch_.outbox), integer(batch_.after.entries),
+       integer(batch_.after.events), integer(batch_.after.results), partitions.parameter()});
+  if (!rows) return tl::unexpected(rows.error());
+  if (rows->size() == 0) return false;
+  site_ = rows->integer(0, 0);
+  known_ = {.entries = rows->integer(0, 1),
+            .events = rows->integer(0, 2),
+            .results = rows->integer(0, 3)};
+  is_new_outbox_ = rows->boolean(0, 4);
+  seq_ = rows->integer(0, 5);
+  event_seq_ = rows->integer(0, 6);
+  has_partitions_ = rows->boolean(0, 7);
+  return true;
+}
+
+Result<Taking::End> Taking::run() {
+  const auto is_known = lock();
+  if (!is_known) return tl::unexpected(is_known.error());
+  if (!*is_known) {
+    return failure(
+        ErrorCode::not_found,
+        fmt::format("the record has no site {}: register it with recald fleet add", site_id_));
+  }
+  const auto& [outbox, after, entries, events, results] = batch_;
+  if (is_new_outbox_ && entries.empty() && events.empty() && results.empty()) {
+    return End::unknown_outbox;
+  }
+  if (!has_partitions_) return End::partitions_missing;
+  const auto beyond = [](std::int64_t known, std::int64_t told, const auto& rows) {
+    return std::max({known, told, rows.empty() ? 0 : rows.back().number});
+  };
+  until_ = {.entries = beyond(known_.entries, after.entries, entries),
+            .events = beyond(known_.events, after.events, events),
+            .results = beyond(known_.results, after.results, results)};
+  if (until_ == known_ && !is_new_outbox_) return End::taken;
+
+  auto done = audit_gap("entries", known_.entries, after.entries);
+  if (done) done = audit_gap("events", known_.events, after.events);
+  if (done) done = audit_gap("results", known_.results, after.results);
+  if (done) done = find_meters();
+  if (done) done = put_intervals();
+  if (done) done = put_months();
+  if (done) done = put_events();
+  if (done) done = put_results();
+  if (done) done = put_watermark();
+  if (!done) return tl::unexpected(done.error());
+  return End::taken;
+}
+
+Result<void> Taking::audit_gap(const char* what, std::int64_t known, std::int64_t after) {
+  if (after <= known) return {};
+  return audit(connection_, {.time = now_,
+                             .who = "ingest",
+                             .action = "gap",
+                             .subject = site_id_,
+                             .text = fmt::format(
+                                 "{} {} to {} of outbox {} never came: the gateway had to forget "
+                                 "them before the record could be reached",
+                                 what, known + 1, after, batch_.outbox)});
+}
+
+Result<void> Taking::find_meters() {
+  std::set<std::pair<std::string, std::int64_t>> wanted;
+  for (const OutboxEntry& entry : batch_.entries) {
+    if (is_new(entry)) wanted.emplace(text_of(entry.meter), entry.interval.count());
+  }
+  if (wanted.empty()) return {};
+  const auto known =
+      connection_.run("SELECT id, interval_s, number FROM meter WHERE site = $1", {integer(site_)});
+  if (!known) return tl::unexpected(known.error());
+  for (int i = 0; i < known->size(); ++i) {
+    meters_[{std::string{known->text(i, 0)}, known->integer(i, 1)}] = known->integer(i, 2);
+  }
+  auto last = static_cast<std::int64_t>(meters_.size());
+  Array ids, intervals, numbers;
+  bool has_more = false;
+  for (const auto& one : wanted) {
+    if (!meters_.emplace(one, last + 1).second) continue;
+    has_more = true;
+    ids.add(one.first);
+    intervals.add(one.second);
+    numbers.add(++last);
+  }
+  if (!has_more) return {};
+  return nothing_or_error(connection_.run(
+      "INSERT INTO meter (site, number, id, interval_s) SELECT $1, * FROM "
+      "unnest($2::smallint[], $3::text[], $4::int[])",
+      {integer(site_), numbers.parameter(), ids.parameter(), intervals.parameter()}));
+}
+
+Result<void> Taking::put_intervals() {
+  Array starts, seqs, means, reasons, meters, validities, late;
+  bool has_any = false;
+  for (const OutboxEntry& entry : batch_.entries) {
+    const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
+    if (interval == nullptr || !is_new(entry)) continue;
+    has_any = true;
+    const metering::Reading& reading = interval->reading;
+    starts.add(seconds_of(reading.start));
+    seqs.add(seq_of(entry.number));
+    means.add(reading.mean_kW);
+    reasons.add(static_cast<std::int64_t>(reading.reasons));
+    meters.add(meter_of(entry));
+    validities.add(static_cast<std::int64_t>(reading.validity));
+    late.add(std::int64_t{reading.late});
+  }
+  if (!has_any) return {};
+  return nothing_or_error(connection_.run(
+      "INSERT INTO interval (t_start, seq, mean_kw, site, reasons, meter, validity, late) "
+      "SELECT to_timestamp(t), s, mean, $1, r, m, v, l <> 0 FROM unnest($2::bigint[], "
+      "$3::bigint[], $4::float8[], $5::int[], $6::smallint[], $7::smallint[], $8::smallint[]) "
+      "AS u (t, s, mean, r, m, v, l)",
+      {integer(site_), starts.parameter(), seqs.parameter(), means.parameter(), reasons.parameter(),
+       meters.parameter(), validities.parameter(), late.parameter()}));
+}
+
+Result<void> Taking::put_months() {
+  Array meters, months, seqs, figures, closed, releases;
+  bool has_any = false;
+  for (const OutboxEntry& entry : batch_.entries) {
+    const auto* const month = std::get_if<StoredMonth>(&entry.stored);
+    if (month == nullptr || !is_new(entry)) continue;
+    has_any = true;
+    meters.add(meter_of(entry));
+    months.add(metering::to_string(month->figure.month));
+    seqs.add(seq_of(entry.number));
+    figures.add(figure_json(month->figure));
+    closed.add(seconds_of(month->closed_at));
+    releases.add(text_of(month->time_zone_release));
+  }
+  if (!has_any) return {};
+  const auto put = connection_.run(
+      "INSERT INTO month (site, meter, month, seq, figure, closed_at, time_zone_release) "
+      "SELECT $1, m, o, s, f::jsonb, to_timestamp(c), z FROM unnest($2::smallint[], $3::text[], "
+      "$4::bigint[], $5::text[], $6::bigint[], $7::text[]) AS u (m, o, s, f, c, z)",
+      {integer(site_), meters.parameter(), months.parameter(), seqs.parameter(),
+       figures.parameter(), closed.parameter(), releases.parameter()});
+  if (!put) return tl::unexpected(put.error());
+  return put_month_jobs();
+}
+
+/// A job for each new figure with which all outputs have a month. Each figure counts by itself: had
+/// it been the last of its batch, there would be the same jobs.
+Result<void> Taking::put_month_jobs() {
+  const auto rows = connection_.run(
+      "WITH n AS (SELECT v.number, v.sha256, v.description->>'calibrate_from' AS first_month, "
+      "ARRAY(SELECT DISTINCT jsonb_array_elements_text(v.description->'outputs')) AS outputs "
+      "FROM site s JOIN site_version v ON v.site = s.number AND v.number = s.version "
+      "WHERE s.number = $1) "
+      "SELECT n.number, n.sha256, m.month, m.seq, extract(epoch FROM m.closed_at)::bigint "
+      "FROM n, month m JOIN meter o ON o.site = m.site AND o.number = m.meter "
+      "WHERE m.site = $1 AND m.seq > $2 AND m.month >= n.first_month AND o.id = ANY(n.outputs) "
+      "AND (SELECT count(DISTINCT p.id) FROM month x JOIN meter p ON p.site = x.site AND "
+      "p.number = x.meter WHERE x.site = m.site AND x.month = m.month AND x.seq <= m.seq AND "
+      "p.id = ANY(n.outputs)) = cardinality(n.outputs) ORDER BY m.seq",
+      {integer(site_), integer(seq_)});
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<NewJob> jobs;
+  for (int i = 0; i < rows->size(); ++i) {
+    const auto month = metering::parse_month(rows->text(i, 2));
+    if (!month) return tl::unexpected(month.error());
+    jobs.push_back({.input = {.site = site_id_,
+                              .version_sha256 = std::string{rows->text(i, 1)},
+                              .month = *month,
+                              .until_seq = rows->integer(i, 3),
+                              .now = instant(*rows, i, 4)},
+                    .site = site_,
+                    .version = static_cast<int>(rows->integer(i, 0)),
+                    .asked_by = "month"});
+  }
+  const auto put = put_jobs(connection_, jobs, IfThere::leave);
+  if (!put) return tl::unexpected(put.error());
+  return {};
+}
+
+Result<void> Taking::put_events() {
+  Array numbers, times, severities, kinds, subjects, texts, counts, lasts;
+  bool has_any = false;
+  for (const StoreEvent& event : batch_.events) {
+    if (event.number <= known_.events) continue;
+    has_any = true;
+    numbers.add(event_seq_ + event.number - known_.events);
+    times.add(seconds_of(event.time));
+    severities.add(static_cast<std::int64_t>(event.severity));
+    kinds.add(text_of(event.kind));
+    subjects.add(text_of(event.subject));
+    texts.add(text_of(event.text));
+    counts.add(std::int64_t{event.count});
+    lasts.add(seconds_of(event.last.value_or(event.time)));
+  }
+  if (!has_any) return {};
+  return nothing_or_error(connection_.run(
+      "INSERT INTO event (site, number, time, severity, kind, subject, text, count, last) "
+      "SELECT $1, n, to_timestamp(t), v, k, s, x, c, to_timestamp(l) FROM unnest($2::bigint[], "
+      "$3::bigint[], $4::smallint[], $5::text[], $6::text[], $7::text[], $8::int[], $9::bigint[]) "
+      "AS u (n, t, v, k, s, x, c, l)",
+      {integer(site_), numbers.parameter(), times.parameter(), severities.parameter(),
+       kinds.parameter(), subjects.parameter(), texts.parameter(), counts.parameter(),
+       lasts.parameter()}));
+}
+
+/// Of the newest month that the record has: a gateway calculates when a month is closed.
+Result<void> Taking::put_results() {
+  for (const StoredJob& job : batch_.results) {
+    if (job.number <= known_.results) continue;
+    const Instant at = job.ended.value_or(job.asked);
+    const std::chrono::year_month_day day{std::chrono::floor<std::chrono::days>(at)};
+    const auto put = connection_.run(
+        "INSERT INTO result (site, kind, month, at, accepted, named, message, summary, sha256) "
+        "VALUES ($1, $2, coalesce((SELECT max(month) FROM month WHERE site = $1), $3), $4, $5, "
+        "false, $6, $7, $8)",
+        {integer(site_), std::string{recald::name_of(job.kind)},
+         metering::to_string(metering::previous_month(day.year() / day.month())), parameter(at),
+         job.accepted ? "true" : "false", text_of(job.message), text_of(job.result.document),
+         sha256_of(job.result.document)});
+    if (!put) return tl::unexpected(put.error());
+  }
+  return {};
+}
+
+Result<void> Taking::put_watermark() {
+  postgres::Parameter newest;
+  for (const OutboxEntry& entry : batch_.entries) {
+    const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
+    if (interval == nullptr || !is_new(entry)) continue;
+    const auto start = parameter(interval->reading.start);
+    if (!newest || *start > *newest) newest = start;
+  }
+  return nothing_or_error(connection_.run(
+      "WITH w AS (UPDATE source SET entries = $3, events = $4, results = $5 "
+      "WHERE site = $1 AND outbox = $2) "
+      "UPDATE site SET seq = $6, event_seq = $7, newest = greatest(newest, $8::timestamptz) "
+      "WHERE number = $1",
+      {integer(site_), integer(batch_.outbox), integer(until_.entries), integer(until_.events),
+       integer(until_.results), integer(seq_of(until_.entries)),
+       integer(event_seq_ + until_.events - known_.events), newest}));
+}
+
+}  // namespace
+
+Result<Watermark> take(Connection& connection, const std::string& site, const RecordBatch& batch,
+                       Instant now) {
+  for (;;) {
+    Watermark watermark{.outbox = batch.outbox, .until = {}};
+    auto end = Taking::End::taken;
+    const auto done = connection.transaction([&]() -> Result<void> {
+      Taking taking{connection, site, batch, now};
+      const auto ended = taking.run();
+      if (!ended) return tl::unexpected(ended.error());
+      end = *ended;
+      if (end != Taking::End::taken) return failure(ErrorCode::cancelled, "");  // rolls back
+      watermark.until = taking.until();
+      return {};
+    });
+    if (done) return watermark;
+    if (done.error().code != ErrorCode::cancelled) return tl::unexpected(done.error());
+    if (end == Taking::End::unknown_outbox) return watermark;
+    for (const auto& [name, start] : partitions_of(batch)) {
+      if (auto made = make_partitions(connection, {start, start + std::chrono::seconds{1}});
+          !made) {
+        return tl::unexpected(made.error());
+      }
+    }
+  }
+}
+
+Result<std::vector<std::pair<std::string, Watermark>>> watermarks(Connection& connection) {
+  const auto rows = connection.run(
+      "SELECT DISTINCT ON (t.id) t.id, s.outbox, s.entries, s.events, s.results "
+      "FROM source s JOIN site t ON t.number = s.site WHERE t.retired IS NULL "
+      "ORDER BY t.id, s.number DESC");
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<std::pair<std::string, Watermark>> found;
+  for (int i = 0; i < rows->size(); ++i) {
+    found.emplace_back(rows->text(i, 0), Watermark{.outbox = rows->integer(i, 1),
+                                                   .until = {.entries = rows->integer(i, 2),
+                                                             .events = rows->integer(i, 3),
+                                                             .results = rows->integer(i, 4)}});
+  }
+  return found;
+}
+
+namespace {
+
+struct RecordedMeter {
+  std::int64_t site = 0, number = 0;
+  std::string id;
+  std::chrono::seconds interval{};
+};
+
+/// One of each id: if the same meter came with another interval, the one that came last then.
+Result<std::vector<RecordedMeter>> meters_of(Connection& connection, const std::string& site,
+                                             std::int64_t until_seq) {
+  const auto rows = connection.run(
+      "SELECT site, number, id, interval_s FROM (SELECT DISTINCT ON (m.id) m.* FROM site s "
+      "JOIN meter m ON m.site = s.number WHERE s.id = $1 ORDER BY m.id, "
+      "CASE WHEN EXISTS (SELECT 1 FROM meter o WHERE o.site = m.site AND o.id = m.id AND "
+      "o.number <> m.number) THEN (SELECT max(i.seq) FROM interval i WHERE i.site = m.site AND "
+      "i.meter = m.number AND i.seq <= $2) END DESC NULLS LAST) last ORDER BY number",
+      {site, integer(until_seq)});
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<RecordedMeter> meters;
+  for (int i = 0; i < rows->size(); ++i) {
+    meters.push_back({.site = rows->integer(i, 0),
+                      .number = rows->integer(i, 1),
+                      .id = std::string{rows->text(i, 2)},
+                      .interval = std::chrono::seconds{rows->integer(i, 3)}});
+  }
+  return meters;
+}
+
+/// Fills a store with the intervals of one meter.
+class IntervalCopy {
+ public:
+  IntervalCopy(Store& store, const RecordedMeter& meter) : store_{store}, meter_{meter} {}
+
+  /// Rows in order of start and seq: the last of a start is the one that counts.
+  [[nodiscard]] Result<void> add(const postgres::Rows& row) {
+    if (!number_) {
+      const auto number = store_.meter_number(meter_.id, meter_.interval);
+      if (!number) return tl::unexpected(number.error());
+      number_ = *number;
+    }
+    const metering::Reading reading{.meter = *number_,
+                                    .start = instant(row, 0, 0),
+                                    .mean_kW = row.real(0, 1),
+                                    .validity = static_cast<metering::Validity>(row.integer(0, 2)),
+                                    .reasons = static_cast<metering::Reason>(row.integer(0, 3)),
+                                    .late = row.boolean(0, 4)};
+    auto& rows = batch_.intervals;
+    if (!rows.empty() && rows.back().reading.start == reading.start) {
+      rows.back().reading = reading;
+      return {};
+    }
+    if (rows.size() >= kIntervalsAtOnce) {
+      if (auto done = commit(); !done) return done;
+    }
+    rows.push_back({.reading = reading});
+    return {};
+  }
+  [[nodiscard]] Result<void> commit() {
+    if (batch_.empty()) return {};
+    const auto done = store_.commit(batch_);
+    if (!done) return tl::unexpected(done.error());
+    batch_.intervals.clear();
+    return {};
+  }
+
+ private:
+  Store& store_;
+  const RecordedMeter& meter_;
+  std::optional<std::uint32_t> number_;
+  StoreBatch batch_;
+};
+
+Result<void> copy_intervals(Store& store, Connection& connection, const RecordedMeter& meter,
+                            std::int64_t until_seq) {
+  IntervalCopy copy{store, meter};
+  const auto done = connection.for_each(
+      "SELECT extract(epoch FROM t_start)::bigint, mean_kw, validity, reasons, late FROM interval "
+      "WHERE site = $1 AND meter = $2 AND seq <= $3 ORDER BY t_start, seq",
+      {integer(meter.site), integer(meter.number), integer(until_seq)},
+      [&copy](const postgres::Rows& row) { return copy.add(row); });
+  return done ? copy.commit() : done;
+}
+
+Result<void> copy_months(Store& store, Connection& connection, const RecordedMeter& meter,
+                         std::int64_t until_seq) {
+  const auto rows = connection.run(
+      "SELECT figure, time_zone_release, extract(epoch FROM closed_at)::bigint FROM month "
+      "WHERE site = $1 AND meter = $2 AND seq <= $3 ORDER BY seq",
+      {integer(meter.site), integer(meter.number), integer(until_seq)});
+  if (!rows) return tl::unexpected(rows.error());
+  for (int i = 0; i < rows->size(); ++i) {
+    const auto number = store.meter_number(meter.id, meter.interval);
+    if (!number) return tl::unexpected(number.error());
+    const auto figure = parse_figure(rows->text(i, 0));
+    if (!figure) return tl::unexpected(figure.error());
+    const auto put =
+        store.put_month(*number, *figure, std::string{rows->text(i, 1)}, instant(*rows, i, 2));
+    if (!put) return tl::unexpected(put.error());
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> copy_into(Store& store, Connection& connection, const std::string& site,
+                       std::int64_t until_seq) {
+  const auto meters = meters_of(connection, site, until_seq);
+  if (!meters) return tl::unexpected(meters.error());
+  return store.as_one([&]() -> Result<void> {
+    for (const RecordedMeter& meter : *meters) {
+      if (auto done = copy_intervals(store, connection, meter, until_seq); !done) return done;
+      if (auto done = copy_months(store, connection, meter, until_seq); !done) return done;
+    }
+    return {};
+  });
+}
+
+}  // namespace recald::record
