@@ -273,6 +273,11 @@ Result<bool> give_back(Connection& connection, const FleetJob& job, const std::s
       parameters));
 }
 
+Result<bool> hand_back(Connection& connection, const FleetJob& job) {
+  return changed(connection.run(
+      fmt::format("UPDATE job SET state = 'waiting', tries = tries - 1 WHERE {}", kOwn), own(job)));
+}
+
 Result<std::map<std::string, std::string>> state_before(Connection& connection,
                                                         const FleetJob& job) {
   const auto rows = connection.run(

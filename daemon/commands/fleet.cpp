@@ -89,7 +89,9 @@ std::vector<record::FleetJob> troubled(const std::vector<record::FleetJob>& jobs
 int run_fleet_init(const FleetArguments& arguments, const Console& console) {
   auto record = open_fleet(arguments.fleet, console, /*has_schema=*/false);
   if (!record) return record.error();
-  if (auto made = record::make_schema(**record); !made) return console.fail(made.error());
+  const auto left = record::make_schema(**record);
+  if (!left) return console.fail(left.error());
+  if (!left->empty()) console.err << *left << "\n";
   console.out << fmt::format("The record is ready (version {} of its tables).\n",
                              record::kSchemaVersion);
   return kSuccess;
