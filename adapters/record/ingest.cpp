@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 
-#include "adapters/record/figure_json.hpp"
 #include "adapters/record/job_rows.hpp"
 #include "adapters/record/schema.hpp"
 #include "adapters/record/sites.hpp"
@@ -231,7 +230,10 @@ Result<void> Taking::put_months() {
     meters.add(meter_of(entry));
     months.add(metering::to_string(month->figure.month));
     seqs.add(seq_of(entry.number));
-    figures.add(figure_json(month->figure));
+    StoredMonth plain = *month;
+    plain.figure.unusable_because = text_of(plain.figure.unusable_because);
+    plain.time_zone_release = text_of(plain.time_zone_release);
+    figures.add(to_json(plain));
     closed.add(seconds_of(month->closed_at));
     releases.add(text_of(month->time_zone_release));
   }
@@ -474,17 +476,16 @@ Result<void> copy_intervals(Store& store, Connection& connection, const Recorded
 Result<void> copy_months(Store& store, Connection& connection, const RecordedMeter& meter,
                          std::int64_t until_seq) {
   const auto rows = connection.run(
-      "SELECT figure, time_zone_release, extract(epoch FROM closed_at)::bigint FROM month "
-      "WHERE site = $1 AND meter = $2 AND seq <= $3 ORDER BY seq",
+      "SELECT figure FROM month WHERE site = $1 AND meter = $2 AND seq <= $3 ORDER BY seq",
       {integer(meter.site), integer(meter.number), integer(until_seq)});
   if (!rows) return tl::unexpected(rows.error());
   for (int i = 0; i < rows->size(); ++i) {
     const auto number = store.meter_number(meter.id, meter.interval);
     if (!number) return tl::unexpected(number.error());
-    const auto figure = parse_figure(rows->text(i, 0));
-    if (!figure) return tl::unexpected(figure.error());
+    const auto month = parse_stored_month(rows->text(i, 0));
+    if (!month) return tl::unexpected(month.error());
     const auto put =
-        store.put_month(*number, *figure, std::string{rows->text(i, 1)}, instant(*rows, i, 2));
+        store.put_month(*number, month->figure, month->time_zone_release, month->closed_at);
     if (!put) return tl::unexpected(put.error());
   }
   return {};

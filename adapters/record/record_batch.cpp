@@ -27,19 +27,20 @@ constexpr std::int64_t kLast_s = 253'402'300'799;
 constexpr std::int64_t kInt_max = std::numeric_limits<int>::max();
 constexpr std::int64_t kNumber_max = std::numeric_limits<std::int64_t>::max();
 
-std::int64_t seconds_of(Instant t) { return t.time_since_epoch().count(); }
-Json seconds_of(const std::optional<Instant>& t) { return t ? Json(seconds_of(*t)) : Json(); }
+std::int64_t epoch_s(Instant t) { return t.time_since_epoch().count(); }
+Json epoch_s(const std::optional<Instant>& t) { return t ? Json(epoch_s(*t)) : Json(); }
 
 /// What is no UTF-8 in a text, such as a piece of a message, is replaced.
-std::string text_of(const Json& json) {
+std::string text_of_json(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json json_of(const metering::MonthlyFigure& figure) {
+Json json_of(const StoredMonth& month) {
+  const metering::MonthlyFigure& figure = month.figure;
   Json peak;
   if (figure.peak) {
     peak = {{"kW", results::number(figure.peak->kW)},
-            {"start", seconds_of(figure.peak->start)},
+            {"start", epoch_s(figure.peak->start)},
             {"could_be_exceeded", figure.peak->could_be_exceeded}};
   }
   return {{"month", metering::to_string(figure.month)},
@@ -54,7 +55,9 @@ Json json_of(const metering::MonthlyFigure& figure) {
           {"usable", figure.usable},
           {"unusable_because", figure.unusable_because},
           {"reasons", static_cast<std::uint32_t>(figure.reasons)},
-          {"revision", figure.revision}};
+          {"revision", figure.revision},
+          {"closed_at", epoch_s(month.closed_at)},
+          {"time_zone_release", month.time_zone_release}};
 }
 
 /// [number, meter, interval, start, revision, mean, validity, reasons, late], or [number, meter,
@@ -63,17 +66,14 @@ Json json_of(const OutboxEntry& entry) {
   Json json = Json::array({entry.number, entry.meter, entry.interval.count()});
   if (const auto* const interval = std::get_if<StoredInterval>(&entry.stored)) {
     const metering::Reading& reading = interval->reading;
-    json.push_back(seconds_of(reading.start));
+    json.push_back(epoch_s(reading.start));
     json.push_back(interval->revision);
     json.push_back(results::number(reading.mean_kW));
     json.push_back(static_cast<int>(reading.validity));
     json.push_back(static_cast<std::uint32_t>(reading.reasons));
     json.push_back(reading.late);
   } else if (const auto* const month = std::get_if<StoredMonth>(&entry.stored)) {
-    Json figure = json_of(month->figure);
-    figure["closed_at"] = seconds_of(month->closed_at);
-    figure["time_zone_release"] = month->time_zone_release;
-    json.push_back(std::move(figure));
+    json.push_back(json_of(*month));
   } else {
     json.push_back(nullptr);
   }
@@ -82,21 +82,21 @@ Json json_of(const OutboxEntry& entry) {
 
 Json json_of(const StoreEvent& event) {
   return {{"number", event.number},
-          {"time", seconds_of(event.time)},
+          {"time", epoch_s(event.time)},
           {"severity", static_cast<int>(event.severity)},
           {"kind", event.kind},
           {"subject", event.subject},
           {"text", event.text},
           {"count", event.count},
-          {"last", seconds_of(event.last)}};
+          {"last", epoch_s(event.last)}};
 }
 
 Json json_of(const StoredJob& job) {
-  return {{"number", job.number},           {"kind", name_of(job.kind)},
-          {"state", name_of(job.state)},    {"asked_by", job.asked_by},
-          {"asked", seconds_of(job.asked)}, {"started", seconds_of(job.started)},
-          {"ended", seconds_of(job.ended)}, {"accepted", job.accepted},
-          {"message", job.message},         {"document", job.result.document}};
+  return {{"number", job.number},        {"kind", name_of(job.kind)},
+          {"state", name_of(job.state)}, {"asked_by", job.asked_by},
+          {"asked", epoch_s(job.asked)}, {"started", epoch_s(job.started)},
+          {"ended", epoch_s(job.ended)}, {"accepted", job.accepted},
+          {"message", job.message},      {"document", job.result.document}};
 }
 
 Json json_of(const Progress& progress) {
@@ -356,7 +356,7 @@ Result<Parsed> parse_object(std::string_view what, std::string_view text) {
 }
 
 std::int64_t read_outbox(Reader& reader, const Parsed& json) {
-  return reader.integer(reader.member(json, "outbox"), "outbox", 1, kNumber_max);
+  return reader.integer(reader.member(json, "outbox"), "outbox", -kNumber_max, kNumber_max);
 }
 
 }  // namespace
@@ -387,17 +387,28 @@ std::string site_of_topic(std::string_view topic) {
 }
 
 std::string to_json(const RecordBatch& batch) {
-  return text_of({{"outbox", batch.outbox},
-                  {"after", json_of(batch.after)},
-                  {"entries", list_of(batch.entries)},
-                  {"events", list_of(batch.events)},
-                  {"results", list_of(batch.results)}});
+  return text_of_json({{"outbox", batch.outbox},
+                       {"after", json_of(batch.after)},
+                       {"entries", list_of(batch.entries)},
+                       {"events", list_of(batch.events)},
+                       {"results", list_of(batch.results)}});
 }
 
 std::string to_json(const Watermark& watermark) {
   Json json = {{"outbox", watermark.outbox}};
   json.update(json_of(watermark.until));
-  return text_of(json);
+  return text_of_json(json);
+}
+
+std::string to_json(const StoredMonth& month) { return text_of_json(json_of(month)); }
+
+Result<StoredMonth> parse_stored_month(std::string_view text) {
+  constexpr std::string_view kWhat = "a month of the record";
+  const auto json = parse_object(kWhat, text);
+  if (!json) return tl::unexpected(json.error());
+  Reader reader{kWhat};
+  StoredMonth month = read_month(reader, *json);
+  return reader.result(std::move(month));
 }
 
 Result<RecordBatch> parse_batch(std::string_view text) {

@@ -33,7 +33,9 @@ struct Progress {
 
 /// Until where the record has committed what one outbox said: the gateway may forget that.
 struct Watermark {
-  std::int64_t outbox = 0;  ///< Identity of the outbox: numbers of another mean something else.
+  /// Identity of the outbox: numbers of another mean something else. Negative: of the past that the
+  /// store had before.
+  std::int64_t outbox = 0;
   Progress until;
 
   bool operator==(const Watermark&) const = default;
@@ -45,8 +47,7 @@ struct RecordBatch {
   Progress after;  ///< All up to here was told before.
   std::vector<OutboxEntry> entries = {};
   std::vector<StoreEvent> events = {};
-  std::vector<StoredJob> results =
-      {};  ///< Finished jobs. Only the summary of a result: its document.
+  std::vector<StoredJob> results = {};  ///< Finished ones, with their documents.
 
   /// Where the record is after it.
   [[nodiscard]] Progress until() const;
@@ -63,10 +64,13 @@ struct RecordBatch {
 /// is no UTF-8 in a text is replaced.
 [[nodiscard]] std::string to_json(const RecordBatch& batch);
 [[nodiscard]] std::string to_json(const Watermark& watermark);
+/// As the record keeps a month; parsing gives the same to the last bit.
+[[nodiscard]] std::string to_json(const StoredMonth& month);
 
 /// @return malformed with a sentence: no JSON, a field that is missing or of another kind, numbers
 /// that do not rise. Fields of a newer recald are left out.
 [[nodiscard]] Result<RecordBatch> parse_batch(std::string_view json);
 [[nodiscard]] Result<Watermark> parse_watermark(std::string_view json);
+[[nodiscard]] Result<StoredMonth> parse_stored_month(std::string_view json);
 
 }  // namespace recald::record

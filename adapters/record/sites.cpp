@@ -10,21 +10,21 @@
 namespace recald::record {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 using postgres::integer;
 using postgres::Rows;
 
 template <class Value>
-json or_null(const std::optional<Value>& value) {
-  return value ? json(*value) : json();
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
 }
 
-std::optional<double> number(const json& value) {
+std::optional<double> number(const Json& value) {
   return value.is_number() ? std::optional{value.get<double>()} : std::nullopt;
 }
 
 std::string description_of(const SiteDescription& site) {
-  return json{{"name", site.name},
+  return Json{{"name", site.name},
               {"use", site.use},
               {"climate", site.climate},
               {"latitude_deg", or_null(site.latitude_deg)},
@@ -39,7 +39,7 @@ std::string description_of(const SiteDescription& site) {
 
 Result<SiteDescription> read_description(const std::string& id, std::string_view text) {
   try {
-    const json read = json::parse(text);
+    const Json read = Json::parse(text);
     const auto from = metering::parse_month(read.at("calibrate_from").get<std::string>());
     if (!from) return tl::unexpected(from.error());
     return SiteDescription{.id = id,
@@ -54,7 +54,7 @@ Result<SiteDescription> read_description(const std::string& id, std::string_view
                            .site_file = read.at("site_file"),
                            .files = {},
                            .calibrate_from = *from};
-  } catch (const json::exception&) {
+  } catch (const Json::exception&) {
     return failure(
         ErrorCode::malformed,
         fmt::format("the record's description of site {} was not written by recald", id));
