@@ -136,6 +136,10 @@ TEST_F(FleetGateway, AWrongPasswordIsSaidAndCostsNothing) {
            events.find("refused the connection: Not authorized") != std::string::npos;
   })) << daemon_->said();
   EXPECT_TRUE(eventually([&] { return waiting() >= 3; }));
+  write_text(folder_ / "password", "secret\n");
+  const PlayedRecord record{broker_.port(), "depot", "secret"};
+  daemon_->signal(SIGHUP);
+  EXPECT_TRUE(eventually([&] { return record.means_of("depot").size() == 3; })) << daemon_->said();
 }
 
 }  // namespace

@@ -99,6 +99,14 @@ class RecordSinkTest : public ::testing::Test {
     job.result.document = document;
     ASSERT_TRUE(store_.add_job(job).has_value());
   }
+  /// @param until  Where the first begins.
+  static void expect_one_after_the_other(const PlayedRecord& record, record::Progress until) {
+    for (const std::string& payload : record.payloads()) {
+      const auto batch = record::parse_batch(payload).value();
+      EXPECT_EQ(batch.after, until) << payload;
+      until = batch.until();
+    }
+  }
   static std::vector<double> numbers(int from, int until) {
     std::vector<double> all;
     for (int i = from; i < until; ++i) all.push_back(i);
@@ -146,13 +154,8 @@ TEST_F(RecordSinkTest, EverythingIsSentInOrder) {
   EXPECT_EQ(taken.watermark.outbox, outbox_identity(store_, "fleet").value());
   EXPECT_EQ(forwarder_->status().waiting, 0);
   EXPECT_THAT(told_, IsEmpty());
-  record::Progress until{.entries = 0, .events = 1, .results = 0};
-  for (const std::string& payload : record.payloads()) {
-    const auto batch = record::parse_batch(payload).value();
-    EXPECT_EQ(batch.after, until);  // one goes on where the other ended
-    until = batch.until();
-    EXPECT_LE(payload.size(), 128u * 1024u);
-  }
+  expect_one_after_the_other(record, {.entries = 0, .events = 1, .results = 0});
+  for (const std::string& payload : record.payloads()) EXPECT_LE(payload.size(), 128u * 1024u);
 }
 
 // What the broker has acknowledged is not what the record has.
@@ -177,9 +180,11 @@ TEST_F(RecordSinkTest, WithoutAWatermarkNothingIsForgottenAndTheSameComesAgain) 
 TEST_F(RecordSinkTest, AWatermarkOfAnotherOutboxOrOfLessDoesNotCount) {
   const PlayedRecord record{broker_.port(), Mood::away};
   begin(kHasty);
+  loop_.run_for(seconds{10});
   store(0, 3);
+  happens("meter_silent");
+  finish_job("{}");
   const std::int64_t ours = outbox_identity(store_, "fleet").value();
-  const record::Progress all{.entries = 3, .events = 0, .results = 0};
   const auto say = [&](const record::Watermark& watermark) {
     const int before = signs_;
     broker_.send({.topic = "recald/v1/depot/watermark",
@@ -188,11 +193,13 @@ TEST_F(RecordSinkTest, AWatermarkOfAnotherOutboxOrOfLessDoesNotCount) {
     ASSERT_TRUE(eventually([&] { return signs_ > before; }));
     loop_.run_for(minutes{5});
   };
-  say({.outbox = ours == 1 ? 2 : ours - 1, .until = {1000, 1000, 1000}});
-  EXPECT_EQ(forwarder_->status().waiting, 3);
-  say({.outbox = ours, .until = {2, 1000, 1000}});
-  EXPECT_EQ(forwarder_->status().waiting, 3);
-  say({.outbox = ours, .until = all});
+  for (const record::Watermark& less :
+       {record::Watermark{ours - 1, {1000, 1000, 1000}}, record::Watermark{ours, {2, 1000, 1000}},
+        record::Watermark{ours, {1000, 0, 1000}}, record::Watermark{ours, {1000, 1000, 0}}}) {
+    say(less);
+    EXPECT_EQ(forwarder_->status().waiting, 3) << record::to_json(less);
+  }
+  say({.outbox = ours, .until = {.entries = 3, .events = 1, .results = 1}});
   EXPECT_EQ(forwarder_->status().waiting, 0);
 }
 
@@ -307,6 +314,7 @@ TEST_F(RecordSinkTest, MessagesAreNotTooLong) {
     EXPECT_LE(payload.size(), is_result ? 4000u : 1500u);
   }
   EXPECT_EQ(with_results, 3);
+  expect_one_after_the_other(record, {});
   EXPECT_EQ(forwarder_->status().waiting, 0);
 }
 
