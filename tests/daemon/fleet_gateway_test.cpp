@@ -108,7 +108,7 @@ TEST_F(FleetGateway, EverythingReachesTheRecordWhoeverIsKilled) {
   EXPECT_EQ(daemon_->end(SIGTERM), 0) << daemon_->said();
 }
 
-TEST_F(FleetGateway, ARecordThatComesBackIsHeardAtOnce) {
+TEST_F(FleetGateway, ABrokerThatComesBackIsUsedAgain) {
   PlayedRecord record{broker_.port(), "depot", "secret"};
   push(0, 4);
   ASSERT_TRUE(eventually([&] { return record.means_of("depot").size() == 4; })) << daemon_->said();

@@ -96,7 +96,8 @@ void Forwarder::schedule(milliseconds wait) {
 }
 
 void Forwarder::try_now() {
-  if (wait_ == milliseconds{0}) return;
+  is_asked_ = is_sending_;
+  if (is_sending_ || wait_ == milliseconds{0}) return;
   not_before_ = milliseconds{0};
   schedule(milliseconds{0});
 }
@@ -217,6 +218,7 @@ void Forwarder::send(OutgoingBatch batch) {
   const auto sent = std::make_shared<Sent>();
   const auto shared = std::make_shared<const OutgoingBatch>(std::move(batch));
   is_sending_ = true;
+  is_asked_ = false;
   worker_->run([sink = sink_, shared, sent,
                 stop = stop_.get_token()] { *sent = send_safely(*sink, *shared, stop); },
                [weak = std::weak_ptr{self_}, shared, sent] {
@@ -292,8 +294,9 @@ void Forwarder::wait_after(const Sent& sent) {
   wait_ = is_first ? rules_.retry_min : std::min(2 * wait_, rules_.retry_max);
   const auto asked = std::chrono::duration_cast<milliseconds>(sent.wait);
   wait_ = std::max(wait_, std::min(asked, rules_.asked_max));
-  not_before_ = now.monotonic + wait_;
-  schedule(wait_);
+  const milliseconds until = std::exchange(is_asked_, false) ? milliseconds{0} : wait_;
+  not_before_ = now.monotonic + until;
+  schedule(until);
   why_ = sent.why;
   if (!is_first) return;
   tell_({.time = now.instant(),

@@ -61,7 +61,8 @@ class Forwarder {
 
   void start() { schedule(std::chrono::milliseconds{0}); }
 
-  /// The other side has shown that it is there: ends the wait after a failure.
+  /// The other side has shown that it is there: ends the wait after a failure. During an attempt:
+  /// if that fails, the next follows at once.
   void try_now();
 
   [[nodiscard]] const Destination& destination() const { return destination_; }
@@ -98,6 +99,7 @@ class Forwarder {
   std::string why_;
   std::optional<metering::Instant> told_at_;
   bool is_sending_ = false;
+  bool is_asked_ = false;  ///< try_now() during the attempt.
   std::optional<std::chrono::milliseconds> due_;
   std::stop_source stop_;
   std::shared_ptr<Forwarder*> self_;

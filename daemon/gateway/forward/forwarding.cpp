@@ -235,7 +235,7 @@ void Forwarding::add_forwarder(Destination destination, std::unique_ptr<Sink> si
   forwarders_.push_back(
       std::make_unique<Forwarder>(Forwarder::Ports{ports_.loop, ports_.store},
                                   std::make_unique<system::WorkerThread>(ports_.loop),
-                                  std::move(destination), std::move(sink), tell_));
+                                  std::move(destination), std::move(sink), tell_, ports_.rules));
   forwarders_.back()->start();
 }
 

@@ -28,7 +28,8 @@ class Forwarding {
   struct Ports {
     Loop& loop;
     Store& store;
-    bool is_on_disk = true;  ///< Of the store: what is only in memory is told once it is on disk.
+    bool is_on_disk = true;   ///< Of the store: what is only in memory is told once it is on disk.
+    ForwardRules rules = {};  ///< Of every destination.
   };
   using Tell = std::function<void(StoreEvent)>;
   using OnValue = std::function<void(const ToldValue&)>;

@@ -18,6 +18,7 @@ using recald::testing::TemporaryFolder;
 using recald::testing::VirtualLoop;
 using recald::testing::VirtualWorker;
 using std::chrono::hours;
+using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
 using ::testing::ElementsAre;
@@ -248,6 +249,26 @@ TEST_F(ForwarderTest, WhoIsKnownToBeThereIsNotWaitedFor) {
   forwarder_->try_now();
   loop_.run_for(seconds{3});
   EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 3)));
+}
+
+// An attempt takes a second here.
+TEST_F(ForwarderTest, WhoIsThereDuringAnAttemptThatFailsIsAskedAgainAtOnce) {
+  begin({.retry_min = hours{1}});
+  other_.is_down = true;
+  store(0, 3);
+  loop_.run_for(milliseconds{500});
+  forwarder_->try_now();
+  loop_.run_for(milliseconds{600});
+  EXPECT_EQ(forwarder_->status().why, "connection refused");
+  other_.is_down = false;
+  loop_.run_for(seconds{2});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 3)));
+  other_.is_down = true;
+  store(3, 4);
+  loop_.run_for(minutes{1});
+  other_.is_down = false;
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(other_.taken, ElementsAreArray(numbers(0, 3)));  // once, not for ever
 }
 
 // A batch that was taken is sent again rather than forgotten.
