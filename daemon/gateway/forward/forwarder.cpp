@@ -294,7 +294,7 @@ void Forwarder::wait_after(const Sent& sent) {
   wait_ = is_first ? rules_.retry_min : std::min(2 * wait_, rules_.retry_max);
   const auto asked = std::chrono::duration_cast<milliseconds>(sent.wait);
   wait_ = std::max(wait_, std::min(asked, rules_.asked_max));
-  const milliseconds until = std::exchange(is_asked_, false) ? milliseconds{0} : wait_;
+  const milliseconds until = is_asked_ ? milliseconds{0} : wait_;
   not_before_ = now.monotonic + until;
   schedule(until);
   why_ = sent.why;

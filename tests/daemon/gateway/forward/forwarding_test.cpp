@@ -81,6 +81,9 @@ class ForwardingTest : public ::testing::Test {
 TEST_F(ForwardingTest, ASignOfTheRecordEndsTheWait) {
   begin();
   ASSERT_TRUE(soon([&] { return is_told("forward_failed") && is_told("broker_lost"); }));
+  const StoreEvent event{kNoon, Severity::info, "meter_silent", "main", "."};
+  ASSERT_TRUE(store_.commit({.events = {event}}).has_value());
+  ASSERT_TRUE(store_.add_job({.state = JobState::done, .asked_by = "api", .asked = kNoon}));
   broker_.start();
   const PlayedRecord record{broker_.port()};
   ASSERT_TRUE(soon([&] { return is_told("broker_found"); }));
@@ -91,6 +94,8 @@ TEST_F(ForwardingTest, ASignOfTheRecordEndsTheWait) {
   EXPECT_TRUE(soon([&] { return !record.means_of("depot").empty(); }));
   EXPECT_TRUE(soon([&] { return is_told("forward_works"); }));
   EXPECT_EQ(forwarding_->status().at(0).waiting, 0);
+  EXPECT_TRUE(soon([&] { return !record.of("depot").results.empty(); }));
+  EXPECT_EQ(record.of("depot").events.at(0).kind, "meter_silent");
 }
 
 TEST_F(ForwardingTest, WhileTheRecordIsAwaitedEverythingElseGoesOn) {
