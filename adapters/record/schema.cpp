@@ -217,10 +217,11 @@ Result<std::string> grant_roles(postgres::Connection& connection) {
     const auto known =
         connection.run("SELECT EXISTS (SELECT 1 FROM pg_roles WHERE rolname = $1)", {role.name});
     if (!known) return tl::unexpected(known.error());
-    std::string statements =
-        fmt::format(fmt::runtime(role.grants), fmt::arg("schema", schema->text(0, 0)));
-    if (!known->boolean(0, 0))
-      statements = fmt::format("CREATE ROLE {}; {}", role.name, statements);
+    // Two at once would change the same rows of the catalogue.
+    const std::string statements =
+        fmt::format("SELECT pg_advisory_xact_lock({}); {}{}", kLock,
+                    known->boolean(0, 0) ? "" : fmt::format("CREATE ROLE {}; ", role.name),
+                    fmt::format(fmt::runtime(role.grants), fmt::arg("schema", schema->text(0, 0))));
     const auto done = connection.run_all(statements);
     if (done) continue;
     if (done.error().code != ErrorCode::malformed) return tl::unexpected(done.error());

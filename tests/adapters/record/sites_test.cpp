@@ -1,0 +1,147 @@
+#include "adapters/record/sites.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/adapters/record/record_fixture.hpp"
+
+namespace recald::record {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST_F(Record, TablesAreMadeOnceByWhoeverComesFirst) {
+  const std::string name = server_->new_database();
+  std::vector<std::jthread> makers;
+  for (int i = 0; i < 4; ++i) {
+    makers.emplace_back([&name] {
+      auto own = postgres::Connection::open(name, "");
+      ASSERT_TRUE(own) << own.error().message;
+      const auto made = make_schema(**own);
+      EXPECT_TRUE(made) << made.error().message;
+    });
+  }
+  makers.clear();
+  auto own = postgres::Connection::open(name, "");
+  EXPECT_TRUE(check_schema(**own));
+}
+
+TEST_F(Record, AnotherSchemaIsNotTouched) {
+  auto empty = postgres::Connection::open(server_->new_database(), "");
+  const auto none = check_schema(**empty);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::unsupported);
+  EXPECT_THAT(none.error().message, HasSubstr("recald fleet init"));
+  EXPECT_TRUE(check_schema(*connection_));
+  (void)ask("UPDATE fleet SET schema_version = 99");
+  EXPECT_EQ(check_schema(*connection_).error().code, ErrorCode::unsupported);
+  const auto made = make_schema(*connection_);
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().message, HasSubstr("schema 99"));
+}
+
+TEST_F(Record, WithoutTheRightToMakeRolesTheRestIsThere) {
+  const std::string name = server_->new_database();
+  const std::string database = name.substr(name.rfind('/') + 1);
+  (void)server_->ask("DROP OWNED BY recald_ingest, recald_worker, recald_read", database);
+  (void)server_->ask("CREATE USER owner; ALTER DATABASE " + database + " OWNER TO owner");
+  for (const char* role : {"recald_ingest", "recald_worker", "recald_read"}) {
+    (void)server_->ask(std::string{"ALTER ROLE "} + role + " RENAME TO kept_" + role);
+  }
+  auto owner = postgres::Connection::open(
+      "postgresql://owner@127.0.0.1:" + std::to_string(server_->port()) + "/" + database, "");
+  ASSERT_TRUE(owner) << owner.error().message;
+  const auto made = make_schema(**owner);
+  for (const char* role : {"recald_ingest", "recald_worker", "recald_read"}) {
+    (void)server_->ask(std::string{"ALTER ROLE kept_"} + role + " RENAME TO " + role);
+  }
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_THAT(*made, HasSubstr("the role recald_ingest has no rights here"));
+  EXPECT_TRUE(check_schema(**owner));
+}
+
+TEST_F(Record, AnIngesterNeedsNoMoreThanItsRole) {
+  (void)ask("CREATE USER plain_ingester IN ROLE recald_ingest");
+  auto opened = postgres::Connection::open(
+      "postgresql://plain_ingester@127.0.0.1:" + std::to_string(server_->port()) +
+          url_.substr(url_.rfind('/')),
+      "");
+  ASSERT_TRUE(opened) << opened.error().message;
+  auto batch = intervals(0, 3);
+  batch.entries.push_back(month_entry(4, "steam", month_of(2024, 3), 1.0));
+  batch.entries.push_back(month_entry(5, "power", month_of(2024, 3), 1.0));
+  batch.events.push_back({.time = kNow, .kind = "reset", .text = "was reset", .number = 1});
+  batch.results.push_back({.number = 1, .asked = kNow});
+  const auto taken = take(**opened, "tower", batch, kNow);
+  EXPECT_TRUE(taken) << taken.error().message;
+  EXPECT_EQ(ask("SELECT count(*) FROM job"), "1\n");
+  EXPECT_FALSE((*opened)->run("DELETE FROM interval"));
+  EXPECT_FALSE((*opened)->run("UPDATE interval SET mean_kw = 1"));
+  (void)ask("DROP USER plain_ingester");
+}
+
+TEST_F(Record, ASiteIsVersionedByItsContent) {
+  auto site = described("tower");
+  auto put = put_site(*connection_, site, "ann");
+  ASSERT_TRUE(put) << put.error().message;
+  EXPECT_EQ(put->number, 1);
+  EXPECT_FALSE(put->is_new);
+  site.files["weather/city.epw"] += "c";
+  put = put_site(*connection_, site, "bob");
+  ASSERT_TRUE(put);
+  EXPECT_EQ(put->number, 2);
+  EXPECT_TRUE(put->is_new);
+  site.calibrate_from = month_of(2024, 3);  // none of its files
+  put = put_site(*connection_, site, "bob");
+  ASSERT_TRUE(put);
+  EXPECT_EQ(put->number, 3);
+  // What both have is there once.
+  EXPECT_EQ(ask("SELECT count(*) FROM file"), "3\n");
+
+  const auto first = site_of_version(*connection_, "tower", 1);
+  ASSERT_TRUE(first) << first.error().message;
+  EXPECT_EQ(first->files, described("tower").files);
+  EXPECT_EQ(first->calibrate_from, month_of(2024, 2));
+  EXPECT_EQ(first->latitude_deg, 40.7);
+  EXPECT_EQ(first->longitude_deg, std::nullopt);
+  EXPECT_EQ(first->outputs, described("tower").outputs);
+  EXPECT_EQ(site_of_version(*connection_, "tower", 9).error().code, ErrorCode::not_found);
+
+  const auto entries = audited(*connection_, 2);
+  ASSERT_TRUE(entries);
+  ASSERT_EQ(entries->size(), 2u);
+  EXPECT_EQ(entries->front().who, "bob");
+  EXPECT_EQ(entries->front().subject, "tower");
+  EXPECT_THAT(entries->front().text, HasSubstr("version 3"));
+}
+
+TEST_F(Record, SitesSayWhenTheyWereHeard) {
+  ASSERT_TRUE(put_site(*connection_, described("annex"), "ann"));
+  ASSERT_TRUE(send(intervals(0, 3)));
+  const auto found = sites(*connection_);
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->size(), 2u);
+  EXPECT_EQ(found->at(0).site.id, "annex");
+  EXPECT_EQ(found->at(0).heard, std::nullopt);
+  EXPECT_EQ(found->at(1).site.name, "Tower");
+  EXPECT_EQ(found->at(1).heard, kNow);
+  EXPECT_EQ(found->at(1).newest, kMarch + 3 * kQuarter);
+}
+
+TEST_F(Record, ARetiredSiteKeepsItsDataAndSendsNoMore) {
+  ASSERT_TRUE(send(intervals(0, 3)));
+  ASSERT_TRUE(retire_site(*connection_, "tower", "ann"));
+  EXPECT_EQ(retire_site(*connection_, "tower", "ann").error().code, ErrorCode::not_found);
+  EXPECT_EQ(send(intervals(3, 3)).error().code, ErrorCode::not_found);
+  EXPECT_TRUE(sites(*connection_)->empty());
+  EXPECT_TRUE(watermarks(*connection_)->empty());
+  EXPECT_EQ(ask("SELECT count(*) FROM interval"), "3\n");
+  ASSERT_TRUE(put_site(*connection_, described("tower"), "ann"));
+  EXPECT_TRUE(send(intervals(3, 3)));
+}
+
+}  // namespace
+}  // namespace recald::record
