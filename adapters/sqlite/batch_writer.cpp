@@ -53,8 +53,8 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
       // Beyond what any destination was told: SQLite gives the number of a deleted row again.
       "INSERT INTO event VALUES (1 + max((SELECT coalesce(max(number), 0) FROM event), "
       "(SELECT coalesce(max(position), 0) FROM cursor WHERE NOT (destination GLOB 'outbox *' OR "
-      "destination GLOB 'results of *' OR destination GLOB 'identity for *'))), ?1, ?2, ?3, ?4, "
-      "?5, 1, NULL, "
+      "destination GLOB 'results of *' OR destination GLOB 'history of *' OR "
+      "destination GLOB 'identity for *'))), ?1, ?2, ?3, ?4, ?5, 1, NULL, "
       "row_sum('event', ?1, ?2, ?3, ?4, ?5, 1, NULL))");
   if (!event) return tl::unexpected(event.error());
   auto count = database.prepare(

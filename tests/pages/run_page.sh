@@ -20,6 +20,6 @@ awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$page" > "$sc
 cd "$place"
 set -o pipefail
 # Sourced, so that what the page starts is ours to stop.
-trap 'echo "--- failed; what the programs said:"; tail -n 20 "$place"/trial/*.log || true' ERR
+trap 'echo "--- failed; what the programs said:"; tail -n 20 "$place"/*/*.log || true' ERR
 set -x
 . "$script"

@@ -38,8 +38,17 @@ Result<std::shared_ptr<RecordLink>> RecordLink::open(const BrokerConfig& broker,
     heard->changed.notify_all();
     on_sign();
   };
-  auto connection = open_broker(
-      broker, {.will = {}, .birth = {}, .topics = {record::watermark_topic(site)}}, hear, on_state);
+  const auto hear_state = [heard, on_state](bool is_connected, const std::string& why) {
+    if (!is_connected) {
+      const std::scoped_lock lock{heard->mutex};
+      ++heard->losses;
+      heard->changed.notify_all();
+    }
+    on_state(is_connected, why);
+  };
+  auto connection =
+      open_broker(broker, {.will = {}, .birth = {}, .topics = {record::watermark_topic(site)}},
+                  hear, hear_state);
   if (!connection) return tl::unexpected(connection.error());
   return std::shared_ptr<RecordLink>{
       new RecordLink{record::batch_topic(site), std::move(heard), std::move(*connection)}};
@@ -54,8 +63,12 @@ Result<void> RecordLink::publish(std::string batch, std::chrono::milliseconds ti
 bool RecordLink::wait_for(const record::Watermark& wanted, std::chrono::milliseconds time_max,
                           const std::stop_token& stop) const {
   std::unique_lock lock{heard_->mutex};
-  return heard_->changed.wait_for(lock, stop, time_max,
-                                  [&] { return heard_->last && covers(*heard_->last, wanted); });
+  const auto is_confirmed = [&] { return heard_->last && covers(*heard_->last, wanted); };
+  // What was on its way when the connection broke may never have arrived.
+  const int losses = heard_->losses;
+  heard_->changed.wait_for(lock, stop, time_max,
+                           [&] { return is_confirmed() || heard_->losses != losses; });
+  return is_confirmed();
 }
 
 }  // namespace recald::daemon

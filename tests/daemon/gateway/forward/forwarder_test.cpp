@@ -138,6 +138,11 @@ TEST_F(ForwarderTest, TellsThePastFirstToWhoeverWantsIt) {
   }
   EXPECT_THAT(first, ElementsAreArray(numbers(0, 261)));
   EXPECT_EQ(other_.taken.back(), 260.0);
+  // Its position is no number of an event.
+  StoreBatch batch;
+  batch.events.push_back({.time = kNoon, .kind = "something", .subject = "", .text = "It was."});
+  ASSERT_TRUE(store_.commit(batch).has_value());
+  EXPECT_LT(store_.events(1).value().front().number, 100);
 }
 
 TEST_F(ForwarderTest, AnOtherProcessGoesOnWhereTheLastOneEnded) {
