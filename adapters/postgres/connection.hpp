@@ -81,8 +81,9 @@ class Connection {
   Result<void> run_all(const std::string& statements);
 
   /// All that `work` does at once (READ COMMITTED); a failure leaves no trace. Tried once more
-  /// after a serialisation failure or a deadlock. Where the connection is lost while it commits,
-  /// nobody knows (io_failed): the caller must be able to do it again.
+  /// after a deadlock, a serialisation failure or a row that somebody else inserted first. Where
+  /// the connection is lost while it commits, nobody knows (io_failed): the caller must be able to
+  /// do it again.
   /// @pre not within another
   Result<void> transaction(const std::function<Result<void>()>& work);
 

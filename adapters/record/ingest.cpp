@@ -349,7 +349,7 @@ Result<void> Taking::put_watermark() {
 
 Result<Watermark> take(Connection& connection, const std::string& site, const RecordBatch& batch,
                        Instant now) {
-  for (;;) {
+  for (bool has_partitions = false;;) {
     Watermark watermark{.outbox = batch.outbox, .until = {}};
     auto end = Taking::End::taken;
     const auto done = connection.transaction([&]() -> Result<void> {
@@ -364,6 +364,10 @@ Result<Watermark> take(Connection& connection, const std::string& site, const Re
     if (done) return watermark;
     if (done.error().code != ErrorCode::cancelled) return tl::unexpected(done.error());
     if (end == Taking::End::unknown_outbox) return watermark;
+    if (has_partitions) {
+      return failure(ErrorCode::malformed, "the record has lost a partition of its intervals");
+    }
+    has_partitions = true;
     for (const auto& [name, start] : partitions_of(batch)) {
       if (auto made = make_partitions(connection, {start, start + std::chrono::seconds{1}});
           !made) {

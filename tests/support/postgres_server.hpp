@@ -55,7 +55,8 @@ class PostgresServer {
              << "\nunix_socket_directories = '" << folder_.path().string()
              << "'\nfsync = " << (options.is_durable ? "on" : "off")
              << "\nfull_page_writes = " << (options.is_durable ? "on" : "off")
-             << "\nshared_buffers = '32MB'\nmax_connections = 50\ntimezone = 'Asia/Kathmandu'\n"
+             << "\nrecovery_init_sync_method = 'syncfs'\nshared_buffers = '32MB'\nmax_connections "
+                "= 50\ntimezone = 'Asia/Kathmandu'\n"
              << options.more << '\n';
   }
   ~PostgresServer() {
