@@ -10,7 +10,7 @@ BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnan
 TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r-cran-posterior
   mbpoll python3-pymodbus python3-aiosmtpd python3-venv python3-serial python3-serial-asyncio
   clang clang-format libclang-rt-14-dev curl systemd mosquitto mosquitto-clients
-  prometheus influxdb postgresql-15"
+  prometheus influxdb postgresql-15 jq"
 
 # To make packages (daemon/packaging), and to check them.
 PACKAGING_PACKAGES="git python3 debhelper mmdebstrap crossbuild-essential-arm64 qemu-user-static umoci lintian crun"

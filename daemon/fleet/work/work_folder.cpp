@@ -58,7 +58,8 @@ Result<std::map<std::string, std::string>> files_below(const fs::path& folder,
 }
 
 Json job_json(const record::FleetJob& job, const std::string& site_file) {
-  return {{"site_file", site_file},
+  return {{"site", job.site},
+          {"site_file", site_file},
           {"kind", name_of(job.kind)},
           {"now_s", job.now.time_since_epoch().count()},
           {"asked_by", job.asked_by}};

@@ -34,6 +34,14 @@ memory_max_MB = 2000
   EXPECT_EQ(config->worker.memory_max_bytes, 2'000'000'000u);
 }
 
+TEST(FleetConfig, TheExampleIsRead) {
+  const auto config = load_fleet(RECALD_SOURCE_DIR "/daemon/examples/fleet.toml");
+  ASSERT_TRUE(config) << config.error().front();
+  EXPECT_EQ(config->worker.jobs, 2);
+  ASSERT_TRUE(config->http);
+  EXPECT_EQ(config->http->port, 8090);
+}
+
 TEST(FleetConfig, AnAddressWithAPasswordIsRefusedWithoutRepeatingIt) {
   const auto problems =
       problems_of("[record]\nurl = \"postgresql://recald:hunter2@db.example.org/fleet\"\n");
