@@ -1,4 +1,4 @@
-# Installs what is made of the program itself. Needs: unit, unit_dir, man_dir, run (the command that starts recald).
+# Installs what is made of the program itself. Needs: units, unit_dir, man_dir, run (the command that starts recald).
 
 # to(PATH VARIABLE): where a path relative to the prefix is installed.
 function(to path variable)
@@ -17,10 +17,13 @@ function(install_printed path)
 endfunction()
 
 to("${unit_dir}" folder)
-file(READ "${unit}" text)
-string(REPLACE "/usr/bin/recald" "${CMAKE_INSTALL_PREFIX}/bin/recald" text "${text}")
-file(WRITE "${folder}/recald@.service" "${text}")
-message(STATUS "Installing: ${folder}/recald@.service")
+foreach(unit ${units})
+  get_filename_component(name "${unit}" NAME)
+  file(READ "${unit}" text)
+  string(REPLACE "/usr/bin/recald" "${CMAKE_INSTALL_PREFIX}/bin/recald" text "${text}")
+  file(WRITE "${folder}/${name}" "${text}")
+  message(STATUS "Installing: ${folder}/${name}")
+endforeach()
 
 execute_process(COMMAND ${run} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "\n  [a-z]+  " commands "${help}")

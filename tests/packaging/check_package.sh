@@ -33,5 +33,7 @@ for file in usr/share/bash-completion/completions/recald usr/share/zsh/vendor-co
   usr/share/doc/recald/examples/monitoring/recald-alerts.yml; do
   [ -s "$file" ] || fail "no $file"
 done
-sh "$here/check_unit.sh" "lib/systemd/system/recald@.service" "$recald"
+for unit in recald@.service recald-worker@.service; do
+  sh "$here/check_unit.sh" "lib/systemd/system/$unit" "$recald"
+done
 echo "$size bytes installed"

@@ -35,7 +35,7 @@ memory_max_MB = 2000
 }
 
 TEST(FleetConfig, TheExampleIsRead) {
-  const auto config = load_fleet(RECALD_SOURCE_DIR "/daemon/examples/fleet.toml");
+  const auto config = load_fleet(RECALD_SOURCE_DIR "/daemon/fleet/fleet.toml");
   ASSERT_TRUE(config) << config.error().front();
   EXPECT_EQ(config->worker.jobs, 2);
   ASSERT_TRUE(config->http);
