@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <thread>
 #include <utility>
 
 namespace recald::postgres {
@@ -41,6 +42,8 @@ constexpr auto kSession =
     "SET idle_in_transaction_session_timeout = '60s'; SET tcp_keepalives_idle = 10; "
     "SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3; SET tcp_user_timeout = 25000";
 
+constexpr int kTries = 3;  ///< Of a transaction that lost to another.
+constexpr milliseconds kPause{50};
 constexpr std::string_view kUniqueViolation = "23505";
 
 PGresult* of(const std::shared_ptr<void>& result) { return static_cast<PGresult*>(result.get()); }
@@ -391,10 +394,13 @@ Result<void> Connection::run_all(const std::string& statements) {
 
 Result<void> Connection::transaction(const std::function<Result<void>()>& work) {
   assert(!impl_->is_in_transaction);
-  auto done = impl_->once(work);
-  // Somebody else was faster: a lock in another order, or a row of the same key.
-  const bool may_go_now = impl_->state.starts_with("40") || impl_->state == kUniqueViolation;
-  return done || !may_go_now ? done : impl_->once(work);
+  for (int tries = 1;; ++tries) {
+    auto done = impl_->once(work);
+    // Somebody else was faster: a lock in another order, or a row of the same key.
+    const bool may_go_now = impl_->state.starts_with("40") || impl_->state == kUniqueViolation;
+    if (done || !may_go_now || tries == kTries) return done;
+    std::this_thread::sleep_for(tries * kPause);  // it takes its lock before we do
+  }
 }
 
 Result<void> Connection::for_each(const std::string& statement,

@@ -80,7 +80,7 @@ class Connection {
   /// Several statements without parameters, separated by semicolons: all or none.
   Result<void> run_all(const std::string& statements);
 
-  /// All that `work` does at once (READ COMMITTED); a failure leaves no trace. Tried once more
+  /// All that `work` does at once (READ COMMITTED); a failure leaves no trace. Tried again, twice,
   /// after a deadlock, a serialisation failure or a row that somebody else inserted first. Where
   /// the connection is lost while it commits, nobody knows (io_failed): the caller must be able to
   /// do it again.
