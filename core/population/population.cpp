@@ -63,7 +63,7 @@ double t_cumulative(double t) {
 }
 
 double score_of(const Prior& prior, double value) {
-  constexpr double kEnd = 1e-6;
+  constexpr double kEnd = 1e-9;
   const double below = std::clamp(prior.cumulative(value), kEnd, 1.0 - kEnd);
   return boost::math::quantile(boost::math::normal_distribution<>(), below);
 }

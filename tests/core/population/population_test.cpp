@@ -119,7 +119,7 @@ TEST(Population, IsHardlyMovedByOneStranger) {
   const auto with = estimate_population(fleet.sites);
   ASSERT_TRUE(without && with);
   EXPECT_LT(std::fabs(with->location - without->location), 0.1);  // the mean of 16 would: 0.28
-  EXPECT_LT(with->quantile(0.95), 1.0);
+  EXPECT_LT(with->quantile(0.95), 1.5);                           // by moments: 1.9
 }
 
 TEST(Population, DoesNotDependOnTheOrderOfSites) {

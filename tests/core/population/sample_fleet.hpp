@@ -40,7 +40,10 @@ inline Fleet draw_fleet(int count, double location, double spread, double sd, co
                         Rng& rng) {
   Fleet fleet{location, spread, {}};
   for (int i = 0; i < count; ++i) {
-    const double score = location + spread * draw_t(rng);
+    double score = 0.0;
+    do {  // beyond, posteriors lie at an end of the prior to the last digit
+      score = location + spread * draw_t(rng);
+    } while (std::fabs(score) > 5.0);
     fleet.sites.push_back(posterior_of({score + sd * rng.normal(), sd}, prior));
   }
   return fleet;
