@@ -222,7 +222,7 @@ def table(title, results):
                 inside, errors, changes, widths = 0, [], [], []
                 for folder, r in results:
                     before, after = r.get((months, "library")), r.get((months, prior))
-                    if not before or not after or before["status"] == "forecast":
+                    if not before or not after or "forecast" in (before["status"], after["status"]):
                         continue
                     truth = json.loads((folder / "target.json").read_text())[name]
                     b, a = ({p["name"]: p for p in d["parameters"]}[name] for d in (before, after))
