@@ -137,11 +137,12 @@ double Population::quantile(double probability) const {
 
 Result<Population> estimate_population(std::span<const SitePosterior> sites) {
   const std::vector<SiteEvidence> evidence = evidence_of(sites);
-  if (evidence.size() < kSitesMin) {
+  const std::size_t needed = std::max<std::size_t>(kSitesMin, (sites.size() + 1) / 2);
+  if (evidence.size() < needed) {
     return failure(ErrorCode::not_enough_data,
                    std::to_string(evidence.size()) + " of " + std::to_string(sites.size()) +
                        " calibrations say something of it beyond their priors, and at least " +
-                       std::to_string(kSitesMin) + " are needed");
+                       std::to_string(needed) + " are needed");
   }
   const std::vector<GridPoint> grid = posterior_grid(evidence);
   Population population{.sites = static_cast<int>(evidence.size()),

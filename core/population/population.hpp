@@ -26,7 +26,8 @@ struct SiteEvidence {
 /// Sites that say less than this of a parameter are not counted: 1 - variance of the posterior, in
 /// scores. Below it the noise of the draws would be amplified.
 inline constexpr double kLeastContraction = 0.1;
-/// Fewer sites than this show no spread.
+/// Fewer sites than this show no spread. Of many sites half have to say something: the few that do
+/// where most do not are those that chance or the model's errors have moved.
 inline constexpr int kSitesMin = 5;
 
 /// In scores z = Phi^-1(F(theta)) the prior is normal(0, 1). A posterior with the median m and the
@@ -59,8 +60,8 @@ struct Population {
 /// variance 2 tau^2: with no site, mu and z together have the variance 1 of the prior. mu and tau
 /// are integrated over a grid, so their own uncertainty is in the predictive.
 ///
-/// @return not_enough_data, and the sentence why, with fewer than `kSitesMin` sites that say
-///         something.
+/// @return not_enough_data, and the sentence why, where fewer than `kSitesMin` sites or fewer than
+///         half of them say something.
 /// @see Gelman et al. (2013), Bayesian Data Analysis, 3rd ed.: sections 5.4 (hierarchical normal
 ///      model, eq. 5.16 to 5.21) and 17.4 (the same by t). Gelman (2006), Bayesian Analysis 1(3),
 ///      515-534: the prior of tau. Higgins, Thompson, Spiegelhalter (2009), J. R. Stat. Soc. A

@@ -37,20 +37,25 @@ TEST(Evidence, OfAPosteriorThatIsItsPriorOrWiderIsNone) {
   EXPECT_TRUE(evidence_of(std::vector{prior_itself, wider, at_an_end}).empty());
 }
 
-TEST(Population, NeedsFiveSitesThatSaySomething) {
+TEST(Population, NeedsFiveSitesAndHalfOfAllToSaySomething) {
   Rng rng(1);
   Fleet fleet = draw_fleet(4, 0.0, 0.3, 0.5, kAirflow, rng);
   const SitePosterior silent{kAirflow.quantile(0.05), kAirflow.quantile(0.5),
                              kAirflow.quantile(0.95), kAirflow};
-  for (int i = 0; i < 20; ++i) fleet.sites.push_back(silent);
+  for (int i = 0; i < 5; ++i) fleet.sites.push_back(silent);
   const auto none = estimate_population(fleet.sites);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::not_enough_data);
-  EXPECT_THAT(none.error().message, HasSubstr("4 of 24 calibrations"));
+  EXPECT_THAT(none.error().message, HasSubstr("4 of 9 calibrations"));
   fleet.sites.push_back(posterior_of({0.1, 0.5}, kAirflow));
   const auto some = estimate_population(fleet.sites);
   ASSERT_TRUE(some);
   EXPECT_EQ(some->sites, 5);
+  fleet.sites.push_back(silent);
+  const auto less_than_half = estimate_population(fleet.sites);
+  ASSERT_FALSE(less_than_half);
+  EXPECT_THAT(less_than_half.error().message, HasSubstr("5 of 11"));
+  EXPECT_THAT(less_than_half.error().message, HasSubstr("at least 6 are needed"));
 }
 
 TEST(Population, OfManyGoodSitesIsWhatTheyWereDrawnFrom) {
