@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
 #include "adapters/ports/destination_cursors.hpp"
@@ -26,9 +25,6 @@ Sent send_safely(Sink& sink, const OutgoingBatch& batch, const std::stop_token& 
     return {.outcome = Sent::Outcome::later, .why = thrown.what()};
   }
 }
-
-/// Position in the past of a store whose past has been told.
-constexpr std::int64_t kHistoryTold = std::numeric_limits<std::int64_t>::max();
 
 constexpr int kResults_max = 10;  // of a tenth of a megabyte each
 constexpr std::array kJobKinds{JobKind::calibration, JobKind::diagnosis};
@@ -111,9 +107,20 @@ void Forwarder::look() {
 }
 
 Result<OutgoingBatch> Forwarder::next() {
+  OutgoingBatch batch;
+  // Its events and results begin with the first look, however long the past takes.
+  if (destination_.wants_events) {
+    const auto after = event_position();
+    if (!after) return tl::unexpected(after.error());
+    batch.after.events = *after;
+  }
+  if (destination_.wants_results) {
+    const auto after = result_position();
+    if (!after) return tl::unexpected(after.error());
+    batch.after.results = *after;
+  }
   auto past = next_history();
   if (!past || past->size() > 0) return past;
-  OutgoingBatch batch;
   const auto from = position();
   if (!from) return tl::unexpected(from.error());
   batch.after.entries = from->told;
@@ -148,18 +155,23 @@ Result<OutgoingBatch> Forwarder::next_history() {
   return batch;
 }
 
-Result<void> Forwarder::add_events(OutgoingBatch& batch) {
-  if (!destination_.wants_events) return {};
-  const auto after = position_of(events_cursor(destination_.id), [this]() -> Result<std::int64_t> {
+Result<std::int64_t> Forwarder::event_position() {
+  return position_of(events_cursor(destination_.id), [this]() -> Result<std::int64_t> {
     const auto last = ports_.store.events(1);
     if (!last) return tl::unexpected(last.error());
     return last->empty() ? 0 : last->front().number;
   });
-  if (!after) return tl::unexpected(after.error());
-  batch.after.events = *after;
+}
+
+Result<std::int64_t> Forwarder::result_position() {
+  return position_of(results_cursor(destination_.id),
+                     [this] { return last_settled_job(ports_.store); });
+}
+
+Result<void> Forwarder::add_events(OutgoingBatch& batch) {
   const int room = room_in(batch);
-  if (room == 0) return {};
-  auto events = ports_.store.events_after(*after, room);
+  if (!destination_.wants_events || room == 0) return {};
+  auto events = ports_.store.events_after(batch.after.events, room);
   if (!events) return tl::unexpected(events.error());
   batch.events = std::move(*events);
   return {};
@@ -169,11 +181,9 @@ Result<void> Forwarder::add_results(OutgoingBatch& batch) {
   if (!destination_.wants_results) return {};
   const auto last = last_settled_job(ports_.store);
   if (!last) return tl::unexpected(last.error());
-  const auto after = position_of(results_cursor(destination_.id), [&] { return last; });
-  if (!after) return tl::unexpected(after.error());
-  batch.after.results = *after;
-  if (*after >= *last) return {};
-  auto results = jobs_between(ports_.store, *after, *last, std::min(room_in(batch), kResults_max));
+  if (batch.after.results >= *last) return {};
+  auto results = jobs_between(ports_.store, batch.after.results, *last,
+                              std::min(room_in(batch), kResults_max));
   if (!results) return tl::unexpected(results.error());
   batch.results = std::move(*results);
   return {};

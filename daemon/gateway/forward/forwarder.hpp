@@ -74,6 +74,8 @@ class Forwarder {
   [[nodiscard]] Result<OutgoingBatch> next();
   [[nodiscard]] Result<OutgoingBatch> next_history();
   [[nodiscard]] Result<OutboxPosition> position();
+  [[nodiscard]] Result<std::int64_t> event_position();
+  [[nodiscard]] Result<std::int64_t> result_position();
   [[nodiscard]] Result<void> add_events(OutgoingBatch& batch);
   [[nodiscard]] Result<void> add_results(OutgoingBatch& batch);
   [[nodiscard]] int room_in(const OutgoingBatch& batch) const {

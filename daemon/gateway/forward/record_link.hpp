@@ -33,8 +33,8 @@ class RecordLink {
   [[nodiscard]] Result<void> publish(std::string batch, std::chrono::milliseconds time_max,
                                      const std::stop_token& stop);
 
-  /// Waits until the record has confirmed all of this, or the connection is lost. @return whether it
-  /// has.
+  /// Waits until the record has confirmed all of this, or the connection is lost. @return whether
+  /// it has.
   [[nodiscard]] bool wait_for(const record::Watermark& wanted, std::chrono::milliseconds time_max,
                               const std::stop_token& stop) const;
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "adapters/asio/asio_loop.hpp"
+#include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/mosquitto.hpp"
 #include "tests/support/played_record.hpp"
@@ -30,6 +31,7 @@ class ForwardingTest : public ::testing::Test {
   void SetUp() override {
     if (!Mosquitto::can_run()) GTEST_SKIP() << "mosquitto of Debian is not installed";
     ASSERT_TRUE(store_.keep_outbox_for({"fleet"}).has_value());
+    ASSERT_TRUE(store_.put_cursor(history_cursor("fleet"), kHistoryTold).has_value());
     ASSERT_TRUE(store_.commit({.intervals = {{{main_, kNoon, 4.0}}}}).has_value());
   }
 
@@ -129,12 +131,12 @@ TEST_F(ForwardingTest, AFleetThatIsTakenOutIsToldNothingMore) {
   forwarding_->set_site(site(""));
   EXPECT_TRUE(forwarding_->status().empty());
   ASSERT_TRUE(store_.commit({.intervals = {{{main_, kNoon + hours{1}, 5.0}}}}).has_value());
-  // Back again, it is told what comes from then on, under another numbering.
+  // Back again, it is told the past and then what comes, under another numbering.
   const std::int64_t before = record.of("depot").watermark.outbox;
   forwarding_->set_site(site(fleet()));
   ASSERT_TRUE(store_.commit({.intervals = {{{main_, kNoon + hours{2}, 6.0}}}}).has_value());
-  EXPECT_TRUE(soon([&] { return record.means_of("depot").size() == 2; }));
-  EXPECT_THAT(record.means_of("depot"), ElementsAre(4.0, 6.0));
+  EXPECT_TRUE(soon([&] { return record.means_of("depot").size() == 5; }));
+  EXPECT_THAT(record.means_of("depot"), ElementsAre(4.0, 4.0, 5.0, 6.0, 6.0));
   EXPECT_NE(record.of("depot").watermark.outbox, before);
 }
 
