@@ -294,6 +294,7 @@ struct Arguments {
   FleetArguments fleet;
   FleetAddArguments fleet_sites;
   FleetRerunArguments rerun;
+  FleetPriorsArguments fleet_priors;
   std::string command;
   std::string shell;
 };
@@ -643,6 +644,13 @@ void add_fleet_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   add_fleet(*serve, given.fleet);
   verbs.push_back(
       {serve, [&](const Console& console) { return run_fleet_serve(given.fleet, console); }});
+  CLI::App* priors = fleet->add_subcommand(
+      "priors", "Print what other sites of the same use teach one, as lines of its site file");
+  add_fleet(*priors, given.fleet_priors);
+  priors->add_option("site", given.fleet_priors.site, "Id of the site")->required();
+  verbs.push_back({priors, [&](const Console& console) {
+                     return run_fleet_priors(given.fleet_priors, console);
+                   }});
   CLI::App* rerun = fleet->add_subcommand("rerun", "List jobs to run again, and let them run");
   add_fleet(*rerun, given.rerun);
   rerun->add_option("sites", given.rerun.sites, "Ids of sites; all by default");

@@ -204,6 +204,10 @@ struct FleetAddArguments : FleetArguments {
   std::string calibrate_from;                ///< "2026-01"; empty: the last month.
 };
 
+struct FleetPriorsArguments : FleetArguments {
+  std::string site;  ///< Its id; it has been calibrated with the library's priors.
+};
+
 struct FleetRerunArguments : FleetArguments {
   std::vector<std::string> sites;  ///< Empty: all.
   std::string month;               ///< Empty: the last of each site.
@@ -275,6 +279,9 @@ int run_fleet_remove(const FleetAddArguments& arguments, const Console& console)
 int run_fleet_status(const FleetArguments& arguments, const Console& console);
 /// Pages and API of a fleet, until it is told to stop.
 int run_fleet_serve(const FleetArguments& arguments, const Console& console);
+/// What the calibrations of the fleet's other sites of the same use teach one of them, as lines of
+/// its site file.
+int run_fleet_priors(const FleetPriorsArguments& arguments, const Console& console);
 /// Lists jobs that would run again, and lets them if told to.
 int run_fleet_rerun(const FleetRerunArguments& arguments, const Console& console);
 

@@ -11,6 +11,7 @@
 #include "adapters/record/jobs.hpp"
 #include "adapters/record/schema.hpp"
 #include "adapters/record/sites.hpp"
+#include "adapters/results/learned_priors.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/fleet/config/fleet_config.hpp"
@@ -182,6 +183,48 @@ int run_fleet_status(const FleetArguments& arguments, const Console& console) {
   console.out << fmt::format("jobs: {}\n",
                              words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", ")));
   for (const record::FleetJob& job : bad) console.out << "  " << job_line(job);
+  return kSuccess;
+}
+
+int run_fleet_priors(const FleetPriorsArguments& arguments, const Console& console) {
+  auto record = open_fleet(arguments.fleet, console);
+  if (!record) return record.error();
+  const auto sites = record::sites(**record);
+  if (!sites) return console.fail(sites.error());
+  std::map<std::string, std::string> use_of;
+  for (const record::RecordedSite& one : *sites) use_of[one.site.id] = one.site.use;
+  if (!use_of.contains(arguments.site)) {
+    return console.fail(fmt::format("the fleet has no site '{}'", arguments.site));
+  }
+  const auto results = record::newest_results(**record, JobKind::calibration);
+  if (!results) return console.fail(results.error());
+  std::optional<nlohmann::json> building;
+  std::vector<nlohmann::json> others;
+  std::string month;
+  for (const record::FleetResultRow& one : *results) {
+    if (use_of[one.site] != use_of[arguments.site]) continue;
+    const auto text = record::result_file(**record, one.site, JobKind::calibration, one.month,
+                                          "calibration.json");
+    if (!text) continue;  // of a gateway, say
+    auto document = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
+    if (one.site == arguments.site) {
+      building = std::move(document);
+    } else {
+      month = std::max(month, metering::to_string(one.month));
+      others.push_back(std::move(document));
+    }
+  }
+  if (!building) {
+    return console.fail(fmt::format(
+        "site '{}' has no calibration in the record; its parameters are known after the first",
+        arguments.site));
+  }
+  const auto priors = results::learned_priors(others, results::parameters_of(*building),
+                                              building->value("model", std::string{}));
+  for (const results::LearnedPrior& prior : priors) {
+    console.out << fmt::format("# {}\n", prior.sentence);
+  }
+  console.out << results::site_file_lines(priors, month);
   return kSuccess;
 }
 
