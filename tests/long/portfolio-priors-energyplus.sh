@@ -2,10 +2,12 @@
 # Priors learned from a portfolio of buildings in EnergyPlus that differ in their parameters alone: the model is right, so this is
 # what the learning itself can do. What is judged is where the truth of the parameters lies. Goes on where it was stopped.
 #   KIND      of recald-sim's own models                        (default small_office)
+#   PARAMETERS  that differ, of which a few months have to tell (default: five)
 #   LEARNING  buildings that teach, with twelve months          (default 16)
 #   JUDGED    buildings of each fleet that are judged           (default 12)
 #   MONTHS    of data of a judged building                      (default "2 3 6")
 #   RUNS      of the design                                     (default 200)
+#   DRAWS     of each chain                                     (default 50000)
 #   OUT       where runs are kept                               (default: a new folder)
 # Argument: the build folder. RECALD_ENERGYPLUS names the program.
 set -eu

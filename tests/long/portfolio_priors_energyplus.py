@@ -18,6 +18,9 @@ from energyplus import BUILD, RECALD_SIM, recald
 LEARNING = int(os.environ.get("LEARNING", "16"))
 JUDGED = int(os.environ.get("JUDGED", "12"))
 SPANS = [int(m) for m in os.environ.get("MONTHS", "2 3 6").split()]
+DRAWS = os.environ.get("DRAWS", "50000")
+PARAMETERS = os.environ.get("PARAMETERS", "occupancy_density cooling_setpoint heating_setpoint equipment_power "
+                            "infiltration_scale").split()
 KIND = os.environ.get("KIND", "small_office")
 LEARNER = (BUILD / "tests/long/portfolio_priors_study").resolve()
 PRIORS = ("library", "learned", "five")
@@ -79,7 +82,8 @@ def calibrate(folder, design, truths, run, months, kept):
         chosen = {1 + (first + i) % 12 for i in range(months)}
         measured.write_text("\n".join([lines[0]] + [l for i, l in enumerate(lines[1:], 1) if i in chosen]) + "\n")
         done = subprocess.run([energyplus.RECALD.resolve(), "calibrate", "--doe", design, "--measurements", measured, "--form",
-                               "monthly", "--parameters", "all", "--sampler", "dram", "--json"], cwd=folder,
+                               "monthly", "--parameters", "all", "--sampler", "dram", "--draws", DRAWS, "--burn-in", str(int(DRAWS) // 3),
+                               "--json"], cwd=folder,
                               capture_output=True, text=True)
         kept.write_text(done.stdout if done.returncode == 0 else json.dumps({"status": "failed", "why": done.stderr}))
     document = json.loads(kept.read_text())
@@ -158,13 +162,11 @@ def main():
                         own], check=True)
     model, weather = own / "model.epJSON", next(own.glob("*.epw"))
     energyplus.write_readings(folder / "readings.csv", energyplus.METERS[KIND])
-    site = write_site(folder, model, weather, {})
-    names = [p["name"] for p in json.loads(recald("engine", "show", site, "--json", folder=folder))["parameters"]]
-    site = write_site(folder, model, weather, dict.fromkeys(names))
+    site = write_site(folder, model, weather, dict.fromkeys(PARAMETERS))
     if not (folder / "runs" / "doe_outputs.csv").exists():
         recald("doe", site, "--out", "runs", folder=folder)
     priors = priors_of(folder / "runs")
-    for fleet, count, seed in (("alike", LEARNING + JUDGED, 5), ("other", JUDGED, 6)):
+    for fleet, count, seed in (("alike", LEARNING + JUDGED, 5), ("other", max(10, JUDGED), 6)):
         if not (folder / fleet / "doe_outputs.csv").exists():
             drawn = {name: population(prior, i, fleet == "other") for i, (name, prior) in enumerate(priors.items())}
             site = write_site(folder, model, weather, drawn)
@@ -179,7 +181,7 @@ def main():
     for count in (len(teachers), 5):
         print("\n".join(learned_from(teachers[0], teachers[:count])[1]) + "\n")
     table("Judged buildings of the fleet that taught", judge(folder, "alike", rows[LEARNING:], teachers))
-    table("Judged buildings of another fleet", judge(folder, "other", runs_of(folder / "other"), teachers))
+    table("Judged buildings of another fleet", judge(folder, "other", runs_of(folder / "other")[:JUDGED], teachers))
     print(f"\nresults in {folder}")
 
 
