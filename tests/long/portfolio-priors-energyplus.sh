@@ -7,7 +7,6 @@
 #   JUDGED    buildings of each fleet that are judged           (default 12)
 #   MONTHS    of data of a judged building                      (default "2 3 6")
 #   RUNS      of the design                                     (default 200)
-#   DRAWS     of each chain                                     (default 50000)
 #   OUT       where runs are kept                               (default: a new folder)
 # Argument: the build folder. RECALD_ENERGYPLUS names the program.
 set -eu

@@ -18,7 +18,6 @@ from energyplus import BUILD, RECALD_SIM, recald
 LEARNING = int(os.environ.get("LEARNING", "16"))
 JUDGED = int(os.environ.get("JUDGED", "12"))
 SPANS = [int(m) for m in os.environ.get("MONTHS", "2 3 6").split()]
-DRAWS = os.environ.get("DRAWS", "50000")
 PARAMETERS = os.environ.get("PARAMETERS", "occupancy_density cooling_setpoint heating_setpoint equipment_power "
                             "infiltration_scale").split()
 KIND = os.environ.get("KIND", "small_office")
@@ -82,8 +81,7 @@ def calibrate(folder, design, truths, run, months, kept):
         chosen = {1 + (first + i) % 12 for i in range(months)}
         measured.write_text("\n".join([lines[0]] + [l for i, l in enumerate(lines[1:], 1) if i in chosen]) + "\n")
         done = subprocess.run([energyplus.RECALD.resolve(), "calibrate", "--doe", design, "--measurements", measured, "--form",
-                               "monthly", "--parameters", "all", "--sampler", "dram", "--draws", DRAWS, "--burn-in", str(int(DRAWS) // 3),
-                               "--json"], cwd=folder,
+                               "monthly", "--parameters", "all", "--json"], cwd=folder,
                               capture_output=True, text=True)
         kept.write_text(done.stdout if done.returncode == 0 else json.dumps({"status": "failed", "why": done.stderr}))
     document = json.loads(kept.read_text())
