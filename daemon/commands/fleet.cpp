@@ -221,6 +221,10 @@ int run_fleet_priors(const FleetPriorsArguments& arguments, const Console& conso
   }
   const auto priors = results::learned_priors(others, results::parameters_of(*building),
                                               building->value("model", std::string{}));
+  console.out << "# For a building of the same use and era, calibrated by the same model. What the "
+                 "model gets "
+                 "wrong in all\n# buildings alike is learned too, so this says nothing of the "
+                 "building itself.\n";
   for (const results::LearnedPrior& prior : priors) {
     console.out << fmt::format("# {}\n", prior.sentence);
   }

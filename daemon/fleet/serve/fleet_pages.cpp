@@ -65,6 +65,11 @@ std::string money_text(const std::optional<double>& money, const std::string& cu
   return money ? fmt::format("{} {}", report::number_text(std::round(*money)), currency) : "–";
 }
 
+/// "Town hall (north)"
+std::string site_words(const record::SiteDescription& site) {
+  return site.name.empty() ? site.id : fmt::format("{} ({})", site.name, site.id);
+}
+
 std::string site_address(const std::string& id) { return "/sites/" + id; }
 
 std::string result_address(const std::string& site, JobKind kind, metering::Month month,
@@ -151,7 +156,7 @@ void write_sites(Html& html, const std::vector<const PortfolioRow*>& rows) {
         row->worst_cvrmse
             ? fmt::format("{}, {}", row->worst_meter, report::percent_text(*row->worst_cvrmse))
             : "–";
-    table.row({{.text = site.name.empty() ? site.id : site.name, .address = site_address(site.id)},
+    table.row({{.text = site_words(site), .address = site_address(site.id)},
                {site.use.empty() ? "–" : site.use},
                state_cell(*row),
                {gap},
@@ -338,7 +343,7 @@ Response site_page(const FleetServed& served, const std::string& id) {
   const auto jobs = record::jobs(served.record, id, kJobsShown);
   if (!jobs) return unavailable(jobs.error());
   Html html;
-  html.element("h1", row->site.site.name.empty() ? id : row->site.site.name);
+  html.element("h1", site_words(row->site.site));
   const Cell state = state_cell(*row);
   html.element("p", state.text, state.css_class);
   html.element("p", fmt::format("Last heard {}; newest interval {}; version {} of its site file.",
