@@ -214,7 +214,7 @@ Result<void> Taking::put_intervals() {
   return nothing_or_error(connection_.run(
       "INSERT INTO interval (t_start, seq, mean_kw, site, reasons, meter, validity, late) "
       "SELECT to_timestamp(t), s, mean, $1, r, m, v, l <> 0 FROM unnest($2::bigint[], "
-      "$3::bigint[], $4::float8[], $5::int[], $6::smallint[], $7::smallint[], $8::smallint[]) "
+      "$3::bigint[], $4::float8[], $5::bigint[], $6::smallint[], $7::smallint[], $8::smallint[]) "
       "AS u (t, s, mean, r, m, v, l)",
       {integer(site_), starts.parameter(), seqs.parameter(), means.parameter(), reasons.parameter(),
        meters.parameter(), validities.parameter(), late.parameter()}));
@@ -248,20 +248,30 @@ Result<void> Taking::put_months() {
   return put_month_jobs();
 }
 
-/// A job for each new figure with which all outputs have a month. Each figure counts by itself: had
-/// it been the last of its batch, there would be the same jobs.
+/// A job for each new figure with which all outputs have a month; none for a figure that says what
+/// the one before it said. Each figure counts by itself: had it been the last of its batch, there
+/// would be the same jobs. A job is of the newest month that is complete by then, which is what it
+/// calculates, whichever month was corrected.
 Result<void> Taking::put_month_jobs() {
   const auto rows = connection_.run(
       "WITH n AS (SELECT v.number, v.sha256, v.description->>'calibrate_from' AS first_month, "
       "ARRAY(SELECT DISTINCT jsonb_array_elements_text(v.description->'outputs')) AS outputs "
       "FROM site s JOIN site_version v ON v.site = s.number AND v.number = s.version "
       "WHERE s.number = $1) "
-      "SELECT n.number, n.sha256, m.month, m.seq, extract(epoch FROM m.closed_at)::bigint "
+      "SELECT n.number, n.sha256, (SELECT max(c.month) FROM (SELECT x.month FROM month x "
+      "JOIN meter p ON p.site = x.site AND p.number = x.meter WHERE x.site = m.site AND "
+      "x.seq <= m.seq AND p.id = ANY(n.outputs) GROUP BY x.month "
+      "HAVING count(DISTINCT p.id) = cardinality(n.outputs)) c), m.seq, "
+      "extract(epoch FROM m.closed_at)::bigint "
       "FROM n, month m JOIN meter o ON o.site = m.site AND o.number = m.meter "
       "WHERE m.site = $1 AND m.seq > $2 AND m.month >= n.first_month AND o.id = ANY(n.outputs) "
       "AND (SELECT count(DISTINCT p.id) FROM month x JOIN meter p ON p.site = x.site AND "
       "p.number = x.meter WHERE x.site = m.site AND x.month = m.month AND x.seq <= m.seq AND "
-      "p.id = ANY(n.outputs)) = cardinality(n.outputs) ORDER BY m.seq",
+      "p.id = ANY(n.outputs)) = cardinality(n.outputs) AND NOT EXISTS (SELECT FROM month q WHERE "
+      "q.site = m.site AND q.meter = m.meter AND q.month = m.month AND q.seq = (SELECT max(r.seq) "
+      "FROM month r WHERE r.site = m.site AND r.meter = m.meter AND r.month = m.month AND "
+      "r.seq < m.seq) AND q.figure - '{closed_at,revision}'::text[] = "
+      "m.figure - '{closed_at,revision}'::text[]) ORDER BY m.seq",
       {integer(site_), integer(seq_)});
   if (!rows) return tl::unexpected(rows.error());
   std::vector<NewJob> jobs;

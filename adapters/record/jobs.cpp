@@ -26,6 +26,13 @@ constexpr auto kColumns =
     "j.number, s.id, j.version, j.kind, j.month, j.until_seq, extract(epoch FROM j.now)::bigint, "
     "j.input_sha256, j.asked_by, j.state, j.tries, j.worker, j.reason";
 
+/// The last job done before `j`, in the order of the site's jobs. It is looked up once: what is
+/// done or corrected later changes nothing for a job that runs again.
+constexpr auto kJobBefore =
+    "(SELECT b.number FROM job b WHERE b.site = j.site AND b.state = 'done' AND "
+    "(b.month, b.until_seq, b.number) < (j.month, j.until_seq, j.number) "
+    "ORDER BY b.month DESC, b.until_seq DESC, b.number DESC LIMIT 1)";
+
 Result<FleetJobState> parse_state(std::string_view name) {
   for (std::size_t i = 0; i < kStates.size(); ++i) {
     if (kStates[i] == name) return static_cast<FleetJobState>(i);
@@ -201,14 +208,15 @@ Result<std::optional<FleetJob>> lease(Connection& connection, const std::string&
     // its job waits still. Should a site become busy in between, its index refuses a second job.
     const auto rows = connection.run(
         fmt::format("UPDATE job j SET state = 'running', tries = tries + 1, worker = $1, "
-                    "lease_until = now() + make_interval(secs => $2::int) FROM site s "
+                    "lease_until = now() + make_interval(secs => $2::int), "
+                    "state_of = coalesce(j.state_of, {}, 0) FROM site s "
                     "WHERE s.number = j.site AND j.number = (SELECT w.number FROM job w "
                     "JOIN site t ON t.number = w.site WHERE w.state = 'waiting' AND "
                     "w.not_before <= now() AND t.retired IS NULL AND NOT EXISTS (SELECT 1 FROM job "
                     "o WHERE o.site = w.site AND (o.state = 'running' OR o.state = 'waiting' AND "
                     "(o.month, o.until_seq, o.number) < (w.month, w.until_seq, w.number))) "
                     "ORDER BY w.asked, w.number LIMIT 1 FOR UPDATE OF w SKIP LOCKED) RETURNING {}",
-                    kColumns),
+                    kJobBefore, kColumns),
         {worker, integer(rules.lease.count())});
     if (!rows) return tl::unexpected(rows.error());
     if (rows->size() == 0) return {};
@@ -281,10 +289,9 @@ Result<bool> hand_back(Connection& connection, const FleetJob& job) {
 Result<std::map<std::string, std::string>> state_before(Connection& connection,
                                                         const FleetJob& job) {
   const auto rows = connection.run(
-      "SELECT n.name, f.bytes FROM site_state n JOIN file f ON f.sha256 = n.sha256 WHERE n.job = "
-      "(SELECT b.number FROM job j JOIN job b ON b.site = j.site AND b.state = 'done' AND "
-      "(b.month, b.until_seq, b.number) < (j.month, j.until_seq, j.number) WHERE j.number = $1 "
-      "ORDER BY b.month DESC, b.until_seq DESC, b.number DESC LIMIT 1)",
+      fmt::format("SELECT n.name, f.bytes FROM job j JOIN site_state n ON n.job = "
+                  "coalesce(j.state_of, {}) JOIN file f ON f.sha256 = n.sha256 WHERE j.number = $1",
+                  kJobBefore),
       {integer(job.number)});
   if (!rows) return tl::unexpected(rows.error());
   return named_bytes(*rows);
@@ -378,7 +385,8 @@ Result<std::vector<FleetResultRow>> newest_results(Connection& connection, JobKi
       "r.accepted, r.named, r.message, r.summary, coalesce(j.input_sha256, ''), r.sha256, "
       "(SELECT string_agg(name, chr(10) ORDER BY name) FROM result_file WHERE result = r.number) "
       "FROM result r JOIN site s ON s.number = r.site LEFT JOIN job j ON j.number = r.job "
-      "WHERE r.kind = $1 AND s.retired IS NULL ORDER BY s.id, r.month DESC, r.number DESC",
+      "WHERE r.kind = $1 AND s.retired IS NULL ORDER BY s.id, r.job IS NULL, r.month DESC, "
+      "r.number DESC",
       {std::string{recald::name_of(kind)}});
   if (!rows) return tl::unexpected(rows.error());
   std::vector<FleetResultRow> found;

@@ -129,7 +129,7 @@ struct FleetResultRow {
   std::string sha256;        ///< Of the files.
   std::vector<std::string> files;
 };
-/// The newest of a kind of each site, by site.
+/// The newest of a kind of each site, by site; one that a gateway sent where no job has made one.
 [[nodiscard]] Result<std::vector<FleetResultRow>> newest_results(postgres::Connection& connection,
                                                                  JobKind kind);
 /// @return not_found.

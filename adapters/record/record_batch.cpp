@@ -26,6 +26,8 @@ constexpr std::int64_t kFirst_s = -62'135'596'800;
 constexpr std::int64_t kLast_s = 253'402'300'799;
 constexpr std::int64_t kInt_max = std::numeric_limits<int>::max();
 constexpr std::int64_t kNumber_max = std::numeric_limits<std::int64_t>::max();
+/// Of what is sent: sums of some of them are numbers too.
+constexpr std::int64_t kSent_max = std::int64_t{1} << 60;
 
 std::int64_t epoch_s(Instant t) { return t.time_since_epoch().count(); }
 Json epoch_s(const std::optional<Instant>& t) { return t ? Json(epoch_s(*t)) : Json(); }
@@ -300,7 +302,7 @@ OutboxEntry read_entry(Reader& reader, const Parsed& json) {
     return {};
   }
   OutboxEntry entry{
-      .number = reader.integer(json[0], "number", 1, kNumber_max),
+      .number = reader.integer(json[0], "number", 1, kSent_max),
       .meter = reader.text(json[1], "meter"),
       .interval = std::chrono::seconds{reader.integer(json[2], "interval", 1, kInt_max)},
       .stored = {}};
@@ -322,12 +324,12 @@ StoreEvent read_event(Reader& reader, const Parsed& json) {
           .text = text("text"),
           .count = static_cast<int>(reader.integer(json, "count", kInt_max)),
           .last = reader.optional_instant(reader.member(json, "last"), "last"),
-          .number = reader.integer(json, "number", kNumber_max)};
+          .number = reader.integer(json, "number", kSent_max)};
 }
 
 StoredJob read_result(Reader& reader, const Parsed& json) {
   const auto text = [&](const char* key) { return reader.text(reader.member(json, key), key); };
-  return {.number = reader.integer(json, "number", kNumber_max),
+  return {.number = reader.integer(json, "number", kSent_max),
           .kind = reader.named(reader.member(json, "kind"), "kind",
                                {JobKind::calibration, JobKind::diagnosis}),
           .state = reader.named(reader.member(json, "state"), "state",
@@ -343,9 +345,9 @@ StoredJob read_result(Reader& reader, const Parsed& json) {
 }
 
 Progress read_progress(Reader& reader, const Parsed& json) {
-  return {.entries = reader.integer(json, "entries", kNumber_max),
-          .events = reader.integer(json, "events", kNumber_max),
-          .results = reader.integer(json, "results", kNumber_max)};
+  return {.entries = reader.integer(json, "entries", kSent_max),
+          .events = reader.integer(json, "events", kSent_max),
+          .results = reader.integer(json, "results", kSent_max)};
 }
 
 /// @return the object, or malformed.

@@ -77,7 +77,7 @@ CREATE TABLE interval (
   seq bigint NOT NULL,
   mean_kw float8,
   site int NOT NULL,
-  reasons int NOT NULL,
+  reasons bigint NOT NULL,
   meter smallint NOT NULL,
   validity smallint NOT NULL,
   late boolean NOT NULL,
@@ -114,6 +114,7 @@ CREATE TABLE job (
   now timestamptz NOT NULL,
   input_sha256 text COLLATE "C" NOT NULL UNIQUE,
   asked_by text NOT NULL,
+  state_of bigint,  -- the job whose site_state this one begins with; 0: none; absent: not leased yet
   state text COLLATE "C" NOT NULL DEFAULT 'waiting',
   tries int NOT NULL DEFAULT 0,
   lease_until timestamptz,

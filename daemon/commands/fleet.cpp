@@ -107,6 +107,8 @@ int run_fleet_add(const FleetAddArguments& arguments, const Console& console) {
   }
   auto record = open_fleet(arguments.fleet, console);
   if (!record) return record.error();
+  const auto known = record::sites(**record);
+  if (!known) return console.fail(known.error());
   int exit_code = kSuccess;
   for (const auto& file : arguments.sites) {
     const auto site = open_site(file);
@@ -119,10 +121,18 @@ int run_fleet_add(const FleetAddArguments& arguments, const Console& console) {
       exit_code = console.fail(fmt::format("{}: {}", file.string(), description.error().message));
       continue;
     }
-    description->use = arguments.use;
-    description->climate = arguments.climate;
-    description->calibrate_from =
-        from.value_or(metering::previous_month(site->calendar.month_of(now())));
+    description->calibrate_from = metering::previous_month(site->calendar.month_of(now()));
+    // What is not said now is as it was.
+    const auto before = std::ranges::find(
+        *known, description->id, [](const record::RecordedSite& one) { return one.site.id; });
+    if (before != known->end()) {
+      description->use = before->site.use;
+      description->climate = before->site.climate;
+      description->calibrate_from = before->site.calibrate_from;
+    }
+    if (!arguments.use.empty()) description->use = arguments.use;
+    if (!arguments.climate.empty()) description->climate = arguments.climate;
+    if (from) description->calibrate_from = *from;
     const auto version = record::put_site(**record, *description, who());
     if (!version) {
       exit_code = console.fail(fmt::format("{}: {}", file.string(), version.error().message));

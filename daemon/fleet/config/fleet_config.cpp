@@ -40,6 +40,10 @@ WorkerConfig read_worker(TomlReader& table, const std::filesystem::path& file) {
   WorkerConfig config;
   config.jobs = table.whole_number_or("jobs", config.jobs, {0.0, 64.0});
   config.folder = read_path(table, "folder", file);
+  // Processes of jobs work elsewhere.
+  if (!config.folder.empty()) {
+    config.folder = std::filesystem::absolute(config.folder).lexically_normal();
+  }
   config.time_max = table.duration("time_max").value_or(config.time_max);
   config.memory_max_bytes = static_cast<std::uint64_t>(
       kMegabyte * table.number_or("memory_max_MB",

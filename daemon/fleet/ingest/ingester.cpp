@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -114,7 +115,7 @@ class Ingester {
       }
       std::vector<mqtt::Message> answers;
       for (const mqtt::Message& message : arrivals.take()) {
-        auto answer = take(record, message);
+        auto answer = take_safely(record, message);
         if (!answer) return tl::unexpected(answer.error());
         if (!answer->topic.empty()) answers.push_back(std::move(*answer));
       }
@@ -139,6 +140,18 @@ class Ingester {
     if (messages.empty()) return;
     if (auto sent = connection.publish(messages, kPublishMax, stop_); !sent) {
       refuse("", "watermarks cannot be told: " + sent.error().message);
+    }
+  }
+
+  /// An exception is the reason why a batch is refused.
+  Result<mqtt::Message> take_safely(postgres::Connection& record, const mqtt::Message& message) {
+    try {
+      return take(record, message);
+    } catch (const std::exception& thrown) {
+      ++counts_.refused;
+      refuse(message.topic,
+             fmt::format("a message on {} is not taken: {}", message.topic, thrown.what()));
+      return mqtt::Message{};
     }
   }
 

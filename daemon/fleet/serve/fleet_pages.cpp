@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "adapters/report/format.hpp"
@@ -16,6 +17,7 @@
 #include "daemon/gateway/serve/page_style.hpp"
 #include "daemon/gateway/serve/parameters.hpp"
 #include "daemon/gateway/serve/prometheus_text.hpp"
+#include "daemon/gateway/serve/result_response.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {
@@ -377,16 +379,14 @@ Response result_file(const FleetServed& served, const std::string& rest) {
   const auto& [site, month_word, kind_word, name] = parts;
   const auto month = metering::parse_month(month_word);
   const bool is_diagnosis = kind_word == name_of(JobKind::diagnosis);
-  if (!month || (!is_diagnosis && kind_word != name_of(JobKind::calibration))) return not_found();
+  const bool is_known = is_diagnosis || kind_word == name_of(JobKind::calibration);
+  if (!month || !is_known || !is_result_name(name)) return not_found();
   auto bytes = record::result_file(
       served.record, site, is_diagnosis ? JobKind::diagnosis : JobKind::calibration, *month, name);
   if (!bytes) {
     return bytes.error().code == ErrorCode::not_found ? not_found() : unavailable(bytes.error());
   }
-  const std::string_view type = name.ends_with(".html")   ? "text/html; charset=utf-8"
-                                : name.ends_with(".json") ? http::kJsonType
-                                                          : "text/plain; charset=utf-8";
-  return {.content_type = std::string{type}, .body = std::move(*bytes)};
+  return result_response(name, std::move(*bytes));
 }
 
 // --- again
@@ -420,33 +420,54 @@ Response rerun_page(const FleetServed& served, const Request& request) {
     html.element("p", "No job of these sites can run again.", "muted");
     return page(served, "Run again", html);
   }
-  Json body = {{"jobs", Json::array()}};
+  Json body = {{"use", filter->use},
+               {"climate", filter->climate},
+               {"state", filter->state},
+               {"month", *month ? Json(metering::to_string(**month)) : Json("")},
+               {"jobs", Json::array()}};
   for (const record::FleetJob& job : *jobs) body["jobs"].push_back(job.number);
   html.markup(fmt::format("<p><button type=\"button\" data-post=\"/api/v1/rerun\" "
                           "data-body=\"{}\">",
                           report::escape(body.dump())))
       .text(fmt::format("Run these {} jobs again", jobs->size()))
-      .markup("</button></p>");
+      .markup("</button></p><p id=\"said\" role=\"status\"></p>");
   write_jobs(html, "What would run, with the present site files", *jobs);
   return page(served, "Run again", html);
 }
 
+/// {"jobs": [NUMBER, …], "use", "climate", "state", "month"}: of the jobs that the page with this
+/// filter lists, those with these numbers.
 Response post_rerun(const FleetServed& served, const Request& request) {
   const Json body = Json::parse(request.body, nullptr, /*allow_exceptions=*/false);
+  const auto refuse = [](const char* field, const char* words) {
+    return http::error_response(400, "invalid", words, field);
+  };
   const auto list = body.is_object() ? body.find("jobs") : body.end();
-  if (body.is_discarded() || !body.is_object() || list == body.end() || !list->is_array() ||
+  if (!body.is_object() || list == body.end() || !list->is_array() ||
       !std::ranges::all_of(*list, [](const Json& one) { return one.is_number_integer(); })) {
-    return http::error_response(400, "invalid", "write {\"jobs\": [NUMBER, ...]}", "jobs");
+    return refuse("jobs", "write {\"jobs\": [NUMBER, …]}");
   }
-  const auto all = record::would_rerun(served.record, {});
+  Request asked;
+  for (const char* key : {"use", "climate", "state", "month"}) {
+    const auto value = body.find(key);
+    if (value == body.end()) continue;
+    if (!value->is_string()) return refuse(key, "a filter is a text");
+    if (*value != "") asked.query[key] = value->get<std::string>();
+  }
+  const auto filter = filter_of(asked);
+  if (!filter) return filter.error();
+  const auto month = month_of(asked, "month");
+  if (!month) return month.error();
+  const auto all = jobs_that_fit(served, *filter, *month);
   if (!all) return unavailable(all.error());
+  const std::set<std::int64_t> numbers{list->begin(), list->end()};
   std::vector<record::FleetJob> chosen;
-  std::ranges::copy_if(*all, std::back_inserter(chosen), [&](const record::FleetJob& job) {
-    return std::ranges::any_of(*list, [&](const Json& one) { return one == job.number; });
-  });
+  std::ranges::copy_if(*all, std::back_inserter(chosen),
+                       [&](const record::FleetJob& job) { return numbers.contains(job.number); });
   const auto count = record::rerun(served.record, chosen, served.who);
   if (!count) return unavailable(count.error());
-  return http::json_response(Json{{"rerun", *count}}.dump());
+  return http::json_response(
+      Json{{"rerun", *count}, {"left_out", numbers.size() - chosen.size()}}.dump());
 }
 
 Response audit_page(const FleetServed& served) {

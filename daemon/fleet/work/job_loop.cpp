@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <exception>
+#include <thread>
 #include <utility>
 
 #include "adapters/record/schema.hpp"
 #include "adapters/system/child_process.hpp"
+#include "adapters/system/read_file.hpp"
 #include "adapters/system/scratch_folder.hpp"
 #include "daemon/fleet/config/open_record.hpp"
 #include "daemon/fleet/work/work_folder.hpp"
@@ -21,6 +25,9 @@ using std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kRenewEvery{60};
 constexpr std::string_view kFolderName = "recald-job-";
+constexpr auto kOutput = "output.txt";
+constexpr std::size_t kLine_max = 400;
+constexpr std::chrono::seconds kKeepAgain{5};
 
 std::string words_of(const record::FleetJob& job) {
   return fmt::format("{} of {} for {}", name_of(job.kind), job.site,
@@ -40,8 +47,18 @@ void remove_leftovers(const fs::path& place) {
   }
 }
 
-/// The last line that the process wrote, for what it does not say by its end.
-std::string why_it_ended(const system::ChildEnd& end) {
+/// The last line that the process wrote; empty: it wrote nothing.
+std::string last_line_of(const fs::path& file) {
+  const auto text = system::read_file(file);
+  if (!text) return {};
+  const std::size_t end = text->find_last_not_of('\n');
+  if (end == std::string::npos) return {};
+  const std::size_t before = text->rfind('\n', end);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return text->substr(begin, std::min<std::size_t>(end + 1 - begin, kLine_max));
+}
+
+std::string why_it_ended(const system::ChildEnd& end, const fs::path& folder) {
   switch (end.ending) {
     case system::Ending::killed:
       return fmt::format("its process was killed by signal {}", end.signal);
@@ -51,7 +68,9 @@ std::string why_it_ended(const system::ChildEnd& end) {
     case system::Ending::stopped:
       break;
   }
-  return fmt::format("its process ended with code {}", end.exit_code);
+  const std::string words = last_line_of(folder / kOutput);
+  return fmt::format("its process ended with code {}{}{}", end.exit_code, words.empty() ? "" : ": ",
+                     words);
 }
 
 class Jobs {
@@ -79,34 +98,55 @@ class Jobs {
   [[nodiscard]] int count() const { return count_; }
 
  private:
+  /// An exception is a try that failed.
   Result<void> do_one(postgres::Connection& record, const record::FleetJob& job) {
+    try {
+      return do_it(record, job);
+    } catch (const std::exception& thrown) {
+      return give_back(record, job, thrown.what());
+    }
+  }
+
+  Result<void> do_it(postgres::Connection& record, const record::FleetJob& job) {
     auto folder = system::ScratchFolder::make(loop_.worker.folder,
                                               fmt::format("{}{}-", kFolderName, ::getpid()));
-    if (!folder) return hand_back(record, job, folder.error());
+    if (!folder) return after_failure(record, job, folder.error());
     if (auto filled = fill_work_folder(record, job, folder->path()); !filled) {
-      // The disk or the record: not the job's fault.
-      if (filled.error().code == ErrorCode::io_failed)
-        return hand_back(record, job, filled.error());
+      if (filled.error().code == ErrorCode::io_failed) {
+        return after_failure(record, job, filled.error());
+      }
       return keep(record::fail(record, job, filled.error().message), job, "cannot be done");
     }
     bool is_ours = true;
     const auto end = run(record, job, folder->path(), is_ours);
-    if (!end) return hand_back(record, job, end.error());
+    if (!end) return after_failure(record, job, end.error());
     if (!is_ours) return {};
     if (end->ending == system::Ending::stopped)
       return keep(record::hand_back(record, job), job, "");
     const auto outcome = read_outcome(folder->path());
     if (end->ending != system::Ending::exited || end->exit_code != 0 || !outcome) {
-      const std::string why = why_it_ended(*end);
-      return keep(record::give_back(record, job, why, loop_.rules), job, "was not done: " + why);
+      return give_back(record, job, why_it_ended(*end, folder->path()));
     }
     ++count_;
     if (!outcome->failed.empty()) {
       return keep(record::fail(record, job, outcome->failed), job,
                   "cannot be done: " + outcome->failed);
     }
-    return keep(record::finish(record, job, outcome->result), job,
+    return keep(finish(record, job, outcome->result), job,
                 fmt::format("done in {:.1f} s", end->wall_s));
+  }
+
+  /// Tries again while the record is away and the lease may still be ours.
+  Result<bool> finish(postgres::Connection& record, const record::FleetJob& job,
+                      const record::FleetResult& result) {
+    const auto begin = steady_clock::now();
+    for (;;) {
+      auto kept = record::finish(record, job, result);
+      const bool is_over =
+          stop_.stop_requested() || steady_clock::now() - begin > loop_.rules.lease;
+      if (kept || kept.error().code != ErrorCode::io_failed || is_over) return kept;
+      std::this_thread::sleep_for(kKeepAgain);
+    }
   }
 
   /// @param is_ours  Becomes false if the lease was lost meanwhile.
@@ -116,7 +156,7 @@ class Jobs {
     return system::run_child({.program = loop_.program,
                               .arguments = {"worker", "--do", folder.string()},
                               .folder = folder,
-                              .output = folder / "output.txt",
+                              .output = folder / kOutput,
                               .time_max = loop_.worker.time_max,
                               .memory_max_bytes = loop_.worker.memory_max_bytes},
                              [&] {
@@ -130,11 +170,17 @@ class Jobs {
                              });
   }
 
-  /// After a failure that is not the job's. @return the failure
-  Result<void> hand_back(postgres::Connection& record, const record::FleetJob& job,
-                         const Error& why) {
-    (void)record::hand_back(record, job);  // or its lease runs out
-    return tl::unexpected(why);
+  Result<void> give_back(postgres::Connection& record, const record::FleetJob& job,
+                         const std::string& why) {
+    return keep(record::give_back(record, job, why, loop_.rules), job, "was not done: " + why);
+  }
+
+  /// Where the record answers, this machine or the job is the reason, and it counts as a try:
+  /// others go on. @return or the failure: the record is away.
+  Result<void> after_failure(postgres::Connection& record, const record::FleetJob& job,
+                             const Error& why) {
+    if (record.run("SELECT 1")) return give_back(record, job, why.message);
+    return tl::unexpected(why);  // its lease runs out
   }
 
   Result<void> keep(const Result<bool>& kept, const record::FleetJob& job,

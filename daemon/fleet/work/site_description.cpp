@@ -67,7 +67,8 @@ Result<void> add_path(const fs::path& path, const fs::path& folder,
                       record::SiteDescription& description) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) {
-    return path.has_extension() ? add_file(path, folder, description) : Result<void>{};
+    const bool is_file = path.has_extension() || fs::is_regular_file(path, ignored);
+    return is_file ? add_file(path, folder, description) : Result<void>{};
   }
   for (const auto& entry : fs::recursive_directory_iterator{path, ignored}) {
     if (!entry.is_regular_file(ignored)) continue;

@@ -119,10 +119,10 @@ Result<OutgoingBatch> Forwarder::next() {
     if (!after) return tl::unexpected(after.error());
     batch.after.results = *after;
   }
+  const auto from = position();  // first: what waits has a limit, whatever is told meanwhile
+  if (!from) return tl::unexpected(from.error());
   auto past = next_history();
   if (!past || past->size() > 0) return past;
-  const auto from = position();
-  if (!from) return tl::unexpected(from.error());
   batch.after.entries = from->told;
   auto entries = ports_.store.outbox_after(from->told, batch_);
   if (!entries) return tl::unexpected(entries.error());
