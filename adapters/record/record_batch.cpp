@@ -358,7 +358,10 @@ Result<Parsed> parse_object(std::string_view what, std::string_view text) {
 }
 
 std::int64_t read_outbox(Reader& reader, const Parsed& json) {
-  return reader.integer(reader.member(json, "outbox"), "outbox", -kNumber_max, kNumber_max);
+  const std::int64_t outbox =
+      reader.integer(reader.member(json, "outbox"), "outbox", -kNumber_max, kNumber_max);
+  if (outbox == 0) reader.refuse("outbox", "is 0");
+  return outbox;
 }
 
 }  // namespace

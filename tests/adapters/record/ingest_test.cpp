@@ -320,6 +320,30 @@ TEST_F(Record, AMonthOfAllOutputsIsAJob) {
   EXPECT_NE(found->at(0).input_sha256, first.input_sha256);
 }
 
+TEST_F(Record, AnOlderMonthThatIsCorrectedIsCalculatedWithTheNewest) {
+  RecordBatch batch{.outbox = 11};
+  std::int64_t number = 0;
+  for (const unsigned month : {2u, 3u}) {
+    for (const char* meter : {"steam", "power"}) {
+      batch.entries.push_back(month_entry(++number, meter, month_of(2024, month), 1.0));
+    }
+  }
+  ASSERT_TRUE(send(batch));
+  RecordBatch corrected{.outbox = 11, .after = entries(4)};
+  corrected.entries = {month_entry(5, "steam", month_of(2024, 2), 2.0)};
+  ASSERT_TRUE(send(corrected));
+  auto found = jobs(*connection_, "tower", 10);
+  ASSERT_EQ(found->size(), 3u);
+  EXPECT_EQ(found->at(0).month, month_of(2024, 3));
+  EXPECT_EQ(found->at(0).until_seq, 5);
+  // Told once more, under another numbering, it is nothing new.
+  RecordBatch again{.outbox = 12};
+  again.entries = {month_entry(1, "steam", month_of(2024, 2), 2.0),
+                   month_entry(2, "power", month_of(2024, 2), 1.0)};
+  ASSERT_TRUE(send(again));
+  EXPECT_EQ(ask("SELECT count(*) FROM job"), "3\n");
+}
+
 // Which jobs there are must not depend on how the gateway cut its outbox into batches.
 TEST_F(Record, JobsDoNotDependOnHowBatchesWereCut) {
   const testing::Seed seed;
@@ -327,7 +351,8 @@ TEST_F(Record, JobsDoNotDependOnHowBatchesWereCut) {
   std::vector<OutboxEntry> all;
   for (std::int64_t number = 1; number <= 60; ++number) {
     const char* const meter = random() % 3 == 0 ? "gas" : random() % 2 == 0 ? "steam" : "power";
-    all.push_back(month_entry(number, meter, month_of(2024, 1 + unsigned(random() % 4)), 1.0));
+    all.push_back(
+        month_entry(number, meter, month_of(2024, 1 + unsigned(random() % 4)), double(number)));
   }
   std::string expected;
   for (const std::uint64_t longest : {60, 1, 5, 20}) {

