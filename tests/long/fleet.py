@@ -108,8 +108,10 @@ def template(place):
     (site / "past.csv").write_text("".join(line for line in lines if line < "2024-12-01T05" or line.startswith("time")))
     run(RECALD, "import", site / "fleet.toml", site / "past.csv", "--reason", "readings of the old system")
     daemon = start(RECALD, "run", site / "fleet.toml", "--clock", f"2024-12-01T05:00:00Z@{int(time.time())}x3600", log=site / "run.log")
-    wait_until("months", lambda: run(RECALD, "export", site / "fleet.toml", "--months").count(MONTH) == 3, 120)
-    stop(daemon)
+    try:
+        wait_until("months", lambda: run(RECALD, "export", site / "fleet.toml", "--months").count(f"\n{MONTH},") == 3, 120)
+    finally:
+        stop(daemon)
     return site, text
 
 
