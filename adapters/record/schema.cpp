@@ -287,7 +287,11 @@ Result<void> make_partitions(postgres::Connection& connection, const metering::T
     const auto made = connection.run(
         "SELECT recald_make_partition($1, $2, $3) WHERE to_regclass($1) IS NULL",
         {partition_of(first), metering::to_string(first), metering::to_string(beyond)});
-    if (!made) return tl::unexpected(made.error());
+    if (made) continue;
+    // Somebody else may have made it at the same moment.
+    const auto is_there =
+        connection.run("SELECT to_regclass($1) IS NOT NULL", {partition_of(first)});
+    if (!is_there || !is_there->boolean(0, 0)) return tl::unexpected(made.error());
   }
   return {};
 }
