@@ -16,6 +16,7 @@
 #include "daemon/commands/open_site.hpp"
 #include "daemon/fleet/config/fleet_config.hpp"
 #include "daemon/fleet/config/open_record.hpp"
+#include "daemon/fleet/serve/job_json.hpp"
 #include "daemon/fleet/work/site_description.hpp"
 
 namespace recald::daemon {
@@ -55,18 +56,6 @@ std::string or_dash(const std::optional<metering::Instant>& time) {
 
 Json time_json(const std::optional<metering::Instant>& time) {
   return time ? Json(metering::to_string(*time)) : Json(nullptr);
-}
-
-Json job_json(const record::FleetJob& job) {
-  return {{"number", job.number},
-          {"site", job.site},
-          {"kind", name_of(job.kind)},
-          {"month", metering::to_string(job.month)},
-          {"state", name_of(job.state)},
-          {"tries", job.tries},
-          {"worker", job.worker},
-          {"reason", job.reason},
-          {"input_sha256", job.input_sha256}};
 }
 
 std::string job_line(const record::FleetJob& job) {
@@ -177,7 +166,7 @@ int run_fleet_status(const FleetArguments& arguments, const Console& console) {
                                {"newest", time_json(one.newest)}});
     }
     for (const auto& [state, count] : *counts) json["jobs"][std::string{name_of(state)}] = count;
-    for (const record::FleetJob& job : bad) json["troubled"].push_back(job_json(job));
+    for (const record::FleetJob& job : bad) json["troubled"].push_back(fleet_job_json(job));
     console.out << json.dump(2) << "\n";
     return kSuccess;
   }

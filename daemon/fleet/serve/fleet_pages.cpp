@@ -11,6 +11,7 @@
 
 #include "adapters/report/format.hpp"
 #include "adapters/report/html.hpp"
+#include "daemon/fleet/serve/job_json.hpp"
 #include "daemon/fleet/serve/portfolio.hpp"
 #include "daemon/gateway/serve/page_frame.hpp"
 #include "daemon/gateway/serve/page_script.hpp"
@@ -539,15 +540,7 @@ Response get_jobs(const FleetServed& served, const Request& request) {
   if (!jobs) return unavailable(jobs.error());
   Json json = {{"jobs", Json::array()}};
   for (const record::FleetJob& job : *jobs) {
-    json["jobs"].push_back({{"number", job.number},
-                            {"site", job.site},
-                            {"kind", name_of(job.kind)},
-                            {"month", metering::to_string(job.month)},
-                            {"state", name_of(job.state)},
-                            {"tries", job.tries},
-                            {"worker", job.worker},
-                            {"reason", job.reason},
-                            {"input_sha256", job.input_sha256}});
+    json["jobs"].push_back(fleet_job_json(job));
   }
   return http::json_response(json.dump());
 }
